@@ -9,6 +9,7 @@ import sys
 from setuptools import find_packages, setup
 
 PACKAGE = 'tree_sway_ros'
+LIBRARY = 'tree_sway'
 #: The folder of this file; `colcon build --symlink-install` runs a link to it in another folder.
 ROOT = Path(__file__).resolve().parent
 NODES = ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer')
@@ -17,7 +18,7 @@ LAUNCHER = '#!/bin/sh\nexec "$(dirname "$0")/../../bin/$(basename "$0")" "$@"\n'
 
 def version():
     """Return the version, which is written in the package's ``__init__.py`` and nowhere else."""
-    text = (ROOT / PACKAGE / '__init__.py').read_text(encoding='utf-8')
+    text = (ROOT / LIBRARY / '__init__.py').read_text(encoding='utf-8')
     return re.search(r"^__version__ = '(.+)'$", text, re.MULTILINE).group(1)
 
 
@@ -68,18 +69,14 @@ extras = {
     'relay': ['eclipse-zenoh>=1.0'],
     'plot': ['matplotlib>=3.6'],
     'h5': ['h5py>=3.7'],
-    'mujoco': ['mujoco>=3.2'],
-    'dart': ['mujoco>=3.2', 'dartpy>=6.20'],
-    'battery': ['mpmath>=1.2'],
-    'sundials': ['scikit-sundae>=1.0'],
     # colcon runs pytest only where an extra of this name asks for it.
     'test': [
         *('pytest>=7,<9', 'pytest-xdist>=3.2', 'pytest-cov>=4', 'hypothesis>=6.60', 'mpmath>=1.2'),
         *('pygltflib>=1.16', 'trimesh>=4.0', 'argcomplete>=2'),
     ],
     'lint': ['ruff>=0.8', 'mypy>=1.11', 'types-PyYAML', 'types-jsonschema'],
-    # Studies on a cluster, and their tables as Parquet.
-    'cluster': ['distributed>=2023.1', 'pyarrow>=12'],
+    # Studies on all cores or a cluster, and their tables as Parquet.
+    'study': ['distributed>=2023.1', 'cryptography>=41', 'pyarrow>=12'],
     'docs': ['sphinx>=7', 'myst-parser>=2'],
 }
 
@@ -94,7 +91,7 @@ setup(
     maintainer='Tree Sway maintainers',
     maintainer_email='maintainers@users.noreply.github.com',
     license='Apache-2.0',
-    packages=find_packages(str(ROOT), include=[PACKAGE, f'{PACKAGE}.*']),
+    packages=find_packages(str(ROOT), include=[PACKAGE, f'{PACKAGE}.*', LIBRARY, f'{LIBRARY}.*']),
     package_data={
         '': ['py.typed', '*.json', '*.yaml', '*.csv', '*.xml', 'static/*', 'static/*/*']
     },
@@ -109,8 +106,10 @@ setup(
     entry_points={
         'console_scripts': [
             *(f'{node} = {PACKAGE}.nodes.executables:{node}' for node in NODES),
-            f'tree-sway = {PACKAGE}.tools.cli:main',
+            f'tree-sway = {LIBRARY}.commands.cli:main',
         ],
+        'tree_sway.commands': [f'ros = {PACKAGE}.commands.table:COMMANDS'],
+        'tree_sway.wind': [f'ros = {PACKAGE}.commands.relay_wind:RosWind'],
         'ament_copyright.license': [
             f'apache2_by_spdx = {PACKAGE}.licence_header:APACHE_BY_SPDX',
         ],

@@ -10,7 +10,7 @@ Run a command in this checkout's own virtual environment, made first if it is no
 Needs Python 3.10 or newer, and the network the first time. The package is installed in editable
 form, with what the command needs and no more: `tree-sway demo` brings the real rclpy and Fast DDS
 of hashes-ros-jazzy.txt and no other (x86_64 Linux, Python 3.10-3.14), `pytest` what the
-tests use, `ruff` the linters; a later command adds what it lacks. The environment is made anew
+tests use, `ruff` the linters; a later command adds what it lacks. The environment is made again
 when the Python differs and brought up to date when a file that describes the installation has
 changed. TREE_SWAY_VENV names another place for it than .venv.
 
@@ -41,16 +41,16 @@ NEEDS = {
         ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer', 'ros2'), ('ros',)
     ),
     **dict.fromkeys(('tree-sway demo', 'tree-sway listen'), ('ros',)),
-    **dict.fromkeys(('tree-sway plot', 'tree-sway chart', 'tree-sway render'), ('plot',)),
+    **dict.fromkeys(('tree-sway plot', 'tree-sway render'), ('plot',)),
     'tree-sway record': ('ros', 'bag'),
     'tree-sway relay': ('relay',),
-    'tree-sway battery': ('battery',),
-    'tree-sway compare': ('mujoco',),
+    'tree-sway study': ('study',),
+    'tree-sway lab': ('ros', 'lab'),
     **dict.fromkeys(
         ('pytest', 'py.test'),
         (
-            *('ros', 'serial', 'bag', 'relay', 'plot', 'h5', 'mujoco', 'cluster', 'test'),
-            *('sundials', 'docs'),
+            *('ros', 'serial', 'bag', 'relay', 'plot', 'h5', 'study', 'test'),
+            *('lab', 'docs'),
         ),
     ),
     'coverage': ('test',),
@@ -93,7 +93,7 @@ def main(command):
     )
     program = shutil.which(command[0], path=environment['PATH'])
     if program is None:
-        stop('no such command: ' + command[0], 'what is installed stands in ' + programs)
+        stop('no such command: ' + command[0], 'what is installed is in ' + programs)
     os.execve(program, [program, *command[1:]], environment)
 
 
@@ -114,6 +114,8 @@ def extras_for(command):
             needed.add(NEEDS_OF_FILES[path.suffix])
         elif is_bag(path):
             needed.add('bag')
+        elif argument.rpartition('=')[2].startswith('serial:'):
+            needed.add('serial')
     if names[0] == 'pytest' and no_ros_wheels():
         needed.discard('ros')  # the tests that need it say that they are left out
     check_machine('ros' in needed)
@@ -171,7 +173,8 @@ def without_ros(environment):
 
 def wanted():
     """Return what the environment must have been made from, as one line."""
-    files = [ROOT / name for name in ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml')]
+    names = ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'lab/pyproject.toml')
+    files = [ROOT / name for name in names]
     files += [CONSTRAINTS, HASHES, Path(__file__).resolve()]
     digest = hashlib.sha256()
     for path in files:
@@ -203,8 +206,11 @@ def make_ready(environment, extras):
     if 'ros' in there | extras and not ('ros' in there and made_from[:3] == wanted()):
         # By their hashes: they are built by one person (doc/licences.md).
         pip(environment, '--require-hashes', '--no-deps', '-r', str(HASHES))
-    target = f'{ROOT}[{",".join(sorted(there | extras))}]'
+    target = f'{ROOT}[{",".join(sorted((there | extras) - {"lab"}))}]'
     pip(environment, '-c', str(CONSTRAINTS), '--no-build-isolation', '-e', target)
+    if 'lab' in there | extras:  # a project of its own, with what its truths need
+        laboratory = f'{ROOT / "lab"}[sundials]'
+        pip(environment, '-c', str(CONSTRAINTS), '--no-build-isolation', '-e', laboratory)
     link_resources()
     stamp.write_text('\n'.join([*wanted(), ','.join(sorted(there | extras))]))
     say(f'ready after {time.monotonic() - began:.0f} s')
@@ -295,7 +301,7 @@ def failure(words, log):
     if 'No space left' in words:
         return 'the disk is full', f'make about 1 GB of room at {VENV}'
     errors = [line for line in words.splitlines() if line.startswith('ERROR')]
-    return (errors or ['pip failed'])[0], f"pip's own words stand in {log}"
+    return (errors or ['pip failed'])[0], f"pip's own words are in {log}"
 
 
 def say(text):

@@ -14,7 +14,7 @@ os.environ['TREE_SWAY_NO_NUMBA'] = '1'  # compiled functions have no docstrings 
 project = 'tree_sway_ros'
 author = 'Tree Sway maintainers'
 copyright = f'2026 {author}'
-release = re.search(r"__version__ = '(.+)'", (ROOT / project / '__init__.py').read_text())[1]
+release = re.search(r"__version__ = '(.+)'", (ROOT / 'tree_sway' / '__init__.py').read_text())[1]
 extensions = ['myst_parser', 'sphinx.ext.autodoc', 'sphinx.ext.napoleon']
 master_doc = 'index'
 exclude_patterns = ['build']

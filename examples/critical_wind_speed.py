@@ -15,7 +15,7 @@ import sys
 
 import numpy as np
 
-from tree_sway_ros import open_tree, simulate, simulate_turbulence
+from tree_sway import open_tree, simulate, simulate_turbulence
 
 RATE = 30.0
 SPEEDS = (4.0, 6.0, 9.0, 13.0, 18.0)

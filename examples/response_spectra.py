@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 import numpy as np
 from scipy.signal import welch
 
-from tree_sway_ros import open_tree, simulate, simulate_turbulence
+from tree_sway import open_tree, simulate, simulate_turbulence
 
 RATE, SECONDS, SPEED = 20.0, 600.0, 8.0
 

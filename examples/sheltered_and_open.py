@@ -7,13 +7,14 @@ The same tree in the open and among others of its height, under the same wind at
 
 Over open ground the wind falls with height by a logarithm; within a canopy it falls exponentially
 from the tops down (Cionco 1965), here as the power law that fits that best. The crown of the
-sheltered tree stands in less wind, and its base carries less, though its top is as exposed.
+sheltered tree gets less wind, and its base carries less, though its top is as exposed.
 
 """
 
 import numpy as np
 
-from tree_sway_ros import grow, simulate, simulate_turbulence, WindProfile
+from tree_sway import grow, simulate, simulate_turbulence
+from tree_sway.core.wind.height_profile import WindProfile
 
 HEIGHT, SPEED, RATE = 12.0, 9.0, 30.0
 ATTENUATION = 2.0

@@ -6,7 +6,7 @@ Launch a tree that sways: a source of wind, the wind node, the solver, and RViz 
     ros2 launch tree_sway_ros sway.launch.py tree:=goldcrest source:=player file:=wind.csv
 
 Every name is relative: two launches with different ``namespace`` are two trees side by side. With
-``shards`` the trees of a stand are dealt over so many solvers, on this host or on several.
+``shards`` the trees of a stand are shared out among that many solvers, on one host or on several.
 
 """
 
@@ -32,26 +32,20 @@ ARGUMENTS = (
     ('tree', '', 'The solver opens this built-in tree, or file; as configured if empty.'),
     ('source', 'simulated', 'The wind comes from here.', [*SOURCES]),
     ('file', '', 'The player plays this wind record, for source:=player.'),
-    ('topic', '', 'The wind is on this topic of a bag; as configured if empty.'),
-    ('input_convention', '', "The record's vectors blow 'to' or come 'from'; as its format says."),
-    ('sensor_yaw', '', "The x axis of the record's sensor is turned so far from east [rad]."),
-    ('reader_options', '', "The reader of the file is told more: 'rate=20 sentence=MWV'."),
-    ('start', '', 'So much of the record is skipped [s].'),
-    ('speed', '', 'The record is played so many times as fast; as configured if empty.'),
+    ('reader_options', '', "Options for the reader of the file: 'topic=/mast/wind yaw=1.57'."),
+    ('start', '', 'Time skipped at the beginning of the record [s].'),
+    ('playback_rate', '', 'Playback rate of the record; as configured if empty.'),
     ('loop', '', 'The record is played over and over; as configured if empty.'),
     ('address', '', 'The instrument of source:=sensor is here, such as tcp://host:port.'),
     ('wind_topic', 'wind', 'The wind of source:=live is on this topic.'),
-    ('rate', '', 'The solver publishes so many frames per second; as configured if empty.'),
-    ('x', '', 'The tree stands so far to the east in its frame [m]; as configured if empty.'),
-    ('y', '', 'The tree stands so far to the north [m].'),
-    ('z', '', 'The tree stands so high [m].'),
-    ('yaw', '', 'The tree is turned so far counterclockwise, seen from above [rad].'),
+    ('rate', '', 'Frames per second of the solver; as configured if empty.'),
+    ('pose', '', "Place of the tree in its frame: '3 0 0 1.57' for x y z [m] and yaw [rad]."),
     ('frame_id', '', 'All that is published is in this frame; as configured if empty.'),
     ('namespace', '', 'All nodes and topics are in this namespace: one per tree.'),
     ('params_file', '', 'The values of this ROS parameter file override those of config/.'),
     ('use_sim_time', '', 'Nodes follow /clock, which the player of source:=player publishes.'),
-    ('lifecycle', '', 'Nodes wait for a lifecycle manager; as configured if empty.'),
-    ('shards', '1', "The trees of a stand are dealt over so many solvers, in 'shard<n>'."),
+    ('autostart', '', 'False leaves the start of nodes to a lifecycle manager.'),
+    ('shards', '1', "Number of solvers that share the trees of a stand, in 'shard<n>'."),
     ('here', '', 'These shards run on this host, such as 0,1; all of them if empty.'),
     ('page', 'false', 'The viewer serves a page for the browser.'),
     ('rviz', 'false', 'RViz is started.'),
@@ -119,22 +113,24 @@ def overrides_of(name, given):
         overrides['use_sim_time'] = with_clock and name != 'player'
         if name == 'player':
             overrides['publish_clock'] = with_clock
-    if given['lifecycle'] and name != 'viewer':
-        overrides['lifecycle'] = is_true('lifecycle', given['lifecycle'])
+    if given['autostart']:
+        overrides['autostart'] = is_true('autostart', given['autostart'])
     if name == 'sensor' and given['address']:
         overrides['address'] = given['address']
     if name == 'player':
-        names = ('file', 'topic', 'input_convention', 'reader_options')
+        names = ('file', 'reader_options')
         overrides.update({each: given[each] for each in names if given[each]})
-        numbers = {'yaw': 'sensor_yaw', 'start': 'start', 'speed': 'speed'}
+        numbers = {'start': 'start', 'rate': 'playback_rate'}
         overrides.update({to: float(given[each]) for to, each in numbers.items() if given[each]})
         if given['loop']:
             overrides['loop'] = is_true('loop', given['loop'])
     if name == 'solver':
         if given['tree']:
             overrides['tree'] = given['tree']
-        numbers = ('rate', 'x', 'y', 'z', 'yaw')
-        overrides.update({each: float(given[each]) for each in numbers if given[each]})
+        if given['rate']:
+            overrides['rate'] = float(given['rate'])
+        if given['pose']:
+            overrides['pose'] = [float(number) for number in given['pose'].split()]
     return overrides
 
 
@@ -154,7 +150,7 @@ def make_shard(shard, given, config, around):
         'solver',
         {**given, 'namespace': '/'.join(filter(None, (given['namespace'], f'shard{shard}')))},
         config,
-        more={'shard': shard, 'shards': int(given['shards'])},
+        more={'shard.index': shard, 'shard.count': int(given['shards'])},
         remappings=[(WIND, wind)],
         respawn=True,
         respawn_delay=0.2,

@@ -13,7 +13,7 @@ import subprocess
 import pytest
 import yaml
 
-import tree_sway_ros  # noqa: I100
+import tree_sway  # noqa: I100
 
 ROOT = Path(__file__).resolve().parent.parent
 YAML = [
@@ -29,7 +29,7 @@ def test_it_is_yaml(name: str) -> None:
 
 def test_the_citation_names_this_version() -> None:
     citation = yaml.safe_load((ROOT / 'CITATION.cff').read_text(encoding='utf-8'))
-    assert citation['version'] == tree_sway_ros.__version__
+    assert citation['version'] == tree_sway.__version__
     assert citation['license'] == 'Apache-2.0'
     assert {name['family-names'] for name in citation['references'][0]['authors']} == {
         *('Kanda', 'Ohya'),
@@ -47,7 +47,9 @@ def test_what_the_workflow_runs_is_there() -> None:
     assert jobs['jazzy']['container'] == 'ros:jazzy'
     assert jobs['bounds']['env'] == {'NUMBA_BOUNDSCHECK': '1'}
     commands = [step['run'] for job in jobs.values() for step in job['steps'] if 'run' in step]
-    for path in re.findall(r'(?<![\w/])(?:test|\.ci|tree_sway_ros)/[\w./]+', ' '.join(commands)):
+    for path in re.findall(
+        r'(?<![\w/])(?:test|lab|\.ci|tree_sway|tree_sway_ros)/[\w./]+', ' '.join(commands)
+    ):
         assert (ROOT / path).exists(), path
 
 
@@ -59,7 +61,7 @@ def test_scripts_can_be_run_and_are_sound_shell() -> None:
 
 def test_every_source_file_says_whose_it_is_and_under_which_licence() -> None:
     sources = [ROOT / 'setup.py', ROOT / '.ci' / 'in_venv.py', ROOT / '.ci' / 'run']
-    for folder in ('tree_sway_ros', 'test', 'launch'):
+    for folder in ('tree_sway', 'tree_sway_ros', 'lab', 'test', 'launch'):
         for suffix in ('py', 'js', 'css', 'html'):
             sources += [p for p in (ROOT / folder).rglob(f'*.{suffix}') if 'data' not in p.parts]
     silent = [

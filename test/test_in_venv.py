@@ -69,6 +69,22 @@ def test_a_python_without_wheels(
     assert expected in refusal(capsys)
 
 
+@pytest.mark.parametrize(
+    ('words', 'extra'),
+    [
+        ('tree-sway demo --sensor serial:/dev/ttyUSB0:4800', 'serial'),
+        ('sensor --ros-args -p address:=serial:/dev/ttyUSB0', 'serial'),
+        ('tree-sway study oaks.yaml --scheduler tcp://login:8786', 'study'),
+        ('tree-sway demo --wind mast.mcap', 'bag'),
+    ],
+)
+def test_what_a_command_line_names_brings_its_extra(
+    script: ModuleType, words: str, extra: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(script, 'check_machine', lambda with_ros: None)
+    assert extra in script.extras_for(words.split())
+
+
 def test_a_machine_without_wheels(
     script: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -83,16 +99,16 @@ def test_a_machine_without_wheels(
 @pytest.mark.parametrize(
     ('command', 'brought', 'left'),
     [
-        ('tree-sway demo --seconds 10', {'fast', 'ros'}, {'plot', 'mujoco', 'test', 'lint'}),
+        ('tree-sway demo --seconds 10', {'fast', 'ros'}, {'plot', 'lab', 'test', 'lint'}),
         ('tree-sway --version', {'fast'}, {'ros'}),
         ('tree-sway info scan.mat', {'h5'}, {'ros', 'plot'}),
         ('tree-sway demo --wind=gale.mcap', {'ros', 'bag'}, {'h5'}),
         ('tree-sway convert oak.mat -o oak.glb', {'h5'}, {'ros', 'bag'}),
         ('tree-sway plot', {'plot'}, {'ros'}),
-        ('tree-sway compare', {'mujoco'}, {'ros'}),
+        ('tree-sway lab compare', {'lab'}, {'plot', 'test'}),
         ('solver --ros-args', {'ros'}, {'plot'}),
-        ('pytest -n 2', {'ros', 'bag', 'plot', 'h5', 'mujoco', 'test'}, {'lint'}),
-        ('mypy', {'lint'}, {'ros', 'mujoco'}),
+        ('pytest -n 2', {'ros', 'bag', 'plot', 'h5', 'lab', 'test'}, {'lint'}),
+        ('mypy', {'lint'}, {'ros', 'lab'}),
         (f'python {"x" * 300}', {'fast'}, {'ros'}),
     ],
 )
@@ -113,7 +129,8 @@ def test_every_extra_that_is_asked_for_is_one_of_setup_py(script: ModuleType) ->
     asked = {*script.ALWAYS, *script.NEEDS_OF_FILES.values(), *sum(script.NEEDS.values(), ())}
     assert len(asked) > 3
     setup = (ROOT / 'setup.py').read_text()
-    assert not [extra for extra in asked if f"'{extra}': [" not in setup]
+    of_setup = asked - {'lab'}  # a project of its own
+    assert not [extra for extra in of_setup if f"'{extra}': [" not in setup]
 
 
 def test_a_python_without_ensurepip(

@@ -12,15 +12,15 @@ import sys
 
 import pytest
 
-from tree_sway_ros.kernel_cache import ROOT, source_digest
+from tree_sway.kernel_cache import ROOT, source_digest
 
 pytest.importorskip('numba', reason='there is no cache of kernels without numba')
 
 #: One step of a small tree; prints what the load's kernel makes of the wind.
 PROGRAM = """
 import numpy as np
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.building import tree_from_segments
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.building import tree_from_segments
 nodes = np.linspace((0.0, 0.0, 0.0), (0.0, 0.0, 2.0), 5)
 tree = tree_from_segments(nodes[:-1], nodes[1:], np.full((4, 2), 0.02), parent=np.arange(-1, 3))
 sim = SwaySimulator(tree, model="branch", gravity=0.0)
@@ -35,7 +35,7 @@ print(sim.tip_displacement[0])
 def copy(tmp_path_factory):
     """Copy the package, to be edited, and return a function that runs the program on it."""
     tmp_path = tmp_path_factory.mktemp('copy')
-    shutil.copytree(ROOT, tmp_path / 'tree_sway_ros', ignore=shutil.ignore_patterns('__pycache__'))
+    shutil.copytree(ROOT, tmp_path / 'tree_sway', ignore=shutil.ignore_patterns('__pycache__'))
 
     def run(cache: Path | str) -> tuple[float, str]:
         environment = {**os.environ, 'PYTHONPATH': str(tmp_path), 'TREE_SWAY_CACHE': str(cache)}
@@ -45,7 +45,7 @@ def copy(tmp_path_factory):
         )  # fmt: skip
         return float(done.stdout), done.stderr
 
-    run.package = tmp_path / 'tree_sway_ros'
+    run.package = tmp_path / 'tree_sway'
     return run
 
 
@@ -94,3 +94,18 @@ def test_the_digest_follows_imports_and_nothing_else():
     assert len(source_digest(first)) == 32
     assert source_digest(first) != source_digest(ROOT / 'core' / 'motion' / 'modal.py')
     assert source_digest(ROOT / 'nowhere.py') == ''
+
+
+def test_the_digest_follows_imports_within_another_package(tmp_path):
+    package = tmp_path / 'orchard'
+    (package / 'methods').mkdir(parents=True)
+    for folder in (package, package / 'methods'):
+        (folder / '__init__.py').touch()
+    caller, callee = package / 'methods' / 'caller.py', package / 'callee.py'
+    caller.write_text('from orchard.callee import one\nfrom tree_sway.core import kernel\n')
+    digests = []
+    for text in ('one = 1\n', 'one = 2\n'):
+        callee.write_text(text)
+        source_digest.cache_clear()
+        digests.append(source_digest(caller))
+    assert digests[0] != digests[1]

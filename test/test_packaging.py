@@ -18,7 +18,7 @@ import zipfile
 
 import pytest
 
-import tree_sway_ros
+import tree_sway
 
 ROOT = Path(__file__).resolve().parent.parent
 NODES = ('anemometer', 'player', 'sensor', 'solver', 'viewer', 'wind')
@@ -31,8 +31,8 @@ def package() -> ElementTree.Element:
 
 
 def test_the_version_is_the_same_everywhere(package: ElementTree.Element) -> None:
-    assert package.findtext('version') == tree_sway_ros.__version__
-    assert f'\n{tree_sway_ros.__version__} (' in (ROOT / 'CHANGELOG.rst').read_text()
+    assert package.findtext('version') == tree_sway.__version__
+    assert f'\n{tree_sway.__version__} (' in (ROOT / 'CHANGELOG.rst').read_text()
 
 
 def test_the_package_says_what_ros_asks_for(package: ElementTree.Element) -> None:
@@ -45,14 +45,18 @@ def test_the_package_says_what_ros_asks_for(package: ElementTree.Element) -> Non
 def test_whatever_is_imported_is_depended_on(package: ElementTree.Element) -> None:
     depended = {element.text for element in package.iter('exec_depend')}
     wanted = set()
-    for path in [*(ROOT / 'tree_sway_ros').rglob('*.py'), *(ROOT / 'launch').glob('*.py')]:
+    for path in [
+        p
+        for folder in ('tree_sway', 'tree_sway_ros', 'launch')
+        for p in (ROOT / folder).rglob('*.py')
+    ]:
         for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
             names = [alias.name for alias in getattr(node, 'names', [])]
             if isinstance(node, ast.ImportFrom):
                 names = [node.module or '']
             if isinstance(node, ast.Import | ast.ImportFrom):
                 wanted |= {name.split('.')[0] for name in names}
-    wanted -= set(sys.stdlib_module_names) | {'tree_sway_ros', '', *OPTIONAL}
+    wanted -= set(sys.stdlib_module_names) | {'tree_sway', 'tree_sway_ros', '', *OPTIONAL}
     missing = {
         name
         for name in wanted
@@ -65,6 +69,8 @@ def test_whatever_is_imported_is_depended_on(package: ElementTree.Element) -> No
 OPTIONAL = {
     *(
         'PIL',
+        'cryptography',
+        'dask',
         'distributed',
         'h5py',
         'mpl_toolkits',
@@ -101,8 +107,8 @@ def setup_words() -> dict[str, Any]:
 
 
 def test_setup_finds_its_files_from_any_folder(setup_words: dict[str, Any]) -> None:
-    assert setup_words['version'] == tree_sway_ros.__version__
-    assert 'tree_sway_ros.core.motion' in setup_words['packages']
+    assert setup_words['version'] == tree_sway.__version__
+    assert 'tree_sway.core.motion' in setup_words['packages']
     assert setup_words['long_description'].startswith('# ')
     shared = [name for _, names in setup_words['data_files'] for name in names]
     assert {'package.xml', 'launch/sway.launch.py', 'config/solver.yaml'} <= set(shared)
@@ -145,11 +151,11 @@ def test_a_wheel_brings_executables_to_where_ros2_run_looks(tmp_path: Path) -> N
     for name in ('package.xml', 'launch/sway.launch.py'):
         assert f'share/tree_sway_ros/{name}' in infos
     assert 'share/ament_index/resource_index/packages/tree_sway_ros' in infos
-    assert 'tree_sway_ros/py.typed' in infos
-    package = ROOT / 'tree_sway_ros'
+    assert not [name for name in infos if name.startswith(('lab/', 'tree_sway_lab'))]
     data = {
         path
-        for path in package.rglob('*.*')
+        for package in ('tree_sway', 'tree_sway_ros')
+        for path in (ROOT / package).rglob('*.*')
         if path.suffix != '.py' and path.is_file() and '__pycache__' not in path.parts
     }
     assert not [path for path in data if str(path.relative_to(ROOT)) not in infos]

@@ -10,8 +10,17 @@ import pytest
 from tree_sway_ros.licence_header import APACHE_BY_SPDX
 
 ROOT = Path(__file__).resolve().parent.parent
-FOLDERS = ('tree_sway_ros', 'test', 'launch', 'examples', 'setup.py', '.ci/in_venv.py')
-PATHS = [str(ROOT / name) for name in FOLDERS]
+FOLDERS = (
+    'tree_sway',
+    'tree_sway_ros',
+    'lab',
+    'test',
+    'launch',
+    'examples',
+    'setup.py',
+    '.ci/in_venv.py',
+)
+PATHS = [str(ROOT / name) for name in (*FOLDERS, 'setup.py', '.ci/in_venv.py')]
 
 
 def test_the_header_is_that_of_this_file():

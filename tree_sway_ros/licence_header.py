@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 
 class LicenceHeader(NamedTuple):
-    """A licence as `ament_copyright` asks for it: texts that stand in files, and its SPDX name."""
+    """A licence as `ament_copyright` asks for it: texts in files, and its SPDX name."""
 
     name: str
     spdx: str

@@ -17,7 +17,9 @@ const { unit } = (parts[0].userData.unit ? parts[0] : parts[0].parent).userData;
 function described(description) {
   stage.frame(description.trees[0].height);
   const { scale } = description;
-  const fits = unit.length === scale.length && unit.every((u, k) => Math.abs(scale[k] / u - 10) < 0.01);
+  // A description's full scale leaves the same room above every unit.
+  const room = scale[0] / unit[0];
+  const fits = unit.length === scale.length && unit.every((u, k) => Math.abs(scale[k] / u / room - 1) < 1e-3);
   if (!fits) throw new Error(`${file} is of another tree or model than ${description.name}`);
 }
 

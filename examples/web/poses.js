@@ -3,7 +3,7 @@
 /** One cylinder per segment, placed by the poses of the stream. */
 
 import * as THREE from "three";
-import { STRIDE } from "../../tree_sway_ros/page/static/placing.js";
+import { STRIDE } from "../../tree_sway/page/static/placing.js";
 import { Stage } from "./stage.js";
 
 const stage = new Stage();

@@ -4,7 +4,7 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { TreeStream } from "../../tree_sway_ros/page/static/client.js";
+import { TreeStream } from "../../tree_sway/page/static/client.js";
 
 export class Stage {
   constructor() {

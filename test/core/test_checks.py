@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.checks import three_numbers, within
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.checks import three_numbers, within
+from tree_sway.errors import ParameterError
 
 
 @pytest.mark.parametrize('value', [0, 1, 0.5, True, np.float32(0.25), np.int64(1)])

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.kernel import fused, kernel, like
+from tree_sway.core.kernel import fused, kernel, like
 
 
 @kernel

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.rotation import (
+from tree_sway.core.rotation import (
     half_angle,
     product,
     quaternion,

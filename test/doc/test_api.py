@@ -12,7 +12,7 @@ import sys
 
 import pytest
 
-import tree_sway_ros
+import tree_sway
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / 'doc' / 'api.md').read_text(encoding='utf-8')
@@ -21,10 +21,10 @@ ENTRIES = re.findall(r'^\.\. auto(\w+):: (\S+)$', PAGE, re.MULTILINE)
 
 def test_no_public_name_is_missing() -> None:
     told = {entry for _, entry in ENTRIES}
-    homes = tree_sway_ros._HOMES
-    wanted = {f'tree_sway_ros.{homes[name]}.{name}' for name in homes if homes[name] != 'errors'}
+    homes = tree_sway._HOMES
+    wanted = {f'tree_sway.{homes[name]}.{name}' for name in homes if homes[name] != 'errors'}
     assert wanted - told == set()
-    assert ('module', 'tree_sway_ros.errors') in ENTRIES
+    assert ('module', 'tree_sway.errors') in ENTRIES
 
 
 @pytest.mark.parametrize(('kind', 'entry'), ENTRIES)

@@ -26,7 +26,7 @@ def changed_copy(folder: Path, module: str, text: str) -> None:
     """Link package and tests into a folder, but for one module, which is written anew."""
     (folder / 'test').symlink_to(ROOT / 'test')
     (folder / 'pyproject.toml').symlink_to(ROOT / 'pyproject.toml')
-    for source in sorted((ROOT / 'tree_sway_ros').rglob('*')):
+    for source in sorted((ROOT / 'tree_sway').rglob('*')):
         target = folder / source.relative_to(ROOT)
         if source.is_dir():
             target.mkdir(parents=True, exist_ok=True)
@@ -41,15 +41,15 @@ def changed_copy(folder: Path, module: str, text: str) -> None:
     ('heading', 'module', 'before', 'tests', 'name', 'known'),
     [
         (
-            'A new species', 'tree_sway_ros/core/tree/species.py',
-            [r"^ +_species\('ash'"], 'test/core/tree/test_species.py', 'poplar',
-            "from tree_sway_ros import species_named; print(species_named('poplar').title)",
+            'A new species', 'tree_sway/core/tree/species_table.py',
+            [r"^ +_species\('ash'", r"^ +'ash': "], 'test/core/tree/test_species.py', 'hornbeam',
+            "from tree_sway import species_named; print(species_named('hornbeam').title)",
         ),
         (
-            'A new model of the wind', 'tree_sway_ros/core/wind/simulated/spectra.py',
+            'A new model of the wind', 'tree_sway/core/wind/simulated/spectra.py',
             [r'^SPECTRA = ', r"^ +'kaimal': "], 'test/core/wind/simulated/test_spectra.py',
             'between',
-            'from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS as n;'
+            'from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS as n;'
             "print(*next(p for p in n['anemometer'] if p.name == 'turbulence').choices)",
         ),
     ],
@@ -72,12 +72,91 @@ def test_it_is_one_change_in_one_file(
         'import numpy as np\n', 'import numpy as np\nfrom scipy.special import beta\n'
     )
     changed_copy(tmp_path, module, text)
-    told = os.environ | {'PYTHONPATH': str(tmp_path), 'TREE_SWAY_NO_NUMBA': '1'}
+    environment = os.environ | {'PYTHONPATH': str(tmp_path), 'TREE_SWAY_NO_NUMBA': '1'}
     words = ['-m', 'pytest', '-p', 'no:cacheprovider', '-p', 'no:xdist', tests]
     for arguments, wanted in ((['-c', known], name), ([*words, '-v'], f'[{name}]')):
         result = subprocess.run(
-            [sys.executable, *arguments], cwd=tmp_path, env=told,
+            [sys.executable, *arguments], cwd=tmp_path, env=environment,
             capture_output=True, text=True, timeout=300, check=False,
         )  # fmt: skip
         assert result.returncode == 0, result.stdout + result.stderr
         assert wanted in result.stdout
+
+
+#: Changes of the table "To change X, edit Y": the module, what is there, what takes its place, a
+#: program, and what it prints with the change alone.
+CHANGES = {
+    'species': (
+        'tree_sway/core/tree/species_table.py',
+        "_species('ash', 'ash', 9.5e9,", "_species('ash', 'ash', 8.5e9,",
+        "from tree_sway import species_named; print(species_named('ash').modulus)", '8500000000.0',
+    ),
+    'habit': (
+        'tree_sway/core/growth/forms.py', "'ash': BroadleafForm(", "'elm': BroadleafForm(",
+        "from tree_sway.core.growth import forms; print('elm' in str(vars(forms)))", 'True',
+    ),
+    'spectrum': (
+        'tree_sway/core/wind/simulated/spectra.py', "'kaimal': Spectrum(", "'kansas': Spectrum(",
+        'from tree_sway.core.wind.simulated.spectra import SPECTRA; print(*SPECTRA)',
+        'kansas von_karman',
+    ),
+    'event': (
+        'tree_sway/core/wind/simulated/gust_event.py',
+        "    'step': _Shape(lambda x: x, lasts=True),\n",
+        "    'step': _Shape(lambda x: x, lasts=True),\n    'surge': _Shape(lambda x: x * x),\n",
+        'from tree_sway.core.wind.simulated.gust_event import gust;'
+        "print(gust('surge', 1.0, 4.0, 2.0))",
+        '1.0',
+    ),
+    'flutter': (
+        'tree_sway/core/leaves/flutter.py', 'LARGEST_ANGLE = 0.7', 'LARGEST_ANGLE = 0.5',
+        'from tree_sway.core.leaves.flutter import flutter_amplitude;'
+        'print(float(flutter_amplitude(90.0, 1.0)))',
+        '0.5',
+    ),
+    'air': (
+        'tree_sway/core/motion/drag.py', 'AIR_DENSITY = 1.225', 'AIR_DENSITY = 1.0',
+        'from tree_sway.core.motion.drag import AIR_DENSITY; print(AIR_DENSITY)', '1.0',
+    ),
+    'unit': (
+        'tree_sway/files/wind/units.py', "'mph': 0.44704,", "'mph': 0.44704, 'yd/s': 0.9144,",
+        "from tree_sway.files.wind.units import SPEED_UNITS; print(SPEED_UNITS['yd/s'])",
+        '0.9144',
+    ),
+    'format': (
+        'tree_sway/files/trees/formats/swc.py', "TreeFormat('swc'", "TreeFormat('neuron'",
+        'from tree_sway.files.trees.tree_file import TREE_FORMATS;'
+        "print('neuron' in [each.name for each in TREE_FORMATS])",
+        'True',
+    ),
+    'command': (
+        'tree_sway/commands/cli.py', 'info benjamina', 'info goldcrest',
+        "from tree_sway.commands.cli import COMMANDS; print(COMMANDS['info'].example)",
+        'info goldcrest',
+    ),
+    'ending': (
+        'tree_sway/commands/ending.py', 'LONGEST = 1.5', 'LONGEST = 2.5',
+        'from tree_sway.commands.ending import LONGEST; print(LONGEST)', '2.5',
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize('change', CHANGES)
+def test_it_is_where_the_page_says(tmp_path: Path, change: str) -> None:
+    module, before, after, program, printed = CHANGES[change]
+    table = PAGE.split('## To change X, edit Y\n')[1].split('\n## ')[0]
+    assert f'`{module}`' in table or f'`{module.rpartition("/")[0]}/`' in table
+    text = (ROOT / module).read_text(encoding='utf-8')
+    assert text.count(before) == 1, before
+    changed_copy(tmp_path, module, text.replace(before, after))
+    environment = os.environ | {'PYTHONPATH': str(tmp_path), 'TREE_SWAY_NO_NUMBA': '1'}
+    result = subprocess.run(
+        [sys.executable, '-c', program], cwd=tmp_path, env=environment,
+        capture_output=True, text=True, timeout=60, check=True,
+    )  # fmt: skip
+    assert result.stdout.strip() == printed
+
+
+def test_every_row_of_the_page_is_tried() -> None:
+    table = PAGE.split('## To change X, edit Y\n')[1].split('\n## ')[0]
+    assert len(re.findall(r'^\| (?!to change|---)', table, re.MULTILINE)) == len(CHANGES)

@@ -12,7 +12,7 @@ import sys
 
 import pytest
 
-from tree_sway_ros.study.campaign.plan import read_study
+from tree_sway.studies.plan import read_study
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = sorted((ROOT / 'examples').glob('*.py'))
@@ -36,7 +36,7 @@ def test_every_example_is_tried_here() -> None:
 
 def test_a_tree_sways_most_at_its_own_frequency(tmp_path: Path) -> None:
     pytest.importorskip('matplotlib', reason='needs matplotlib')
-    from tree_sway_ros import make_simulator, open_tree
+    from tree_sway import make_simulator, open_tree
 
     tree = open_tree('goldcrest')
     slowest = make_simulator(tree).frequencies(1)[0]

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from tree_sway_ros.nodes import executables
-from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 
 PAGE = Path(__file__).resolve().parents[2] / 'doc' / 'tutorials' / 'launch_file.md'
 

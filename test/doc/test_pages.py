@@ -20,7 +20,7 @@ import sys
 
 import pytest
 
-from tree_sway_ros.tools import cli
+from tree_sway.commands import cli
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'doc').rglob('*.md'))]
@@ -28,9 +28,9 @@ BLOCK = re.compile(r'^```(\w+)\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 LINK = re.compile(r'(?<!`)\[[^\]\n]+\]\(([^)\s]+)\)')
 #: A path of the repository or of the package.
 NAMED = re.compile(
-    r'`((?:test|tree_sway_ros|config|doc|core|files|ros|nodes|launch|examples|\.ci)/[\w./-]*\w/?)`'
+    r'`((?:test|lab|tree_sway|tree_sway_ros|config|doc|core|files|ros|nodes|launch|examples|\.ci)/[\w./-]*\w/?)`'
 )
-SHELL = 'set -eu; tree-sway() { "$PYTHON" -m tree_sway_ros.tools.cli "$@"; }\n'
+SHELL = 'set -eu; tree-sway() { "$PYTHON" -m tree_sway.commands.cli "$@"; }\n'
 FOLDERS = ('config', 'doc', 'examples', 'launch', 'test')
 DEADLINE = 300.0
 
@@ -96,7 +96,9 @@ def test_its_commands_are_commands(page: str, line: str) -> None:
     if words[0].isupper():
         pytest.fail(f"{page}: no command in '{line}'")
     if '--help' not in words:
-        assert cli._parser(words[0]).parse_args(words).command == words[0]
+        table, group = cli._table(words[0])
+        words = words[bool(group) :]
+        assert cli._parser(words[0], table, group).parse_args(words).command == words[0]
 
 
 @pytest.mark.parametrize('page', PAGES, ids=name)
@@ -117,7 +119,7 @@ def test_its_links_lead_somewhere(page: Path) -> None:
 def test_files_that_the_pages_name_are_there() -> None:
     named = [(page, path) for page in PAGES for path in NAMED.findall(page.read_text('utf-8'))]
     assert len(named) > 40
-    roots = (ROOT, ROOT / 'tree_sway_ros')
+    roots = (ROOT, ROOT / 'tree_sway')
     assert not [each for each in named if not any((root / each[1]).exists() for root in roots)]
 
 

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The fixtures of the tests of nodes, and one chain that all rows of a module share."""
 
+from functools import partial
 import importlib.util
 from pathlib import Path
+from unittest.mock import patch
 
 _spec = importlib.util.spec_from_file_location(
     'fixtures_of_nodes', Path(__file__).parents[1] / 'nodes' / 'conftest.py'
@@ -13,6 +15,8 @@ _spec.loader.exec_module(nodes_conftest)
 
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
+
+from tree_sway.core.wind.averaging import WindAverage  # noqa: E402, I100
 
 compose, observer, run = nodes_conftest.compose, nodes_conftest.observer, nodes_conftest.run
 level, statuses, tree_file = (
@@ -33,19 +37,21 @@ class Chain:
     """Anemometer, wind node and solver in one process, heard by another context."""
 
     def __init__(self, tree, domain):
-        from tree_sway_ros.ros.process.composition import Composition
-        from tree_sway_ros.ros.process.topics import SEGMENT_POSES, WIND_FILTERED
+        from tree_sway_ros.process.composition import Composition
+        from tree_sway_ros.process.topics import SEGMENT_POSES, WIND_FILTERED
 
         self.observer = nodes_conftest.Observer(domain)
         anemometer = {'rate': 50.0, 'mean_speed': 8.0, 'fault_every': 0.6, 'fault_duration': 0.2}
-        self.nodes = Composition(
-            {
-                'solver': {'tree': tree, 'timeout': 0.4, 'decay': 0.3, 'damping_ratio': 0.3},
-                'wind': {'frozen_after': 1.0, 'timeout': 0.4},
-                'anemometer': anemometer,
-            },
-            domain_id=domain,
-        )
+        brief = partial(WindAverage, timeout=0.4, decay=0.3)
+        with patch('tree_sway_ros.nodes.solver.WindAverage', brief):
+            self.nodes = Composition(
+                {
+                    'solver': {'tree': tree, 'damping_ratio': 0.3},
+                    'wind': {'frozen_after': 1.0, 'timeout': 0.4},
+                    'anemometer': anemometer,
+                },
+                domain_id=domain,
+            )
         self.frames = self.observer.listen(SEGMENT_POSES)
         self.filtered = self.observer.listen(WIND_FILTERED)
         self.until(lambda: self.frames and self.filtered, 'the stream')

@@ -9,8 +9,8 @@ import random
 import numpy as np
 import pytest
 
-from tree_sway_ros.files.wind.nmea import parse_nmea
-from tree_sway_ros.files.wind.sonic_ascii import parse_sonic
+from tree_sway.files.wind.nmea import parse_nmea
+from tree_sway.files.wind.sonic_ascii import parse_sonic
 
 ODD = (math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, 1e300, -1e300, 999.99, 327.68, 40.0, 1e6)
 FRAME_IDS = ('map', '', 'mast', '\u2014' * 300)
@@ -117,7 +117,7 @@ def fuzz(wind, solver, n, seed):
     What a callback raises is raised here: no guard stands around it.
 
     """
-    from tree_sway_ros.ros.timing.pacer import Tick
+    from tree_sway_ros.timing.pacer import Tick
 
     rng, clock, sender, filtered, planes = np.random.default_rng(seed), Clock(), Sender(), [], []
     wind._clock = solver._clock = clock
@@ -161,7 +161,7 @@ def nodes(compose):
     """Make the wind node and the solver, configured; time is the test's."""
     pytest.importorskip('rclpy', reason='ROS 2 is not installed')
     own = {'wind': {'frozen_after': 1.0}, 'solver': {'tree': 'benjamina'}}
-    made = compose(**{name: {**values, 'lifecycle': True} for name, values in own.items()})
+    made = compose(**{name: {**values, 'autostart': False} for name, values in own.items()})
     for node in made.nodes:
         node.configure()
     made['wind'].is_active = True

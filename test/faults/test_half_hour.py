@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.convention import WindConvention
-from tree_sway_ros.core.wind.gate import WindGate
-from tree_sway_ros.core.wind.intake import WindIntake
-from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway.core.wind.convention import WindConvention
+from tree_sway.core.wind.gate import WindGate
+from tree_sway.core.wind.intake import WindIntake
+from tree_sway.files.wind.wind_file import read_wind
 
 SONIC = Path(__file__).parents[2] / '..' / 'shared' / 'data' / 'wind' / 'sonic_20hz_1245.toa5.dat'
 N_SPIKES, N_GUSTS = 180, 40

@@ -14,8 +14,8 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.ros.process.topics import SEGMENT_POSES, WIND_FILTERED  # noqa: E402
-from tree_sway_ros.ros.wire.cdr import stamp_of  # noqa: E402
+from tree_sway_ros.process.topics import SEGMENT_POSES, WIND_FILTERED  # noqa: E402
+from tree_sway_ros.wire.cdr import stamp_of  # noqa: E402
 
 LONGEST = 3.0
 """From a kill to the whole stream [s], with processes that take all of the machine beside."""

@@ -19,12 +19,12 @@ def test_dropout_of_a_moment_is_held_without_a_visible_step(chain, faulty):
 
 def test_dropout_beyond_the_time_out_decays_and_the_first_sample_resumes(chain, faulty):
     states = set()
-    stepper = chain.nodes['solver']._stepper
+    run = chain.nodes['solver']._run
     first = faulty('dropout', fault_every=3.0, fault_duration=2.5)
 
     def gone_and_back():
-        states.add(stepper.wind_state)
-        return states >= {'decaying', 'stale'} and stepper.wind_state == 'live'
+        states.add(run.wind_state)
+        return states >= {'decaying', 'stale'} and run.wind_state == 'live'
 
     chain.until(gone_and_back, 'a long dropout, and wind again')
     chain.until(lambda: len(chain.frames) > first + 30, 'frames')

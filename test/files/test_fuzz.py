@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from tree_sway_ros.errors import TreeSwayError
-from tree_sway_ros.files.trees.formats.treeqsm import read_treeqsm_text
-from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.files.trees.tree_file import read_trees, TREE_FORMATS
-from tree_sway_ros.files.trees.yaml.forest_yaml import parse_forest
-from tree_sway_ros.files.wind.wind_file import read_wind, WIND_FORMATS
+from tree_sway.errors import TreeSwayError
+from tree_sway.files.scenes.forest_yaml import parse_forest
+from tree_sway.files.trees.formats.treeqsm import read_treeqsm_text
+from tree_sway.files.trees.source import open_tree
+from tree_sway.files.trees.tree_file import read_trees, TREE_FORMATS
+from tree_sway.files.wind.wind_file import read_wind, WIND_FORMATS
 
 DATA = Path(__file__).parent / 'data'
 WINDS = [

@@ -8,10 +8,10 @@ import re
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.simulator.assembly import CalibratedTree
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.files import kept_set_ups
-from tree_sway_ros.files.kept_set_ups import KeptSetUps
+from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.files import kept_set_ups
+from tree_sway.files.kept_set_ups import KeptSetUps
 
 WIND = (6.0, 3.0, 0.5)
 
@@ -28,10 +28,10 @@ def files(tmp_path):
 
 
 def poses_of(simulator):
-    """Poses of a second in the wind, half of it with more stiffness where that may change."""
+    """Poses of a second in the wind, half of it with more stiffness and less weight."""
     poses = []
     for frame in range(60):
-        if frame == 30 and simulator.model != 'wind_basis':
+        if frame == 30:
             simulator.tune(stiffness_factor=1.5, gravity=5.0)
         simulator.step(WIND, 1 / 60)
         poses.append(simulator.place())
@@ -49,9 +49,7 @@ def none_is_made(monkeypatch):
     return start
 
 
-@pytest.mark.parametrize(
-    'model', ['modes', 'coupled', pytest.param('wind_basis', marks=pytest.mark.compiled)]
-)
+@pytest.mark.parametrize('model', ['full', 12])
 def test_a_set_up_that_is_kept_gives_the_same_bits(fork, kept, files, none_is_made, model):
     alone, first = (SwaySimulator(fork(), model=model, **given) for given in ({}, {'kept': kept}))
     assert len(files()) == 1
@@ -71,8 +69,8 @@ def test_another_tree_or_setting_has_another_set_up(fork, stem, kept, files):
             (stem(), {}),
             (fork(), {'gravity': 0.0}),
             (fork(), {'in_leaf': True}),
-            (fork(), {'n_modes': 4}),
-            (fork(), {'model': 'coupled'}),
+            (fork(), {'model': 4}),
+            (fork(), {'model': 'full'}),
         ],
         start=1,
     ):

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.files.reader_options import reader_options
+from tree_sway.errors import ParameterError
+from tree_sway.files.reader_options import reader_options
 
 
 def test_words_become_options():

@@ -4,18 +4,18 @@ import time
 
 import pytest
 
-from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files import text_file
-from tree_sway_ros.files.text_file import (
+from tree_sway.errors import FormatError
+from tree_sway.files import text_file
+from tree_sway.files.text_file import (
     finite,
     read_bytes,
     read_head,
     read_lines,
     why_no_number,
 )
-from tree_sway_ros.files.trees.tree_file import read_tree
-from tree_sway_ros.files.wind.sway_table import read_csv_sway
-from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway.files.trees.tree_file import read_tree
+from tree_sway.files.wind.sway_table import read_csv_sway
+from tree_sway.files.wind.wind_file import read_wind
 
 
 @pytest.mark.parametrize(

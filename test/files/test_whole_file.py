@@ -6,9 +6,9 @@ import stat
 
 import pytest
 
-from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.text_file import path_of, read_text
-from tree_sway_ros.files.whole_file import whole_file, write_text_whole
+from tree_sway.errors import FormatError
+from tree_sway.files.text_file import path_of, read_text
+from tree_sway.files.whole_file import whole_file, write_text_whole
 
 
 def written_until(file, error):

@@ -5,9 +5,9 @@ from dataclasses import fields
 from jsonschema import Draft202012Validator
 import pytest
 
-from tree_sway_ros.core.tree.species import Species
-from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.yaml_document import read_yaml, tree_schema
+from tree_sway.core.tree.species import Species
+from tree_sway.errors import FormatError
+from tree_sway.files.yaml_document import read_yaml, tree_schema
 
 
 def schemas(schema):

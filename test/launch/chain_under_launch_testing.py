@@ -14,7 +14,7 @@ import launch_testing.actions
 import launch_testing.asserts
 import rclpy
 
-from tree_sway_ros.ros.process.topics import message_class, qos_profile, SEGMENT_POSES
+from tree_sway_ros.process.topics import message_class, qos_profile, SEGMENT_POSES
 
 SWAY = Path(__file__).parents[2] / 'launch' / 'sway.launch.py'
 DEADLINE = 60.0

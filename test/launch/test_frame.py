@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.ros.process.topics import (  # noqa: E402
+from tree_sway_ros.process.topics import (  # noqa: E402
     FORCE_PLANE,
     MARKERS,
     SEGMENT_POSES,

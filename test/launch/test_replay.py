@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.ros.process.topics import SEGMENT_POSES  # noqa: E402
+from tree_sway_ros.process.topics import SEGMENT_POSES  # noqa: E402
 
 BEGIN = 10**9
 """Of a record without a date, on the clock [ns]."""

@@ -17,14 +17,14 @@ def generate_launch_description():
     share = get_package_share_directory('tree_sway_ros')
     sway = PythonLaunchDescriptionSource(os.path.join(share, 'launch', 'sway.launch.py'))
 
-    def tree(name, x):
+    def tree(name, pose):
         told = {'tree': LaunchConfiguration('tree'), 'params_file': LaunchConfiguration('told')}
         return GroupAction(
             [
                 PushRosNamespace(name),
                 SetRemap('wind', '/mast/wind'),
                 IncludeLaunchDescription(
-                    sway, launch_arguments={**told, 'source': 'live', 'x': x}.items()
+                    sway, launch_arguments={**told, 'source': 'live', 'pose': pose}.items()
                 ),
             ]
         )
@@ -41,9 +41,9 @@ def generate_launch_description():
             DeclareLaunchArgument('tree'),
             DeclareLaunchArgument('told'),
             SetParameter('exposure', 0.1),
-            SetParameter('decay', 3.0),
+            SetParameter('gravity', 9.0),
             mast,
-            tree('elm', '0.0'),
-            tree('oak', '5.0'),
+            tree('elm', '0 0 0 0'),
+            tree('oak', '5 0 0 0'),
         ]
     )

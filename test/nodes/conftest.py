@@ -15,7 +15,7 @@ import tree_sway_ros
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
 # An observer announces itself as often as nodes do.
-PROFILE = Path(tree_sway_ros.__file__).parent / 'ros' / 'process' / 'discovery.xml'
+PROFILE = Path(tree_sway_ros.__file__).parent / 'process' / 'discovery.xml'
 os.environ.setdefault('FASTRTPS_DEFAULT_PROFILES_FILE', str(PROFILE))
 
 DEADLINE = 10.0
@@ -55,7 +55,7 @@ class Observer:
 
     def listen(self, topic, kind=None, name=None, raw=False, depth=None):
         """Return a list that fills with the messages of a topic of the table."""
-        from tree_sway_ros.ros.process.topics import message_class, qos_profile
+        from tree_sway_ros.process.topics import message_class, qos_profile
 
         messages = []
 
@@ -73,7 +73,7 @@ class Observer:
 
     def publisher(self, topic, kind=None, name=None):
         """Return a publisher on a topic of the table, once somebody listens to it."""
-        from tree_sway_ros.ros.process.topics import message_class, qos_profile
+        from tree_sway_ros.process.topics import message_class, qos_profile
 
         made = self.node.create_publisher(
             kind or message_class(topic), name or topic.name, qos_profile(topic)
@@ -120,7 +120,7 @@ def observer(domain):
 @pytest.fixture
 def compose(domain):
     """Start nodes in this process, each by its name and parameters: ``solver={...}``."""
-    from tree_sway_ros.ros.process.composition import Composition
+    from tree_sway_ros.process.composition import Composition
 
     made = []
 
@@ -149,7 +149,7 @@ def tree_file(tmp_path):
 @pytest.fixture
 def statuses(observer):
     """Give the newest status of each name on /diagnostics, for names like ``'solver: wind'``."""
-    from tree_sway_ros.ros.process.topics import DIAGNOSTICS
+    from tree_sway_ros.process.topics import DIAGNOSTICS
 
     arrays = observer.listen(DIAGNOSTICS)
 

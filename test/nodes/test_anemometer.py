@@ -6,12 +6,13 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
+from geometry_msgs.msg import Vector3Stamped  # noqa: E402, I100
 from rcl_interfaces.srv import SetParameters  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 
-from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel  # noqa: E402
-from tree_sway_ros.errors import TreeSwayError  # noqa: E402
-from tree_sway_ros.ros.process.topics import WIND  # noqa: E402
+from tree_sway.core.wind.simulated.anemometer import AnemometerModel  # noqa: E402
+from tree_sway.errors import TreeSwayError  # noqa: E402
+from tree_sway_ros.process.topics import WIND  # noqa: E402
 
 
 def test_samples_come_at_the_rate_and_are_the_models(compose, observer):
@@ -79,3 +80,11 @@ def test_both_together_are_taken(compose):
     nodes = compose(anemometer={'gust': 'step'})
     changes = [Parameter('gust_every', value=3.0), Parameter('gust_duration', value=2.0)]
     assert nodes['anemometer'].set_parameters_atomically(changes).successful
+
+
+def test_an_ordinary_subscription_hears_the_wind(compose, observer):
+    """As `ros2 topic echo` and most programs subscribe: reliable."""
+    said = []
+    compose(anemometer={'rate': 50.0})
+    observer.node.create_subscription(Vector3Stamped, WIND.name, said.append, 10)
+    observer.until(lambda: said, 'wind')

@@ -7,8 +7,8 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.ros.process.topics import SEGMENT_POSES  # noqa: E402
-from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns  # noqa: E402
+from tree_sway_ros.process.topics import SEGMENT_POSES  # noqa: E402
+from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 WITHOUT_ROS = "import sys; sys.modules['rclpy'] = None; "
 

@@ -11,16 +11,17 @@ pytestmark = pytest.mark.ros
 from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402, I100
 from std_srvs.srv import Trigger  # noqa: E402
 
-from tree_sway_ros.errors import TreeSwayError  # noqa: E402
-from tree_sway_ros.files.trees.source import open_scene  # noqa: E402
-from tree_sway_ros.ros.process.topics import (  # noqa: E402
+from tree_sway.core.simulator.settings import USUAL  # noqa: E402
+from tree_sway.errors import TreeSwayError  # noqa: E402
+from tree_sway.files.trees.source import open_scene  # noqa: E402
+from tree_sway_ros.process.topics import (  # noqa: E402
     CAMERA,
     MARKERS,
     SEGMENT_POSES,
     TREE_DESCRIPTION,
     WIND_FILTERED,
 )
-from tree_sway_ros.ros.wire.wind_messages import wind_to_message, WindSample  # noqa: E402
+from tree_sway_ros.wire.wind_messages import wind_to_message, WindSample  # noqa: E402
 
 
 @pytest.fixture
@@ -47,7 +48,7 @@ def blow(observer, publisher, vector):
 
 
 def test_a_forest_is_streamed_as_one(compose, observer, statuses, forest_file):
-    compose(solver={'tree': forest_file, 'leaf_clusters': 20})
+    compose(solver={'tree': forest_file})
     described = observer.listen(TREE_DESCRIPTION)
     frames, markers = observer.listen(SEGMENT_POSES), observer.listen(MARKERS)
     observer.until(lambda: described and frames and markers, 'a frame')
@@ -72,14 +73,14 @@ def test_a_forest_is_streamed_as_one(compose, observer, statuses, forest_file):
     assert observer.call(Trigger, 'solver/reset', Trigger.Request()).success
     observer.until(lambda: statuses('solver: model') is not None, 'diagnostics')
     values = {pair.key: pair.value for pair in statuses('solver: model').values}
-    assert values['fidelity of oak'] == values['fidelity of elm'] == 'modes'
+    assert values['model'] == str(USUAL)
     assert 's late' in statuses('solver: gusts').message
 
 
 def test_each_tree_is_as_exact_as_its_distance_from_the_camera_asks(
     compose, observer, forest_file
 ):
-    nodes = compose(solver={'tree': forest_file, 'fidelity': 'auto'})
+    nodes = compose(solver={'tree': forest_file, 'model': 'auto'})
     camera = observer.publisher(CAMERA)
     message = PoseStamped()
     message.pose.position.x = 13.0

@@ -14,7 +14,7 @@ pytest.importorskip('rclpy')
 PROGRAM = """
 import importlib, sys
 importlib.import_module("tree_sway_ros.nodes.{}")
-print([name for name in sys.modules if name == "numba" or name == "tree_sway_ros.core.kernel"])
+print([name for name in sys.modules if name == "numba" or name == "tree_sway.core.kernel"])
 """
 
 

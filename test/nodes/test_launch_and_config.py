@@ -7,13 +7,12 @@ from xml.etree import ElementTree
 import pytest
 import yaml
 
-from tree_sway_ros.ros.process.topics import TOPICS  # noqa: I100
+from tree_sway_ros.process.topics import TOPICS  # noqa: I100
 
 ROOT = Path(__file__).parents[2]
 ARGUMENTS = (
-    *('tree', 'address', 'file', 'topic', 'reader_options', 'rate'),
-    *('input_convention', 'sensor_yaw', 'start', 'speed', 'loop'),
-    *('x', 'y', 'z', 'yaw', 'frame_id', 'use_sim_time', 'lifecycle'),
+    *('tree', 'address', 'file', 'reader_options', 'rate', 'start', 'playback_rate', 'loop'),
+    *('pose', 'frame_id', 'use_sim_time', 'autostart'),
 )
 GIVEN = dict.fromkeys(ARGUMENTS, '')
 
@@ -99,17 +98,17 @@ def test_neither_yes_nor_no_is_refused(launch_file):
 def test_arguments_that_are_not_given_override_nothing(launch_file):
     for name in ('anemometer', 'player', 'wind', 'solver'):
         assert launch_file.overrides_of(name, GIVEN) == {}
-    placed = launch_file.overrides_of('solver', GIVEN | {'x': '3', 'yaw': '1.57'})
-    assert placed == {'x': 3.0, 'yaw': 1.57}
+    placed = launch_file.overrides_of('solver', GIVEN | {'pose': '3 0 0 1.57'})
+    assert placed == {'pose': [3.0, 0.0, 0.0, 1.57]}
 
 
 def test_the_player_is_told_how_to_read_and_where_to_begin(launch_file):
-    given = {'input_convention': 'from', 'sensor_yaw': '1.57', 'topic': '/mast/wind'}
-    given |= {'start': '30', 'speed': '2', 'loop': 'False'}
+    given = {'reader_options': 'topic=/mast/wind yaw=1.57'}
+    given |= {'start': '30', 'playback_rate': '2', 'loop': 'False'}
     told = launch_file.overrides_of('player', GIVEN | given)
     assert told == {
-        **{'input_convention': 'from', 'yaw': 1.57, 'topic': '/mast/wind'},
-        **{'start': 30.0, 'speed': 2.0, 'loop': False},
+        'reader_options': 'topic=/mast/wind yaw=1.57',
+        **{'start': 30.0, 'rate': 2.0, 'loop': False},
     }
     assert launch_file.overrides_of('solver', GIVEN | given) == {}
 

@@ -8,7 +8,7 @@ pytestmark = pytest.mark.ros
 from lifecycle_msgs.msg import Transition  # noqa: E402, I100
 from lifecycle_msgs.srv import ChangeState, GetState  # noqa: E402
 
-from tree_sway_ros.ros.process.topics import SEGMENT_POSES, WIND, WIND_FILTERED  # noqa: E402
+from tree_sway_ros.process.topics import SEGMENT_POSES, WIND, WIND_FILTERED  # noqa: E402
 
 
 @pytest.fixture
@@ -24,7 +24,7 @@ def state_of(observer, node):
     return observer.call(GetState, f'{node}/get_state', GetState.Request()).current_state.label
 
 
-def goes_on(observer, messages):
+def has_predecessor(observer, messages):
     n = len(messages)
     observer.until(lambda: len(messages) > n + 5, 'messages')
 
@@ -39,7 +39,7 @@ def stands(observer, messages, others):
 def test_a_managed_chain_is_configured_started_stopped_and_started_again(
     compose, observer, manage, tree_file
 ):
-    managed = {'lifecycle': True}
+    managed = {'autostart': False}
     compose(anemometer=managed, wind=managed, solver={'tree': tree_file, **managed})
     frames, said = observer.listen(SEGMENT_POSES), observer.listen(WIND)
     filtered = observer.listen(WIND_FILTERED)
@@ -50,8 +50,8 @@ def test_a_managed_chain_is_configured_started_stopped_and_started_again(
     assert (frames, said) == ([], [])
     for node in names:
         assert manage(node, Transition.TRANSITION_ACTIVATE)
-    goes_on(observer, frames)
-    goes_on(observer, filtered)
+    has_predecessor(observer, frames)
+    has_predecessor(observer, filtered)
     assert manage('wind', Transition.TRANSITION_DEACTIVATE)
     stands(observer, filtered, said)
     assert manage('solver', Transition.TRANSITION_DEACTIVATE)
@@ -60,13 +60,13 @@ def test_a_managed_chain_is_configured_started_stopped_and_started_again(
         assert manage(node, Transition.TRANSITION_CLEANUP)
         assert manage(node, Transition.TRANSITION_CONFIGURE)
         assert manage(node, Transition.TRANSITION_ACTIVATE)
-    goes_on(observer, frames)
-    goes_on(observer, filtered)
+    has_predecessor(observer, frames)
+    has_predecessor(observer, filtered)
     assert state_of(observer, 'solver') == 'active'
 
 
 def test_what_cannot_be_configured_says_so_and_stays_as_it_was(compose, observer, manage):
-    nodes = compose(solver={'tree': 'elm.yaml', 'lifecycle': True})
+    nodes = compose(solver={'tree': 'elm.yaml', 'autostart': False})
     before = len(list(nodes['solver'].publishers))
     assert not manage('solver', Transition.TRANSITION_CONFIGURE)
     assert state_of(observer, 'solver') == 'unconfigured'
@@ -74,7 +74,7 @@ def test_what_cannot_be_configured_says_so_and_stays_as_it_was(compose, observer
 
 
 def test_a_transition_that_is_none_ends_nothing(compose, observer, manage):
-    nodes = compose(wind={'lifecycle': True})
+    nodes = compose(wind={'autostart': False})
     assert not manage('wind', Transition.TRANSITION_ACTIVATE)
     assert state_of(observer, 'wind') == 'unconfigured'
     nodes['wind'].guard.count = 0  # seen; the fixture asks for none

@@ -9,10 +9,13 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.errors import TreeSwayError  # noqa: E402
-from tree_sway_ros.files.wind.wind_file import read_wind  # noqa: E402
-from tree_sway_ros.ros.process.topics import CLOCK, SEGMENT_POSES, WIND  # noqa: E402
-from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns  # noqa: E402
+from geometry_msgs.msg import Vector3Stamped  # noqa: E402, I100
+from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: E402
+
+from tree_sway.errors import TreeSwayError  # noqa: E402
+from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
+from tree_sway_ros.process.topics import CLOCK, SEGMENT_POSES, WIND  # noqa: E402
+from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 
 @pytest.fixture
@@ -32,7 +35,7 @@ def gusty(tmp_path):
 
 def test_a_record_is_played_as_it_is_and_then_ends(compose, observer, wind_file):
     said = observer.listen(WIND)
-    nodes = compose(player={'file': wind_file, 'speed': 20.0, 'loop': False})
+    nodes = compose(player={'file': wind_file, 'rate': 20.0, 'loop': False})
     observer.until(lambda: nodes.is_done, 'the end')
     record = read_wind(wind_file)
     observer.until(lambda: len(said) >= 78, 'the samples')
@@ -44,7 +47,7 @@ def test_a_record_is_played_as_it_is_and_then_ends(compose, observer, wind_file)
 
 def test_the_clock_goes_on_over_the_seam_of_a_loop(compose, observer, wind_file):
     said, ticks = observer.listen(WIND), observer.listen(CLOCK)
-    compose(player={'file': wind_file, 'speed': 40.0, 'publish_clock': True})
+    compose(player={'file': wind_file, 'rate': 40.0, 'publish_clock': True})
     observer.until(lambda: len(said) > 200, 'two rounds and a half')
     clock = [stamp_to_ns(tick.clock) for tick in ticks]
     stamps = [stamp_to_ns(m.header.stamp) for m in said]
@@ -68,7 +71,7 @@ def poses_of(compose, observer, wind_file, tree_file, speed):
             'file': wind_file,
             'publish_clock': True,
             'loop': False,
-            'speed': speed,
+            'rate': speed,
             'wait_for': 'wind wind/filtered segment_poses /clock:2',
         },
     )
@@ -77,6 +80,8 @@ def poses_of(compose, observer, wind_file, tree_file, speed):
     observer.until(lambda: stamp_to_ns(frames[-1].header.stamp) >= last - FRAME, 'the end')
     missed = nodes['player']._answers.missing
     nodes.close()
+    stamps = [stamp_to_ns(frame.header.stamp) for frame in frames]
+    assert stamps == sorted(stamps), 'time went back'
     found = {
         stamp_to_ns(frame.header.stamp): [
             (pose.position.x, pose.position.y, pose.orientation.w) for pose in frame.poses
@@ -121,14 +126,14 @@ def test_a_bag_of_the_graph_itself_plays_back(compose, observer, tmp_path, monke
         'read_wind',
         lambda path, **options: asked.update(options) or read_wind(gusty(tmp_path)),
     )
-    options = {'topic': '/wind', 'yaw': 0.5, 'input_convention': 'from'}
-    compose(player={'file': 'bag', **options, 'reader_options': 'rate=20'})
+    options = 'topic=/wind yaw=0.5 direction_convention=from rate=20'
+    compose(player={'file': 'bag', 'reader_options': options})
     assert asked == {'topic': '/wind', 'yaw': 0.5, 'direction_convention': 'from', 'rate': 20.0}
 
 
 @pytest.mark.parametrize(
     ('parameters', 'message'),
-    [({}, 'no file to play'), ({'file': 'nowhere.csv'}, 'nowhere.csv'), ({'speed': 0.0}, 'speed')],
+    [({}, 'no file to play'), ({'file': 'nowhere.csv'}, 'nowhere.csv'), ({'rate': 0.0}, 'rate')],
 )
 def test_what_cannot_be_played_says_why(compose, parameters, message):
     with pytest.raises(TreeSwayError, match=message):
@@ -148,7 +153,7 @@ def test_a_date_that_no_clock_can_say_is_left_out(compose, observer, tmp_path, e
     date = datetime.fromisoformat(epoch.replace('Z', '+00:00')).timestamp()
     monkeypatch.setattr(player, 'read_wind', lambda _: dataclasses.replace(record, epoch=date))
     ticks = observer.listen(CLOCK)
-    compose(player={'file': 'dated', 'publish_clock': True, 'wait_for_subscriber': False})
+    compose(player={'file': 'dated', 'publish_clock': True, 'wait_for': ''})
     observer.until(lambda: len(ticks) > 5, '/clock')
     assert 10**9 <= stamp_to_ns(ticks[0].clock) < 5 * 10**9
 
@@ -156,7 +161,20 @@ def test_a_date_that_no_clock_can_say_is_left_out(compose, observer, tmp_path, e
 def test_a_clock_in_steps_that_no_node_follows_is_refused(compose, tmp_path):
     options = {'file': gusty(tmp_path), 'publish_clock': True}
     with pytest.raises(
-        TreeSwayError, match=r'steps of 1 s.* give speed up to 62.5, or clock_rate 1000$'
+        TreeSwayError, match=r'steps of 1 s.* give rate up to 62.5, or clock_rate 1000$'
     ):
-        compose(player={**options, 'speed': 250.0})
-    compose(player={**options, 'speed': 250.0, 'clock_rate': 1000.0})
+        compose(player={**options, 'rate': 250.0})
+    compose(player={**options, 'rate': 250.0, 'clock_rate': 1000.0})
+
+
+def test_a_subscription_that_hears_nothing_is_not_waited_for_in_vain(compose, observer, wind_file):
+    """It asks for what was sent before it came, which no player of wind offers."""
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    observer.node.create_subscription(Vector3Stamped, WIND.name, print, latched)
+    nodes = compose(player={'file': wind_file, 'loop': False})
+    player = nodes['player']
+    observer.until(lambda: player.count_subscribers(WIND.name) == 1, 'the subscription')
+    assert player.listeners(WIND.name) == 0
+    assert not player._audience.is_there()
+    said = observer.listen(WIND)
+    observer.until(lambda: said, 'wind')

@@ -17,14 +17,14 @@ pytestmark = pytest.mark.ros
 
 from rosbags.highlevel import AnyReader  # noqa: E402, I100
 
-from tree_sway_ros.errors import TreeSwayError  # noqa: E402
-from tree_sway_ros.files.recording.bag_writer import BagWriter  # noqa: E402
-from tree_sway_ros.files.wind.wind_file import read_wind  # noqa: E402
-from tree_sway_ros.page.placer import Placer  # noqa: E402
-from tree_sway_ros.page.protocol import decode_description  # noqa: E402
-from tree_sway_ros.ros.process.topics import TREE_DESCRIPTION, TREE_STATE  # noqa: E402
-from tree_sway_ros.ros.wire.tree_state import read_state, read_state_entry  # noqa: E402
-from tree_sway_ros.tools.stream.record import _MORE, _USUAL, Recorder  # noqa: E402
+from tree_sway.errors import TreeSwayError  # noqa: E402
+from tree_sway.files.recording.bag_writer import BagWriter  # noqa: E402
+from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
+from tree_sway.page.placer import Placer  # noqa: E402
+from tree_sway.page.protocol import decode_description  # noqa: E402
+from tree_sway_ros.commands.record import _MORE, _USUAL, Recorder  # noqa: E402
+from tree_sway_ros.process.topics import TREE_DESCRIPTION, TREE_STATE  # noqa: E402
+from tree_sway_ros.wire.tree_state import read_state, read_state_entry  # noqa: E402
 
 CONFIG = Path(__file__).resolve().parents[2] / 'config'
 DEADLINE = 60.0
@@ -54,7 +54,7 @@ def test_a_recorded_state_is_played_again(compose, observer, tree_file, tmp_path
     assert len(read_wind(bag, topic='/wind').time) >= 28
 
     described, states = observer.listen(TREE_DESCRIPTION), observer.listen(TREE_STATE)
-    compose(player={'file': str(bag), 'play': 'state', 'speed': 2.0})
+    compose(player={'file': str(bag), 'play': 'state', 'rate': 2.0})
     observer.until(lambda: len(states) >= 30 and described, 'states', DEADLINE)
     stamps = [each.header.stamp.sec + 1e-9 * each.header.stamp.nanosec for each in states]
     assert (np.diff(stamps) > 0).all()

@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
-from tree_sway_ros.ros.process.topics import TOPICS
+from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.process.topics import TOPICS
 
 ROOT = Path(__file__).parents[2]
 POLICY = ElementTree.parse(ROOT / 'config' / 'sros2_policy.xml').getroot()
@@ -35,7 +35,8 @@ def test_no_file_and_no_message_is_run():
     """Compiled kernels alone are pickled, in the user's own cache."""
     found = {
         path.name: set(runs_what_it_reads(path.read_text(encoding='utf-8')))
-        for path in (ROOT / 'tree_sway_ros').rglob('*.py')
+        for package in ('tree_sway', 'tree_sway_ros')
+        for path in (ROOT / package).rglob('*.py')
     }
     assert {name: names for name, names in found.items() if names} == {
         'kernel_cache.py': {'pickle'}

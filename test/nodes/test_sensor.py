@@ -7,9 +7,9 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.errors import TreeSwayError  # noqa: E402
-from tree_sway_ros.files.wind.sensor_line import checksum_of  # noqa: E402
-from tree_sway_ros.ros.process.topics import WIND, WIND_FILTERED  # noqa: E402
+from tree_sway.errors import TreeSwayError  # noqa: E402
+from tree_sway.files.wind.sensor_line import checksum_of  # noqa: E402
+from tree_sway_ros.process.topics import WIND, WIND_FILTERED  # noqa: E402
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.ros.process.topics import CLOCK, SEGMENT_POSES, WIND_FILTERED  # noqa: E402
-from tree_sway_ros.ros.wire.wind_messages import (  # noqa: E402
+from tree_sway_ros.process.topics import CLOCK, SEGMENT_POSES, WIND_FILTERED  # noqa: E402
+from tree_sway_ros.wire.wind_messages import (  # noqa: E402
     clock_message,
     stamp_to_ns,
     wind_class,

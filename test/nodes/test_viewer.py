@@ -14,15 +14,15 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytestmark = pytest.mark.ros
 
-from tree_sway_ros.page.placer import Placer  # noqa: E402
-from tree_sway_ros.page.protocol import decode_description, decode_frame  # noqa: E402
-from tree_sway_ros.ros.process.topics import (  # noqa: E402
+from tree_sway.page.placer import Placer  # noqa: E402
+from tree_sway.page.protocol import decode_description, decode_frame  # noqa: E402
+from tree_sway_ros.process.topics import (  # noqa: E402
     SEGMENT_POSES,
     TREE_DESCRIPTION,
     TREE_STATE,
 )
-from tree_sway_ros.ros.wire.tree_state import read_state_entry, WIND_NAMES  # noqa: E402
-from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns  # noqa: E402
+from tree_sway_ros.wire.tree_state import read_state_entry, WIND_NAMES  # noqa: E402
+from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 DEADLINE = 60.0
 QUIET = {'control': True, 'port': 0}
@@ -41,11 +41,9 @@ def test_poses_are_rebuilt_from_state_and_description(compose, observer, tree_fi
     solved = by_stamp[stamp_to_ns(state.header.stamp)].poses
     exact = np.array([[p.position.x, p.position.y, p.position.z] for p in solved])
     placer = Placer(description)
-    matrix = description.arrays['0/basis_matrix']
-    rebuilt = placer.place_rotations(matrix @ np.array(state.position[3:]))
-    moved = np.linalg.norm(
-        exact - Placer(description).place_rotations(np.zeros(len(matrix)))[:, :3]
-    )
+    rebuilt = placer.place_coordinates(np.array(state.position[3:]))
+    at_rest = placer.place_coordinates(np.zeros(len(description.scale)))
+    moved = np.linalg.norm(exact - at_rest[:, :3])
     assert moved > 1e-4
     assert np.linalg.norm(rebuilt[:, :3] - exact, axis=1).max() < 1e-3
 
@@ -99,9 +97,22 @@ def test_a_page_without_solver_says_what_is_missing(compose):
     assert 'nothing offers' in asyncio.run(look())
 
 
-def test_nobody_listens_and_no_basis_is_found(compose, observer, tree_file):
-    nodes = compose(anemometer={}, wind={}, solver={'tree': tree_file})
+def basis_is_sought():
+    return 'basis' in {thread.name for thread in threading.enumerate()}
+
+
+def test_the_first_who_listens_need_not_wait_for_the_basis(compose, observer, tree_file):
+    nodes = compose(solver={'tree': tree_file})
+    observer.until(lambda: nodes['solver']._state._scene is not None, 'the basis', deadline=60.0)
+    observer.until(lambda: not basis_is_sought(), 'the end of the search')
+    states = observer.listen(TREE_STATE)
+    observer.until(lambda: states, 'a state')
+    assert not basis_is_sought()
+    nodes.check()
+
+
+def test_without_states_no_basis_is_sought(compose, observer, tree_file):
+    compose(solver={'tree': tree_file, 'state_rate': 0.0})
     poses = observer.listen(SEGMENT_POSES)
     observer.until(lambda: len(poses) > 30, 'poses')
-    assert 'basis' not in {thread.name for thread in threading.enumerate()}
-    nodes.check()
+    assert not basis_is_sought()

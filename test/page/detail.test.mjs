@@ -4,16 +4,21 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { Camera } from "../../tree_sway_ros/page/static/camera.js";
-import { Detail, levelsOf } from "../../tree_sway_ros/page/static/detail.js";
+import { Camera } from "../../tree_sway/page/static/drawing/camera.js";
+import { Detail, levelsOf } from "../../tree_sway/page/static/drawing/detail.js";
 import {
   barkMesh,
   branchOrder,
   highestOf,
   leafMesh,
-} from "../../tree_sway_ros/page/static/mesh.js";
-import { KindPlacer, Placer } from "../../tree_sway_ros/page/static/placing.js";
-import { decodeDescription } from "../../tree_sway_ros/page/static/protocol.js";
+  shadeOf,
+} from "../../tree_sway/page/static/drawing/mesh.js";
+import { Pace } from "../../tree_sway/page/static/drawing/pace.js";
+import { crownShade } from "../../tree_sway/page/static/drawing/shade.js";
+import { lookOf } from "../../tree_sway/page/static/drawing/species.js";
+import { leavesAcross } from "../../tree_sway/page/static/drawing/textures.js";
+import { KindPlacer, Placer } from "../../tree_sway/page/static/placing.js";
+import { decodeDescription } from "../../tree_sway/page/static/protocol.js";
 
 const bytes = readFileSync(new URL("vectors/description.bin", import.meta.url));
 const description = decodeDescription(
@@ -21,6 +26,7 @@ const description = decodeDescription(
 );
 const [kind] = description.kinds;
 const rest = new KindPlacer(kind).rest();
+const shade = shadeOf(kind, rest);
 const placer = new KindPlacer(kind, branchOrder(kind, rest));
 
 test("branches come after their parents, thick ones first, what carries the top before all", () => {
@@ -57,7 +63,7 @@ test("what is placed of a tree stands where the whole tree has it", () => {
 function crowd() {
   const reached = Int32Array.from({ length: 1001 }, (_, i) => 2 * i);
   const slots = Int32Array.from({ length: 2000 }, (_, i) => i);
-  const levels = levelsOf({ reached, slots, order: slots.slice(0, 1000) }, 30, 8000, 4500);
+  const levels = levelsOf({ reached, slots, order: slots.slice(0, 1000) }, 30, 8000, 3000, 40);
   const trees = Array.from({ length: 1000 }, (_, i) => ({
     kind: 0,
     height: 1,
@@ -71,9 +77,10 @@ function crowd() {
 test("levels grow to the whole tree, and the highest segment is of all of them", () => {
   const { levels } = crowd();
   assert.ok(levels[0].segments > 30);
-  levels.slice(1).forEach((level, i) => assert.ok(level.segments > levels[i].segments));
+  assert.ok(levels[0].isImpostor && levels.slice(1).every((level) => !level.isImpostor));
+  levels.slice(1).forEach((level, i) => assert.ok(level.segments >= levels[i].segments));
   assert.equal(levels[levels.length - 1].segments, 2000);
-  assert.equal(levels[levels.length - 1].blades, 4500);
+  assert.equal(levels[levels.length - 1].cards, 3000);
 });
 
 test("far trees are coarse, near ones fine, those out of sight nothing, all within the budget", () => {
@@ -98,30 +105,73 @@ test("far trees are coarse, near ones fine, those out of sight nothing, all with
   assert.ok(detail.segments < whole && detail.share < 1);
 });
 
-test("few leaves are larger: the crown has the same area", () => {
+/** Edges of a card along and across [m]. */
+function edges({ values, indices }, i) {
+  const [a, b, , c] = [0, 1, 2, 5].map((k) => values.slice(18 * indices[6 * i + k]).slice(0, 3));
+  return [b, c].map((each) => Math.hypot(...each.map((x, k) => x - a[k])));
+}
+
+test("few cards are larger and show more leaves, none of which is twice its own size", () => {
   const level = { branches: kind.nBranches, segments: kind.nSegments, pixels: 800 };
-  const area = ({ values, indices }) => {
-    let sum = 0;
-    for (let i = 0; i < indices.length; i += 3) {
-      const [a, b, c] = [0, 1, 2].map((k) => values.slice(16 * indices[i + k] + 7).slice(0, 3));
-      const u = b.map((each, k) => each - a[k]);
-      const v = c.map((each, k) => each - a[k]);
-      sum += 0.5 * Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0]);
+  const { size } = lookOf(kind.species);
+  const most = 3 * kind.arrays.leaf_segment.length;
+  const areas = [most, Math.round(most / 3), Math.round(most / 12), 6].map((cards) => {
+    const { mesh, across } = leafMesh(kind, placer.order, rest, { ...level, cards }, most, shade);
+    let area = 0;
+    for (let i = 0; i < mesh.indices.length / 6; i++) {
+      const [long, wide] = edges(mesh, i);
+      area += long * wide;
+      assert.ok(long / across < 2 * size, `${long / across} m of ${size} m`);
     }
-    return sum;
+    return area;
+  });
+  assert.ok(areas.slice(1, 3).every((area) => area > 0.3 * areas[0] && area < 1.5 * areas[0]));
+});
+
+test("a picture of a large card shows small leaves, whatever the species", () => {
+  for (const species of ["benjamina", "goldcrest", "oak", "birch", "spruce", "pine", "walnut", "xyz"]) {
+    const { size } = lookOf(species);
+    for (const card of [size, 3 * size, 8 * size, 30 * size]) {
+      assert.ok(card / leavesAcross(species, card) < 2 * size);
+    }
+  }
+});
+
+test("it is darker inside a crown than at its edge, and light comes from outside", () => {
+  const places = [];
+  for (let i = 0; i < 4000; i++) {
+    const p = [0.7548, 0.5698, 0.8192].map((step) => 2 * ((i * step) % 1) - 1);
+    if (Math.hypot(...p) < 1) places.push(p);
+  }
+  const at = crownShade(places, places.map(() => 0.01), [-1, -1, -1], [1, 1, 1]);
+  assert.ok(at([0, 0, 0]).open < 0.5 * at([0, 0, 0.97]).open);
+  assert.ok(at([0.9, 0, 0]).towards[0] > 0.2);
+  assert.ok(at([-0.9, 0, 0]).towards[0] < -0.2);
+  assert.equal(crownShade([], [], [0, 0, 0], [1, 1, 1])([0, 0, 0]).open, 1);
+});
+
+test("a slow page leaves out pixels first, then frames, and leaves last", () => {
+  const pace = new Pace();
+  let now = 0;
+  const run = (fps, seconds) => {
+    for (let i = 0; i < fps * seconds; i++) pace.count((now += 1000 / fps), true);
   };
-  const [full, few] = [48, 6].map((blades) =>
-    leafMesh(kind, placer.order, rest, { ...level, blades }, 48, false));
-  assert.equal(full.indices.length, 8 * few.indices.length);
-  assert.ok(Math.abs(area(few) / area(full) - 1) < 0.5);
+  run(60, 5);
+  assert.equal(pace.leftOut, null);
+  run(30, 20);
+  assert.ok(pace.fineness < 0.6);
+  assert.equal(pace.density, 1);
+  run(12, 20);
+  assert.ok(pace.density < 1 && pace.density >= 0.4);
+  run(60, 120);
+  assert.equal(pace.density, 1);
 });
 
 test("a small tree has fewer rings of bark, none thinner than half a pixel", () => {
-  const near = barkMesh(kind, placer.order, rest, 800);
-  const far = barkMesh(kind, placer.order, rest, 12);
+  const near = barkMesh(kind, placer.order, rest, 800, shade);
+  const far = barkMesh(kind, placer.order, rest, 12, shade);
   assert.ok(far.count < near.count / 3);
   for (let v = 0; v < far.count; v++) {
-    assert.ok(Math.hypot(far.values[4 * v + 1], far.values[4 * v + 2]) > 0.5 / 12 / 2);
+    assert.ok(Math.hypot(far.values[7 * v + 1], far.values[7 * v + 2]) > 0.5 / 12 / 2);
   }
 });

@@ -135,8 +135,8 @@ def join_line(descriptor: int, address: str) -> None:
 
 def serve(seconds: float) -> None:
     """Publish a state 60 times per second."""
-    from tree_sway_ros.page.protocol import decode_description, encode_frame, Frame
-    from tree_sway_ros.page.server import PageServer, PageSettings
+    from tree_sway.page.protocol import decode_description, encode_frame, Frame
+    from tree_sway.page.server import PageServer, PageSettings
 
     data = (VECTORS / 'description.bin').read_bytes()
     description = decode_description(data)
@@ -155,7 +155,7 @@ def serve(seconds: float) -> None:
 
 def listen(seconds: float) -> dict[str, Any]:
     """Count the states that are there when they are to be shown."""
-    from tree_sway_ros.page.client import StreamClient
+    from tree_sway.page.client import StreamClient
 
     seen: list[tuple[float, float]] = []
     with StreamClient(

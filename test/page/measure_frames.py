@@ -19,11 +19,10 @@ from pathlib import Path
 import statistics
 
 from conftest import Browser
-
-from tree_sway_ros.page.server import PageServer, PageSettings
-from tree_sway_ros.page.session import Choices, Session
-from tree_sway_ros.page.wind_source import SimulatedWind
-from tree_sway_ros.tools import show
+from tree_sway.commands import show
+from tree_sway.page.server import PageServer, PageSettings
+from tree_sway.page.session import Choices, Session
+from tree_sway.page.wind_source import SimulatedWind
 
 
 def main() -> None:

@@ -17,24 +17,25 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway_ros.core.arrays import Floats  # noqa: E402
-from tree_sway_ros.core.state.full_scale import FULL_SCALE  # noqa: E402
-from tree_sway_ros.errors import TransportError  # noqa: E402
-from tree_sway_ros.page.client import StreamClient  # noqa: E402
-from tree_sway_ros.page.controls import Control, ControlPanel  # noqa: E402
-from tree_sway_ros.page.placer import Placer  # noqa: E402
-from tree_sway_ros.page.playout import ClockOffset, Moment, Playout  # noqa: E402
-from tree_sway_ros.page.protocol import (  # noqa: E402
+
+from tree_sway.core.arrays import Floats  # noqa: E402
+from tree_sway.core.state.full_scale import FULL_SCALE  # noqa: E402
+from tree_sway.errors import ParameterError, TransportError  # noqa: E402
+from tree_sway.page.client import StreamClient  # noqa: E402
+from tree_sway.page.controls import Control, ControlPanel  # noqa: E402
+from tree_sway.page.placer import Placer  # noqa: E402
+from tree_sway.page.playout import ClockOffset, Moment, Playout  # noqa: E402
+from tree_sway.page.protocol import (  # noqa: E402
     decode_description,
     encode_frame,
     Frame,
     RESTARTED,
 )
-from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
 
 DEADLINE = 20.0
 HERE = Path(__file__).parent
-STATIC = HERE.parents[1] / 'tree_sway_ros' / 'page' / 'static'
+STATIC = HERE.parents[1] / 'tree_sway' / 'page' / 'static'
 DESCRIPTION = (HERE / 'vectors' / 'description.bin').read_bytes()
 PLACER = Placer(decode_description(DESCRIPTION))
 N = len(PLACER.description.scale)
@@ -124,7 +125,27 @@ def test_a_line_that_is_lost_is_made_again() -> None:
         end(*again)
 
 
-def test_who_is_not_there_or_sends_nonsense_is_told(server: PageServer) -> None:
+def test_a_listener_that_fails_is_named_and_ends_nothing(server: PageServer) -> None:
+    def fail(*_: object) -> None:
+        raise KeyError('mine')
+
+    with StreamClient(server.url, on_frame=fail) as client:
+        client.wait(DEADLINE, frames=5)
+        assert 'KeyError' in client.problem
+        assert client.unreadable == 0
+
+
+def test_no_message_shows_the_token() -> None:
+    with StreamClient('http://127.0.0.1:9/?token=confidential') as client:
+        until(lambda: bool(client.problem))
+        with pytest.raises(TransportError) as error:
+            client.wait(0.0)
+        assert 'confidential' not in f'{client.problem} {error.value} {client.url}'
+    with pytest.raises(ParameterError, match='address'):
+        StreamClient('http://[')
+
+
+def test_who_is_not_there_or_sends_an_older_form_is_reported(server: PageServer) -> None:
     with StreamClient('http://127.0.0.1:9/') as client:
         with pytest.raises(TransportError, match='0 frames within'):
             client.wait(0.2)

@@ -20,11 +20,11 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
-from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
-from tree_sway_ros.page.session import Choices, Session  # noqa: E402
-from tree_sway_ros.page.wind_source import SimulatedWind  # noqa: E402
-from tree_sway_ros.tools.cli import main  # noqa: E402
+from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.files.trees.source import open_scene  # noqa: E402
+from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.page.session import Choices, Session  # noqa: E402
+from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 WEB = ROOT / 'examples' / 'web'
@@ -52,7 +52,7 @@ def files() -> Iterator[str]:
 @pytest.fixture(scope='module')
 def page(files: str) -> Iterator[PageServer]:
     """Serve a live tree whose stream the pages of the examples may follow."""
-    simulator = open_tree('goldcrest').simulator(model='modes')
+    simulator = open_scene('goldcrest').simulator()
     session = Session(lambda _: simulator, Choices('goldcrest'), SimulatedWind(9.0))
     with PageServer(PageSettings(port=0, origins=(files,)), None, session.status) as server:
         session.serve(server)

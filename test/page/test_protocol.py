@@ -16,9 +16,10 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError
-from tree_sway_ros.page.placer import Placer
-from tree_sway_ros.page.protocol import (
+from tree_sway.core.state.full_scale import MARGIN
+from tree_sway.errors import FormatError
+from tree_sway.page.placer import Placer
+from tree_sway.page.protocol import (
     BEYOND_SCALE,
     decode_description,
     decode_frame,
@@ -111,7 +112,8 @@ def test_what_is_cut_is_told() -> None:
     assert steps.tolist() == [16384, -32767]
     storm = Frame(0, 0, 0, 0, np.array([400.0, 0.0, 0.0]), steps)
     assert decode_frame(encode_frame(storm)).flags == BEYOND_SCALE
-    assert not quantised([0.5, -1.0], [1.0, 1.0])[1]
+    assert not quantised([0.1, -0.99 / MARGIN], [1.0, 1.0])[1]
+    assert quantised([0.1, -1.01 / MARGIN], [1.0, 1.0])[1]
 
 
 @given(st.binary(max_size=200))

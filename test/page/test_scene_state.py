@@ -13,20 +13,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.growth.builtin import BUILTIN_TREES
-from tree_sway_ros.core.growth.grow import grow
-from tree_sway_ros.core.scene.make import make_simulator
-from tree_sway_ros.core.scene.placed_tree import PlacedTree
-from tree_sway_ros.core.scene.stand import scaled_tree, Stand, StandKind, StandTree
-from tree_sway_ros.core.tree.species import species_named
-from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
-from tree_sway_ros.page import scene_state
-from tree_sway_ros.page.placer import Placer
-from tree_sway_ros.page.protocol import decode_description, decode_frame
-from tree_sway_ros.page.scene_state import SceneState
+from tree_sway.core.growth.builtin import BUILTIN_TREES
+from tree_sway.core.growth.grow import grow
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.tree.species import species_named
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.errors import FormatError
+from tree_sway.files.trees.source import open_scene, open_tree
+from tree_sway.page import check_description
+from tree_sway.page.placer import Placer
+from tree_sway.page.protocol import decode_description, decode_frame
+from tree_sway.page.scene_state import SceneState
 
 HERE = Path(__file__).parent
 REBUILD = """
@@ -63,9 +63,18 @@ def swayed(simulator: Any, state: SceneState, speed: float) -> tuple[list[bytes]
 def tall() -> tuple[SceneState, list[bytes], list[Any]]:
     """Make a broadleaf of 8 m in a wind of 7 m/s."""
     tree = grow('broadleaf', 8.0, rng=np.random.default_rng(0))
-    simulator = make_simulator(tree, species_named(tree.species), model='modes')
+    simulator = make_simulator(tree, species_named(tree.species), model=12)
     state = SceneState(simulator)
-    return state, *swayed(simulator, state, 7.0)
+    frames, exact = swayed(simulator, state, 7.0)
+    return state, frames, in_described_order(state, exact)
+
+
+def in_described_order(state: SceneState, exact: list[Any]) -> list[Any]:
+    """Sort poses of a tree's segments by key segments, as they are described."""
+    branches = state.kinds[0].simulator.bank.branches
+    pairs = zip(branches['first'], branches['end'], strict=True)
+    rows = np.concatenate([np.arange(first, end) for first, end in pairs])
+    return [poses[rows] for poses in exact]
 
 
 def gaps(rebuilt: list[Any], exact: list[Any]) -> Any:
@@ -98,7 +107,7 @@ def rebuilt_by_javascript(state: SceneState, frames: list[bytes], tmp_path: Path
         (tmp_path / f'{i}.frame').write_bytes(frame)
     program = tmp_path / 'rebuild.mjs'
     program.write_text(REBUILD, encoding='utf-8')
-    static = HERE.parents[1] / 'tree_sway_ros' / 'page' / 'static'
+    static = HERE.parents[1] / 'tree_sway' / 'page' / 'static'
     command = [node, str(program), str(static), str(tmp_path), str(len(frames))]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stderr
@@ -110,14 +119,14 @@ def rebuilt_by_javascript(state: SceneState, frames: list[bytes], tmp_path: Path
 
 @pytest.mark.parametrize('name', BUILTIN_TREES)
 def test_a_frame_of_any_tree_of_the_package_is_small(name: str) -> None:
-    state = SceneState(open_tree(name).simulator(model='modes'))
+    state = SceneState(open_scene(name).simulator(model=12))
     assert len(state.frame(0)) <= 96
 
 
-@pytest.mark.parametrize('fidelity', ['branch', 'wind_basis', 'auto', 'segments'])
-def test_every_model_can_be_told(fidelity: str) -> None:
-    source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
-    simulator = source.simulator(model=fidelity)
+@pytest.mark.parametrize('model', ['branch', 60, 'auto', 'full'])
+def test_every_model_can_be_told(model: str) -> None:
+    source = open_scene(HERE.parent / 'files' / 'data' / 'seedling.yaml')
+    simulator = source.simulator(model=model)
     state = SceneState(simulator)
     frames, exact = swayed(simulator, state, 4.0)
     placer = Placer(decode_description(state.description))
@@ -125,13 +134,13 @@ def test_every_model_can_be_told(fidelity: str) -> None:
     assert np.quantile(gaps(rebuilt, exact), 0.99) < 1e-3
 
 
-def test_trees_of_one_shape_share_a_basis_wherever_they_stand() -> None:
+def test_trees_of_one_kind_share_a_basis_wherever_they_are() -> None:
     source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
     trees = tuple(
         PlacedTree(f't{i}', source.tree, x=2.0 * i, yaw=0.7 * i, species=source.species)
         for i in range(3)
     )
-    simulator = ForestFile('three', trees, '').simulator(model='modes')
+    simulator = Scene(trees, 'three').simulator(model=20)
     state = SceneState(simulator)
     assert [kind.numbers for kind in state.kinds] == [[0, 1, 2]]
     frames, exact = swayed(simulator, state, 5.0)
@@ -142,8 +151,8 @@ def test_trees_of_one_shape_share_a_basis_wherever_they_stand() -> None:
 
 
 def test_a_simulator_that_stands_finds_its_own_basis_and_is_as_before() -> None:
-    source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
-    simulator = source.simulator(model='modes')
+    source = open_scene(HERE.parent / 'files' / 'data' / 'seedling.yaml')
+    simulator = source.simulator(model=12)
     for _ in range(30):
         simulator.step((6.0, 1.0, 0.0), 1.0 / 60.0)
     before = simulator.state().values
@@ -154,21 +163,20 @@ def test_a_simulator_that_stands_finds_its_own_basis_and_is_as_before() -> None:
 
 def test_a_stand_is_told_on_a_basis_per_kind() -> None:
     source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
-    kinds = {'seedling': StandKind(source.tree, source.species)}
-    standing = [
-        StandTree('one', 'seedling'),
-        StandTree('two', 'seedling', x=3.0, yaw=0.7, scale=1.4),
-        StandTree('own', 'seedling', y=2.0, yaw=2.0, fidelity='modes'),
-        StandTree('still', 'seedling', y=4.0, yaw=1.0, fidelity='frozen'),
+    trees = [
+        PlacedTree('one', source),
+        PlacedTree('two', source, x=3.0, yaw=0.7, scale=1.4),
+        PlacedTree('own', source, y=2.0, yaw=2.0, model='full'),
+        PlacedTree('still', source, y=4.0, yaw=1.0, model=0),
     ]
-    stand = Stand(standing, kinds)
+    stand = Scene(trees).simulator(model=20)
     state = SceneState(stand)
     assert [kind.numbers for kind in state.kinds] == [[0, 1, 3], [2]]
     frames, exact = swayed(stand, state, 5.0)
     placer = Placer(decode_description(state.description))
     rebuilt = [placer.place(decode_frame(frame)) for frame in frames]
     moved = np.ptp(np.array(exact)[:, :, :3], axis=0).max(axis=1)
-    for told in standing[:3]:
+    for told in trees[:3]:
         rows = stand.segments_of(told.name)
         each = gaps([poses[rows] for poses in rebuilt], [poses[rows] for poses in exact])
         assert np.quantile(each, 0.99) < 0.02 * moved[rows].max()
@@ -178,29 +186,27 @@ def test_a_stand_is_told_on_a_basis_per_kind() -> None:
 
 
 def test_a_scene_too_large_to_describe_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scene_state, 'MOST_SEGMENTS', 5)
-    with pytest.raises(ParameterError, match='by their poses'):
-        SceneState(open_tree('goldcrest').simulator(model='frozen'))
+    monkeypatch.setattr(check_description, 'MOST_SEGMENTS', 5)
+    with pytest.raises(FormatError, match='segments of the kinds'):
+        SceneState(open_scene('goldcrest').simulator(model=0))
 
 
 @pytest.fixture(scope='module')
-def avenue() -> tuple[Stand, SceneState]:
+def avenue() -> tuple[SceneSimulator, SceneState]:
     """Make a thousand trees of two kinds, two of them on a model of their own."""
-    kinds = {}
-    for name in ('seedling', 'other'):
-        source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
-        tree = source.tree if name == 'seedling' else scaled_tree(source.tree, 1.7)
-        kinds[name] = StandKind(tree, source.species)
+    source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
+    larger = PlacedTree('other', source, scale=1.7).placed()
     draw = np.random.default_rng(5)
     trees = [
-        StandTree(
-            f't{i}', ('seedling', 'other')[i % 3 == 0], 3.0 * (i % 50), 3.0 * (i // 50), 0.1 * i,
-            scale=draw.uniform(0.6, 1.6), yaw=draw.uniform(-3.0, 9.0),
-            fidelity='modes' if i in (7, 700) else 'wind_basis',
+        PlacedTree(
+            f't{i}', larger if i % 3 == 0 else source.tree,
+            3.0 * (i % 50), 3.0 * (i // 50), 0.1 * i,
+            scale=draw.uniform(0.6, 1.6), yaw=draw.uniform(-3.0, 9.0), species=source.species,
+            model='full' if i in (7, 700) else 60,
         )
         for i in range(1000)
     ]  # fmt: skip
-    stand = Stand(trees, kinds)
+    stand = Scene(trees).simulator()
     return stand, SceneState(stand, 50)
 
 
@@ -226,22 +232,9 @@ def test_a_thousand_trees_are_described_once_per_kind(avenue: Any, tmp_path: Pat
     assert np.linalg.norm(by_javascript[:, :3] - exact[:, :3], axis=1).max() < 2e-4
 
 
-def test_coordinates_of_a_stand_are_those_of_its_rotations(avenue: Any) -> None:
-    stand, state = avenue
-    told = state.coordinates()
-    first = 0
-    for number in range(len(stand.trees)):
-        kind = next(each for each in state.kinds if number in each.numbers)
-        here = slice(first, first := first + len(kind.basis.scale))
-        if number in (0, 1, 7, 8, 700, 999):
-            exact = kind.basis.projection @ stand._rotations(number)
-            np.testing.assert_allclose(told[here], exact, rtol=1e-9, atol=1e-12)
-    assert first == len(told) == len(state.coordinate_names)
-
-
 def test_more_coordinates_than_a_frame_can_count_are_refused(
     avenue: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(scene_state, 'MOST_COORDINATES', 999)
-    with pytest.raises(ParameterError, match='coordinates'):
+    monkeypatch.setattr(check_description, 'MOST_COORDINATES', 999)
+    with pytest.raises(FormatError, match='coordinates'):
         SceneState(avenue[0])

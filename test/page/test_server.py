@@ -18,11 +18,11 @@ import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway_ros.errors import ParameterError, TransportError  # noqa: E402
-from tree_sway_ros.page import doorkeeper  # noqa: E402
-from tree_sway_ros.page.access import is_loopback, refusal, require_token  # noqa: E402
-from tree_sway_ros.page.controls import Control, ControlPanel  # noqa: E402
-from tree_sway_ros.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.errors import ParameterError, TransportError  # noqa: E402
+from tree_sway.page import doorkeeper  # noqa: E402
+from tree_sway.page.access import is_loopback, refusal, require_token  # noqa: E402
+from tree_sway.page.controls import Control, ControlPanel  # noqa: E402
+from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
 
 DEADLINE = 10.0
 DESCRIPTION = b'TSWD' + bytes(96)
@@ -144,7 +144,7 @@ def panel(applied: list[Any]) -> ControlPanel:
     return ControlPanel(
         (
             Control('wind', 'Wind', 6.0, unit='m/s', minimum=0.0, maximum=40.0),
-            Control('fidelity', 'Model', 'modes', choices=('modes', 'segments')),
+            Control('model', 'Model', 'modes', choices=('modes', 'segments')),
             Control('reset', 'Reset', None, is_action=True),
         ),
         apply,
@@ -156,15 +156,15 @@ def test_what_is_changed_is_applied_or_refused_with_the_reason() -> None:
 
     async def script(viewer: Viewer) -> None:
         hello = await viewer.text('hello')
-        assert [control['name'] for control in hello['controls']] == ['wind', 'fidelity', 'reset']
+        assert [control['name'] for control in hello['controls']] == ['wind', 'model', 'reset']
         await viewer.say(set={'name': 'wind', 'value': 12})
         assert (await viewer.text('values'))['wind'] == 12.0
         for name, value, reason in (
             ('wind', 41.0, 'out of range; give 0 .. 40 m/s'),
             ('wind', 'strong', 'is not a number'),
             ('wind', float('nan'), 'out of range'),
-            ('fidelity', 'best', 'not among its choices; use one of: modes, segments'),
-            ('fidelity', 'segments', "leaves on model 'segments'; use 'coupled'"),
+            ('model', 'best', 'not among its choices; use one of: modes, segments'),
+            ('model', 'segments', "leaves on model 'segments'; use 'coupled'"),
             ('gravity', 0.0, "nothing called 'gravity'"),
             (None, None, 'nothing called'),
         ):
@@ -226,6 +226,24 @@ def test_health_metrics_and_headers(server: PageServer) -> None:
             assert answer.headers['Content-Security-Policy'].startswith("default-src 'self'")
             assert '<!doctype html>' in (await answer.text()).lower()
         async with viewer.session.get(f'{server.url}static/../server.py') as answer:
+            assert answer.status == 404
+
+    run(server, script)
+
+
+def test_the_page_is_sent_packed_and_not_twice(server: PageServer) -> None:
+    async def script(viewer: Viewer) -> None:
+        url = f'{server.url}static/drawing/scene.js'
+        async with viewer.session.get(url, headers={'Accept-Encoding': 'gzip'}) as answer:
+            assert answer.headers['Content-Encoding'] == 'gzip'
+            assert answer.headers['Content-Type'].startswith('text/javascript')
+            text, sent, tag = await answer.text(), answer.content_length, answer.headers['ETag']
+            assert sent < 0.4 * len(text)
+        async with viewer.session.get(url, headers={'Accept-Encoding': 'identity'}) as answer:
+            assert await answer.text() == text
+        async with viewer.session.get(url, headers={'If-None-Match': tag}) as answer:
+            assert answer.status == 304
+        async with viewer.session.get(f'{server.url}static/nothing.js') as answer:
             assert answer.status == 404
 
     run(server, script)

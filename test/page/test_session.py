@@ -14,12 +14,13 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway_ros.core.simulator.settings import Settings  # noqa: E402
-from tree_sway_ros.errors import FormatError, ParameterError  # noqa: E402
-from tree_sway_ros.files.trees.source import open_tree  # noqa: E402
-from tree_sway_ros.page.protocol import decode_description, decode_frame, PAUSED  # noqa: E402
-from tree_sway_ros.page.session import Choices, Session  # noqa: E402
-from tree_sway_ros.page.wind_source import RecordedWind, SimulatedWind  # noqa: E402
+from tree_sway.core.scene.run import Run  # noqa: E402
+from tree_sway.core.simulator.settings import Settings  # noqa: E402
+from tree_sway.errors import FormatError, ParameterError  # noqa: E402
+from tree_sway.files.trees.source import open_scene  # noqa: E402
+from tree_sway.page.protocol import decode_description, decode_frame, PAUSED  # noqa: E402
+from tree_sway.page.session import Choices, Session  # noqa: E402
+from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind  # noqa: E402
 
 SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
 DEADLINE = 30.0
@@ -39,7 +40,7 @@ class Sink:
     def publish(self, frame: bytes) -> None:
         self.frames.append(frame)
 
-    def tell(self, content: Any, values: Any = None) -> None:
+    def announce(self, content: Any, values: Any = None) -> None:
         self.told.append(content)
 
 
@@ -47,7 +48,7 @@ def build(choices: Choices) -> Any:
     if choices.tree == 'missing':
         raise FormatError("no tree 'missing'", cure='name another')
     settings = Settings(damping_ratio=choices.damping_ratio or None)
-    return open_tree(choices.tree).simulator(settings, model=choices.fidelity)
+    return open_scene(choices.tree).simulator(settings, model=choices.model)
 
 
 def until(holds: Callable[[], Any]) -> None:
@@ -92,7 +93,7 @@ def test_pause_and_reset(live: tuple[Session, Sink]) -> None:
 
 def test_another_model_is_built_beside_and_taken_over(live: tuple[Session, Sink]) -> None:
     session, sink = live
-    session.apply('fidelity', 'branch')
+    session.apply('model', 'branch')
     until(lambda: len(sink.descriptions) == 2)
     assert session.status()['model'] == 'branch'
     identity = decode_description(sink.descriptions[1]).short_identity
@@ -111,13 +112,48 @@ def test_what_cannot_be_built_is_told_and_the_old_goes_on(live: tuple[Session, S
         session.apply('gravity', 0.0)
 
 
+def test_a_fault_while_building_is_reported_and_the_next_wish_is_built(
+    live: tuple[Session, Sink], caplog: pytest.LogCaptureFixture
+) -> None:
+    session, sink = live
+
+    def fail(_: Choices) -> Any:
+        raise ZeroDivisionError('a fault of the program')
+
+    session._build = fail
+    session.apply('tree', 'oak')
+    until(lambda: sink.told)
+    assert 'oak cannot be built (ZeroDivisionError: a fault' in sink.told[0]['refused']['reason']
+    assert 'ZeroDivisionError' in caplog.text
+    until(lambda: not session.status()['building'])
+    session._build = build
+    session.apply('tree', str(SEEDLING))
+    until(lambda: len(sink.descriptions) == 2)
+
+
 def test_the_wind_changes_at_once_and_a_record_does_not(live: tuple[Session, Sink]) -> None:
     session, _ = live
-    before = session.wind.mean(10.0, 10.02)
+    ((_, before),) = session.wind.between(10.0, 10.05)
     session.apply('mean_speed', 10.0)
-    after = session.wind.mean(10.0, 10.02)  # the same gusts about another mean
+    ((_, after),) = session.wind.between(10.0, 10.05)  # the same gusts about another mean
     assert 1.5 < np.linalg.norm(after) / np.linalg.norm(before) < 2.5
     session.wind = RecordedWind(np.array([0.0, 1.0]), np.array([[1.0, 0, 0], [3.0, 0, 0]]))
-    np.testing.assert_allclose(session.wind.mean(1.5, 1.5), [2.0, 0.0, 0.0])
+    samples = list(session.wind.between(-1.0, 5.0))
+    assert [time for time, _ in samples] == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    assert [x for _, (x, _, _) in samples] == [1.0, 3.0] * 3
+    cut = [*session.wind.between(-1.0, 2.5), *session.wind.between(2.5, 5.0)]
+    assert cut == samples
     with pytest.raises(ParameterError, match='record'):
         session.apply('mean_speed', 3.0)
+
+
+def test_a_record_that_breaks_off_is_held_and_fades_on_the_page_too() -> None:
+    time_of = np.concatenate([np.arange(0.0, 2.0, 0.05), [30.0]])
+    wind = RecordedWind(time_of, np.tile([8.0, 0.0, 0.0], (len(time_of), 1)))
+    run, felt = Run(open_scene(str(SEEDLING)).simulator()), []
+    for tick in range(1, 60 * 29):
+        blow(run, wind, tick * run.period)
+        felt.append(run.simulator.wind[0])
+    assert felt[60 * 3] == pytest.approx(8.0)
+    assert 0.0 < felt[-1] < 0.1
+    assert np.abs(np.diff(felt[10:])).max() < 0.5

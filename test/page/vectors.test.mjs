@@ -4,12 +4,12 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { Placer } from "../../tree_sway_ros/page/static/placing.js";
+import { Placer } from "../../tree_sway/page/static/placing.js";
 import {
   ProtocolError,
   decodeDescription,
   decodeFrame,
-} from "../../tree_sway_ros/page/static/protocol.js";
+} from "../../tree_sway/page/static/protocol.js";
 
 const read = (name) => {
   const bytes = readFileSync(new URL(`vectors/${name}`, import.meta.url));
@@ -59,5 +59,5 @@ test("what is broken is refused in words", () => {
   assert.throws(() => decodeFrame(frame.slice(0, 40), description), ProtocolError);
   const other = frame.slice(0);
   new DataView(other).setUint32(4, 1, true);
-  assert.throws(() => decodeFrame(other, description), /another description/);
+  assert.equal(decodeFrame(other, description), null);
 });

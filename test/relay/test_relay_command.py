@@ -6,23 +6,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+import itertools
+import json
+import math
 import os
 from pathlib import Path
-import re
 import socket
 import subprocess
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
 
 pytest.importorskip('zenoh', reason='eclipse-zenoh is not installed')
 
-from tree_sway_ros.page.client import StreamClient  # noqa: E402
-from tree_sway_ros.relay.line import Line  # noqa: E402
-from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind  # noqa: E402
-from tree_sway_ros.tools.cli import main  # noqa: E402
+from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.files.trees.source import open_scene  # noqa: E402
+from tree_sway.relay.line import Line  # noqa: E402
+from tree_sway.relay.tree_site import Site  # noqa: E402
+from tree_sway.relay.wind_bytes import decode_wind, encode_wind  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEDLING = str(ROOT / 'test' / 'files' / 'data' / 'seedling.yaml')
@@ -39,13 +43,14 @@ def place() -> str:
 
 @contextmanager
 def relay(
-    *given: str, environment: dict[str, str] | None = None
+    *given: str, environment: dict[str, str] | None = None, stderr: int | None = None
 ) -> Iterator[subprocess.Popen[str]]:
     """Run a site in a process of its own, until it has said its first line."""
-    command = [sys.executable, '-m', 'tree_sway_ros.tools.cli', 'relay', *given]
+    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'relay', *given]
     process = subprocess.Popen(
-        command, cwd=ROOT, text=True, stdout=subprocess.PIPE, env=environment or dict(os.environ)
-    )
+        command, cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=stderr,
+        env=environment or dict(os.environ),
+    )  # fmt: skip
     timer = threading.Timer(DEADLINE, process.kill)
     timer.start()
     try:
@@ -56,27 +61,74 @@ def relay(
         process.wait()
         assert process.stdout is not None
         process.stdout.close()
+        if process.stderr is not None:
+            process.stderr.close()
 
 
-def test_the_state_is_played_where_nothing_is_solved() -> None:
-    at = place()
-    with relay('send', SEEDLING, '--listen', at, '--state', '--speed', '9'):
-        with relay(
-            'receive', SEEDLING, '--connect', at, '--play', '--page', '--port', '0'
-        ) as there:
-            assert there.stdout is not None
-            told = there.stdout.readline()
-            found = re.search(r'page: (\S+)', told)
-            assert found, told
-            with StreamClient(found[1]) as client:
-                client.wait(DEADLINE, frames=20)
-                first = client.poses()
-                client.wait(DEADLINE, frames=60)
-                later = client.poses()
-                assert first is not None and later is not None  # noqa: PT018
-                assert client.description is not None
-                assert client.description.header['name'] == 'seedling'
-                assert np.linalg.norm(later[:, :3] - first[:, :3], axis=1).max() > 1e-6
+def test_who_sends_without_an_endpoint_ends_in_time_and_says_that_the_line_is_open() -> None:
+    with relay('send', SEEDLING, '--seconds', '0.5', stderr=subprocess.PIPE) as process:
+        _, errors = process.communicate(timeout=DEADLINE)
+        assert process.returncode == 0
+        assert 'this line is not protected' in errors
+
+
+def test_what_strangers_send_is_refused_and_counted_and_the_receiver_goes_on() -> None:
+    at, site = place(), Site(open_scene(SEEDLING).simulator())  # type: ignore[arg-type]
+    stop = threading.Event()
+    odd = [
+        *(b'', b'\x00\x01\x00', b'\xff' * 52, bytes(1000)),
+        encode_wind(time.time_ns(), (math.nan, 0.0, 0.0)),
+        encode_wind(2_147_483_647 * 10**9, (5.0, 0.0, 0.0)),
+        encode_wind(time.time_ns() + 60 * 10**9, (5.0, 0.0, 0.0)),
+        encode_wind(time.time_ns(), (1e300, 0.0, 0.0)),
+    ]
+    answers = itertools.cycle([b'[]', b'{', b'[' * 200_000, b'1', site.identity()])
+    snapshots = itertools.cycle(['', '{}', '[]', '{"run": 1, "state": 2}', '[' * 200_000])
+    with Line('tree_sway', listen=[at]) as line:
+        line.answer('tree', lambda: next(answers))
+        line.answer('snapshot', lambda: next(snapshots))
+        with relay('receive', SEEDLING, '--connect', at, '--seconds', '2',
+                   stderr=subprocess.PIPE) as process:  # fmt: skip
+
+            def send() -> None:
+                for number in itertools.count():
+                    if stop.wait(0.05):
+                        return
+                    line.put('wind/filtered', odd[number % len(odd)])
+                    line.put('wind/filtered', encode_wind(time.time_ns(), (5.0, 0.0, 0.0)))
+
+            sender = threading.Thread(target=send)
+            sender.start()
+            try:
+                _, errors = process.communicate(timeout=DEADLINE)
+            finally:
+                stop.set()
+                sender.join()
+    assert process.returncode == 0, errors
+    for refused in ('x identity of a sender', 'x snapshot', 'x sample of the wind', 'by the gate'):
+        assert refused in errors
+    assert 'Traceback' not in errors
+
+
+def test_a_password_of_zenoh_keeps_strangers_off_the_line(tmp_path: Path) -> None:
+    at, heard = place(), threading.Event()
+    (tmp_path / 'users').write_text('vane:secret\n')
+    auth = {'user': 'vane', 'password': 'secret', 'dictionary_file': str(tmp_path / 'users')}
+    own = tmp_path / 'zenoh.json5'
+    own.write_text(json.dumps({'transport': {'auth': {'usrpwd': auth}}}))
+    with Line('tree_sway', listen=[at], configuration=str(own)) as here:
+        assert here.is_protected
+        here.hear('wind/filtered', lambda _data: heard.set())
+        with Line('tree_sway', connect=[at]) as stranger:
+            assert not stranger.is_protected
+            for _ in range(20):
+                stranger.put('wind/filtered', b'x')
+            assert not heard.wait(1.0)
+        with Line('tree_sway', connect=[at], configuration=str(own)) as friend:
+            end = time.monotonic() + DEADLINE
+            while not heard.wait(0.05) and time.monotonic() < end:
+                friend.put('wind/filtered', b'x')
+            assert heard.is_set()
 
 
 @pytest.mark.ros
@@ -116,8 +168,8 @@ def test_the_wind_of_ros_goes_over_the_line_as_it_is(ros_environment: dict[str, 
     [
         (['send', SEEDLING, '--listen', 'nowhere'], 'cannot be opened'),
         (['send', SEEDLING, '--rate', '0'], '--rate'),
+        (['send', SEEDLING, '--zenoh-config', 'nowhere.json5'], 'cannot be opened'),
         (['receive', SEEDLING, '--lose', '2'], '--lose'),
-        (['receive', SEEDLING, '--play', '--listen', 'tcp/127.0.0.1:0'], 'without --page'),
     ],
 )
 def test_what_cannot_be_relayed_is_refused(

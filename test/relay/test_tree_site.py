@@ -4,30 +4,38 @@
 
 from __future__ import annotations
 
+import base64
 import json
+import math
+import time
 from typing import Any
 
+from hypothesis import given, settings
+from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError, StateError
-from tree_sway_ros.files.trees.source import open_tree
-from tree_sway_ros.relay.tree_site import PATIENCE, Site
-from tree_sway_ros.relay.wind_bytes import decode_wind, encode_wind
+from tree_sway.core.scene.run import LONGEST_JUMP
+from tree_sway.errors import FormatError, StateError
+from tree_sway.files.trees.source import open_scene
+from tree_sway.relay.tree_site import PATIENCE, Site
+from tree_sway.relay.wind_bytes import decode_wind, encode_wind
 
 START = 1_700_000_000_123_456_789
 SECOND = 1_000_000_000
+SCENE = open_scene('goldcrest')
 
 
 def winds(seconds: float) -> list[tuple[int, Any]]:
     """Make a gusty wind at 20 Hz."""
     times = np.arange(0.0, seconds, 0.05)
     vectors = np.stack([6 + 2 * np.sin(2 * times), np.cos(3 * times), 0 * times], axis=1)
-    return [(START + round(t * SECOND), v) for t, v in zip(times, vectors, strict=True)]
+    return [(START + round(t * SECOND), tuple(v)) for t, v in zip(times, vectors, strict=True)]
 
 
 def made(name: str = 'goldcrest', **options: Any) -> Site:
-    return Site(open_tree(name).simulator(model='modes'), **options)
+    scene = SCENE if name == 'goldcrest' else open_scene(name)
+    return Site(scene.simulator(model=12), **options)  # type: ignore[arg-type]
 
 
 def poses(site: Site) -> Any:
@@ -57,34 +65,146 @@ def test_who_joins_by_a_snapshot_goes_on_bit_for_bit() -> None:
         if k > 38:
             other.add_wind(stamp, vector)  # it hears the wind before it asks for the snapshot
         if k == 40:
-            other.join(one.snapshot())
+            other.join(one.snapshot(), stamp)
     np.testing.assert_array_equal(poses(one), poses(other))
     assert np.unique(np.diff(ends)).tolist()[0] > 0
     assert other.n_joined == 1
 
 
-def test_a_wind_that_ends_is_held() -> None:
+def test_who_joins_late_or_loses_wind_is_near_after_half_a_minute() -> None:
+    one, late, lossy = made(), made(), made()
+    lost, apart = np.random.default_rng(0), []
+    for k, (stamp, vector) in enumerate(winds(50.0)):
+        one.add_wind(stamp, vector)
+        if k > 200:
+            late.add_wind(stamp, vector)
+        if lost.random() >= 0.05:
+            lossy.add_wind(stamp, vector)
+        tips = [site.simulator.tip_displacement for site in (one, late, lossy)]
+        apart.append([np.linalg.norm(tip - tips[0]) for tip in tips])
+    _, joined, losing = np.array(apart).T
+    assert joined[201:220].max() > 1e-3  # it began from rest
+    assert np.quantile(joined[800:], 0.95) < 5e-3
+    assert 0.0 < np.quantile(losing[100:], 0.95) < 0.02
+
+
+def test_a_wind_that_ends_is_held_and_dies_down() -> None:
+    ends: list[int] = []
+    felt: list[float] = []
+
+    def note(stamp: int, wind: Any) -> None:
+        ends.append(stamp)
+        felt.append(float(wind[0]))
+
+    site = made(stepped=note)
+    site.hold_wind(START)  # before any wind
+    for k in range(20):
+        site.add_wind(START + k * SECOND // 20, (5.0, 0.0, 0.0))
+    for k in range(1, 400):
+        site.hold_wind(START + k * SECOND // 20)
+    assert len(ends) == pytest.approx(60 * (20.0 - PATIENCE), abs=4)
+    assert felt[60 * 2] == pytest.approx(5.0)
+    assert 0.0 < felt[-1] < 0.1
+    site.add_wind(START + SECOND // 2, (9.0, 0.0, 0.0), START + 20 * SECOND)
+    assert len(ends) <= 60 * 20
+
+
+def test_a_sample_far_ahead_takes_few_steps_and_holds_nothing() -> None:
     ends: list[int] = []
     site = made(stepped=lambda stamp, _: ends.append(stamp))
-    site.hold_wind(START)  # before any wind
-    site.add_wind(START, (5.0, 0.0, 0.0))
-    site.hold_wind(START + 3 * SECOND)
-    assert len(ends) == pytest.approx(60 * (3.0 - PATIENCE), abs=1)
-    site.add_wind(START + SECOND // 2, (9.0, 0.0, 0.0))  # too late to be felt from its time on
-    assert len(ends) == pytest.approx(60 * (3.0 - PATIENCE), abs=1)
+    now = START
+    for ahead in (0, 60, 0, 10**9, 0, -(10**9), 0, 0):
+        before = len(ends)
+        now += SECOND // 20
+        site.add_wind(now + ahead * SECOND, (5.0, 0.0, 0.0), now)
+        assert len(ends) - before <= 4
+    site.add_wind(now + 3600 * SECOND, (5.0, 0.0, 0.0))  # without a clock of one's own
+    assert len(ends) - before <= 4 + LONGEST_JUMP // site.run.period
 
 
-def test_another_tree_or_nonsense_is_refused() -> None:
+def test_another_tree_is_named_and_its_state_refused() -> None:
     one, other = made(), made('benjamina')
-    with pytest.raises(StateError, match='the other site has tree'):
-        one.check(other.identity())
-    one.check(made().identity())
+    assert 'tree' in one.differences(other.identity())
+    assert one.differences(made().identity()) == ''
     other.add_wind(START, (5.0, 0.0, 0.0))
     with pytest.raises(StateError, match='state of tree'):
-        one.join(other.snapshot())
-    for broken in ('', '[]', '{}', json.dumps({'step': 1, 'wind': [[1]], 'state': ''})):
+        one.join(other.snapshot(), START)
+    with pytest.raises(StateError, match='another time'):
+        one.join(other.snapshot(), START + 3600 * SECOND)
+
+
+ODD = [
+    *('', '[]', '{}', '1', 'null', '"x"', '{', '[' * 200_000, 'NaN', '\x00'),
+    *(json.dumps({'run': each, 'state': ''}) for each in (None, [], 1, [1, 2, [], []], 'wind')),
+]
+
+
+@pytest.mark.parametrize('odd', ODD, ids=range(len(ODD)))
+def test_what_is_no_snapshot_and_no_identity_is_refused(odd: str) -> None:
+    site = FUZZED
+    before = site.snapshot()
+    for refused in (odd, odd.encode(), b'\xff' + odd.encode()):
         with pytest.raises(StateError):
-            one.join(broken)
+            site.join(refused, START)
+    if not odd.startswith('{"') and odd != '{}':
+        with pytest.raises(StateError):
+            site.differences(odd)
+    assert site.snapshot() == before
+
+
+@settings(max_examples=60, deadline=None)
+@given(data=st.data())
+def test_damaged_snapshots_are_refused_or_go_on_finite(data: Any) -> None:
+    site, begin = FUZZED, time.monotonic()
+    content = json.loads(SNAPSHOT)
+    field = data.draw(st.sampled_from(['time', 'origin', 'wind', 'samples', 'state']))
+    odd = data.draw(st.one_of(
+        st.integers(-(2**70), 2**70), st.floats(), st.none(), st.text(max_size=5),
+        st.lists(st.one_of(st.floats(), st.integers()), max_size=14),
+    ))  # fmt: skip
+    if field == 'state':
+        raw = bytearray(base64.b64decode(content['state']))
+        raw[data.draw(st.integers(0, len(raw) - 1))] ^= data.draw(st.integers(1, 255))
+        content['state'] = base64.b64encode(raw).decode()
+    else:
+        content['run'][['time', 'origin', 'wind', 'samples'].index(field)] = odd
+    try:
+        site.join(json.dumps(content), START + SECOND)
+    except StateError:
+        pass
+    site.add_wind(START + 2 * SECOND, (5.0, 0.0, 0.0), START + 2 * SECOND)
+    assert np.isfinite(site.simulator.place()).all()
+    assert time.monotonic() - begin < 5.0
+    site.simulator.reset()
+
+
+@settings(max_examples=150, deadline=None)
+@given(data=st.binary(max_size=80), flip=st.integers(0, 51), by=st.integers(0, 255))
+def test_any_bytes_are_a_sample_or_are_refused(data: bytes, flip: int, by: int) -> None:
+    site, begin = FUZZED, time.monotonic()
+    whole = bytearray(encode_wind(START + SECOND, (3.0, 1.0, 0.0)))
+    whole[flip % len(whole)] ^= by
+    for each in (data, bytes(whole), b'\x00\x01\x00', bytes(whole)[:-1]):
+        try:
+            stamp, vector = decode_wind(each)
+        except FormatError:
+            continue
+        site.add_wind(stamp, vector, START + SECOND)
+    assert np.isfinite(site.simulator.place()).all()
+    assert time.monotonic() - begin < 5.0
+
+
+FUZZED = made()
+FUZZED.add_wind(START, (5.0, 0.0, 0.0))
+FUZZED.add_wind(START + SECOND // 20, (5.0, 0.0, 0.0))
+SNAPSHOT = FUZZED.snapshot()
+
+
+@pytest.mark.parametrize('vector', [(math.nan, 0.0, 0.0), (math.inf, 0.0, 0.0), (1e300, 0, 0)])
+def test_a_wind_that_cannot_be_is_refused_and_counted(vector: Any) -> None:
+    before = FUZZED.run.counts.refused
+    assert FUZZED.add_wind(*decode_wind(encode_wind(START + 9 * SECOND, vector))) is None
+    assert FUZZED.run.counts.refused == before + 1
 
 
 @pytest.mark.parametrize('frame_id', ['', 'map', 'a longer frame'])
@@ -93,8 +213,6 @@ def test_the_wind_is_a_message_of_ros(frame_id: str) -> None:
     assert decode_wind(data) == (START, (1.5, -2.0, 0.25))
     with pytest.raises(FormatError):
         decode_wind(data[:-1])
-    with pytest.raises(FormatError, match='not finite'):
-        decode_wind(encode_wind(START, (float('nan'), 0.0, 0.0), frame_id))
     typesys = pytest.importorskip('rosbags.typesys')
     types = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
     message = types.deserialize_cdr(data, 'geometry_msgs/msg/Vector3Stamped')

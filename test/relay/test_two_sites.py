@@ -13,13 +13,12 @@ import sys
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.arrays import Floats
+from tree_sway.core.arrays import Floats
 
 pytest.importorskip('zenoh', reason='eclipse-zenoh is not installed')
 
 ROOT = Path(__file__).resolve().parents[2]
-PACE = 8.0
-SECONDS = 90.0
+SECONDS = 8.0
 
 
 def free_port() -> int:
@@ -29,9 +28,9 @@ def free_port() -> int:
 
 
 def relay(role: str, output: Path, *given: str) -> subprocess.Popen[str]:
-    command = [sys.executable, '-m', 'tree_sway_ros.tools.cli', 'relay', role, 'goldcrest']
+    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'relay', role, 'goldcrest']
     return subprocess.Popen(
-        [*command, '--pace', str(PACE), '-o', str(output), *given],
+        [*command, '-o', str(output), *given],
         cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
 
@@ -50,18 +49,14 @@ def apart(one: Path, other: Path) -> tuple[Floats, Floats]:
 
 @pytest.fixture(scope='module')
 def sites(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Floats, Floats]]:
-    """Distances of three sites from the one that sends: all join while it sends."""
+    """Distances of sites from the one that sends: all join while it sends."""
     folder = tmp_path_factory.mktemp('sites')
     place = f'tcp/127.0.0.1:{free_port()}'
     seconds = ['--seconds', str(SECONDS)]
     sender = relay('send', folder / 'sender', '--listen', place, '--wind', 'canopy')
     assert sender.stdout is not None
     assert 'sending' in sender.stdout.readline()
-    kinds = {
-        'snapshot': [],
-        'rest': ['--no-snapshot'],
-        'lossy': ['--lose', '0.05'],
-    }
+    kinds: dict[str, list[str]] = {'snapshot': []}
     others = {
         kind: relay('receive', folder / kind, '--connect', place, *seconds, *given)
         for kind, given in kinds.items()
@@ -82,22 +77,5 @@ def sites(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Floats, F
 def test_by_a_snapshot_tips_agree_at_once(sites: dict[str, tuple[Floats, Floats]]) -> None:
     time, distance = sites['snapshot']
     print(f'snapshot: most {1e3 * distance.max():.3f} mm')
-    assert time[-1] > 60.0
+    assert time[-1] > 0.8 * SECONDS
     assert distance.max() <= 1e-3
-
-
-def test_without_one_they_agree_after_half_a_minute(
-    sites: dict[str, tuple[Floats, Floats]],
-) -> None:
-    time, distance = sites['rest']
-    assert distance[time < 1.0].max() > 1e-3  # it began from rest
-    later = np.quantile(distance[time > 30.0], 0.95)
-    print(f'from rest: p95 after 30 s {1e3 * later:.3f} mm')
-    assert later <= 5e-3
-
-
-def test_lost_wind_is_told(sites: dict[str, tuple[Floats, Floats]]) -> None:
-    _, distance = sites['lossy']
-    print(f'5 % lost: p95 {1e3 * np.quantile(distance, 0.95):.2f} mm, most '
-          f'{1e3 * distance.max():.2f} mm')  # fmt: skip
-    assert 0.0 < np.quantile(distance, 0.95) < 0.02

@@ -6,15 +6,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
-from tree_sway_ros.core.wind.simulated.gust_event import GustEvent
-from tree_sway_ros.core.wind.simulated.sensor_faults import SensorFaults
-from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.ros.process.node import TreeSwayNode
-from tree_sway_ros.ros.process.topics import WIND
-from tree_sway_ros.ros.reports.diagnostics import OK, Status
-from tree_sway_ros.ros.timing.pacer import Pacer, Tick
-from tree_sway_ros.ros.wire.wind_messages import WindWriter
+from tree_sway.core.wind.simulated.anemometer import AnemometerModel
+from tree_sway.core.wind.simulated.gust_event import GustEvent
+from tree_sway.core.wind.simulated.sensor_faults import SensorFaults
+from tree_sway.errors import ParameterError
+from tree_sway_ros.process.node import TreeSwayNode
+from tree_sway_ros.process.topics import WIND
+from tree_sway_ros.reports.diagnostics import OK, Status
+from tree_sway_ros.timing.pacer import Pacer, Tick
+from tree_sway_ros.wire.wind_messages import WindWriter
 
 
 class AnemometerNode(TreeSwayNode):

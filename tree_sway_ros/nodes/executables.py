@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from tree_sway_ros.ros.process.composition import NODE_CLASSES
-from tree_sway_ros.ros.process.spin import run
+from tree_sway_ros.process.composition import NODE_CLASSES
+from tree_sway_ros.process.spin import run
 
 anemometer, wind, solver, player, sensor, viewer = (
     partial(run, *NODE_CLASSES[name])

@@ -9,13 +9,13 @@ from pathlib import Path
 import time
 from typing import Any
 
-from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.files.reader_options import reader_options
-from tree_sway_ros.files.recording.state_record import read_state_record, restamped, StateRecord
-from tree_sway_ros.files.wind.record import WindRecord
-from tree_sway_ros.files.wind.wind_file import read_wind
-from tree_sway_ros.ros.process.node import TreeSwayNode
-from tree_sway_ros.ros.process.topics import (
+from tree_sway.errors import ParameterError
+from tree_sway.files.reader_options import reader_options
+from tree_sway.files.recording.state_record import read_state_record, restamped, StateRecord
+from tree_sway.files.wind.record import WindRecord
+from tree_sway.files.wind.wind_file import read_wind
+from tree_sway_ros.process.node import TreeSwayNode
+from tree_sway_ros.process.topics import (
     CLOCK,
     SEGMENT_POSES,
     TREE_DESCRIPTION,
@@ -23,20 +23,24 @@ from tree_sway_ros.ros.process.topics import (
     WIND,
     WIND_FILTERED,
 )
-from tree_sway_ros.ros.reports.diagnostics import OK, Status
-from tree_sway_ros.ros.timing.handshake import Answers, Audience, required
-from tree_sway_ros.ros.timing.playback import is_ros_time, LONGEST_CLOCK_STEP, Playback
-from tree_sway_ros.ros.timing.playback_thread import PlaybackThread
-from tree_sway_ros.ros.wire.cdr import stamp_of
-from tree_sway_ros.ros.wire.tree_description import REPEAT_PERIOD
-from tree_sway_ros.ros.wire.wind_messages import clock_message, WindWriter
+from tree_sway_ros.reports.diagnostics import OK, Status
+from tree_sway_ros.timing.handshake import Answers, Audience, required
+from tree_sway_ros.timing.playback import is_ros_time, LONGEST_CLOCK_STEP, Playback
+from tree_sway_ros.timing.playback_thread import PlaybackThread
+from tree_sway_ros.wire.cdr import stamp_of
+from tree_sway_ros.wire.tree_description import REPEAT_PERIOD
+from tree_sway_ros.wire.wind_messages import clock_message, WindWriter
 
 _SLACK = 100_000_000
-"""The clock may be so much ahead of the frames of an exact replay [ns]."""
-_BACK, _HOLD = 300_000_000, 0.5
-"""So much [ns] the clock is set back before an exact replay, for so long [s]."""
+"""The clock may be ahead of the frames of an exact replay by this time [ns]."""
+_BACK = 300_000_000
+"""Before an exact replay the clock stands at this time before its beginning [ns]."""
+_FURTHER = 3 * _BACK
+"""The same [ns] for a solver that was under way before, so that it begins again."""
+_STILL = 3.0
+"""Time without a frame [s] after which a solver needs that."""
 _PATIENCE = 15.0
-"""With a solver that shows no frame of that time [s]."""
+"""Wait for a solver that shows no frame of that time [s]."""
 _MEETING = 2.0
 """From the solver's frame to the first sample [s]: wind node and solver must have met as well."""
 
@@ -66,31 +70,29 @@ class PlayerNode(TreeSwayNode):
                 'it starts at 1 s'
             )
             epoch = None
-        wait_for = TREE_STATE.name if self.values['play'] == 'state' else self.values['wait_for']
-        wanted = required(wait_for) if self.values['wait_for_subscriber'] else {}
-        self._audience = Audience(wanted, self.count_subscribers, self.get_logger().info)
+        plays_state = self.values['play'] == 'state' and self.values['wait_for']
+        wanted = required(TREE_STATE.name if plays_state else self.values['wait_for'])
+        self._audience = Audience(wanted, self.listeners, self.get_logger().info)
         is_exact = has_clock and WIND_FILTERED.name in wanted
         self._playback = Playback(
             self._record.time,
             epoch=epoch,
             **self.values('start', 'loop'),
-            clock_period=self.values['speed'] / self.values['clock_rate'] if has_clock else 0.0,
+            clock_period=self.values['rate'] / self.values['clock_rate'] if has_clock else 0.0,
             ahead=is_exact,
         )
         self._answers: Answers | None = None
-        self._is_waiting, self._deadline, self._met = True, 0.0, 0.0
-        self._has_begun = self._has_blown = False
+        self._deadline = self._met = 0.0
+        self._expect()
         if is_exact:
             self._answers = Answers(_SLACK)
             self.subscription(SEGMENT_POSES, self._hear, raw=True)
             self.subscription(WIND_FILTERED, self._hear_wind, raw=True)
-            for topic in {SEGMENT_POSES.name, WIND_FILTERED.name} & set(wanted):
-                wanted[topic] += 1  # our own
         self._thread = self._make_thread()
         self.report_with(self._record.source, self._report)
 
     def _open_wind(self) -> None:
-        record = read_wind(self.values['file'], **self._reader_options())
+        record = read_wind(self.values['file'], **self._options())
         writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
         wind = self.publisher(WIND, writer.message_class, alone=True)
         self._record: WindRecord | StateRecord = record
@@ -99,7 +101,8 @@ class PlayerNode(TreeSwayNode):
         )
 
     def _open_state(self) -> None:
-        record = read_state_record(Path(self.values['file']), self.values['topic'] or 'tree_state')
+        topic = self._options().get('topic', TREE_STATE.name)
+        record = read_state_record(Path(self.values['file']), topic)
         description = self.publisher(TREE_DESCRIPTION, alone=True)
         state = self.publisher(TREE_STATE, alone=True)
         description.publish(record.description)
@@ -110,14 +113,14 @@ class PlayerNode(TreeSwayNode):
     def activate(self) -> None:
         """Play from the start, once those who must listen do."""
         self._thread = self._make_thread()
-        self._is_waiting, self._has_begun, self._has_blown = True, False, False
+        self._expect()
         self.on_close(self._thread.stop)
         self._thread.start()
 
     def _make_thread(self) -> PlaybackThread:
         return PlaybackThread(
             self._playback,
-            self.values['speed'],
+            self.values['rate'],
             publish=self._publish,
             may_start=self._may_start,
             on_end=self._end,
@@ -126,31 +129,29 @@ class PlayerNode(TreeSwayNode):
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a clock in steps so long that nodes would take them for a clock set forward."""
-        speed, rate = values['speed'], values['clock_rate']
-        step, longest = speed / rate, LONGEST_CLOCK_STEP
+        rate, clock_rate = values['rate'], values['clock_rate']
+        step, longest = rate / clock_rate, LONGEST_CLOCK_STEP
         if values['publish_clock'] and step > longest:
             raise ParameterError(
                 f'/clock would go in steps of {step:g} s; nodes follow up to {longest:g} s',
-                where="parameters 'speed' and 'clock_rate'",
-                cure=f'give speed up to {longest * rate:g}, or clock_rate {speed / longest:g}',
+                where="parameters 'rate' and 'clock_rate'",
+                cure=f'give rate up to {longest * clock_rate:g}, or clock_rate {rate / longest:g}',
             )
 
-    def _reader_options(self) -> dict[str, Any]:
-        options = reader_options(self.values['reader_options'].split())
-        for name in ('topic', 'yaw'):
-            if self.values[name]:
-                options[name] = self.values[name]
-        if self.values['input_convention']:
-            options['direction_convention'] = self.values['input_convention']
-        return options
+    def _options(self) -> dict[str, Any]:
+        return {**reader_options(self.values['reader_options'].split())}
+
+    def _expect(self) -> None:
+        """Begin to wait for a solver that has begun, and for the wind to come through to it."""
+        self._is_waiting, self._has_begun, self._has_blown = True, False, False
+        self._back = _BACK
 
     def _publish(self, row: int, stamp: int) -> None:
         if row >= 0:
             self._send(row, stamp)
             return
         if self._answers is not None and self._is_waiting:
-            # Time goes back again and again, until the solver has begun anew there.
-            stamp -= _BACK if int(time.monotonic() / _HOLD) % 2 else 0
+            stamp -= self._back
         elif self._answers is not None:
             self._answers.wait()
             self._answers.sent(stamp)
@@ -158,7 +159,11 @@ class PlayerNode(TreeSwayNode):
 
     def _hear(self, data: bytes) -> None:
         stamp = stamp_of(data)
-        self._has_begun |= stamp <= self._playback.epoch - _BACK
+        ahead = self._playback.epoch - stamp - self._back
+        if ahead > _BACK // 2 and self._back == _BACK:  # a solver of an earlier time, not at rest
+            self._back = _FURTHER
+        else:
+            self._has_begun |= ahead >= 0
         if self._answers is not None:
             self._answers.heard(stamp)
 
@@ -179,6 +184,8 @@ class PlayerNode(TreeSwayNode):
             return True
         if not self._has_begun:
             self._met = now + _MEETING
+            if now > self._deadline - _PATIENCE + _STILL:  # a solver stands at that very time
+                self._back = _FURTHER
         self._is_waiting = not self._has_begun
         if now > self._met:  # the first sample is sent until it has come through
             self._publish(self._playback.first_row, self._playback.epoch)

@@ -6,15 +6,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from tree_sway_ros.files.wind.nmea import parse_nmea
-from tree_sway_ros.files.wind.sensor_line import SensorLine
-from tree_sway_ros.files.wind.sonic_ascii import parse_sonic
-from tree_sway_ros.ros.link.address import read_address
-from tree_sway_ros.ros.link.line_source import LineSource
-from tree_sway_ros.ros.process.node import TreeSwayNode
-from tree_sway_ros.ros.process.topics import WIND
-from tree_sway_ros.ros.reports.diagnostics import OK, Status, WARN
-from tree_sway_ros.ros.wire.wind_messages import WindWriter
+from tree_sway.files.wind.nmea import parse_nmea
+from tree_sway.files.wind.sensor_line import SensorLine
+from tree_sway.files.wind.sonic_ascii import parse_sonic
+from tree_sway_ros.link.address import read_address
+from tree_sway_ros.link.line_source import LineSource
+from tree_sway_ros.process.node import TreeSwayNode
+from tree_sway_ros.process.topics import WIND
+from tree_sway_ros.reports.diagnostics import OK, Status, WARN
+from tree_sway_ros.wire.wind_messages import WindWriter
 
 
 class SensorNode(TreeSwayNode):

@@ -4,38 +4,38 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 from std_srvs.srv import SetBool, Trigger
 
-from tree_sway_ros.core.scene.demand import set_demand, set_pace
-from tree_sway_ros.core.scene.make import simulators_of
-from tree_sway_ros.core.simulator.live_tuning import LIVE
-from tree_sway_ros.core.simulator.protocol import Simulator
-from tree_sway_ros.core.simulator.season import LEAVES
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.wind.averaging import WindAverage
-from tree_sway_ros.core.wind.gate import LARGEST_LEAD
-from tree_sway_ros.core.wind.height_profile import WindProfile
-from tree_sway_ros.core.wind.intake import WindIntake
-from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.files.kept_set_ups import KeptSetUps
-from tree_sway_ros.files.stands.shard import dealt
-from tree_sway_ros.files.trees.placement import placed_scene
-from tree_sway_ros.files.trees.source import open_scene
-from tree_sway_ros.files.trees.yaml.forest_file import ForestFile
-from tree_sway_ros.files.trees.yaml.species_yaml import open_species
+from tree_sway.core.scene.demand import set_cost_scale, set_demand
+from tree_sway.core.scene.run import Run
+from tree_sway.core.scene.shard import dealt
+from tree_sway.core.simulator.live_tuning import LIVE
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.simulator.season import LEAVES
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.wind.averaging import WindAverage
+from tree_sway.core.wind.gate import LARGEST_LEAD
+from tree_sway.core.wind.height_profile import WindProfile
+from tree_sway.core.wind.intake import WindIntake
+from tree_sway.errors import ParameterError
+from tree_sway.files.kept_set_ups import KeptSetUps
+from tree_sway.files.trees.source import open_scene
+from tree_sway.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.nodes.state_publisher import StatePublisher
-from tree_sway_ros.ros.process.node import TreeSwayNode
-from tree_sway_ros.ros.process.progress import Progress
-from tree_sway_ros.ros.process.topics import CAMERA, WIND_FILTERED
-from tree_sway_ros.ros.reports.diagnostics import Status, WARN
-from tree_sway_ros.ros.reports.sway_report import SwayReport
-from tree_sway_ros.ros.timing.handshake import Reach
-from tree_sway_ros.ros.timing.pacer import Pacer, Tick
-from tree_sway_ros.ros.timing.stepping import Stepper
-from tree_sway_ros.ros.wire.pose_stream import PoseStream
-from tree_sway_ros.ros.wire.wind_messages import wind_from_message
+from tree_sway_ros.process.node import TreeSwayNode
+from tree_sway_ros.process.topics import CAMERA, WIND_FILTERED
+from tree_sway_ros.reports.diagnostics import Status, WARN
+from tree_sway_ros.reports.sway_report import SwayReport
+from tree_sway_ros.timing.handshake import Reach
+from tree_sway_ros.timing.pacer import Pacer, Tick
+from tree_sway_ros.wire.pose_stream import PoseStream
+from tree_sway_ros.wire.wind_messages import wind_from_message
+
+_LEAF_CLUSTERS = 1000
+"""Clusters of leaves in `tree_description`, of a tree in leaf."""
 
 _FARTHEST_CAMERA = 1e6
 """Along each axis [m]."""
@@ -49,21 +49,21 @@ class SolverNode(TreeSwayNode):
 
     def configure(self) -> None:
         """Open the tree, reduce it and make its kernels ready."""
-        with Progress(self.get_logger().info) as progress:
-            progress.stage(f"opening tree '{self.values['tree']}'")
-            source = self._open()
-            progress.stage(
-                f'reducing {source.tree.n_segments} segments and making the kernels ready '
-                '(where none are kept they are compiled, up to a minute)'
-            )
-            self._make(source)
-        for doubt in source.warnings:
-            self.get_logger().warning(doubt)
+        began, log = time.monotonic(), self.get_logger().info
+        log(f"opening tree '{self.values['tree']}'")
+        source = self._open()
+        log(
+            f'reducing {source.tree.n_segments} segments and making the kernels ready (where no '
+            'cache has them they are compiled, up to a minute)'
+        )
+        self._make(source)
+        for warning in source.warnings:
+            self.get_logger().warning(warning)
         for note in source.notes:
-            self.get_logger().info(note)
-        self.get_logger().info(
-            f'ready after {progress.elapsed:.1f} s: {source.tree.name}, {self.simulator.model}, '
-            f'{self.values["rate"]:g} Hz'
+            log(note)
+        log(
+            f'ready after {time.monotonic() - began:.1f} s: {source.tree.name}, '
+            f'{self.simulator.model}, {self.values["rate"]:g} Hz'
         )
 
     def activate(self) -> None:
@@ -73,6 +73,7 @@ class SolverNode(TreeSwayNode):
         self._reach = Reach()
         self.on_close(self._reach.end)
         self.pacer.start()
+        self._state.start()
 
     def _make_pacer(self) -> Pacer:
         return Pacer(self.get_clock(), self.values['rate'], self._tick, self.fail, self.slip)
@@ -81,25 +82,20 @@ class SolverNode(TreeSwayNode):
         source = open_scene(self.values['tree'])
         if self.values['species']:
             source = source.of_species(open_species(self.values['species'])).checked()
-        placed = placed_scene(source, **self.values('x', 'y', 'z', 'yaw'))
-        return dealt(placed, **self.values('shard', 'shards'))
+        x, y, z, yaw = self.values['pose']
+        moved = source.moved(x=x, y=y, z=z, yaw=yaw)
+        return dealt(moved, self.values['shard.index'], self.values['shard.count'])
 
     def _make(self, source: Any) -> None:
+        by_volume = self.values['volume_rule.stiffness']
+        rule = {'stiffness': 'volume_rule', 'volume_stiffness': by_volume} if by_volume else {}
         settings = Settings(
-            n_modes=self.values['modes'] or None,
-            **self.values('stiffness', 'integrator', 'gravity', 'crown_coherence'),
-            **self.values('volume_stiffness', 'volume_damping'),
-            model=self.values['fidelity'],
+            **rule,
+            **self.values('model', 'gravity'),
+            volume_damping=self.values['volume_rule.damping'],
             in_leaf=LEAVES[self.values['leaves']],
             damping_ratio=self.values['damping_ratio'] or None,
-            root_stiffness=self.values['root_stiffness'] or None,
-            profile=WindProfile(
-                self.values['profile'],
-                self.values['anemometer_height'],
-                self.values['profile_exponent'],
-                self.values['roughness'],
-                ground=0.0 if isinstance(source, ForestFile) else self.values['z'],
-            ),
+            profile=WindProfile(self.values['profile'], self.values['anemometer_height']),
         )
         self.simulator: Simulator = source.simulator(
             settings, kept=KeptSetUps(), **self.values('tolerance')
@@ -109,16 +105,21 @@ class SolverNode(TreeSwayNode):
         self._camera: Any = None
         self._refused_cameras = 0
         self.pacer = self._make_pacer()
-        self._stepper = Stepper(self.simulator, self._make_wind, self.pacer.period)
-        set_pace(simulators_of(self.simulator), self._stepper.warm_up())
+        self._run = Run(
+            self.simulator,
+            self.values['rate'],
+            intake=WindIntake.of_velocities(),
+            make_wind=self._make_wind,
+            timer=time.perf_counter,
+        )
+        set_cost_scale(self.simulator.simulators, self._run.warm_up())
         self._set_demand()
         self.simulator.reset()  # on the model that is asked for
-        self._intake = WindIntake.of_velocities()
         self._reach = Reach()
         self._sway_report = SwayReport()
-        leaves = source.leaves(settings.in_leaf, self.values['leaf_clusters'])
+        leaves = source.leaves(settings.in_leaf, _LEAF_CLUSTERS)
         self.stream = PoseStream(self, source.tree, leaves)
-        self._state = StatePublisher(self, self.simulator, self.values['leaf_clusters'])
+        self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
         self._new_wind = self.polled(WIND_FILTERED)
         self.subscription(CAMERA, self._see)
         self.create_service(Trigger, '~/reset', self._reset)
@@ -126,7 +127,7 @@ class SolverNode(TreeSwayNode):
         self.report_with(source.tree.name, self._statuses)
 
     def _make_wind(self) -> WindAverage:
-        return WindAverage(**self.values('interpolation', 'timeout', 'decay'))
+        return WindAverage()
 
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)
@@ -135,9 +136,7 @@ class SolverNode(TreeSwayNode):
             return  # of before the clock was set back
         self._reach.add(sample.stamp)
         components = (sample.u, sample.v, sample.w)
-        good = self._intake.offer(sample.stamp, components, arrival, lead=self.clock_lead)
-        if good is not None:
-            self._stepper.add_wind(*good)
+        self._run.offer(sample.stamp, components, arrival, lead=self.clock_lead)
 
     def _see(self, message: Any) -> None:
         at = message.pose.position
@@ -152,7 +151,7 @@ class SolverNode(TreeSwayNode):
         """Refuse a change that the trees could not take while they sway."""
         if not self.is_active:
             return
-        changes = {k: values[k] for k in LIVE if k in values and values[k] != self.values[k]}
+        changes = _tuning({k: v for k, v in values.items() if v != self.values[k]})
         if changes.get('damping_ratio') == 0.0:
             raise ParameterError(
                 "the species' own damping while the tree sways",
@@ -164,35 +163,39 @@ class SolverNode(TreeSwayNode):
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Take new values before the next step."""
-        changes = {k: v for k, v in values.items() if k in LIVE}
+        changes = _tuning(values)
         if changes and self.is_active:
-            self._stepper.request(lambda: self.simulator.tune(**changes))
-        if self.values['fidelity'] == 'auto':
-            self._stepper.request(self._set_demand)
+            self._run.request(lambda: self.simulator.tune(**changes))
+        if self.values['model'] == 'auto':
+            self._run.request(self._set_demand)
 
     def _set_demand(self) -> None:
-        wanted = self.values('tolerance', 'tolerance_pixels', 'focal_length', 'budget')
-        set_demand(simulators_of(self.simulator), camera=self._camera, **wanted)
+        set_demand(
+            self.simulator.simulators,
+            camera=self._camera,
+            tolerance_pixels=self.values['tolerance_angle'],
+            focal_length=1.0,
+            **self.values('tolerance', 'budget'),
+        )
 
     def slip(self, error: Exception) -> None:
         """Go on from rest: what was amid a step is not to be trusted."""
         super().slip(error)
-        self._stepper.request(self.simulator.reset)
+        self._run.request(self.simulator.reset)
 
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:
-            self._stepper.restart(tick.time)
-            self._intake.gate.reset()
+            self._run.restart(tick.time)
             self._reach.forget()
         if self.pacer.is_simulated:  # of a replay every frame comes, however late
             for later in range(tick.periods - 1, -1, -1):
-                time = tick.time - later * self.pacer.period
+                now = tick.time - later * self.pacer.period
                 if self.values['exact_replay']:
-                    felt = time - round(1e9 * self.values['wind_delay'])
+                    felt = now - round(1e9 * self.values['wind_delay'])
                     self._reach.wait(felt, self._take, self._now)
                 else:
                     self._take()
-                self._frame(time, 1, may_join=False)
+                self._frame(now, 1, may_join=False)
         else:
             self._take()
             self._frame(tick.time, tick.periods, may_join=True)
@@ -204,30 +207,35 @@ class SolverNode(TreeSwayNode):
         for message in self._new_wind():
             self._receive(message)
 
-    def _frame(self, time: int, periods: int, *, may_join: bool) -> None:
+    def _frame(self, now: int, periods: int, *, may_join: bool) -> None:
         """Solve up to a time in [ns], and publish what is due then."""
-        self._stepper.advance(time, periods, self.values['wind_delay'], may_join=may_join)
-        index = time // self.pacer.period
-        self.stream.publish(self.simulator, index, time, self.values['publish_every'])
-        self._state.publish(index, time)
+        delay = self.values['wind_delay']
+        self._run.advance(now, delay=delay, most=periods, may_join=may_join)
+        index = now // self.pacer.period
+        self.stream.publish(self.simulator, index, now, self.values['publish_every'])
+        self._state.publish(index, now)
 
     def _reset(self, _request: Any, response: Any) -> Any:
-        self._stepper.request(self.simulator.reset)
+        self._run.request(self.simulator.reset)
         response.success, response.message = True, 'at rest'
         return response
 
     def _pause(self, request: Any, response: Any) -> Any:
-        self._stepper.is_paused = bool(request.data)
+        self._run.is_paused = bool(request.data)
         response.success, response.message = True, 'paused' if request.data else 'running'
         return response
 
     def _statuses(self) -> list[Status]:
-        statuses = self._sway_report.statuses(
-            self._stepper, self.pacer, self.stream.frames, self._intake.counts
-        )
+        statuses = self._sway_report.statuses(self._run, self.pacer, self.stream.frames)
         if self._refused_cameras:
             text = (
                 f'{self._refused_cameras} poses of the camera refused: not finite or too far away'
             )
             statuses.append(Status('camera', WARN, text, {'refused': self._refused_cameras}))
         return statuses
+
+
+def _tuning(values: dict[str, Any]) -> dict[str, Any]:
+    """Values of parameters that may change while the tree sways, by their names in the library."""
+    named = {name.replace('volume_rule.', 'volume_'): value for name, value in values.items()}
+    return {name: named[name] for name in LIVE if name in named}

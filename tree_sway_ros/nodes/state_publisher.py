@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The state of the solver's trees on `tree_state`, from when somebody first listens."""
+"""The state of the solver's trees on `tree_state`."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ import math
 import threading
 from typing import Any
 
-from tree_sway_ros.core.simulator.protocol import Simulator
-from tree_sway_ros.errors import TreeSwayError
-from tree_sway_ros.page.scene_state import SceneState
-from tree_sway_ros.ros.process.topics import TREE_STATE
-from tree_sway_ros.ros.timing.stepping import Divider
-from tree_sway_ros.ros.wire.tree_state import state_entry, state_template
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.errors import TreeSwayError
+from tree_sway.page.scene_state import SceneState
+from tree_sway_ros.process.topics import TREE_STATE
+from tree_sway_ros.timing.divider import Divider
+from tree_sway_ros.wire.tree_state import state_entry, state_template
 
 
 class StatePublisher:
     """
-    Publishes `tree_state`, and has `tree_description` tell how to read it.
+    Publishes `tree_state` to those who listen, and has `tree_description` say how to read it.
 
-    The basis takes some seconds to find: it is found on a thread of its own, once somebody
-    listens.
+    The basis takes some seconds to find: it is found on a thread of its own, as soon as the
+    solver sways, so that it is there for the first who listens.
     """
 
     def __init__(self, node: Any, simulator: Simulator, n_leaves: int) -> None:
@@ -32,28 +32,24 @@ class StatePublisher:
         self._divider = Divider()
         self._template: Any = None
         self._scene: SceneState | None = None
-        self._finder: threading.Thread | None = None
-        node.on_close(self._wait)
+
+    def start(self) -> None:
+        """Find the basis, unless it is known or states are not wanted."""
+        if self._every and self._scene is None:
+            finder = threading.Thread(target=self._find, name='basis', daemon=True)
+            finder.start()
+            self._node.on_close(lambda: finder.join(timeout=10.0))
 
     def publish(self, index: int, stamp: int) -> None:
         """Publish the state if one is due at a tick of that number and time [ns]."""
         if not self._every or not self._divider.is_due(index, self._every):
             return
-        if self._publisher.get_subscription_count() == 0:
-            return
-        if self._scene is None:
-            if self._finder is None:
-                self._finder = threading.Thread(target=self._find, name='basis', daemon=True)
-                self._finder.start()
+        if self._scene is None or self._publisher.get_subscription_count() == 0:
             return
         block = self._template.blocks[0]
         block[:3] = self._simulator.wind
         block[3:] = self._scene.coordinates()
         self._publisher.publish(self._template.to_bytes(stamp))
-
-    def _wait(self) -> None:
-        if self._finder is not None:
-            self._finder.join(timeout=10.0)
 
     def _find(self) -> None:
         try:

@@ -14,9 +14,9 @@ from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from std_srvs.srv import SetBool, Trigger
 
-from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.page.controls import Control, ControlPanel
-from tree_sway_ros.page.protocol import (
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET
+from tree_sway.page.protocol import (
     BEYOND_SCALE,
     decode_description,
     Description,
@@ -24,21 +24,22 @@ from tree_sway_ros.page.protocol import (
     Frame,
     quantised,
 )
-from tree_sway_ros.page.server import PageServer, PageSettings
-from tree_sway_ros.ros.parameters.node_parameters import NODE_PARAMETERS
-from tree_sway_ros.ros.process.node import TreeSwayNode
-from tree_sway_ros.ros.process.topics import TREE_DESCRIPTION, TREE_STATE
-from tree_sway_ros.ros.reports.diagnostics import OK, Status
-from tree_sway_ros.ros.wire.tree_state import read_state, read_state_entry
-from tree_sway_ros.ros.wire.wind_messages import stamp_to_ns
+from tree_sway.page.server import PageServer, PageSettings
+from tree_sway.parameters.sway_parameters import BEARING_TO, INTENSITY, MEAN_SPEED, TOLERANCE
+from tree_sway_ros.process.node import TreeSwayNode
+from tree_sway_ros.process.topics import TREE_DESCRIPTION, TREE_STATE
+from tree_sway_ros.reports.diagnostics import OK, Status
+from tree_sway_ros.wire.tree_state import read_state, read_state_entry
+from tree_sway_ros.wire.wind_messages import stamp_to_ns
 
 _CHECK_PERIOD = 0.5
 _LIVE = {
-    'mean_speed': ('anemometer', 'Wind'),
-    'intensity': ('anemometer', 'Gustiness'),
-    'bearing_to': ('anemometer', 'Blows to'),
-    'tolerance': ('solver', 'Tolerance'),
+    MEAN_SPEED: ('anemometer', 'Wind'),
+    INTENSITY: ('anemometer', 'Gustiness'),
+    BEARING_TO: ('anemometer', 'Blows to'),
+    TOLERANCE: ('solver', 'Tolerance'),
 }
+_NODES = {parameter.name: node for parameter, (node, _) in _LIVE.items()}
 
 
 class ViewerNode(TreeSwayNode):
@@ -46,28 +47,37 @@ class ViewerNode(TreeSwayNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__('viewer', **options)
-        settings = PageSettings(
-            **self.values('address', 'port', 'token', 'certificate', 'private_key', 'max_clients'),
+
+    def configure(self) -> None:
+        """Subscribe to the description, and prepare what pages may change."""
+        self._settings = PageSettings(
+            **self.values('address', 'port', 'token_file', 'certificate', 'private_key'),
+            **self.values('max_clients'),
             origins=tuple(self.values['origins'].split()),
         )
+        self._panel = ControlPanel(_controls(), self._apply) if self.values['control'] else None
         self._description: Description | None = None
-        self._told = ''
+        self._described = ''
         self._sequence = 0
         self._subscription: Any = None
         self._lock = threading.Lock()
-        panel = ControlPanel(_controls(), self._apply) if self.values['control'] else None
         self._setters = {
             node: self.create_client(SetParameters, f'{node}/set_parameters')
             for node in ('anemometer', 'solver')
         }
         self._reset = self.create_client(Trigger, 'solver/reset')
         self._pause = self.create_client(SetBool, 'solver/pause')
-        self.server = PageServer(settings, panel, self._status)
-        self.server.start()
-        self.on_close(self.server.close)
+        self.server = PageServer(self._settings, self._panel, self._status)
         self.subscription(TREE_DESCRIPTION, self._describe)
         self.create_timer(_CHECK_PERIOD, self._look)
         self.report_with('page', self._statuses)
+
+    def activate(self) -> None:
+        """Serve the page."""
+        self.server = PageServer(self._settings, self._panel, self._status)
+        self.server.start()
+        self.on_close(self.server.close)
+        self._described = ''
         self.get_logger().info(f'the page is at {self.server.url}')
 
     def _look(self) -> None:
@@ -76,9 +86,9 @@ class ViewerNode(TreeSwayNode):
             self._subscription = self.subscription(TREE_STATE, self._receive)
 
     def _describe(self, message: Any) -> None:
-        if message.data == self._told:
+        if message.data == self._described or not self.is_active:
             return
-        self._told = message.data
+        self._described = message.data
         try:
             data = read_state_entry(json.loads(message.data))
         except ValueError as error:
@@ -113,7 +123,7 @@ class ViewerNode(TreeSwayNode):
         return [Status('page', OK, f'{self.server.n_clients} pages', values)]
 
     def _apply(self, name: str, value: Any) -> None:
-        """Pass a viewer's change on to the node it concerns; its refusal is told later."""
+        """Pass a viewer's change on to the node it concerns; its refusal comes later."""
         if name == 'reset':
             self._ask(self._reset, Trigger.Request(), lambda answer: '')
         elif name == 'pause':
@@ -121,7 +131,7 @@ class ViewerNode(TreeSwayNode):
         else:
             number = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value))
             request = SetParameters.Request(parameters=[ParameterMessage(name=name, value=number)])
-            self._ask(self._setters[_LIVE[name][0]], request, _reason)
+            self._ask(self._setters[_NODES[name]], request, _reason)
 
     def _ask(self, client: Any, request: Any, reason: Callable[[Any], str]) -> None:
         if not client.service_is_ready():
@@ -132,7 +142,7 @@ class ViewerNode(TreeSwayNode):
         def answered(future: Any) -> None:
             why = reason(future.result())
             if why:
-                self.server.tell({'refused': {'name': '', 'reason': why}})
+                self.server.announce({'refused': {'name': '', 'reason': why}})
 
         with self._lock:
             client.call_async(request).add_done_callback(answered)
@@ -145,17 +155,5 @@ def _reason(answer: Any) -> str:
 
 def _controls() -> tuple[Control, ...]:
     """Make what viewers may change, with the ranges of the nodes' parameters."""
-    controls = []
-    for name, (node, label) in _LIVE.items():
-        parameter = next(p for p in NODE_PARAMETERS[node] if p.name == name)
-        controls.append(
-            Control(
-                name, label, parameter.default, parameter.description, parameter.unit,
-                parameter.minimum, parameter.maximum,
-            )
-        )  # fmt: skip
-    return (
-        *controls,
-        Control('pause', 'Pause', False, 'Time stands still.'),
-        Control('reset', 'Reset', None, 'Back to rest.', is_action=True),
-    )
+    live = (Control.of(parameter, label) for parameter, (_, label) in _LIVE.items())
+    return (*live, *PAUSE_AND_RESET)

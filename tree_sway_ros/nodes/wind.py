@@ -10,14 +10,14 @@ from geometry_msgs.msg import Vector3Stamped
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 
-from tree_sway_ros.core.wind.convention import WindConvention
-from tree_sway_ros.core.wind.gate import WindGate
-from tree_sway_ros.core.wind.intake import WindIntake
-from tree_sway_ros.ros.process.node import TreeSwayNode
-from tree_sway_ros.ros.process.topics import FORCE_PLANE, WIND, WIND_FILTERED
-from tree_sway_ros.ros.reports.diagnostics import OK, Status, WARN
-from tree_sway_ros.ros.reports.wind_report import WindReport
-from tree_sway_ros.ros.wire.wind_messages import (
+from tree_sway.core.wind.convention import WindConvention
+from tree_sway.core.wind.gate import WindGate
+from tree_sway.core.wind.intake import WindIntake
+from tree_sway_ros.process.node import TreeSwayNode
+from tree_sway_ros.process.topics import FORCE_PLANE, WIND, WIND_FILTERED
+from tree_sway_ros.reports.diagnostics import OK, Status, WARN
+from tree_sway_ros.reports.wind_report import WindReport
+from tree_sway_ros.wire.wind_messages import (
     plane_message,
     wind_class,
     wind_from_message,
@@ -29,7 +29,10 @@ _CONVENTION = ('direction_convention', 'speed_scale', 'yaw_offset', 'plane_norma
 _GATE = ('max_speed', 'max_rate', 'longest_refusal', 'frozen_after')
 
 _BACK = 100_000_000
-"""From so much on time is set back [ns]; less is jitter."""
+"""From this step back on time is set back [ns]; less is jitter."""
+
+_RECENT = 5.0
+"""A sample in another frame is reported for this time [s]."""
 
 
 class WindNode(TreeSwayNode):
@@ -94,14 +97,14 @@ class WindNode(TreeSwayNode):
 
     def _listen_for_frames(self) -> Any:
         """Load what turns frames, which takes as long as all else here, where there are others."""
-        from tree_sway_ros.ros.wire.frames import FrameListener
+        from tree_sway_ros.wire.frames import FrameListener
 
         return FrameListener(self, self.values['frame_id'])
 
     def _statuses(self) -> list[Status]:
         gate, others = self._intake.gate, self._types_not_read()
         statuses = [self._report.status(self.values['timeout'], gate, others)]
-        if self._frames is not None and self._frames.text:
+        if self._frames is not None and self._frames.age < _RECENT:
             level = WARN if self._frames.is_lacking else OK
             statuses.append(Status('frame', level, self._frames.text))
         return statuses

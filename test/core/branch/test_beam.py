@@ -10,10 +10,10 @@ from scipy import linalg
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from tree_sway_ros.core.branch.beam import Attachments, BranchBeam, SlopeShape
-from tree_sway_ros.core.branch.model import branch_models
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.species import species_named
+from tree_sway.core.branch.beam import Attachments, BranchBeam, SlopeShape
+from tree_sway.core.branch.model import branch_models
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.species import species_named
 
 NONE = np.zeros(0)
 NO_CHILDREN = Attachments(np.zeros(0, dtype=np.int64), NONE)
@@ -206,7 +206,7 @@ def test_the_ritz_solution_is_that_of_the_books():
     assert root**2 == pytest.approx(UNIFORM, rel=1e-9)
 
 
-@pytest.mark.parametrize('model', ['branch', 'coupled'])
+@pytest.mark.parametrize('model', ['branch', 'full'])
 def test_a_simulated_uniform_stem_has_the_beams_frequency(stem, model):
     sim = SwaySimulator(
         stem(length=2.0, base=0.02, cuts=3), model=model, gravity=0.0, enrich='stem'
@@ -215,7 +215,7 @@ def test_a_simulated_uniform_stem_has_the_beams_frequency(stem, model):
     # E I / (rho A L^4) with I / A = d^2 / 16.
     w = 3.5160 * np.sqrt(wood.modulus * 0.02**2 / 16.0 / wood.density / 2.0**4)
     assert sim.frequencies(1)[0] == pytest.approx(w / (2 * np.pi), rel=2e-3)
-    if model == 'coupled':
+    if model == 'full':
         assert sim.frequencies(3)[2] == pytest.approx(22.034 / 3.516 * w / (2 * np.pi), rel=0.02)
 
 

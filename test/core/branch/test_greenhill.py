@@ -8,7 +8,7 @@ import pytest
 from scipy import special
 from scipy.optimize import brentq
 
-from tree_sway_ros.core.branch.greenhill import greenhill_length
+from tree_sway.core.branch.greenhill import greenhill_length
 
 
 def test_greenhills_number_is_the_bessel_zero():

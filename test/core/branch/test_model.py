@@ -8,11 +8,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from tree_sway_lab.example_trees import forked_tree
 
-from tree_sway_ros.core.branch.model import branch_models, TreeBeams
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.study.example_trees import forked_tree
+from tree_sway.core.branch.model import branch_models, TreeBeams
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.building import tree_from_segments
 
 
 def test_models_stand_in_the_order_of_branches(fork):
@@ -99,7 +99,7 @@ def test_a_long_limb_needs_shapes_though_what_it_carries_is_bare():
     """Limbs of twigs alone swayed 3 to 5 % too often as long as their order decided."""
     tree = _limbs_of_twigs()
     found = {
-        choice: SwaySimulator(tree, model='coupled', enrich=choice).frequencies(6)
+        choice: SwaySimulator(tree, model='full', enrich=choice).frequencies(6)
         for choice in ('stem', 'needed', 'all')
     }
     gap = {choice: np.abs(found[choice] / found['all'] - 1.0).max() for choice in found}

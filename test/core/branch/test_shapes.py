@@ -4,16 +4,22 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from tree_sway_lab.segments.articulated import ArticulatedTree
 
-from tree_sway_ros.core.branch.beam import energies, RotationField
-from tree_sway_ros.core.branch.model import branch_models
-from tree_sway_ros.core.branch.shapes import across, FEWER_TURNS, N_PAIRS, N_TURNS
-from tree_sway_ros.core.reduction.matrices import reduce_tree
-from tree_sway_ros.core.reduction.modes import natural_modes
+from tree_sway.core.branch.beam import energies, RotationField
+from tree_sway.core.branch.model import branch_models
+from tree_sway.core.branch.shapes import across, MAX_COORDINATES, N_PAIRS
+from tree_sway.core.reduction.matrices import reduce_tree
+from tree_sway.core.reduction.modes import natural_modes
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.tree.species import Species
 
 
 @given(st.integers(0, 10**6))
@@ -33,11 +39,44 @@ def test_positive_coordinates_move_the_tip_along_e1_and_e2(fork):
             assert field.nodes[-1] @ direction == pytest.approx(model.beam.chord_length)
 
 
+def stem_with_limbs(n_limbs):
+    """Make a straight stem of 8 m whose limbs carry nothing."""
+    start, end, thick, parent, branch = [], [], [], [], []
+
+    def add(on, root, way, length, base, tip, cuts, number):
+        nodes = root + np.linspace(0.0, length, cuts + 1)[:, None] * way
+        first, width = len(start), np.linspace(base, tip, cuts + 1)
+        start.extend(nodes[:-1]), end.extend(nodes[1:]), thick.extend(pairwise(width))
+        parent.extend([on, *range(first, first + cuts - 1)])
+        branch.extend([number] * cuts)
+
+    add(-1, np.zeros(3), np.array([0.0, 0.0, 1.0]), 8.0, 0.14, 0.04, 16, 0)
+    for k in range(n_limbs):
+        node, turn = 4 + (k * 12) // n_limbs, 2.4 * k
+        way = np.array([0.92 * np.cos(turn), 0.92 * np.sin(turn), 0.39])
+        way /= np.linalg.norm(way)
+        length = 2.2 * (1.1 - node / 20.0)
+        root = np.array([0.0, 0.0, 0.5 * node])
+        add(node - 1, root, way, length, length / 45.0, length / 110.0, 5, k + 1)
+    return tree_from_segments(start, end, thick, parent=np.array(parent), branch=np.array(branch))
+
+
 def test_an_enriched_branch_has_pairs_and_what_carries_turns(fork):
     models = branch_models(fork(), 900.0, carries=True, enriched=frozenset(range(4)))
-    for branch, model in enumerate(models):
-        turns = 0 if len(model.children) == 0 else FEWER_TURNS if branch else N_TURNS
-        assert 2 * N_PAIRS <= len(model.fields) <= 2 * N_PAIRS + turns
+    for model in models:
+        most = MAX_COORDINATES if len(model.children) > 1 else 2 * N_PAIRS + 1
+        assert 2 * N_PAIRS <= len(model.fields) <= most
+
+
+@pytest.mark.parametrize('n_limbs', [2, 4, 8, 16])
+def test_limbs_that_swing_apart_have_the_frequencies_of_every_segment(n_limbs):
+    tree = stem_with_limbs(n_limbs)
+    truth = ArticulatedTree(
+        tree, 8e9, 900.0, gravity=9.81, subdivisions=2, twist_ratio=2.0 / 14.0
+    ).linear_modes(8)[0]
+    wood = Species('w', 'w', 8e9, 900.0, damping_bare=0.05, shear_ratio=1.0 / 14.0)
+    found = SwaySimulator(tree, wood).frequencies(8)
+    assert found == pytest.approx(truth, rel=0.01)
 
 
 def test_further_fields_are_orthogonal_in_energy(fork):

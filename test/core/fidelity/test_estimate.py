@@ -1,61 +1,100 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The choice that estimates lead to."""
+"""Errors of every number of coordinates, known before a step and held to what a step does."""
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from tree_sway_lab.bench.bench_tree import bench_tree
 
-from tree_sway_ros.core.fidelity.estimate import choose, distance_to, Estimate, tolerance_in_metres
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway.core.fidelity.estimate import ErrorEstimator, frame_cost
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.pose_ends import tips_of_poses
+from tree_sway.core.wind.climate import WindClimate
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
-LADDER = (
-    Estimate('frozen', 0, 0.05, 0.04, 5.0),
-    Estimate('branch', 0, 0.04, 0.04, 10.0),
-    Estimate('modes', 6, 0.004, 0.04, 20.0),
-    Estimate('coupled', 0, 0.001, 0.04, 90.0),
-)
-
-
-@pytest.mark.parametrize(
-    ('tolerance', 'budget', 'name'),
-    [
-        (0.1, None, 'frozen'),
-        (0.045, None, 'branch'),
-        (0.01, None, 'modes 6'),
-        (0.002, None, 'coupled'),
-        (None, 15.0, 'branch'),
-        (None, 50.0, 'modes 6'),
-        (0.045, 50.0, 'branch'),
-    ],
-)
-def test_the_least_that_will_do(tolerance, budget, name):
-    assert choose(LADDER, tolerance=tolerance, budget=budget).name == name
+DT = 1.0 / 60.0
 
 
-def test_what_nobody_can_meet_names_the_nearest():
-    with pytest.raises(ParameterError, match=r"allow 0.001 m for 'coupled'"):
-        choose(LADDER, tolerance=1e-4)
-    with pytest.raises(ParameterError, match=r"allow 5 us for 'frozen'"):
-        choose(LADDER, budget=1.0)
+@pytest.fixture(scope='module')
+def sim():
+    return SwaySimulator(bench_tree())
 
 
-def test_pixels_become_metres():
-    assert tolerance_in_metres(0.5, 20.0, 1000.0) == pytest.approx(0.01)
-    with pytest.raises(ParameterError, match='above 0'):
-        tolerance_in_metres(0.5, 0.0, 1000.0)
+@pytest.fixture(scope='module')
+def estimator(sim):
+    return ErrorEstimator(sim.tree, sim.bank, sim.drag_law)
 
 
-def test_the_distance_is_to_what_is_nearest(fork):
-    tree = fork()
-    top = tree.end[tree.branch_first[1:] - 1]
-    assert distance_to(tree, tree.start[0]) == 0.01
-    highest = top[top[:, 2].argmax()]
-    assert distance_to(tree, highest + np.array([0.0, 0.0, 7.0])) == pytest.approx(7.0)
+def turbulent(speed, seed):
+    return simulate_turbulence(speed, rate=60.0, duration=10.0, rng=np.random.default_rng(seed))
 
 
-def test_a_model_is_named_as_people_say_it():
-    names = [Estimate('modes', 6, 0.0, 0.0, 1.0, n).name for n in (0, 20)]
-    assert names == ['modes 6', 'modes 6 with 20 branches frozen']
-    assert Estimate('subtree', 0, 0.0, 0.0, 1.0).name == 'subtree'
+@pytest.mark.parametrize('way', [(1, 0, 0), (0, 0, 1), (0, 0, -1)])
+def test_fewer_coordinates_never_err_by_more_than_is_said(sim, estimator, way):
+    """Set against all coordinates of the table, in wind from the side, up and down."""
+    tree = sim.tree
+    across = np.cross(way, [0.6, 0.8, 0.0])
+    turn = np.stack([way, across, np.cross(way, across)])
+    wind = turbulent(7.0, 1) @ turn
+    climate = WindClimate.of_samples(wind, 60.0)
+    said = {e.n_coordinates: e.error for e in estimator.estimates(climate)}
+    oscillators, m = sim.bank.oscillators, sim.bank.oscillators.shapes.shape[1]
+    found = {}
+    for k in (*estimator.dial[1:-1], m):
+        sim.reset()
+        oscillators.show((np.arange(m) < k).astype(float), k)
+        tips = []
+        for each in wind:
+            sim.step(each, DT)
+            tips.append(tips_of_poses(tree, sim.place()))
+        found[k] = np.array(tips)
+    truth = found.pop(m)
+    moved = float(np.sqrt(np.square(truth - truth.mean(axis=0)).sum(axis=2).mean()))
+    for k, tips in found.items():
+        error = float(np.sqrt(np.square(tips - truth).sum(axis=2).mean()))
+        assert error <= said[k], k
+    assert moved > 0.0
+
+
+def test_more_coordinates_err_less_and_cost_more(estimator):
+    estimates = estimator.estimates(WindClimate.steady(6.0, 0.3))
+    assert [e.n_coordinates for e in estimates] == [0, 3, 6, 12, 20, 40, 60]
+    errors, costs = [e.error for e in estimates], [e.cost for e in estimates]
+    assert (np.diff(errors) < 0.0).all()
+    assert (np.diff(costs) > 0.0).all()
+
+
+def test_errors_rise_with_the_wind_and_with_its_turns(estimator):
+    by_speed = [estimator.estimates(WindClimate.steady(v, 0.2)) for v in (0.0, 3.0, 9.0, 18.0)]
+    assert [e.error for e in by_speed[0]] == [0.0] * len(by_speed[0])
+    for slow, fast in pairwise(by_speed[1:]):
+        assert all(a.error < b.error for a, b in zip(slow, fast, strict=True))
+        assert slow[0].turn < fast[0].turn
+
+
+def test_still_air_and_a_wind_straight_up_is_no_calm(estimator):
+    up = np.tile([0.0, 0.0, 6.0], (600, 1))
+    estimates = estimator.estimates(WindClimate.of_samples(up, 60.0))
+    assert estimates[0].error > 1e-3
+    assert estimates[0].turn > 0.0
+
+
+def test_estimates_are_those_of_the_tree_as_it_is_tuned():
+    sim = AdaptiveSimulator(bench_tree())
+    climate = WindClimate.steady(6.0, 0.2)
+    before = sim.estimates(climate)
+    sim.tune(stiffness_factor=3.0)
+    for _ in range(60):
+        sim.step((2.0, 0.0, 0.0), DT)
+    after = sim.estimates(climate)
+    assert all(b.error < 0.6 * a.error for a, b in zip(before, after, strict=True))
+
+
+def test_a_branch_by_itself_costs_less_than_the_load_on_every_branch():
+    few, all_of_them = (frame_cost(SwaySimulator(bench_tree(), model=m).bank) for m in (6, 'full'))
+    assert few < all_of_them

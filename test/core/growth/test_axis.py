@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.growth.axis import aim, direction_of, grow_axis, heading_of
+from tree_sway.core.growth.axis import aim, direction_of, grow_axis, heading_of
 
 ANGLE = st.floats(-3.1, 3.1)
 ELEVATION = st.floats(-1.5, 1.5)

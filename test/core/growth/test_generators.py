@@ -9,15 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from tree_sway_lab.example_trees import branch_order
 
-from tree_sway_ros.core.branch.greenhill import greenhill_length
-from tree_sway_ros.core.growth.benjamina import grow_benjamina
-from tree_sway_ros.core.growth.broadleaf import grow_broadleaf
-from tree_sway_ros.core.growth.conifer import grow_conifer
-from tree_sway_ros.core.growth.goldcrest import grow_goldcrest
-from tree_sway_ros.core.tree.species import species_named
-from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.study.example_trees import branch_order
+from tree_sway.core.branch.greenhill import greenhill_length
+from tree_sway.core.growth.benjamina import grow_benjamina
+from tree_sway.core.growth.broadleaf import grow_broadleaf
+from tree_sway.core.growth.conifer import grow_conifer
+from tree_sway.core.growth.goldcrest import grow_goldcrest
+from tree_sway.core.tree.species import species_named
+from tree_sway.core.tree.tree import Tree
 
 Generator = Callable[[np.random.Generator], Tree]
 GENERATORS: list[Generator] = [grow_benjamina, grow_goldcrest, grow_broadleaf, grow_conifer]

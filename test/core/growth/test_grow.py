@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.growth.grow import grow, HABITS
-from tree_sway_ros.core.tree.species import species_keys, species_named
-from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.errors import ParameterError, SpeciesError
+from tree_sway.core.growth.grow import grow, HABITS
+from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError, SpeciesError
 
 
 def rng() -> np.random.Generator:

@@ -4,12 +4,12 @@
 
 import numpy as np
 import pytest
+from tree_sway_lab.example_trees import branch_order
 
-from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway_ros.core.growth.grow import grow
-from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.study.example_trees import branch_order
+from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
+from tree_sway.core.growth.grow import grow
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError
 
 SEEDS = range(3)
 

@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.growth.skeleton import Skeleton
+from tree_sway.core.growth.skeleton import Skeleton
 
 
 def tripod() -> Skeleton:

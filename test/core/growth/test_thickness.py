@@ -5,9 +5,9 @@
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.growth.skeleton import Skeleton
-from tree_sway_ros.core.growth.thickness import carried_length, node_diameters
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.growth.skeleton import Skeleton
+from tree_sway.core.growth.thickness import carried_length, node_diameters
+from tree_sway.errors import ParameterError
 
 
 def fork() -> Skeleton:

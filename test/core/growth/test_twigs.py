@@ -5,8 +5,8 @@
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.growth.skeleton import Skeleton
-from tree_sway_ros.core.growth.twigs import add_twigs
+from tree_sway.core.growth.skeleton import Skeleton
+from tree_sway.core.growth.twigs import add_twigs
 
 UP_NORTH = np.array([0.0, np.cos(0.3), np.sin(0.3)])
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.identification.ambient_sway import ambient_sway, log_spectrum
-from tree_sway_ros.errors import FormatError
+from tree_sway.core.identification.ambient_sway import ambient_sway, log_spectrum
+from tree_sway.errors import FormatError
 
 DT = 0.1
 

@@ -4,24 +4,22 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.identification.calibration import calibrate
-from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.species import species_named
-from tree_sway_ros.errors import ParameterError, TreeError
+from tree_sway.core.identification.calibration import calibrate
+from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.tree.species import species_named
+from tree_sway.errors import ParameterError, TreeError
 
 OAK = species_named('oak')
-COUPLED = Settings(model='coupled')
+COUPLED = Settings(model='full')
 WEIGHTLESS = Settings(gravity=0.0)
 
 
 def slowest(tree, species, settings=COUPLED):
-    return float(build_bank(tree, species, replace(settings, model='coupled')).frequencies[0])
+    return float(CalibratedTree(tree, species, settings).natural_frequencies(1)[0])
 
 
 @pytest.mark.parametrize('share', [0.2, 0.9, 1.0, 1.5, 20.0])

@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.identification.free_decay import free_decay
-from tree_sway_ros.errors import FormatError
+from tree_sway.core.identification.free_decay import free_decay
+from tree_sway.errors import FormatError
 
 DT = 0.02
 
@@ -54,8 +54,8 @@ def test_standard_errors_are_those_of_many_records():
 
 def test_quiet_tells_a_release_from_wind():
     assert free_decay(decay([(0.8, 0.05, 1.0)], noise=0.02), DT, 0.8).quiet < 0.1
-    goes_on = decay([(0.8, 0.05, 1.0), (0.8, 0.0005, 0.9)], duration=100.0)
-    assert free_decay(goes_on, DT, 0.8).quiet > 0.3
+    has_predecessor = decay([(0.8, 0.05, 1.0), (0.8, 0.0005, 0.9)], duration=100.0)
+    assert free_decay(has_predecessor, DT, 0.8).quiet > 0.3
 
 
 def test_a_decay_that_starts_too_late():

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.identification.measured_sway import estimate_sway
-from tree_sway_ros.errors import FormatError, ParameterError
+from tree_sway.core.identification.measured_sway import estimate_sway
+from tree_sway.errors import FormatError, ParameterError
 
 RATE = 20.0
 

@@ -9,8 +9,8 @@ import math
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.identification.measured_sway import estimate_sway
-from tree_sway_ros.errors import FormatError
+from tree_sway.core.identification.measured_sway import estimate_sway
+from tree_sway.errors import FormatError
 
 DT, DAMPING = 0.05, 0.1
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.identification.spectral_peaks import Spectrum
-from tree_sway_ros.errors import FormatError
+from tree_sway.core.identification.spectral_peaks import Spectrum
+from tree_sway.errors import FormatError
 
 F = np.linspace(0.0, 10.0, 5001)
 

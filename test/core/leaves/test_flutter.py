@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.leaves.flutter import (
+from tree_sway.core.leaves.flutter import (
     air_speed,
     AIR_VISCOSITY,
     flutter_amplitude,
@@ -19,9 +19,9 @@ from tree_sway_ros.core.leaves.flutter import (
     leaf_list,
     leaf_poses,
 )
-from tree_sway_ros.core.leaves.foliage import leaf_clusters, LeafClusters
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.core.tree.tree import Tree
+from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.tree.tree import Tree
 
 
 def twig() -> Tree:

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.growth import builtin
-from tree_sway_ros.core.leaves.foliage import (
+from tree_sway.core.growth import builtin
+from tree_sway.core.leaves.foliage import (
     foliage_of,
     joined_clusters,
     leaf_clusters,
@@ -19,11 +19,11 @@ from tree_sway_ros.core.leaves.foliage import (
     MAX_LEAF_AREA_INDEX,
     no_clusters,
 )
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.core.tree.leaf_traits import LeafTraits
-from tree_sway_ros.core.tree.species import leaf_traits, species_keys
-from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.tree.leaf_traits import LeafTraits
+from tree_sway.core.tree.species import leaf_traits, species_keys
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError
 
 every_tree = pytest.mark.parametrize('name', builtin.BUILTIN_TREES)
 builtin_tree = cache(builtin.builtin_tree)

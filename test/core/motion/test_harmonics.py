@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.special import eval_legendre
 
-from tree_sway_ros.core.motion.harmonics import COUNT
-from tree_sway_ros.core.motion.wind_basis_table import harmonics_at
+from tree_sway.core.motion.harmonics import COUNT
+from tree_sway.core.motion.wind_basis_table import harmonics_at
 
 
 def sphere():

@@ -5,8 +5,8 @@
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.kernel import fused
-from tree_sway_ros.core.motion.lanes import (
+from tree_sway.core.kernel import fused
+from tree_sway.core.motion.lanes import (
     add_shapes,
     put_four,
     settle,

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from tree_sway_ros.core.branch.model import branch_models
-from tree_sway_ros.core.reduction.matrices import reduce_tree
-from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.species import species_named
+from tree_sway.core.branch.model import branch_models
+from tree_sway.core.reduction.matrices import reduce_tree
+from tree_sway.core.simulator.assembly import build_bank
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.tree.species import species_named
 
 WOOD = species_named('broadleaf')
 DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
@@ -20,7 +20,7 @@ DT = 1 / 120
 
 
 def modal(tree, **changes):
-    chosen = {'model': 'modes', 'n_modes': 4, 'gravity': 0.0, 'enrich': 'none'} | changes
+    chosen = {'model': 'full', 'gravity': 0.0, 'enrich': 'none'} | changes
     bank = build_bank(tree, WOOD, Settings(**chosen)).oscillators
     bank.set_step(DT)
     return bank
@@ -33,7 +33,6 @@ def stiffness_of(tree):
 
 def test_each_mode_decays_as_an_oscillator_of_its_own(fork):
     bank = modal(fork(), damping_ratio=0.05)
-    n = len(bank.stiffness)
     bank.modal[0] = 1e-7
     for _ in range(240):
         bank.advance(0.0, 0.0, 0.0, DRAG)
@@ -41,18 +40,16 @@ def test_each_mode_decays_as_an_oscillator_of_its_own(fork):
     wd = w * np.sqrt(1 - 0.05**2)
     exact = np.exp(-0.05 * w * t) * (np.cos(wd * t) + 0.05 * w / wd * np.sin(wd * t))
     assert bank.modal[0] / 1e-7 == pytest.approx(exact, abs=1e-3)
-    assert n == 4
 
 
-@pytest.mark.parametrize(('n', 'within'), [(2, 0.15), (4, 0.1), (7, 0.05), (8, 1e-6)])
-def test_steady_wind_gives_the_static_answer_whatever_the_number_of_modes(fork, n, within):
+def test_steady_wind_gives_the_static_answer(fork):
     tree = fork()
-    bank = modal(tree, n_modes=n, damping_ratio=0.7)
+    bank = modal(tree, damping_ratio=0.7)
     for _ in range(3000):
         bank.advance(1.0, 0.5, 0.2, DRAG)
     x, moment = bank.rotations().copy(), bank.state[0].copy()
     truth = spsolve(stiffness_of(tree), moment)
-    assert np.abs(x - truth).max() < within * np.abs(truth).max()
+    assert np.abs(x - truth).max() < 1e-6 * np.abs(truth).max()
 
 
 def test_no_motion_without_load(fork):
@@ -63,7 +60,7 @@ def test_no_motion_without_load(fork):
 
 
 def test_moments_beyond_the_limit_are_held_and_counted(fork):
-    bank = modal(fork(), model='coupled')
+    bank = modal(fork(), model='full')
     assert bank.advance(5.0, 2.0, 0.0, DRAG) == 0
     assert sum(bank.advance(5.0, 2.0, 0.0, 1e12) for _ in range(300)) > 0
     assert np.isfinite(bank.rotations()).all()
@@ -72,7 +69,7 @@ def test_moments_beyond_the_limit_are_held_and_counted(fork):
 def test_compliance_is_the_answer_to_a_unit_of_force(fork):
     """What the bank says a force on a load centre does half a step on, tried on its modes."""
     tree = fork()
-    bank = modal(tree, model='coupled')
+    bank = modal(tree, model='full')
     branches, shapes = bank.branches, bank.shapes
     b = 3
     own = slice(branches['coordinate'][b], branches['coordinate'][b] + 2)
@@ -83,7 +80,7 @@ def test_compliance_is_the_answer_to_a_unit_of_force(fork):
         at = twist[:, :3] + np.cross(twist[:, 3:], branches['centre'][b])
         moment = np.zeros(len(shapes))
         moment[stem] = at @ way
-        moment[own] = branches['flow'][b, :2] @ way
+        moment[own] = branches['damping_mode'][b, :2] @ way
         force = shapes.T @ moment
         half = 0.5 * DT
         # A mode under a constant force from rest, by its own text-book answer.

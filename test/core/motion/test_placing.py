@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.branch.shapes import across
-from tree_sway_ros.core.motion.placing import place
-from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.core.tree.species import species_named
+from tree_sway.core.branch.shapes import across
+from tree_sway.core.motion.placing import place
+from tree_sway.core.simulator.assembly import build_bank
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.tree.species import species_named
 
 pytestmark = pytest.mark.compiled
 
@@ -25,7 +25,7 @@ seeds = st.integers(0, 10**6)
 class Puppet:
     """A tree that is placed at key rotations given by hand."""
 
-    def __init__(self, tree, model='coupled', enrich='none'):
+    def __init__(self, tree, model='full', enrich='none'):
         chosen = Settings(model=model, enrich=enrich, gravity=0.0, twig_tolerance=-1.0)
         self.tree = tree
         self.bank = build_bank(tree, species_named('broadleaf'), chosen)
@@ -81,7 +81,7 @@ def gappy_doll(gappy):
 
 
 @pytest.mark.parametrize('seed', range(2))
-@pytest.mark.parametrize('model', ['branch', 'subtree', 'coupled'])
+@pytest.mark.parametrize('model', ['branch', 'full'])
 def test_at_rest_the_poses_are_the_input(random_tree, model, seed):
     tree = tree_from_segments(*random_tree(seed, 25)[:3])
     doll = Puppet(tree, model)

@@ -6,19 +6,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tree_sway_lab.validation.crooked_trees import crooked_tree
 
-from tree_sway_ros.core.motion.fill_records import load_records
-from tree_sway_ros.core.motion.tree_passes import (
-    bent_loads,
-    generalised_loads,
-    outward_pass,
-    wind_forces,
-)
-from tree_sway_ros.core.rotation import turned
-from tree_sway_ros.core.simulator.assembly import build_bank, CalibratedTree
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.species import species_named
-from tree_sway_ros.study.validation.crooked_trees import crooked_tree
+from tree_sway.core.motion.fill_records import load_records
+from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, wind_forces
+from tree_sway.core.rotation import turned
+from tree_sway.core.simulator.assembly import build_bank, CalibratedTree
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.tree.species import species_named
 
 pytestmark = pytest.mark.compiled
 
@@ -29,59 +24,34 @@ class Loaded:
     """A tree with its records, forces and rates at hand."""
 
     def __init__(self, tree, enrich='none'):
-        chosen = Settings(model='coupled', enrich=enrich, gravity=0.0)
+        chosen = Settings(model='full', enrich=enrich, gravity=0.0)
         bank = build_bank(tree, species_named('broadleaf'), chosen)
         bank.oscillators.set_step(1 / 60)
         self.tree, self.branches, self.work = tree, bank.branches, bank.oscillators.work
         self.loads = load_records(self.branches)
         self.n = len(bank.oscillators.rotations())
 
-    def handed(self, force):
-        """Moments on the key rotations, and pulls, of forces at the load centres, at rest."""
-        self.work['rotation'] = 0.0
-        self.work['force'] = force
-        self.loads['turned_force'][0, :, : len(force)] = np.transpose(force)
-        moment, pull = np.zeros(self.n), np.zeros(len(self.branches))
-        generalised_loads(self.branches, self.work, self.loads, True, moment, pull)
-        return moment, pull
-
     def blow(self, wind):
         """Find the forces of a wind on branches at rest, whose bases may move."""
-        wind_forces(self.branches, self.work, self.loads, True, *wind, DRAG)
+        n = len(self.branches)
+        self.loads['velocity'][0, :, :n] = self.work['velocity'].T
+        self.loads['base'][0, :, :n] = self.work['rotation'].T
+        wind_forces(self.branches, self.work, self.loads, *wind, DRAG)
 
     def velocity_of_centres(self, v):
         outward_pass(self.branches, self.work, np.zeros(self.n), v)
         out = []
         for branch, work in zip(self.branches, self.work, strict=True):
             base = work['velocity']
-            at = base[:3] + branch['couple'].T @ base[3:]
+            at = base[:3] + branch['coupling'].T @ base[3:]
             own = slice(branch['coordinate'], branch['coordinate'] + branch['n_coordinates'])
-            out.append(at + v[own] @ branch['push'][: branch['n_coordinates']])
+            out.append(at + v[own] @ branch['load_mode'][: branch['n_coordinates']])
         return np.array(out)
 
 
 @pytest.fixture(scope='module', params=['none', 'all'])
 def loaded(fork, request):
     return Loaded(fork(), request.param)
-
-
-@pytest.mark.parametrize('seed', range(3))
-def test_moments_do_the_work_of_the_forces(loaded, seed):
-    rng = np.random.default_rng(seed)
-    force, v = rng.normal(size=(4, 3)), rng.normal(size=loaded.n)
-    power = (force * loaded.velocity_of_centres(v)).sum()
-    moment, _ = loaded.handed(force)
-    assert moment @ v == pytest.approx(power, rel=1e-10)
-
-
-def test_the_stem_feels_all_force_and_moment(loaded):
-    force = np.random.default_rng(1).normal(size=(4, 3))
-    loaded.handed(force)
-    moment = np.einsum('bij,bj->bi', loaded.branches['couple'], force)
-    total = np.concatenate([force.sum(axis=0), moment.sum(axis=0)])
-    assert loaded.work['wrench'][0] == pytest.approx(total, abs=1e-12)
-    one = np.concatenate([force[2], moment[2]])
-    assert loaded.work['wrench'][2] == pytest.approx(one, abs=1e-12)
 
 
 def test_a_child_takes_over_the_turn_of_its_parent(loaded):
@@ -95,28 +65,6 @@ def test_a_child_takes_over_the_turn_of_its_parent(loaded):
     # The twig on a stiff limb goes along as one body.
     assert loaded.work['velocity'][2] == pytest.approx(loaded.work['velocity'][1])
     assert not loaded.work['rotation'][0].any()
-
-
-def test_pull_is_along_the_chord_times_how_far_up_it_acts(stem):
-    tree = stem(length=2.0, base=0.02, cuts=4)
-    upright = Loaded(tree)
-    moment, pull = upright.handed(np.array([[0.0, 0.0, 3.0]]))
-    assert moment == pytest.approx([0.0, 0.0], abs=1e-12)
-    assert pull[0] == pytest.approx(3.0 * 0.8)
-
-
-def test_what_is_carried_pulls_at_its_own_height(sketch):
-    drawn = sketch()
-    drawn.add(None, 0, (0, 0, 1), 1.0, 0.02, 0.02, 4)
-    for way, length in (((1, 0, 0), 0.4), ((0, 1, 1), 1.0), ((-1, 0, 0), 0.4), ((0, -1, 1), 1.0)):
-        drawn.add(0, 4, way, length, 0.01, 0.01, 2)
-    tree = Loaded(drawn.tree())
-    turn = np.linalg.norm(tree.branches['twist'][1, :2, 3:], axis=1).mean()
-    # A level child swings with the tip; one that rises by h further by its parent's slope there
-    # times h.
-    assert tree.branches['axial_lever'][1] == pytest.approx(1.0, rel=1e-9)
-    rise = tree.branches['centre'][2, 2] - 1.0
-    assert tree.branches['axial_lever'][2] == pytest.approx(1.0 + turn * rise, rel=1e-9)
 
 
 def test_still_branches_feel_the_wind_of_the_books(loaded):
@@ -153,7 +101,7 @@ def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
     tree = crooked_tree(4)
     layer = CalibratedTree(tree, species_named('oak'), Settings(in_leaf=False)).coupled
     for wind in np.array([[1.0, 0.0, 0.0], [0.6, -0.8, 0.0]]):
-        true, fitted, centred = np.zeros((3, tree.n_branches, 3))
+        true, fitted, centred = np.zeros((3, len(layer.branches), 3))
         for b, (model, record) in enumerate(zip(layer.models, layer.branches, strict=True)):
             tangent = model.beam.tangent
             across = wind - (tangent @ wind)[:, None] * tangent
@@ -163,7 +111,7 @@ def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
             projector = record['projector'][[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
             drag = np.sqrt(wind @ projector @ wind) * (projector @ wind)
             drag *= record['area'] * record['speed'] ** 2
-            fitted[b] = record['couple'] @ drag
+            fitted[b] = record['coupling'] @ drag
             centred[b] = np.cross(record['centre'], force.sum(axis=(0, 1)))
         error = np.linalg.norm(fitted - true) / np.linalg.norm(true)
         assert error < 0.01
@@ -181,7 +129,7 @@ class _Bent:
         self.branches, self.work, self.loads = loaded.branches, loaded.work, loaded.loads
         n = len(force)
         base = loaded.work['rotation']
-        turn = np.einsum('bc,bck->bk', x.reshape(-1, 2), loaded.branches['turn'][:, :2])
+        turn = np.einsum('bc,bck->bk', x.reshape(-1, 2), loaded.branches['load_rotation'][:, :2])
         into = self.loads[0]
         into['base'][:, :n], into['turned'][:, :n] = base.T, (base + turn).T
         into['own_force'][:, :n] = force.T
@@ -196,11 +144,12 @@ def _turned(rotation, vector):
     return np.array(turned.py_func(*rotation, *vector))
 
 
-def test_loads_at_rest_are_those_of_rest_geometry(fork):
-    force = np.random.default_rng(2).normal(size=(4, 3))
-    still = Loaded(fork())
-    expected, _ = still.handed(force)
-    assert _Bent(fork(), np.zeros(still.n), force).moment == pytest.approx(expected, abs=1e-12)
+@pytest.mark.parametrize('seed', range(3))
+def test_moments_at_rest_do_the_work_of_the_forces(fork, seed):
+    rng, still = np.random.default_rng(seed), Loaded(fork())
+    force, v = rng.normal(size=(4, 3)), rng.normal(size=still.n)
+    power = (force * still.velocity_of_centres(v)).sum()
+    assert _Bent(fork(), np.zeros(still.n), force).moment @ v == pytest.approx(power, rel=1e-10)
 
 
 def test_a_stem_feels_the_moment_of_a_limb_where_it_now_stands(sketch):

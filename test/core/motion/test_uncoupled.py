@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tree_sway_ros.core.oscillators.two_axis import LOAD_MAX
-from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.species import species_named
+from tree_sway.core.oscillators.two_axis import LOAD_MAX
+from tree_sway.core.simulator.assembly import build_bank
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.tree.species import species_named
 
 WOOD = species_named('broadleaf')
 DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
@@ -29,8 +29,11 @@ def test_a_planar_sway_is_the_papers_equation(stem):
     bank = oscillators(stem(length=1.0, base=0.003, cuts=4), dt=1 / 480, damping_ratio=0.1)
     branch = bank.branches[0]
     inertia, damping, stiffness = bank.inertia[0], bank.damping[0], bank.stiffness[0]
-    push = np.linalg.norm(branch['push'][0])
-    flow, turn = np.linalg.norm(branch['flow'][0]), np.linalg.norm(branch['turn'][0])
+    push = np.linalg.norm(branch['load_mode'][0])
+    flow, turn = (
+        np.linalg.norm(branch['damping_mode'][0]),
+        np.linalg.norm(branch['load_rotation'][0]),
+    )
 
     def wind(t):
         return 4.0 + 1.5 * np.sin(5.0 * t)
@@ -73,18 +76,8 @@ def test_still_air_takes_energy_and_never_gives(stem, dt):
     assert np.diff(energy).max() < 0.02 * energy[0]
 
 
-def test_what_is_carried_loads_the_stem_only_if_it_carries(fork):
-    for model, carries in (('branch', False), ('subtree', True)):
-        bank = oscillators(fork(), model=model)
-        bank.advance(5.0, 0.0, 0.0, DRAG)
-        every = bank.moment.reshape(-1, 2)[0].copy()
-        own = bank.work['force'][0] @ bank.branches['push'][0, :2].T
-        assert bank.carries == carries
-        assert np.allclose(every, own) != carries
-
-
 def test_a_load_beyond_what_is_followed_is_held_and_counted(fork):
-    bank = oscillators(fork(), model='subtree')
+    bank = oscillators(fork(), model='branch')
     assert bank.advance(5.0, 0.0, 0.0, DRAG) == 0
     # However heavy the air, at first a branch does no more than go along with it.
     assert bank.advance(5.0, 0.0, 0.0, 1e12) == 0
@@ -98,7 +91,7 @@ def test_a_load_beyond_what_is_followed_is_held_and_counted(fork):
 
 
 def test_reset_forgets_everything(fork):
-    bank, fresh = (oscillators(fork(), model='subtree') for _ in range(2))
+    bank, fresh = (oscillators(fork(), model='branch') for _ in range(2))
     for k in range(20):
         bank.advance(9.0, 1.0 * k, 0.0, DRAG)
     bank.reset()

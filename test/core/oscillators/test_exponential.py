@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import pytest
 
-from tree_sway_ros.core.oscillators.exponential import (
+from tree_sway.core.oscillators.exponential import (
     exponential_differences,
     phi1,
     phi2,

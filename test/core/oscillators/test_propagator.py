@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from tree_sway_ros.core.oscillators.propagator import fill_propagator, propagator
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.oscillators.propagator import fill_propagator, propagator
+from tree_sway.errors import ParameterError
 
 mpmath = pytest.importorskip('mpmath', reason='needs mpmath, an oracle of many digits')
 RATIOS = (0, 1e-8, 1e-3, 0.02, 0.05, 0.5, 0.999, 1, 1.0000001, 1.001, 1.05, 1.2, 2, 5, 50, 1000)

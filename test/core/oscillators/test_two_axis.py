@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from tree_sway_lab.methods.branch_bank import guards, step_bank
 
-from tree_sway_ros.core.oscillators import two_axis
-from tree_sway_ros.core.oscillators.propagator import propagator
-from tree_sway_ros.study.methods.branch_bank import guards, step_bank
+from tree_sway.core.oscillators import two_axis
+from tree_sway.core.oscillators.propagator import propagator
 
 angle = st.floats(-1.6, 1.6)
 rate = st.floats(-5, 5)

@@ -7,10 +7,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.branch.model import branch_models
-from tree_sway_ros.core.reduction.carried_inertia import carried_inertia
-from tree_sway_ros.core.reduction.matrices import reduce_tree
-from tree_sway_ros.core.reduction.modes import natural_modes
+from tree_sway.core.branch.model import branch_models
+from tree_sway.core.reduction.carried_inertia import carried_inertia
+from tree_sway.core.reduction.matrices import reduce_tree
+from tree_sway.core.reduction.modes import natural_modes
 
 
 def reduced(tree):

@@ -6,11 +6,12 @@ from __future__ import annotations
 
 import pytest
 
-from tree_sway_ros.core.fidelity.adaptive import AdaptiveSimulator
-from tree_sway_ros.core.scene.demand import set_demand, set_pace
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.species import species_named
+from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway.core.scene.demand import set_cost_scale, set_demand
+from tree_sway.core.scene.run import Run
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.species import species_named
 
 OAK = species_named('oak')
 
@@ -36,8 +37,32 @@ def test_a_camera_turns_pixels_into_metres(pair):
     assert pair[0].budget == 0.0
 
 
-def test_pace_makes_foreseen_costs_real(pair):
-    set_pace(pair, 1234.0)
-    set_pace(pair, 1234.0)
+def test_the_cost_scale_is_that_of_the_trees_that_choose_alone(pair):
+    pinned = SwaySimulator(pair[0].tree, OAK)
+    for _ in range(2):
+        set_cost_scale([*pair, pinned], 1234.0)
     assert sum(each.frame_cost for each in pair) == pytest.approx(1234.0)
-    assert pair[0].pace == pair[1].pace
+    assert pair[0].cost_scale == pair[1].cost_scale
+
+
+def test_warming_up_times_the_trees_that_choose_alone(pair):
+    reads, pinned = [], SwaySimulator(pair[0].tree, OAK)
+
+    class Both:
+        simulators = (*pair, pinned)
+
+        def step(self, wind, dt):
+            reads.append('all')
+
+        def place(self):
+            return None
+
+        def reset(self):
+            return None
+
+    def timer():
+        reads.append('timer')
+        return 1e-3 * len(reads)
+
+    assert Run(Both(), timer=timer).warm_up() == pytest.approx(1e3)
+    assert reads[:4] == ['all', 'timer', 'timer', 'all']

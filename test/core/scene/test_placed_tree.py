@@ -4,14 +4,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from tree_sway_lab.example_trees import branch_order
 
-from tree_sway_ros.core.scene.placed_tree import joined, PlacedTree
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.wind.height_profile import WindProfile
-from tree_sway_ros.errors import ParameterError, TreeError
-from tree_sway_ros.study.example_trees import branch_order
+from tree_sway.core.scene.placed_tree import joined, PlacedTree
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.wind.height_profile import WindProfile
+from tree_sway.errors import ParameterError, TreeError
 
 
 def test_a_tree_is_turned_about_its_root_and_moved(fork):
@@ -30,8 +32,8 @@ def test_the_wind_profile_counts_from_the_ground_it_stands_on(fork):
     forest = Settings(profile=WindProfile('power', ground=0.5))
     tree = PlacedTree('hill', fork(), z=20.0)
     assert tree.settings_where_it_stands(forest).profile == WindProfile('power', ground=20.5)
-    own = PlacedTree('own', fork(), settings=Settings(model='branch'))
-    assert own.settings_where_it_stands(forest) == Settings(model='branch')
+    own = PlacedTree('own', fork(), model='branch')
+    assert own.settings_where_it_stands(forest) == replace(forest, model='branch')
 
 
 def test_joined_trees_keep_their_order_and_names(fork, stem):

@@ -10,20 +10,19 @@ import math
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from tree_sway_lab.frame.frame import frame_model
+from tree_sway_lab.segments.articulated import ArticulatedTree
 
-from tree_sway_ros.core.growth.grow import grow
-from tree_sway_ros.core.reference.articulated import ArticulatedTree
-from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.segments import SegmentsSimulator
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.tree.species import species_named, typical_root_stiffness
-from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.study.frame.frame import frame_model
+from tree_sway.core.growth.grow import grow
+from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.tree.species import species_named, typical_root_stiffness
+from tree_sway.errors import ParameterError
 
 OAK = species_named('oak')
 LENGTH, WIDTH = 5.0, 0.1
 BENDING = OAK.modulus * math.pi / 64.0 * WIDTH**4
-USUAL = Settings(model='modes', n_modes=2, mode_choice='slowest', gravity=0.0, in_leaf=False)
+USUAL = Settings(model=2, gravity=0.0, in_leaf=False)
 
 
 def first_frequency(ratio: float) -> float:
@@ -48,8 +47,8 @@ def test_a_pole_on_a_spring_sways_as_the_closed_form(ratio, stem):
     known = first_frequency(ratio)
     frame = frame_model(pole, OAK.modulus, OAK.density, root_stiffness=spring)
     assert frame.frequencies(1)[0] == pytest.approx(known, rel=1e-3)
-    bank = build_bank(pole, OAK, replace(USUAL, root_stiffness=spring))
-    assert bank.frequencies[:2] == pytest.approx(known, rel=0.01)
+    found = CalibratedTree(pole, OAK, replace(USUAL, root_stiffness=spring))
+    assert found.natural_frequencies(2) == pytest.approx(known, rel=0.01)
     pieces = ArticulatedTree(pole, OAK.modulus, OAK.density, subdivisions=4, root_stiffness=spring)
     assert pieces.linear_modes(1)[0][0] == pytest.approx(known, rel=0.01)
 
@@ -58,8 +57,9 @@ def test_a_tree_of_its_own_roots_stands_like_that_in_every_model():
     tree = grow('walnut', 12.0, rng=np.random.default_rng(0))
     mass = float(OAK.density * tree.volume[tree.segments_of(0)].sum())
     rooted = replace(OAK, root_stiffness=typical_root_stiffness(mass))
-    usual = replace(USUAL, n_modes=12)
-    rigid, soft = (build_bank(tree, wood, usual).frequencies[0] for wood in (OAK, rooted))
+    rigid, soft = (
+        CalibratedTree(tree, wood, USUAL).natural_frequencies(1)[0] for wood in (OAK, rooted)
+    )
     # Roots of trees take a few per cent of the frequency (Neild & Wood 1999).
     assert 0.90 < soft / rigid < 0.99
     frame = [
@@ -70,15 +70,10 @@ def test_a_tree_of_its_own_roots_stands_like_that_in_every_model():
         for wood in (OAK, rooted)
     ]  # fmt: skip
     assert soft / rigid == pytest.approx(frame[1] / frame[0], rel=0.005)
-    told = build_bank(tree, rooted, replace(usual, root_stiffness=math.inf)).frequencies[0]
+    told = CalibratedTree(
+        tree, rooted, replace(USUAL, root_stiffness=math.inf)
+    ).natural_frequencies(1)[0]
     assert told == pytest.approx(rigid)
-
-
-def test_segments_stand_on_the_same_spring(stem):
-    pole = stem(length=LENGTH, base=WIDTH, cuts=16)
-    told = Settings(model='segments', root_stiffness=5.0 * BENDING / LENGTH, gravity=0.0)
-    by_model = SegmentsSimulator(pole, OAK, told).frequencies(1)[0]
-    assert by_model == pytest.approx(first_frequency(5.0), rel=0.03)
 
 
 @pytest.mark.parametrize('stiffness', [0.0, -1.0, math.nan])

@@ -10,17 +10,17 @@ import sys
 
 import pytest
 
-from tree_sway_ros.core.kernel import WHY_PLAIN
-from tree_sway_ros.core.reduction.one_thread import _switches, one_thread
+from tree_sway.core.kernel import WHY_PLAIN
+from tree_sway.core.reduction.one_thread import _switches, one_thread
 
 #: Prints a digest of the poses of each model; the tree has enough branches for threads to matter.
 PROGRAM = """
 import hashlib
 import numpy as np
-from tree_sway_ros.core.growth.builtin import builtin_tree
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
+from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.core.simulator.simulator import SwaySimulator
 tree = builtin_tree("benjamina")
-for model in ("modes", "coupled"):
+for model in (20, "full"):
     sim, digest = SwaySimulator(tree, model=model), hashlib.blake2b(digest_size=8)
     for wind in np.random.default_rng(1).normal(4.0, 2.0, (100, 3)):
         sim.step(wind, 1.0 / 60.0)

@@ -6,22 +6,22 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
 import pytest
 
-from tree_sway_ros.core.simulator.settings import FIDELITIES, MODELS, Settings
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.simulator.settings import MODELS, Settings, USUAL
+from tree_sway.errors import ParameterError
 
 
 def test_the_defaults_stand():
     chosen = Settings()
-    assert chosen.model == 'modes'
-    assert chosen.model in MODELS
+    assert chosen.model == USUAL
     assert chosen.damping_ratio is None
     with pytest.raises(dataclasses.FrozenInstanceError):
-        chosen.model = 'frozen'
+        chosen.model = 0
 
 
-@pytest.mark.parametrize('model', FIDELITIES)
+@pytest.mark.parametrize('model', [*MODELS, 0, 3, 60])
 def test_every_model_can_be_asked_for(model):
     assert Settings(model=model).model == model
 
@@ -29,17 +29,20 @@ def test_every_model_can_be_asked_for(model):
 @pytest.mark.parametrize(
     ('given', 'message'),
     [
-        ({'model': 'fast'}, "unknown model 'fast'; use one of: auto, frozen, branch"),
+        ({'model': 'fast'}, "unknown model 'fast'; use one of: auto, branch, full, or a number"),
         ({'stiffness': 'felt'}, "unknown stiffness 'felt'; use one of: beam, volume_rule"),
         ({'enrich': 'some'}, "unknown enrich 'some'; use one of: none"),
         (
-            {'stiffness': 'volume_rule', 'model': 'modes'},
-            "stiffness: the volume rule on model 'modes'",
+            {'stiffness': 'volume_rule', 'model': 12},
+            "stiffness: the volume rule on model '12'",
         ),
-        ({'stiffness': 'volume_rule', 'model': 'coupled'}, "use it on 'branch' or 'subtree'"),
+        ({'stiffness': 'volume_rule', 'model': 'full'}, "use it on model 'branch'"),
         ({'damping_ratio': -0.1}, 'damping ratio -0.1; give 0 or more'),
         ({'damping_ratio': float('nan')}, 'damping ratio nan'),
-        ({'n_modes': 0}, 'n_modes: 0 modes; ask for 1 or more'),
+        ({'model': -1}, "unknown model '-1'"),
+        ({'model': 2.5}, "unknown model '2.5'"),
+        ({'model': True}, "unknown model 'True'"),
+        ({'model': 'ful'}, "did you mean 'full'"),
         ({'volume_stiffness': 0.0}, 'volume_stiffness 0.0; give a finite number above 0'),
         ({'volume_damping': float('inf')}, 'volume_damping inf'),
         ({'max_wind': float('nan')}, 'max_wind: nan is out of range'),
@@ -50,3 +53,16 @@ def test_every_model_can_be_asked_for(model):
 def test_what_is_out_of_range_is_refused(given, message):
     with pytest.raises(ParameterError, match=message):
         Settings(**given)
+
+
+def test_a_number_may_be_given_as_text():
+    assert Settings(model='20') == Settings(model=20)
+
+
+def test_settings_are_equal_if_their_arrays_are():
+    one, same, other = (Settings(leaf_mass=np.full(3, x)) for x in (1.0, 1.0, 2.0))
+    assert one == same
+    assert hash(one) == hash(same)
+    assert one != other
+    assert one != Settings()
+    assert one != 'settings'

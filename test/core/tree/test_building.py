@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.errors import TreeError
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.errors import TreeError
 
 seeds = st.integers(0, 10**6)
 sizes = st.integers(1, 40)
@@ -56,8 +56,8 @@ def test_the_thickest_child_goes_on_with_the_branch(random_tree, seed, n):
     for segment in range(n):
         children = np.flatnonzero(parent == segment)
         if len(children):
-            heir = children[np.argmax(diameter[children])]
-            assert branch[heir] == branch[segment]
+            continuation = children[np.argmax(diameter[children])]
+            assert branch[continuation] == branch[segment]
             assert len(set(branch[children])) == len(children)
 
 

@@ -9,18 +9,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import tree_sway_ros as sway
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.grown_tree import tree_and_species
-from tree_sway_ros.errors import ParameterError, SpeciesError
+import tree_sway as sway
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.grown_tree import tree_and_species
+from tree_sway.errors import ParameterError, SpeciesError
 
 WIND = np.full((3, 3), 4.0)
 DOORS = {
     'make_simulator': lambda tree, **told: sway.make_simulator(tree, model='branch', **told),
     'SwaySimulator': lambda tree, **told: SwaySimulator(tree, model='branch', **told),
     'simulate': lambda tree, **told: sway.simulate(tree, WIND, model='branch', **told),
-    'Forest': lambda tree, **told: sway.Forest(
-        [sway.PlacedTree('one', tree)], model='branch', **told
+    'Scene': lambda tree, **told: sway.Scene([sway.PlacedTree('one', tree)]).simulator(
+        model='branch', **told
     ),
 }
 
@@ -45,9 +45,9 @@ def test_an_opened_tree_may_be_given_as_it_is(opened, door):
         'make_simulator': lambda: sway.make_simulator(opened.tree, opened.species, model='branch'),
         'SwaySimulator': lambda: SwaySimulator(opened.tree, opened.species, model='branch'),
         'simulate': lambda: sway.simulate(opened, WIND, model='branch'),
-        'Forest': lambda: sway.Forest(
-            [sway.PlacedTree('one', opened.tree, species=opened.species)], model='branch'
-        ),
+        'Scene': lambda: sway.Scene(
+            [sway.PlacedTree('one', opened.tree, species=opened.species)]
+        ).simulator(model='branch'),
     }[door]()
     if door == 'simulate':
         np.testing.assert_array_equal(made.tips, apart.tips)
@@ -69,8 +69,8 @@ def test_what_is_no_tree_is_refused_everywhere(door, wrong):
 def test_what_are_no_settings_is_refused_everywhere(opened, door):
     with pytest.raises(ParameterError, match='settings: a Species, where Settings are asked for'):
         DOORS[door](opened, settings=opened.species)
-    with pytest.raises(ParameterError, match="unknown setting 'n_mode'; did you mean 'n_modes'"):
-        DOORS[door](opened, n_mode=3)
+    with pytest.raises(ParameterError, match="unknown setting 'gravit'; did you mean 'gravity'"):
+        DOORS[door](opened, gravit=0.0)
 
 
 def test_settings_in_the_place_of_the_species_are_told(opened):
@@ -83,13 +83,13 @@ def test_settings_in_the_place_of_the_species_are_told(opened):
 
 def test_a_species_in_the_place_of_its_key_is_told(opened):
     for door in (sway.species_named, lambda key: sway.grow(key, 5.0, rng=None)):
-        with pytest.raises(SpeciesError, match=r"a Species, where the key .*'oak'"):
+        with pytest.raises(SpeciesError, match=r"a Species, where the name .*'oak'"):
             door(opened.species)
 
 
 def test_a_forest_asks_for_placed_trees(opened):
     with pytest.raises(ParameterError, match=r'trees\[0\]: a TreeFile, where a PlacedTree is'):
-        sway.Forest([opened])
+        sway.Scene([opened])
 
 
 def test_an_opened_tree_is_calibrated_and_written(opened, tmp_path):

@@ -7,7 +7,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tree_sway_ros.core.tree.parents_first import parents_first
+from tree_sway.core.tree.parents_first import parents_first
 
 
 def test_generation_by_generation() -> None:

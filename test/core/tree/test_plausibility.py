@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway_ros.core.growth.grow import grow
-from tree_sway_ros.core.tree.plausibility import doubt_of_sway, doubts, refuse_nonsense
-from tree_sway_ros.core.tree.species import species_keys, species_named
-from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.errors import ParameterError, TreeError
+from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
+from tree_sway.core.growth.grow import grow
+from tree_sway.core.tree.plausibility import oddities, refuse_nonsense, sway_oddity
+from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError, TreeError
 
 OAK = species_named('oak')
 
@@ -39,7 +39,7 @@ def in_units(tree: Tree, length: float = 1.0, diameter: float = 1.0) -> Tree:
 def test_nothing_is_odd_about_the_trees_of_the_package(name: str) -> None:
     tree = builtin_tree(name)
     refuse_nonsense(tree, species_named(tree.species))
-    assert doubts(tree, species_named(tree.species)) == ()
+    assert oddities(tree, species_named(tree.species)) == ()
 
 
 @pytest.mark.parametrize('key', species_keys())
@@ -48,7 +48,7 @@ def test_nothing_is_odd_about_grown_trees(key: str) -> None:
     for height in (0.4, 3.0) if wood.habit == 'pot' else (1.5, 12.0, 45.0):
         tree = grow(key, height, rng=np.random.default_rng(1))
         refuse_nonsense(tree, wood)
-        assert doubts(tree, wood) == ()
+        assert oddities(tree, wood) == ()
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_lengths_in_another_unit_are_refused(length: float, diameter: float, cur
 
 
 @pytest.mark.parametrize(
-    ('change', 'doubt'),
+    ('change', 'oddity'),
     [
         (
             {'modulus': 1e9},
@@ -93,36 +93,40 @@ def test_lengths_in_another_unit_are_refused(length: float, diameter: float, cur
         ({'density': 300.0}, 'a density of 300 kg/m^3, where green wood has 400 to 1300'),
     ],
 )
-def test_odd_wood_is_told(change: dict[str, float], doubt: str) -> None:
+def test_odd_wood_is_told(change: dict[str, float], oddity: str) -> None:
     wood = replace(OAK, **change)  # type: ignore[arg-type]
     refuse_nonsense(oak(), wood)
-    (told,) = doubts(oak(), wood)
-    assert told.startswith(doubt)
+    (told,) = oddities(oak(), wood)
+    assert told.startswith(oddity)
 
 
 def test_a_tree_whose_file_has_y_up_is_told_to_lie() -> None:
     lying = oak()
     lying = replace(lying, start=lying.start[:, [0, 2, 1]], end=lying.end[:, [0, 2, 1]])
     refuse_nonsense(lying, OAK)
-    (told,) = doubts(lying, OAK)
+    (told,) = oddities(lying, OAK)
     assert told.startswith('it leans ')
     assert told.endswith('add --option up=y')
 
 
 def test_odd_sizes_are_told() -> None:
-    assert 'thick' in doubts(in_units(oak(), diameter=8.0), OAK)[0]
-    assert 'thin' in doubts(in_units(oak(), diameter=0.1), OAK)[0]
-    assert doubts(in_units(oak(), 12.0, 12.0), OAK)[0].startswith('a height of 144 m')
-    small = doubts(in_units(oak(), 0.001, 0.001), OAK)
+    assert 'thick' in oddities(in_units(oak(), diameter=8.0), OAK)[0]
+    assert 'thin' in oddities(in_units(oak(), diameter=0.1), OAK)[0]
+    assert oddities(in_units(oak(), 12.0, 12.0), OAK)[0].startswith('a height of 144 m')
+    small = oddities(in_units(oak(), 0.001, 0.001), OAK)
     assert small[0].startswith('a height of 0.012 m')
 
 
 def test_a_sway_of_no_tree_of_its_size_is_told() -> None:
     tree = oak()
     usual = 0.0766 + 3.1219 * 100.0 * tree.base_diameter[0] / tree.height**2
-    assert doubt_of_sway(tree, 3.0 * usual) == doubt_of_sway(tree, usual / 3.0) == ''
+    spruce = species_named('spruce')
+    for frequency in (3.0 * usual, usual / 3.0):
+        assert sway_oddity(tree, spruce, frequency) == ''
     for frequency in (10.0 * usual, 0.1 * usual):
-        assert f'{frequency:.3g} Hz, where trees of its size' in doubt_of_sway(tree, frequency)
+        said = sway_oddity(tree, spruce, frequency)
+        assert f'{frequency:.3g} Hz, where conifers of its size' in said
+        assert sway_oddity(tree, OAK, frequency) == ''
 
 
 @given(length=st.floats(1e-4, 1e4), diameter=st.floats(1e-4, 1e4), modulus=st.floats(1e-2, 1e14))
@@ -133,7 +137,7 @@ def test_whatever_is_given_is_refused_or_told_in_sentences(
     wood = replace(OAK, modulus=modulus)
     try:
         refuse_nonsense(tree, wood)
-        told = doubts(tree, wood)
+        told = oddities(tree, wood)
     except (ParameterError, TreeError) as error:
         told = (error.cure,)
     assert all(len(each) > 20 for each in told)

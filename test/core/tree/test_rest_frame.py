@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.rotation import rotated
-from tree_sway_ros.core.tree.rest_frame import quaternions_from_x
+from tree_sway.core.rotation import rotated
+from tree_sway.core.tree.rest_frame import quaternions_from_x
 
 vectors = st.tuples(*[st.floats(-3.0, 3.0)] * 3)
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.similar_twigs import twig_sources
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.similar_twigs import twig_sources
 
 
 def brush(sketch, twigs):
@@ -26,7 +26,7 @@ ALIKE = ((1.0, 0.0, 1.0), 0.2, 0.004)
 def test_of_many_alike_one_is_solved(sketch):
     tree = brush(sketch, [ALIKE] * 4)
     assert twig_sources(tree, 0.0).tolist() == [0, 1, 1, 1, 1]
-    sim = SwaySimulator(tree, model='subtree')
+    sim = SwaySimulator(tree, model='branch')
     assert (sim.n_solved, sim.n_copied) == (2, 3)
 
 
@@ -58,7 +58,7 @@ def test_only_twigs_of_one_parent_and_one_segment_that_carry_nothing_copy(sketch
     assert twig_sources(tree, 0.1).tolist() == list(range(tree.n_branches))
 
 
-@pytest.mark.parametrize('model', ['branch', 'subtree'])
+@pytest.mark.parametrize('model', ['branch'])
 def test_copies_move_as_their_source(sketch, model):
     thin, near = ((1.0, 0.0, 1.0), 0.2, 0.002), ((1.0, 0.02, 1.0), 0.203, 0.00205)
     sim = SwaySimulator(brush(sketch, [thin, thin, near]), model=model)

@@ -8,8 +8,9 @@ import dataclasses
 
 import pytest
 
-from tree_sway_ros.core.tree.species import species_keys, species_named
-from tree_sway_ros.errors import SpeciesError
+from tree_sway.core.tree.species import species_keys, species_like, species_named
+from tree_sway.core.tree.species_table import NAMES
+from tree_sway.errors import SpeciesError
 
 
 @pytest.mark.parametrize('key', species_keys())
@@ -35,14 +36,14 @@ def test_drag_at_ten_metres_a_second_is_that_of_a_crown():
 
 def test_an_unknown_species_is_refused_with_those_that_exist():
     with pytest.raises(
-        SpeciesError, match=r"unknown species 'mahogany'; use one of: ash, .*walnut"
+        SpeciesError, match=r"unknown species 'xyzzy'; use one of: alder, .*walnut"
     ):
-        species_named('mahogany')
+        species_named('xyzzy')
 
 
 def test_guesses_are_marked():
     guesses = {key for key in species_keys() if species_named(key).is_estimate}
-    assert guesses == {'benjamina', 'goldcrest', 'broadleaf'}
+    assert guesses == {'benjamina', 'goldcrest', 'broadleaf', 'conifer'}
 
 
 def test_a_species_cannot_be_changed_by_accident():
@@ -59,3 +60,42 @@ def test_without_leaves_a_tree_does_not_streamline():
 def test_every_crown_in_leaf_streamlines():
     for key in species_keys():
         assert species_named(key).drag_law(in_leaf=True)[1] > 0.3
+
+
+@pytest.mark.parametrize(
+    ('name', 'key'),
+    [
+        ('Quercus robur L.', 'oak'),
+        ('ACER', 'maple'),
+        ('Acer pseudoplatanus', 'sycamore'),
+        ("Prunus serrulata 'Kanzan'", 'cherry'),
+        ('Douglas-fir', 'douglas_fir'),
+        ('SS', 'sitka'),
+        ('Salix sp.', 'willow'),
+        ('Populus x canadensis', 'poplar'),
+        ('Fichte', 'spruce'),
+    ],
+)
+def test_names_of_lists_are_known_whatever_their_case(name, key):
+    assert species_named(name).key == key
+
+
+@pytest.mark.parametrize(
+    ('name', 'key', 'guess'),
+    [
+        ('brich', 'broadleaf', "did you mean 'birch'?"),
+        ('Ulmus glabra', 'broadleaf', 'a broadleaf of no known species'),
+        ('western redcedar', 'conifer', 'a conifer of no known species'),
+    ],
+)
+def test_a_species_of_no_table_is_one_of_its_group_and_said(name, key, guess):
+    species, note = species_like(name)
+    assert species.key == key
+    assert name in note
+    assert guess in note
+
+
+def test_every_name_is_of_one_species():
+    names = [name for each in NAMES.values() for name in each.split(', ')]
+    assert len(names) == len(set(names))
+    assert set(NAMES) == set(species_keys())

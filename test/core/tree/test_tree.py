@@ -4,14 +4,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 import math
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tree_sway_lab.example_trees import branch_order
 
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.study.example_trees import branch_order
+from tree_sway.core.tree.building import tree_from_segments
 
 
 def test_figures_of_a_fork(fork):
@@ -66,3 +67,14 @@ def test_the_foot_of_a_segment_on_its_parent():
     )
     by_source = dict(zip(tree.source_index.tolist(), tree.place_on_parent.tolist(), strict=True))
     assert by_source == pytest.approx({0: 1.0, 1: 0.25, 2: 1.0, 3: 1.0})
+
+
+def test_the_arrays_that_a_tree_is_made_of_stay_free(fork):
+    tree = fork()
+    start = tree.start.copy()
+    made = replace(tree, start=start)
+    start[0] = 9.0
+    assert not np.shares_memory(made.start, start)
+    assert made.start[0, 0] == tree.start[0, 0]
+    with pytest.raises(ValueError, match='read-only'):
+        made.start[0] = 1.0

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.averaging import WindAverage
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.wind.averaging import WindAverage
+from tree_sway.errors import ParameterError
 
 FRAME = 1.0 / 60.0
 PERIOD = 0.05
@@ -68,22 +68,6 @@ def test_a_sensor_slower_than_the_timeout_is_known_from_its_second_sample():
     np.testing.assert_allclose(means[round(11.0 / FRAME) :, 0], 4.0, rtol=1e-12)
 
 
-def test_hold_is_the_mean_of_a_staircase():
-    average = WindAverage('hold')
-    average.add(0.0, (1.0, 0.0, 0.0))
-    average.add(0.05, (3.0, 0.0, 0.0))
-    np.testing.assert_allclose(average.mean(0.04, 0.08), (2.5, 0.0, 0.0))
-    np.testing.assert_allclose(average.mean(0.08, 0.09), (3.0, 0.0, 0.0))
-
-
-def test_linear_has_no_staircase_and_hold_has():
-    def roughness(interpolation):
-        _, means = run(WindAverage(interpolation), 5.0)
-        return np.abs(np.diff(means[60:], n=2, axis=0)).max()
-
-    assert roughness('linear') < 0.25 * roughness('hold')
-
-
 @pytest.mark.parametrize('latency', [0.003, 0.03, 0.2, 1.5])
 def test_samples_that_arrive_late_only_delay_the_curve(latency):
     average = WindAverage()
@@ -114,11 +98,10 @@ def test_jitter_of_stamps_makes_no_jumps():
     assert np.abs(np.diff(means[120:], axis=0)).max() < 0.2
 
 
-@pytest.mark.parametrize('interpolation', ['linear', 'hold'])
 @pytest.mark.parametrize('period', [0.01, 0.05, 1.0, 1.9])
-def test_the_mean_of_a_constant_is_the_constant(interpolation, period):
+def test_the_mean_of_a_constant_is_the_constant(period):
     constant = np.array([3.0, -2.0, 0.5])
-    average = WindAverage(interpolation)
+    average = WindAverage()
     _, means = run(average, 8.0, source=lambda t: constant, period=period)
     np.testing.assert_allclose(means, np.tile(constant, (len(means), 1)), rtol=1e-13)
 
@@ -128,10 +111,9 @@ def test_the_mean_of_a_constant_is_the_constant(interpolation, period):
     st.floats(-0.2, 1.0),
     st.floats(1e-3, 0.5),
     st.floats(1e-3, 6.0),
-    st.sampled_from(['linear', 'hold']),
 )
-def test_means_are_additive(samples, start, first, second, interpolation):
-    average = WindAverage(interpolation)
+def test_means_are_additive(samples, start, first, second):
+    average = WindAverage()
     time = 0.0
     for gap, wind in samples:
         time += gap
@@ -144,10 +126,9 @@ def test_means_are_additive(samples, start, first, second, interpolation):
 @given(
     st.lists(st.tuples(st.floats(0.01, 4.0), WIND), min_size=1, max_size=15),
     st.floats(0.1, 5.0),
-    st.sampled_from(['linear', 'hold']),
 )
-def test_mirrored_and_scaled_wind_gives_mirrored_and_scaled_means(samples, k, interpolation):
-    plain, mirrored = WindAverage(interpolation), WindAverage(interpolation)
+def test_mirrored_and_scaled_wind_gives_mirrored_and_scaled_means(samples, k):
+    plain, mirrored = WindAverage(), WindAverage()
     time = 0.0
     for gap, wind in samples:
         start, time = time, time + gap
@@ -160,10 +141,9 @@ def test_mirrored_and_scaled_wind_gives_mirrored_and_scaled_means(samples, k, in
 
 @given(
     st.lists(st.tuples(st.floats(0.0, 3.0), WIND, st.booleans()), max_size=30),
-    st.sampled_from(['linear', 'hold']),
 )
-def test_the_mean_stays_within_the_largest_sample(samples, interpolation):
-    average = WindAverage(interpolation)
+def test_the_mean_stays_within_the_largest_sample(samples):
+    average = WindAverage()
     time, largest = 0.0, 0.0
     for wait, wind, is_heard in samples:
         if is_heard and average.add(time + 0.5 * wait, wind):
@@ -184,12 +164,11 @@ STREAMS = st.lists(
 @given(
     STREAMS,
     st.floats(-40.0, 40.0),
-    st.sampled_from(['linear', 'hold']),
     st.floats(-3.0, 1.0),
 )
-def test_the_mean_stays_in_the_convex_hull_of_samples_and_calm(samples, low, interpolation, late):
+def test_the_mean_stays_in_the_convex_hull_of_samples_and_calm(samples, low, late):
     """In any direction no mean lies beyond the farthest sample, whatever was lost or late."""
-    average = WindAverage(interpolation)
+    average = WindAverage()
     direction = np.array([math.cos(low), math.sin(low), 0.3])
     time, farthest = 0.0, 0.0
     for wait, wind, is_heard in samples:
@@ -284,10 +263,6 @@ class TestRefusals:
         with pytest.raises(ParameterError, match=f'{next(iter(options))}: .* out of range'):
             WindAverage(**options)
 
-    def test_unknown_interpolation(self):
-        with pytest.raises(ParameterError, match=r"'cubic'.*linear, hold"):
-            WindAverage('cubic')
-
 
 def test_memory_is_bounded():
     average = WindAverage(capacity=64)
@@ -306,16 +281,15 @@ class TestDropouts:
         assert average.state(1.0) == 'none'
 
     @pytest.mark.parametrize('length', [0.1, 0.5, 1.0, 2.0])
-    @pytest.mark.parametrize('interpolation', ['linear', 'hold'])
-    def test_a_short_one_is_held_without_a_visible_step(self, length, interpolation):
-        average = WindAverage(interpolation)
+    def test_a_short_one_is_held_without_a_visible_step(self, length):
+        average = WindAverage()
         ends, means = run(
             average, 8.0, hears=lambda t: not 4.0 < t < 4.0 + length - 1e-9, source=smooth
         )
         gap = (ends > 4.0 + 3 * PERIOD) & (ends < 4.0 + length)
         np.testing.assert_allclose(means[gap], np.tile(smooth(4.0), (gap.sum(), 1)), atol=1e-6)
         lost = np.abs(smooth(4.0) - smooth(4.0 + length)).max()
-        usual = 4.1 * FRAME if interpolation == 'linear' else 4.1 * PERIOD
+        usual = 4.1 * FRAME
         limit = usual + lost * FRAME / min(length, 0.5)
         assert np.abs(np.diff(means[30:], axis=0)).max() < 1.1 * limit
 
@@ -350,9 +324,8 @@ class TestDropouts:
         assert average.state(16.1) == 'decaying'
 
     @pytest.mark.parametrize('length', [2.5, 5.0, 60.0])
-    @pytest.mark.parametrize('interpolation', ['linear', 'hold'])
-    def test_the_first_sample_after_a_long_one_is_blended(self, length, interpolation):
-        average = WindAverage(interpolation)
+    def test_the_first_sample_after_a_long_one_is_blended(self, length):
+        average = WindAverage()
         _, means = run(
             average,
             length + 4.0,

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.wind.convention import CALM_SPEED, velocity_of_bearing, WindConvention
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.wind.convention import CALM_SPEED, velocity_of_bearing, WindConvention
+from tree_sway.errors import ParameterError
 
 speeds = st.floats(-40.0, 40.0)
 angles = st.floats(-math.pi, math.pi)

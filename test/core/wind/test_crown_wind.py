@@ -7,14 +7,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.crown_wind import (
+from tree_sway.core.wind.crown_wind import (
     crown_delays,
     CrownWind,
     LONGEST_DELAY,
     N_DELAYS,
     shared_power,
 )
-from tree_sway_ros.errors import ParameterError
+from tree_sway.errors import ParameterError
 
 DT = 0.02
 

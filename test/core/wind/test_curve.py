@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.curve import WindCurve
+from tree_sway.core.wind.curve import WindCurve
 
 KNOTS = st.lists(
     st.tuples(st.floats(0.01, 1.0), *[st.floats(-40.0, 40.0)] * 3), min_size=1, max_size=12
@@ -13,8 +13,8 @@ KNOTS = st.lists(
 TIMES = st.floats(-1.0, 14.0)
 
 
-def curve_of(knots, is_stepped=False, capacity=64):
-    curve = WindCurve(is_stepped, capacity)
+def curve_of(knots, capacity=64):
+    curve = WindCurve(capacity)
     time = 0.0
     times, values = [], []
     for gap, *value in knots:
@@ -25,21 +25,18 @@ def curve_of(knots, is_stepped=False, capacity=64):
     return curve, np.array(times), np.array(values)
 
 
-def exact_mean(times, values, start, end, is_stepped):
-    """Mean by the trapezoidal (or left) rule on a grid with every knot: exact, another way."""
+def exact_mean(times, values, start, end):
+    """Mean by the trapezoidal rule on a grid with every knot: exact, another way."""
     grid = np.unique(np.concatenate([[start, end], times[(times > start) & (times < end)]]))
     width = np.diff(grid)[:, np.newaxis]
-    if is_stepped:
-        index = np.maximum(np.searchsorted(times, grid[:-1], side='right') - 1, 0)
-        return (width * values[index]).sum(axis=0) / (end - start)
     at = np.stack([np.interp(grid, times, column) for column in values.T], axis=1)
     return (0.5 * width * (at[1:] + at[:-1])).sum(axis=0) / (end - start)
 
 
-@given(KNOTS, TIMES, st.floats(1e-3, 8.0), st.booleans())
-def test_the_mean_is_exact(knots, start, width, is_stepped):
-    curve, times, values = curve_of(knots, is_stepped)
-    expected = exact_mean(times, values, start, start + width, is_stepped)
+@given(KNOTS, TIMES, st.floats(1e-3, 8.0))
+def test_the_mean_is_exact(knots, start, width):
+    curve, times, values = curve_of(knots)
+    expected = exact_mean(times, values, start, start + width)
     np.testing.assert_allclose(curve.mean(start, start + width), expected, atol=1e-9)
 
 
@@ -50,9 +47,9 @@ def test_values_between_knots(knots, time):
     np.testing.assert_allclose(curve.value(time), expected, atol=1e-11)
 
 
-@given(KNOTS, TIMES, st.floats(1e-2, 4.0), st.floats(1e-2, 4.0), st.booleans())
-def test_means_are_additive(knots, a, first, second, is_stepped):
-    curve, *_ = curve_of(knots, is_stepped)
+@given(KNOTS, TIMES, st.floats(1e-2, 4.0), st.floats(1e-2, 4.0))
+def test_means_are_additive(knots, a, first, second):
+    curve, *_ = curve_of(knots)
     b, c = a + first, a + first + second
     parts = first * np.array(curve.mean(a, b)) + second * np.array(curve.mean(b, c))
     np.testing.assert_allclose(np.array(curve.mean(a, c)) * (c - a), parts, atol=1e-9)
@@ -68,7 +65,7 @@ def test_a_cut_keeps_the_past_and_levels_the_future(knots, at, time):
 
 
 def test_memory_is_bounded_and_the_newest_stay():
-    curve = WindCurve(False, 8)
+    curve = WindCurve(8)
     for i in range(1000):
         curve.append(float(i), (float(i), 0.0, 0.0))
     assert len(curve) == 8
@@ -77,7 +74,7 @@ def test_memory_is_bounded_and_the_newest_stay():
 
 
 def test_a_knot_at_the_same_time_replaces_and_an_earlier_one_is_dropped():
-    curve = WindCurve(False, 8)
+    curve = WindCurve(8)
     curve.append(1.0, (1.0, 0.0, 0.0))
     curve.append(1.0, (2.0, 0.0, 0.0))
     curve.append(0.5, (9.0, 0.0, 0.0))

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.gust_travel import GustHistory, LARGEST_STRETCH, SLOWEST_GUST
-from tree_sway_ros.core.wind.simulated.turbulence import Turbulence
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.wind.gust_travel import GustHistory, LARGEST_STRETCH, SLOWEST_GUST
+from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.errors import ParameterError
 
 DT = 1.0 / 60.0
 

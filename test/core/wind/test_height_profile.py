@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.height_profile import WindProfile
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.wind.height_profile import WindProfile
+from tree_sway.errors import ParameterError
 
 HEIGHTS = np.array([0.5, 1.0, 5.0, 10.0, 30.0])
 

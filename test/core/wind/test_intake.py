@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.wind.convention import WindConvention
-from tree_sway_ros.core.wind.gate import SECOND, WindGate
-from tree_sway_ros.core.wind.intake import WindIntake
-from tree_sway_ros.core.wind.limits import FASTEST_WIND, is_wind
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.wind.convention import WindConvention
+from tree_sway.core.wind.gate import SECOND, WindGate
+from tree_sway.core.wind.intake import WindIntake
+from tree_sway.core.wind.limits import FASTEST_WIND, is_wind
+from tree_sway.errors import ParameterError
 
 KNOTS = 1852.0 / 3600.0
 

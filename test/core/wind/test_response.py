@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.gate import SECOND, WindGate
-from tree_sway_ros.core.wind.response import ResponseWatch
-from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway.core.wind.gate import SECOND, WindGate
+from tree_sway.core.wind.response import ResponseWatch
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.files.wind.wind_file import read_wind
 
 RECORDS = Path(__file__).parents[3] / '..' / 'shared' / 'data' / 'wind'
 SEIZED = 5.0

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.sensor_timing import SensorTiming
+from tree_sway.core.wind.sensor_timing import SensorTiming
 
 
 def test_without_an_interval_the_timeout_rules():

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError, SpeciesError
-from tree_sway_ros.files.export.tree_export import write_tree
-from tree_sway_ros.files.export.tree_mesh import SIDES
-from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
+from tree_sway.errors import FormatError, SpeciesError
+from tree_sway.files.export.tree_export import write_tree
+from tree_sway.files.export.tree_mesh import SIDES
+from tree_sway.files.trees.tree_file import read_tree, read_trees
 
 DATA = Path(__file__).parents[1] / 'data'
 SOURCES = [

@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.core.tree.species import species_named
-from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.errors import SpeciesError
-from tree_sway_ros.files.export.tree_export import write_tree
-from tree_sway_ros.files.export.yaml_writing import yaml_of_tree
-from tree_sway_ros.files.trees.yaml.tree_yaml import parse_yaml_tree, read_yaml_tree
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.tree.species import species_named
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import SpeciesError
+from tree_sway.files.export.tree_export import write_tree
+from tree_sway.files.export.yaml_writing import yaml_of_tree
+from tree_sway.files.trees.yaml.tree_yaml import parse_yaml_tree, read_yaml_tree
 
 DATA = Path(__file__).parents[1] / 'data'
 

@@ -5,6 +5,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -13,9 +16,10 @@ pytest.importorskip('rosbags', reason='rosbags is not installed')
 
 from rosbags.typesys import get_typestore, Stores  # noqa: E402
 
-from tree_sway_ros.errors import FormatError, ParameterError  # noqa: E402
-from tree_sway_ros.files.recording.bag_writer import BagWriter  # noqa: E402
-from tree_sway_ros.files.recording.state_record import (  # noqa: E402
+from tree_sway.errors import FormatError, ParameterError  # noqa: E402
+from tree_sway.files.recording.bag_reader import read_bag  # noqa: E402
+from tree_sway.files.recording.bag_writer import BagWriter  # noqa: E402
+from tree_sway.files.recording.state_record import (  # noqa: E402
     DESCRIPTION_TYPE,
     read_state_record,
     restamped,
@@ -86,3 +90,41 @@ def test_what_cannot_be_played_or_written_is_refused(tmp_path: Path) -> None:
         BagWriter(untold)
     with pytest.raises(ParameterError, match='use mcap or sqlite3'):
         BagWriter(tmp_path / 'new', 'csv')
+
+
+WRITER = """
+import os, resource, signal, sys
+from pathlib import Path
+from tree_sway.errors import FormatError
+from tree_sway.files.recording import bag_writer
+resource.setrlimit(resource.RLIMIT_FSIZE, 2 * (int(sys.argv[3]),))
+bag_writer.COMMIT_EVERY = 0.0
+try:
+    with bag_writer.BagWriter(Path(sys.argv[1]), sys.argv[2]) as bag:
+        bag.add('/state', 'sensor_msgs/msg/JointState')
+        for stamp in range(100):
+            bag.write('/state', stamp, bytes(1000))
+        os.kill(os.getpid(), signal.SIGKILL)
+except FormatError as error:
+    print(error)
+"""
+
+
+def written(path: Path, storage: str, largest: int) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, '-c', WRITER, str(path), storage, str(largest)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60)
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_what_a_killed_recorder_wrote_is_in_the_bag(tmp_path: Path, storage: str) -> None:
+    ended = written(tmp_path / 'bag', storage, 1 << 30)
+    assert ended.returncode == -signal.SIGKILL
+    assert len(read_bag(tmp_path / 'bag', [STATE_TYPE]).messages['/state']) == 100
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_full_disk_is_one_line_and_leaves_what_was_written(tmp_path: Path, storage: str) -> None:
+    ended = written(tmp_path / 'bag', storage, 80_000)
+    assert (ended.returncode, ended.stderr) == (0, '')
+    assert 'cannot be written to' in ended.stdout
+    assert len(read_bag(tmp_path / 'bag', [STATE_TYPE]).messages['/state']) > 20

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import ParameterError, TreeError
-from tree_sway_ros.files.trees.source import open_tree
+from tree_sway.errors import ParameterError, TreeError
+from tree_sway.files.trees.source import open_tree
 
 DATA = Path(__file__).parents[1] / 'data'
 HEADER = 'segment,parent,x0,y0,z0,x1,y1,z1,d0,d1'
@@ -50,7 +50,7 @@ def test_the_option_that_the_error_names_mends_it(tmp_path, length, diameter, up
         for name, value in options.items():
             assert f'--option {name}={value:g}' in refused.value.cure
     else:
-        assert any('--option up=y' in doubt for doubt in open_tree(path).warnings)
+        assert any('--option up=y' in oddity for oddity in open_tree(path).warnings)
     mended, meant = open_tree(path, **options), open_tree(table(tmp_path, 1.0, 1.0))
     np.testing.assert_allclose(mended.tree.end, meant.tree.end, atol=1e-12)
     np.testing.assert_allclose(mended.tree.base_diameter, meant.tree.base_diameter)

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 from scipy.io import loadmat, savemat
 
-from tree_sway_ros.core.simulator.assembly import build_bank
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.files.export.tree_export import write_tree
-from tree_sway_ros.files.trees.tree_file import read_tree
+from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.files.export.tree_export import write_tree
+from tree_sway.files.trees.tree_file import read_tree
 
 TREES = Path(__file__).parents[4] / 'shared/data/trees'
 OURS = Path(__file__).parents[1] / 'data' / 'tree121.csv'
@@ -33,8 +33,8 @@ def rows_of_ours():
     data = table(OURS)
     parent, branch = data[:, 1].astype(int), data[:, 2].astype(int)
     after = np.full(len(data), -1)
-    goes_on = (parent >= 0) & (branch == branch[parent])
-    after[parent[goes_on]] = np.flatnonzero(goes_on)
+    has_predecessor = (parent >= 0) & (branch == branch[parent])
+    after[parent[has_predecessor]] = np.flatnonzero(has_predecessor)
     axis = data[:, 6:9] - data[:, 3:6]
     return data, parent, branch, after, (data[:, 9] + data[:, 10]) / 4, axis
 
@@ -240,8 +240,10 @@ class TestScansByOthers:
     def test_the_walnut_sways_as_walnuts_do(self):
         """f1 within 1.2 to 1.9 Hz, 20 modes or more below 2.9 Hz, with the table's walnut."""
         tree_file = read_tree(TREES / 'walnut.mtg', species='walnut')
-        settings = Settings(model='modes', n_modes=20, mode_choice='slowest')
-        slowest = build_bank(tree_file.tree, tree_file.species, settings).frequencies
+        settings = Settings(model=20)
+        slowest = CalibratedTree(tree_file.tree, tree_file.species, settings).natural_frequencies(
+            20
+        )
         assert 1.2 <= slowest[0] <= 1.9
         assert len(slowest) == 20
         assert slowest[-1] < 2.9

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.trees.source import BUILTIN_TREES, open_tree
+from tree_sway.errors import FormatError
+from tree_sway.files.trees.source import BUILTIN_TREES, open_tree
 
 DATA = Path(__file__).parents[1] / 'data'
 

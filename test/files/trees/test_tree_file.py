@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tree_sway_ros.errors import FormatError, ParameterError, SpeciesError, TreeError
-from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
+from tree_sway.errors import FormatError, ParameterError, SpeciesError, TreeError
+from tree_sway.files.trees.tree_file import read_tree, read_trees
 
 DATA = Path(__file__).parents[1] / 'data'
 

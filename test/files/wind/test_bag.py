@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.wind.bag import read_bag_wind, WIND_TYPES
-from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway.errors import FormatError
+from tree_sway.files.wind.bag import read_bag_wind, WIND_TYPES
+from tree_sway.files.wind.wind_file import read_wind
 
 rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags is not installed')
 typesys = pytest.importorskip('rosbags.typesys')

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.wind.nmea import parse_nmea, read_nmea_wind
-from tree_sway_ros.files.wind.sensor_line import checksum_of
-from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.wind.nmea import parse_nmea, read_nmea_wind
+from tree_sway.files.wind.sensor_line import checksum_of
+from tree_sway.files.wind.wind_file import read_wind
 
 DATA = Path(__file__).parents[1] / 'data'
 MAST = DATA / 'mast.nmea'
@@ -100,8 +100,8 @@ def test_errors(tmp_path):
         read_nmea_wind(tmp_path / 'other.nmea', sentence='MWD')
     with pytest.raises(FormatError, match='no good row of wind, 1 refused; first line 11'):
         read_nmea_wind(MAST, sentence='MWD')
-    with pytest.raises(ParameterError, match="sentence is 'XDR'"):
-        read_nmea_wind(MAST, sentence='XDR')
+    with pytest.raises(ParameterError, match="sentence is 'VHW'"):
+        read_nmea_wind(MAST, sentence='VHW')
     for rate in (0.0, float('nan')):
         with pytest.raises(ParameterError, match='rate is'):
             read_nmea_wind(MAST, rate=rate)

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.wind.record import increasing, WindRows
+from tree_sway.errors import FormatError
+from tree_sway.files.wind.record import increasing, WindRows
 
 
 def rows_of(times, speed=1.0):

@@ -7,9 +7,9 @@ import random
 
 import pytest
 
-from tree_sway_ros.files.wind.nmea import parse_nmea
-from tree_sway_ros.files.wind.sensor_line import SensorLine
-from tree_sway_ros.files.wind.sonic_ascii import parse_sonic
+from tree_sway.files.wind.nmea import parse_nmea
+from tree_sway.files.wind.sensor_line import SensorLine
+from tree_sway.files.wind.sonic_ascii import parse_sonic
 
 GOOD = [
     '$IIMWV,270.0,T,10.0,M,A*0C',

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.wind.sensor_line import checksum_of
-from tree_sway_ros.files.wind.sonic_ascii import parse_sonic, read_sonic_wind
-from tree_sway_ros.files.wind.wind_file import read_wind
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.wind.sensor_line import checksum_of
+from tree_sway.files.wind.sonic_ascii import parse_sonic, read_sonic_wind
+from tree_sway.files.wind.wind_file import read_wind
 
 
 def gill(body: str) -> str:

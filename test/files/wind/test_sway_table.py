@@ -5,8 +5,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError
-from tree_sway_ros.files.wind.sway_table import read_csv_sway
+from tree_sway.errors import FormatError
+from tree_sway.files.wind.sway_table import read_csv_sway
 
 
 def read(tmp_path, text):
@@ -64,7 +64,7 @@ def test_dates(tmp_path):
         ('time,x [g]\n0,1\n.1,1e308\n', r"sway.csv:1: unknown unit 'g'"),
         ('time,ax [g]\n0,1\n.1,1e308\n', r'sway.csv:3: ax \[g\] is 1e\+308, which nothing'),
         ('time,x\n0,1\n1e300,1\n', r"sway.csv:3: time is '1e300', neither seconds nor a date"),
-        ('time;x\n0;1\n1;0,5\n', r"sway.csv:3: x is '0,5', with a decimal comma: export it"),
+        ('time;x\n0.5;1\n1;0,5\n', r"sway.csv:3: x is '0,5', with a decimal comma: export it"),
         ('time,x\n0,0,0,5\n0,1,0,6\n', r'sway.csv:2: more cells than the 2 columns'),
         ('time,x\n0,1\n.1,nan\n', r"sway.csv:3: x is 'nan', not a finite number; mend"),
         ('time,x\n0,1\n.1\n', r"sway.csv:3: 1 cells, none for 'x'"),

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.wind.table import read_csv_wind
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.wind.table import read_csv_wind
 
 DATA = Path(__file__).parents[1] / 'data'
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError, ParameterError
-from tree_sway_ros.files.wind.table import read_toa5_wind
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.wind.table import read_toa5_wind
 
 DATA = Path(__file__).parents[1] / 'data'
 SONIC = DATA / 'sonic.toa5.dat'
@@ -49,7 +49,7 @@ def test_columns_by_name():
         ('TOA5', 'TOB1', ':1: not TOA5'),
         ('Ux', 'wind', ':2: no time with u and v'),
         ('cm/s', 'furlong', ":3: unknown unit 'furlong'"),
-        ('2024-', '2024/', 'no good row of wind, 12 refused; first line 5'),
+        ('2024-', '2024x', 'no good row of wind, 12 refused; first line 5'),
     ],
 )
 def test_not_what_it_promises(tmp_path, old, new, message):

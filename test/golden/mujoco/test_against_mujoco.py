@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tree_sway_lab.example_trees import forked_tree
+from tree_sway_lab.segments.articulated import ArticulatedTree
+from tree_sway_lab.tip_error import record_tips, tip_error
 
-from tree_sway_ros.core.motion.drag import AIR_DENSITY
-from tree_sway_ros.core.reference.articulated import ArticulatedTree
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.species import Species
-from tree_sway_ros.study.example_trees import forked_tree
-from tree_sway_ros.study.tip_error import record_tips, tip_error
+from tree_sway.core.motion.drag import AIR_DENSITY
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.species import Species
 
 FRAME, DAMPING = 1.0 / 60.0, 0.05
 SPECIES = Species('forked', 'no twist', 8.0e9, 900.0, drag_coefficient=1.2, shear_ratio=500.0)
@@ -50,7 +50,7 @@ def test_articulated_tree_is_the_same_mechanism(golden, tree):
     assert error_of(model, tree, golden['wind'], golden['same'], substeps=2) < 5e-3
 
 
-@pytest.mark.parametrize('model', ['modes', 'coupled'])
+@pytest.mark.parametrize('model', [12, 'full'])
 def test_reduced_tree_errs_by_less_than_a_twentieth(golden, tree, model):
     model = SwaySimulator(
         tree, SPECIES, model=model, damping_ratio=DAMPING, gravity=0.0, twig_tolerance=-1.0
@@ -67,8 +67,8 @@ def test_uncoupled_branches_are_caught(golden, tree):
 
 def test_live_engine_repeats_the_golden_tips(golden, tree):
     pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
-    from tree_sway_ros.study.compare.mujoco_tree import MujocoTree
-    from tree_sway_ros.study.compare.with_mujoco import mujoco_tips
+    from tree_sway_lab.compare.mujoco_tree import MujocoTree
+    from tree_sway_lab.compare.with_mujoco import mujoco_tips
 
     frames = 6
     model = MujocoTree(tree, SPECIES, DAMPING)

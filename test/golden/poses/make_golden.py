@@ -22,12 +22,12 @@ import sys
 
 import numpy as np
 
-from tree_sway_ros.core.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
 FOLDER = Path(__file__).resolve().parent
-MODELS = ('branch', 'subtree', 'modes', 'coupled')
+MODELS = ('branch', 12, 'full')
 RATE, SECONDS = 60, 60
 EVERY = 600
 """Steps from one sampled frame to the next."""

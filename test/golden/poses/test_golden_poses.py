@@ -22,7 +22,7 @@ def maker():
 
 
 @pytest.mark.parametrize('tree_name', ['goldcrest', 'broadleaf'])
-@pytest.mark.parametrize('model', ['branch', 'subtree', 'modes', 'coupled'])
+@pytest.mark.parametrize('model', ['branch', 12, 'full'])
 def test_ten_seconds_of_wind_end_where_they_did(maker, tree_name, model):
     golden = np.load(FOLDER / 'golden.npz')[f'{tree_name}_{model}']
     _, found = maker.run(tree_name, model, seconds=10)

@@ -6,14 +6,15 @@ Make the test vectors that Python and JavaScript both read: a description, frame
     python test/page/vectors/make_vectors.py
 
 The scene is small but has all that placing knows: enriched branches with further shapes and
-twists, a tree whose twigs move with their parents as one body, deep bending, two kinds, of one of
-which a second tree stands turned and scaled. The poses are placed by the solver from key
-rotations, not by a decoder of frames.
+twists, a tree whose branches bend by their slopes alone, deep bending, two kinds, of one of which
+a second tree is turned and scaled. The poses are placed by the solver from key rotations, not by a
+decoder of frames.
 
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 import json
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,20 +23,18 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tree_sway_ros.core.leaves.foliage import leaf_clusters
-from tree_sway_ros.core.simulator.assembly import CalibratedTree
-from tree_sway_ros.core.simulator.partly_frozen import PartlyFrozenTree
-from tree_sway_ros.core.simulator.settings import Settings
-from tree_sway_ros.core.simulator.simulator import SwaySimulator
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.core.tree.species import species_named
-from tree_sway_ros.core.tree.tree import Tree
-from tree_sway_ros.page.description import describe_scene
-from tree_sway_ros.page.protocol import decode_description, encode_frame, Frame, PAUSED, quantised
+from tree_sway.core.leaves.foliage import leaf_clusters
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.tree.species import species_named
+from tree_sway.core.tree.tree import Tree
+from tree_sway.page.description import describe_scene
+from tree_sway.page.protocol import decode_description, encode_frame, Frame, PAUSED, quantised
 
 HERE = Path(__file__).parent
 N_COORDINATES = 5
-SETTINGS = Settings(model='coupled', enrich='all')
+SETTINGS = Settings(model='full', enrich='all')
 TREES = (
     ('left', 0, (0.0, 0.0, 0.0, 0.0, 1.0)),
     ('right', 1, (1.5, 0.0, 0.0, 0.0, 1.0)),
@@ -69,14 +68,12 @@ def small_tree(name: str, x: float) -> Tree:
 
 
 def simulators() -> list[SwaySimulator]:
-    """Make a tree that moves all over, and one whose twig is frozen."""
+    """Make a tree all of whose branches bend in further shapes, and one whose stem alone does."""
     first, second = small_tree('left', 0.0), small_tree('right', 1.5)
     species = species_named(first.species)
-    frozen = np.array([name == second.branch_names[-1] for name in second.branch_names])
-    part = PartlyFrozenTree(CalibratedTree(second, species, SETTINGS), frozen)
     return [
         SwaySimulator(first, species, SETTINGS),
-        SwaySimulator(second, species, SETTINGS, calibrated=part),
+        SwaySimulator(second, species, replace(SETTINGS, enrich='stem')),
     ]
 
 
@@ -100,7 +97,7 @@ def main() -> None:
         basis = SimpleNamespace(
             matrix=rng.normal(0.0, 0.1, size).astype(np.float32),
             scale=rng.uniform(0.5, 3.0, N_COORDINATES).astype(np.float32),
-            error=SimpleNamespace(greatest=0.001),
+            error=SimpleNamespace(quantised_greatest=0.001),
         )
         kinds.append(SimpleNamespace(simulator=simulator, basis=basis, numbers=[], places=[]))
     for number, (_, kind, place) in enumerate(TREES):

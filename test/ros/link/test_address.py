@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.ros.link.address import Address, read_address
+from tree_sway.errors import ParameterError
+from tree_sway_ros.link.address import Address, read_address
 
 
 @pytest.mark.parametrize(

@@ -1,16 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-import asyncio
 import socket
 import sys
 import threading
 
 import pytest
 
-from tree_sway_ros.errors import MissingDependencyError
-from tree_sway_ros.ros.link import line_source
-from tree_sway_ros.ros.link.address import Address
-from tree_sway_ros.ros.link.line_source import LineSource
+from tree_sway.errors import MissingDependencyError
+from tree_sway_ros.link.address import Address
+from tree_sway_ros.link.line_source import LineSource
 
 
 class Heard:
@@ -81,23 +79,25 @@ def test_a_link_that_falls_silent_is_made_anew(hear, server):
     second.close()
 
 
-def test_it_ends_though_a_chunk_comes_with_the_end(monkeypatch):
-    told = asyncio.Event()
-
-    async def late(source):
-        source._gain()
-        await told.wait()
-        source._loop.call_soon(
-            cancel
-        )  # meets the chunk: `wait_for` returns it and cancels nothing
-        yield b'late\n'
-        await asyncio.sleep(3600.0)
-
-    monkeypatch.setitem(line_source._READERS, 'tcp', late)
-    heard = Heard(Address('tcp', 'nowhere', 1))
+def test_a_flood_of_datagrams_does_not_keep_it_from_ending(hear):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(('127.0.0.1', 0))
+        address = probe.getsockname()
+    heard = hear(Address('udp', *address))
     heard.until(lambda: heard.source.is_up)
-    cancel, heard.source._cancel = heard.source._cancel, told.set
+    over = threading.Event()
+
+    def flood():
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            while not over.wait(0.0001):
+                sender.sendto(b'late\n', address)
+
+    sending = threading.Thread(target=flood)
+    sending.start()
+    heard.until(lambda: heard.lines)
     heard.source.stop()
+    over.set()
+    sending.join()
     assert not heard.source._thread.is_alive()
 
 

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tree_sway_ros.ros.link.lines import Lines, LONGEST
+from tree_sway_ros.link.lines import Lines, LONGEST
 
 
 def test_lines_come_out_however_they_were_cut():

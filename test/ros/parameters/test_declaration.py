@@ -10,10 +10,10 @@ from rclpy.node import Node  # noqa: E402
 from rclpy.parameter import Parameter as RosParameter  # noqa: E402
 from rclpy.qos import ReliabilityPolicy  # noqa: E402
 
-from tree_sway_ros.errors import ParameterError  # noqa: E402
+from tree_sway.errors import ParameterError  # noqa: E402
+from tree_sway.parameters.parameter import Parameter  # noqa: E402
 from tree_sway_ros.nodes.wind import WindNode  # noqa: E402
-from tree_sway_ros.ros.parameters.declaration import ParameterValues  # noqa: E402
-from tree_sway_ros.ros.parameters.parameter import Parameter  # noqa: E402
+from tree_sway_ros.parameters.declaration import ParameterValues  # noqa: E402
 
 TABLE = (
     Parameter('rate', 60.0, 'Rate.', 'Hz', 1.0, 1000.0),

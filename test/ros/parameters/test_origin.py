@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-from tree_sway_ros.ros.parameters.origin import own_names
+from tree_sway_ros.parameters.origin import own_names
 
 FILE = """
 /**:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import inspect
 
-from tree_sway_ros.ros.process.guard import CallbackGuard
+from tree_sway_ros.process.guard import CallbackGuard
 
 
 def fail(number):

@@ -12,8 +12,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tree_sway_ros.errors import MissingDependencyError, ParameterError, TransportError
-from tree_sway_ros.ros.process import spin
+from tree_sway.errors import MissingDependencyError, ParameterError, TransportError
+from tree_sway_ros.process import spin
 
 
 class FakeRclpy(types.ModuleType):
@@ -163,7 +163,7 @@ def test_nodes_announce_themselves_often_and_hear_by_udp_unless_a_profile_is_nam
 
 FREED = """
 import ctypes, sys, types
-from tree_sway_ros.ros.process import spin
+from tree_sway_ros.process import spin
 if sys.argv[1] == 'init':
     spin.init(types.SimpleNamespace(init=lambda args: None))
 libc = ctypes.CDLL(None)
@@ -232,3 +232,15 @@ def test_a_bad_namespace_is_one_line(error):
     ) as told:
         spin.create(lambda **_: raises(error)(), namespace='a b')
     assert len(str(told.value).splitlines()) == 1
+
+
+def test_a_machine_that_is_read_only_starts_without_log_files(tmp_path, monkeypatch):
+    monkeypatch.setenv('ROS_LOG_DIR', str(tmp_path / 'log'))
+    assert spin._without_log_files() == []
+    monkeypatch.setenv('ROS_LOG_DIR', '/proc/none/log')
+    assert spin._without_log_files()
+    rclpy = pytest.importorskip('rclpy')
+    context = rclpy.context.Context()
+    spin.init(rclpy, [], context=context)
+    assert context.ok()
+    context.try_shutdown()

@@ -2,7 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-from tree_sway_ros.ros.process.topics import (
+pytest.importorskip('rclpy')
+
+from rclpy.qos import ReliabilityPolicy  # noqa: E402, I100
+
+from tree_sway_ros.process.topics import (
     CLOCK,
     DIAGNOSTICS,
     MARKERS,
@@ -29,7 +33,8 @@ def test_what_rviz_and_unity_show_is_reliable_and_short():
 
 
 def test_any_driver_matches_the_wind():
-    assert not WIND.reliable
+    assert qos_profile(WIND).reliability == ReliabilityPolicy.RELIABLE
+    assert qos_profile(WIND, is_input=True).reliability == ReliabilityPolicy.BEST_EFFORT
     assert not WIND.latched
 
 

@@ -1,5 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+import sys
+
 import pytest
 
 pytest.importorskip('rclpy')
@@ -7,19 +9,19 @@ pytestmark = pytest.mark.ros
 
 from builtin_interfaces.msg import Time  # noqa: E402, I100
 
-from tree_sway_ros.core.wind.gate import GateCounts, SECOND, WindGate  # noqa: E402
-from tree_sway_ros.core.wind.gust_travel import GustHistory  # noqa: E402
-from tree_sway_ros.ros.reports import sway_report, wind_report  # noqa: E402
-from tree_sway_ros.ros.reports.diagnostics import (  # noqa: E402
+from tree_sway.core.wind.gate import GateCounts, SECOND, WindGate  # noqa: E402
+from tree_sway.core.wind.gust_travel import GustHistory  # noqa: E402
+from tree_sway_ros.reports import sway_report, wind_report  # noqa: E402
+from tree_sway_ros.reports.diagnostics import (  # noqa: E402
     OK,
     STALE,
     Status,
     status_array,
     WARN,
 )
-from tree_sway_ros.ros.reports.sway_report import SwayReport  # noqa: E402
-from tree_sway_ros.ros.reports.wind_report import STALE_AFTER, WindReport  # noqa: E402
-from tree_sway_ros.ros.timing.pacer import Pace  # noqa: E402
+from tree_sway_ros.reports.sway_report import SwayReport  # noqa: E402
+from tree_sway_ros.reports.wind_report import STALE_AFTER, WindReport  # noqa: E402
+from tree_sway_ros.timing.pacer import Pace  # noqa: E402
 
 TIMEOUT = 2.0
 
@@ -152,7 +154,7 @@ def test_a_stream_that_stands_is_a_warning_unless_simulated_time_does():
     [('none', WARN), ('live', OK), ('holding', OK), ('decaying', WARN), ('stale', STALE)],
 )
 def test_every_state_of_the_wind_has_a_level(state, level):
-    from tree_sway_ros.ros.reports.sway_report import _wind
+    from tree_sway_ros.reports.sway_report import _wind
 
     status = _wind(state, GateCounts(accepted=7, spike=2, no_time=1))
     assert status.level == level
@@ -166,3 +168,13 @@ def test_trees_that_the_gusts_do_not_reach_in_time_are_told_of():
         status = sway_report._gusts(history)
         assert status.level == level
     assert 'too far downwind' in status.message
+
+
+def test_a_report_each_second_takes_no_memory():
+    """Tuples of `dataclasses.asdict` would fill a list of the interpreter for half an hour."""
+    report, gate = WindReport(), WindGate()
+    report.status(TIMEOUT, gate)
+    before = sys.getallocatedblocks()
+    for _ in range(500):
+        report.status(TIMEOUT, gate)
+    assert sys.getallocatedblocks() - before < 100

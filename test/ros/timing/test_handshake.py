@@ -4,9 +4,9 @@ import threading
 
 import pytest
 
-from tree_sway_ros.errors import ParameterError
-from tree_sway_ros.ros.timing import handshake
-from tree_sway_ros.ros.timing.handshake import Answers, Audience, Reach, required
+from tree_sway.errors import ParameterError
+from tree_sway_ros.timing import handshake
+from tree_sway_ros.timing.handshake import Answers, Audience, Reach, required
 
 
 def test_topics_with_and_without_a_number():

@@ -12,8 +12,8 @@ pytestmark = pytest.mark.ros
 from rclpy.clock import ROSClock  # noqa: E402
 from rclpy.time import Time  # noqa: E402
 
-from tree_sway_ros.ros.timing import pacer  # noqa: E402
-from tree_sway_ros.ros.timing.pacer import LONGEST_STEP, Pacer, PATIENCE  # noqa: E402
+from tree_sway_ros.timing import pacer  # noqa: E402
+from tree_sway_ros.timing.pacer import LONGEST_STEP, Pacer, PATIENCE  # noqa: E402
 
 DEADLINE = 10.0
 PERIOD = 20_000_000  # of 50 Hz

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError
-from tree_sway_ros.ros.timing.playback import Playback
-from tree_sway_ros.ros.timing.playback_thread import PlaybackThread
+from tree_sway.errors import FormatError
+from tree_sway_ros.timing.playback import Playback
+from tree_sway_ros.timing.playback_thread import PlaybackThread
 
 TIME = np.array([0.0, 0.1, 0.2, 0.4])
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st  # noqa: E402
 from rclpy.serialization import deserialize_message  # noqa: E402
 from std_msgs.msg import String  # noqa: E402
 
-from tree_sway_ros.errors import TransportError  # noqa: E402
-from tree_sway_ros.ros.wire.cdr import CdrTemplate, pose_array_template  # noqa: E402
+from tree_sway.errors import TransportError  # noqa: E402
+from tree_sway_ros.wire.cdr import CdrTemplate, pose_array_template  # noqa: E402
 
 FRAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=12)
 
@@ -66,7 +66,7 @@ def test_a_mark_that_is_not_there_is_an_error():
 
 
 def test_a_mark_that_is_there_twice_is_an_error():
-    from tree_sway_ros.ros.wire.cdr import block_mark
+    from tree_sway_ros.wire.cdr import block_mark
 
     message = PoseArray(poses=[Pose(position=Point(x=block_mark(), y=block_mark()))])
     with pytest.raises(TransportError, match='not laid out'):

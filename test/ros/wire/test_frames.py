@@ -9,9 +9,9 @@ pytestmark = pytest.mark.ros
 from geometry_msgs.msg import TransformStamped  # noqa: E402, I100
 from scipy.spatial.transform import Rotation  # noqa: E402
 
-from tree_sway_ros.ros.wire import frames  # noqa: E402
-from tree_sway_ros.ros.wire.frames import Frames  # noqa: E402
-from tree_sway_ros.ros.wire.wind_messages import fill_stamp  # noqa: E402
+from tree_sway_ros.wire import frames  # noqa: E402
+from tree_sway_ros.wire.frames import Frames  # noqa: E402
+from tree_sway_ros.wire.wind_messages import fill_stamp  # noqa: E402
 
 SECOND = 10**9
 

@@ -12,17 +12,17 @@ from rclpy.serialization import deserialize_message  # noqa: E402
 from scipy.spatial.transform import Rotation  # noqa: E402
 from visualization_msgs.msg import Marker, MarkerArray  # noqa: E402
 
-from tree_sway_ros.core.growth.builtin import builtin_tree  # noqa: E402, I100
-from tree_sway_ros.core.simulator.simulator import SwaySimulator  # noqa: E402
-from tree_sway_ros.core.tree.building import tree_from_segments  # noqa: E402
-from tree_sway_ros.ros.wire.markers import radius_classes, TreeMarkers, x_axes  # noqa: E402
+from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402, I100
+from tree_sway.core.simulator.simulator import SwaySimulator  # noqa: E402
+from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
+from tree_sway_ros.wire.markers import radius_classes, TreeMarkers, x_axes  # noqa: E402
 
 TREE = builtin_tree('goldcrest')
 
 
 @pytest.fixture(scope='module')
 def message():
-    poses = SwaySimulator(TREE, model='frozen').place()
+    poses = SwaySimulator(TREE, model=0).place()
     return deserialize_message(TreeMarkers(TREE, 'map', 5).to_bytes(poses, 3 * 10**9), MarkerArray)
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 from jsonschema import Draft202012Validator
 import numpy as np
 
-from tree_sway_ros.core.leaves.foliage import leaf_clusters
-from tree_sway_ros.core.scene.placed_tree import joined, PlacedTree
-from tree_sway_ros.core.tree.building import tree_from_segments
-from tree_sway_ros.ros.wire.tree_description import describe, tree_hash, VERSION
+from tree_sway.core.leaves.foliage import leaf_clusters
+from tree_sway.core.scene.placed_tree import joined, PlacedTree
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway_ros.wire.tree_description import describe, tree_hash, VERSION
 
 TREE = tree_from_segments(
     [[0, 0, 0], [0, 0, 1], [0, 0, 1]], [[0, 0, 1], [0, 0, 2], [1, 0, 1]], [0.1, 0.08, 0.03]

@@ -9,9 +9,9 @@ pytestmark = pytest.mark.ros
 from hypothesis import given  # noqa: E402, I100
 from hypothesis import strategies as st  # noqa: E402
 
-from tree_sway_ros.errors import ParameterError  # noqa: E402
-from tree_sway_ros.ros.parameters.node_parameters import WIND_TYPE_NAMES  # noqa: E402
-from tree_sway_ros.ros.wire.wind_messages import (  # noqa: E402
+from tree_sway.errors import ParameterError  # noqa: E402
+from tree_sway_ros.parameters.node_parameters import WIND_TYPE_NAMES  # noqa: E402
+from tree_sway_ros.wire.wind_messages import (  # noqa: E402
     clock_message,
     plane_message,
     stamp_to_ns,

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.gate import SECOND, WindGate
-from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
-from tree_sway_ros.core.wind.simulated.gust_event import GustEvent
-from tree_sway_ros.core.wind.simulated.turbulence import Turbulence
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.wind.gate import SECOND, WindGate
+from tree_sway.core.wind.simulated.anemometer import AnemometerModel
+from tree_sway.core.wind.simulated.gust_event import GustEvent
+from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.errors import ParameterError
 
 
 def read(model, n, first=0):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from tree_sway_ros.core.wind.simulated.gust_event import gust
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.wind.simulated.gust_event import gust
+from tree_sway.errors import ParameterError
 
 TIME = np.linspace(-5.0, 30.0, 7001)
 

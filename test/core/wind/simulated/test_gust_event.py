@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.wind.simulated.gust_event import EVENT_KINDS, gust, GustEvent, with_events
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.wind.simulated.gust_event import EVENT_KINDS, gust, GustEvent, with_events
+from tree_sway.errors import ParameterError
 
 TIME = np.linspace(-5.0, 60.0, 6501)
 EAST = 0.5 * math.pi

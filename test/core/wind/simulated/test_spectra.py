@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from tree_sway_ros.core.wind.simulated.anemometer import AnemometerModel
-from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
-from tree_sway_ros.core.wind.simulated.turbulence import Turbulence
+from tree_sway.core.wind.simulated.anemometer import AnemometerModel
+from tree_sway.core.wind.simulated.spectra import SPECTRA
+from tree_sway.core.wind.simulated.turbulence import Turbulence
 
 every = pytest.mark.parametrize('name', SPECTRA)
 

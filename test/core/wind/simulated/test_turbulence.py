@@ -11,14 +11,14 @@ import scipy.integrate
 import scipy.signal
 import scipy.stats
 
-from tree_sway_ros.core.wind.simulated.spectra import SPECTRA
-from tree_sway_ros.core.wind.simulated.turbulence import (
+from tree_sway.core.wind.simulated.spectra import SPECTRA
+from tree_sway.core.wind.simulated.turbulence import (
     along_bearing,
     simulate_turbulence,
     Turbulence,
     turbulence_scale,
 )
-from tree_sway_ros.errors import ParameterError
+from tree_sway.errors import ParameterError
 
 RATE, HOUR = 20.0, 3600.0
 GOLDEN = Path(__file__).parents[3] / 'golden' / 'pyconturb' / 'spectra.csv'

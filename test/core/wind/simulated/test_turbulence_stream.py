@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from tree_sway_ros.core.wind.simulated.turbulence import Turbulence
-from tree_sway_ros.core.wind.simulated.turbulence_stream import TurbulenceStream
-from tree_sway_ros.errors import ParameterError
+from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.core.wind.simulated.turbulence_stream import TurbulenceStream
+from tree_sway.errors import ParameterError
 
 TURBULENCE = Turbulence(7.0)
 RATE = 4.0

@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import ParameterError, TreeError
-from tree_sway_ros.files.trees.cylinders.cylinder_tree import CylinderOptions, tree_of_cylinders
-from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.errors import ParameterError, TreeError
+from tree_sway.files.trees.cylinders.cylinder_tree import CylinderOptions, tree_of_cylinders
+from tree_sway.files.trees.cylinders.cylinders import Cylinders
 
 FILE = Path('cylinders.txt')
 

@@ -8,8 +8,8 @@ import sys
 
 import pytest
 
-import tree_sway_ros
-from tree_sway_ros.files.trees.tree_file import TREE_FORMATS
+import tree_sway
+from tree_sway.files.trees.tree_file import TREE_FORMATS
 
 MODULE = '''
 """Poles: a line with height and diameter for each tree."""
@@ -18,10 +18,10 @@ from pathlib import Path
 
 import numpy as np
 
-from tree_sway_ros.files.text_file import read_lines
-from tree_sway_ros.files.table_file import parse_columns
-from tree_sway_ros.files.trees.cylinders.cylinders import Cylinders
-from tree_sway_ros.files.trees.tree_format import TreeFormat
+from tree_sway.files.text_file import read_lines
+from tree_sway.files.table_file import parse_columns
+from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.tree_format import TreeFormat
 
 
 def read_poles(path: Path, base: float = 0.0) -> tuple[Cylinders, ...]:
@@ -38,16 +38,16 @@ FORMAT = TreeFormat("poles", (".poles",), lambda head: head.startswith("POLES"),
 '''
 USE = """
 import sys
-from tree_sway_ros.files.trees.source import open_tree, open_scene
+from tree_sway.files.trees.source import open_tree, open_scene
 one = open_tree(sys.argv[1], base=2.0, species="oak", to_origin=False)
 print(one.tree.height, one.tree.start[0][2], one.species.key, len(open_scene(sys.argv[1]).trees))
 """
 
 
 def test_one_file_is_all_it_takes(tmp_path):
-    package = Path(tree_sway_ros.__file__).parent
+    package = Path(tree_sway.__file__).parent
     (tmp_path / 'package').mkdir()
-    copy = tmp_path / 'package' / 'tree_sway_ros'
+    copy = tmp_path / 'package' / 'tree_sway'
     # Links to every module but for one folder, which gets the new one.
     for source in sorted(package.rglob('*')):
         target = copy / source.relative_to(package)

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.errors import FormatError, ParameterError, TreeError, TreeSwayError
-from tree_sway_ros.files.trees.tree_file import read_tree, read_trees
+from tree_sway.errors import FormatError, ParameterError, TreeError, TreeSwayError
+from tree_sway.files.trees.tree_file import read_tree, read_trees
 
 DATA = Path(__file__).parents[2] / 'data'
 

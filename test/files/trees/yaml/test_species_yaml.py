@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from tree_sway_ros.core.tree.species import species_keys, species_named
-from tree_sway_ros.errors import FormatError, SpeciesError
-from tree_sway_ros.files.trees.source import open_scene, open_tree
-from tree_sway_ros.files.trees.yaml.species_yaml import open_species, parse_species
-from tree_sway_ros.tools import cli
+from tree_sway.commands import cli
+from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.errors import FormatError, SpeciesError
+from tree_sway.files.trees.source import open_scene, open_tree
+from tree_sway.files.trees.yaml.species_yaml import open_species, parse_species
 
 ELM = 'name: elm\nspecies: ash\nwood: {modulus: 7.2e9, damping_bare: .03}\n'
 
@@ -52,7 +52,7 @@ def test_what_is_wrong_has_a_line(text, message):
 
 def test_a_missing_file_is_named():
     with pytest.raises(
-        SpeciesError, match=r"no species file 'elm\.yaml'; give a file, or one of: ash"
+        SpeciesError, match=r"no species file 'elm\.yaml'; give a file, or one of: alder"
     ):
         open_species('elm.yaml')
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway_ros.core.tree.species import species_named
-from tree_sway_ros.errors import FormatError, SpeciesError, TreeError, TreeSwayError
-from tree_sway_ros.files.trees.yaml.tree_yaml import parse_yaml_tree, read_yaml_tree
+from tree_sway.core.tree.species import species_named
+from tree_sway.errors import FormatError, SpeciesError, TreeError, TreeSwayError
+from tree_sway.files.trees.yaml.tree_yaml import parse_yaml_tree, read_yaml_tree
 
 DATA = Path(__file__).parents[2] / 'data'
 STEM = 'branches:\n- name: stem\n  nodes: [[0, 0, 0, .1], [0, 0, 1, .1], [0, 0, 2, .08]]\n'
@@ -107,7 +107,7 @@ def test_plain_segments_with_parents():
         (STEM.replace('1, .1', '0, .1'), TreeError,
          "t:3: segment 0 of branch 'stem': zero length"),
         (STEM.replace('.08', '-.08'), TreeError, "t:3: segment 1 of branch 'stem': diameter"),
-        (STEM.replace('2, .08', '1e30, .08'), TreeError, 't:3: segment 1 .* a coordinate of 1e'),
+        (STEM.replace('2, .08', '1e30, .08'), TreeError, 't:3: segment 1 .* too large for metres'),
         (STEM.replace('name: stem', 'parent: stem'), FormatError, r"branches\[0\] has no 'name'"),
         (STEM.replace('nodes', 'x'), FormatError, r"unknown key 'x' in branches\[0\]"),
     ],

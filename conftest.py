@@ -1,0 +1,212 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""For all tests: repeatable Hypothesis, a thread and a ROS domain each, small trees, slopes."""
+
+import contextlib
+import os
+from pathlib import Path
+import random
+import sys
+import tempfile
+
+# Before numpy is loaded: matrices here are small, and idle threads of BLAS that spin slow down the
+# test beside.
+os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
+
+from hypothesis import settings  # noqa: E402
+import numpy as np  # noqa: E402
+import pytest  # noqa: E402
+
+from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
+from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
+from tree_sway.errors import MissingDependencyError  # noqa: E402
+
+# The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
+settings.register_profile('repeatable', derandomize=True, deadline=None)
+settings.register_profile('explore', deadline=None, max_examples=1000)
+settings.load_profile(os.environ.get('HYPOTHESIS_PROFILE', 'repeatable'))
+
+
+LAST_DOMAIN = 101
+"""Of those whose ports are not handed out by the system."""
+
+
+@contextlib.contextmanager
+def _claimed_domain():
+    """
+    Claim a ROS domain that no other test has, of this run or another on this machine.
+
+    It is locked until the end of the block, or of the process whatever it dies of.
+    """
+    if not sys.platform.startswith('linux'):
+        yield random.randint(1, LAST_DOMAIN)
+        return
+    import fcntl
+
+    folder = Path(tempfile.gettempdir()) / 'tree_sway_ros_test_domains'
+    folder.mkdir(mode=0o777, exist_ok=True)
+    # Anywhere first: a domain that was left a moment ago may still hold what it last sent.
+    for domain in random.sample(range(1, LAST_DOMAIN + 1), LAST_DOMAIN):
+        with (folder / str(domain)).open('a') as place:
+            try:
+                fcntl.flock(place, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                continue
+            yield domain
+            return
+    pytest.fail('all ROS domains are taken by other tests on this machine')
+
+
+@pytest.fixture(scope='session')
+def claimed_domain():
+    """Claim a ROS domain, to the end of a block, for fixtures that outlive a test."""
+    return _claimed_domain
+
+
+@pytest.fixture
+def domain():
+    """Claim a ROS domain for one test alone."""
+    pytest.importorskip('rclpy', reason='ROS 2 is not installed')
+    with _claimed_domain() as claimed:
+        yield claimed
+
+
+@pytest.fixture
+def ros_environment(domain):
+    """Environment of a process in a ROS domain for one test alone, on this machine alone."""
+    own = {'ROS_DOMAIN_ID': str(domain), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+    return os.environ | own
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    """Skip what calls kernels where none can be compiled."""
+    if WHY_PLAIN and item.get_closest_marker('compiled'):
+        pytest.skip(f'calls compiled kernels, and {WHY_PLAIN}')
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_makereport(item, call):
+    """Skip what turns out to need them: a model that is refused without."""
+    if not (WHY_PLAIN and call.excinfo and call.excinfo.errisinstance(MissingDependencyError)):
+        return
+    if 'needs compiled kernels' in str(call.excinfo.value):
+        try:
+            pytest.skip(str(call.excinfo.value))
+        except pytest.skip.Exception:
+            call.excinfo = pytest.ExceptionInfo.from_current()
+
+
+def _stem(length=2.0, base=0.02, tip=None, cuts=6, direction=(0.0, 0.0, 1.0), species='broadleaf'):
+    """One straight branch of even taper, cut in equal segments."""
+    along = np.asarray(direction) / np.linalg.norm(direction)
+    nodes = np.linspace(0.0, length, cuts + 1)[:, None] * along
+    thick = np.linspace(base, base if tip is None else tip, cuts + 1)
+    return tree_from_segments(
+        nodes[:-1],
+        nodes[1:],
+        np.stack([thick[:-1], thick[1:]], axis=1),
+        parent=np.arange(-1, cuts - 1),
+        species=species,
+    )
+
+
+class _Sketch:
+    """A tree drawn branch by branch, each an arc of even taper."""
+
+    def __init__(self):
+        self.start, self.end, self.diameter, self.parent, self.branch = [], [], [], [], []
+        self.nodes = []
+
+    def add(self, seat, node, direction, length, base, tip, cuts, sag=0.0):
+        """Add a branch on a node of another (None for the stem); returns its number."""
+        number = len(self.nodes)
+        root = np.zeros(3) if seat is None else self.nodes[seat][1][node]
+        along = np.asarray(direction, float) / np.linalg.norm(direction)
+        u = np.linspace(0.0, 1.0, cuts + 1)[:, None]
+        nodes = root + length * (u * along + sag * u**2 * np.array([0.3, 0.2, -1.0]))
+        thick = np.linspace(base, tip, cuts + 1)
+        first = len(self.start)
+        on = -1 if seat is None else self.nodes[seat][0] + node - 1
+        self.start += list(nodes[:-1])
+        self.end += list(nodes[1:])
+        self.diameter += list(np.stack([thick[:-1], thick[1:]], axis=1))
+        self.parent += [on, *range(first, first + cuts - 1)]
+        self.branch += [number] * cuts
+        self.nodes.append((first, nodes))
+        return number
+
+    def tree(self, **changes):
+        given = {'parent': np.array(self.parent), 'branch': np.array(self.branch)} | changes
+        return tree_from_segments(self.start, self.end, self.diameter, **given)
+
+
+def _fork(fine=1):
+    """Stem, two limbs and a twig, none in one plane, the limbs bent; cut `fine` times finer."""
+    s = _Sketch()
+    stem = s.add(None, 0, (0.05, 0.0, 1.0), 2.0, 0.030, 0.012, 4 * fine, sag=0.05)
+    limb = s.add(stem, 2 * fine, (1.0, 0.3, 0.6), 0.9, 0.014, 0.006, 3 * fine, sag=0.08)
+    s.add(stem, 4 * fine, (-0.5, 0.8, 0.7), 0.8, 0.011, 0.005, 2 * fine)
+    s.add(limb, 2 * fine, (0.4, 1.0, 0.2), 0.4, 0.006, 0.003, 2 * fine, sag=-0.05)
+    return s.tree()
+
+
+def _mirror_fork():
+    """Make a tree that is its own mirror image in the plane y = 0, and each segment's partner."""
+    s = _Sketch()
+    stem = s.add(None, 0, (0.1, 0.0, 1.0), 1.5, 0.02, 0.01, 3)
+    for side in (1.0, -1.0):
+        limb = s.add(stem, 2, (0.4, side, 0.6), 0.7, 0.010, 0.005, 2)
+        s.add(limb, 1, (1.0, 0.5 * side, 0.8), 0.3, 0.005, 0.003, 1)
+    s.add(stem, 3, (-1.0, 0.0, 0.5), 0.5, 0.008, 0.004, 2)
+    tree = s.tree()
+    image = tree.start * [1.0, -1.0, 1.0] + tree.end * [1.0, -1.0, 1.0]
+    gap = np.linalg.norm(image[:, None] - (tree.start + tree.end)[None], axis=2)
+    assert gap.min(axis=1).max() < 1e-12
+    return tree, gap.argmin(axis=1)
+
+
+def _random_tree(seed, n=12):
+    """Segments in random order on earlier ones' ends; returns start, end, diameter, parent."""
+    rng = np.random.default_rng(seed)
+    start, end = np.zeros((n, 3)), np.zeros((n, 3))
+    parent = np.full(n, -1)
+    end[0] = (0.0, 0.0, 1.0)
+    for i in range(1, n):
+        parent[i] = rng.integers(max(0, i - 4), i)
+        start[i] = end[parent[i]]
+        step = rng.normal(size=3) + np.array([0.0, 0.0, 0.5])
+        end[i] = start[i] + rng.uniform(0.1, 0.6) * step / np.linalg.norm(step)
+    diameter = rng.uniform(0.002, 0.02, n)
+    order = rng.permutation(n)
+    place = np.argsort(order)
+    parents = np.where(parent[order] < 0, -1, place[parent[order]])
+    return start[order], end[order], diameter[order], parents
+
+
+def _differences(f, at, h=1e-3):
+    """Jacobian of f by central differences of fourth order, the last axis along `at`."""
+    columns = []
+    for k in range(len(at)):
+        d = np.zeros(len(at))
+        d[k] = h
+        near, far = f(at + d) - f(at - d), f(at + 2 * d) - f(at - 2 * d)
+        columns.append((8.0 * near - far) / (12.0 * h))
+    return np.stack(columns, axis=-1)
+
+
+def _shared(function):
+    name = function.__name__.lstrip('_')
+    return pytest.fixture(scope='session', name=name)(lambda: function)
+
+
+stem = _shared(_stem)
+fork = _shared(_fork)
+mirror_fork = _shared(_mirror_fork)
+random_tree = _shared(_random_tree)
+differences = _shared(_differences)
+
+
+@pytest.fixture(scope='session')
+def sketch():
+    return _Sketch

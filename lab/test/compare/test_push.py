@@ -1,0 +1,68 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A branch pulled by one tenth of the tree's height, beside MuJoCo with every segment solved."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from tree_sway_lab.compare.mujoco_tree import MujocoTree
+from tree_sway_lab.example_trees import forked_tree
+from tree_sway_lab.kinds.kinds import kind_called
+
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.species import Species
+
+WOOD = Species('example', 'example', 8.0e9, 900.0)
+AT = 0.7
+"""Height that is pulled at, as a share of the tree's."""
+
+
+def pulled_segment(tree):
+    """Find the segment at that height below the highest tip."""
+    segment, chain = int(np.argmax(tree.end[:, 2])), []
+    while segment >= 0:
+        chain.append(segment)
+        segment = int(tree.segment_parent[segment])
+    height = tree.start[0, 2] + AT * tree.height
+    return min(chain, key=lambda each: abs(tree.end[each, 2] - height))
+
+
+def settled(model, segment, place, force):
+    """Where MuJoCo has a place of a segment once it is still under a force, (3,)."""
+    model.reset()
+    body, data = model._body[segment + 1], model.data
+    away, before = place - data.xpos[body], np.full(3, np.inf)
+    for _ in range(100):
+        for _ in range(1000):
+            model.blow(np.zeros(3))
+            now = data.xpos[body] + data.xmat[body].reshape(3, 3) @ away
+            data.xfrc_applied[body] += [*force, *np.cross(now - data.xipos[body], force)]
+            model.advance(1.0 / 500.0)
+        if np.linalg.norm(now - before) < 1e-5 * model.tree.height:
+            return now
+        before = now
+    raise AssertionError('it does not come to rest')
+
+
+@pytest.mark.parametrize('name', ['forked', 'leaning', 'palm'])
+def test_a_pull_moves_the_tree_as_every_segment_solved(name):
+    pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
+    tree = forked_tree(0.65, 0.6, generations=3) if name == 'forked' else kind_called(name)
+    truth, segment = MujocoTree(tree, WOOD, 0.6, even=False), pulled_segment(tree)
+    place = 0.5 * (tree.start[segment] + tree.end[segment])
+    along = np.array([1.0, 0.3, 0.0])
+    softness = np.linalg.norm(settled(truth, segment, place, 1e-3 * along) - place) / 1e-3
+    force = 0.1 * tree.height / softness * along
+    moved = settled(truth, segment, place, force) - place
+    assert 0.08 < np.linalg.norm(moved) / tree.height < 0.13
+    for model in (60, 'full'):
+        settings = Settings(model=model, gravity=0.0, damping_ratio=0.5, in_leaf=False)
+        simulator = SwaySimulator(tree, WOOD, settings)
+        for _ in range(1200):
+            simulator.push(segment, force, 1.0)
+            simulator.step((0.0, 0.0, 0.0), 1.0 / 60.0)
+        pose = simulator.place()[segment]
+        half = (0.5 * tree.length[segment], 0.0, 0.0)
+        found = pose[:3] + Rotation.from_quat(pose[3:]).apply(half) - place
+        assert np.linalg.norm(found - moved) < 0.03 * np.linalg.norm(moved)

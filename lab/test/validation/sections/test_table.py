@@ -1,0 +1,41 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The section on the table of winds: what it measures, and what misses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tree_sway_lab.validation.section import Effort
+from tree_sway_lab.validation.sections.table import Departure, departure, LIMIT, measure
+
+OURS = Path(__file__).resolve().parents[3] / 'files' / 'data' / 'tree121.csv'
+
+
+def test_a_tree_that_is_too_far_from_modes_misses(tmp_path: Path) -> None:
+    (tmp_path / 'trees').mkdir()
+    (tmp_path / 'trees' / 'walnut.mtg').touch()
+
+    def each(function, sources):
+        return [
+            Departure(9, [LIMIT + 0.01 * source.endswith('.mtg')] * 4, [0.5] * 4, [0.1] * 4)
+            for source in sources
+        ]
+
+    section = measure(Effort(each, data=tmp_path))
+    *trees, over = section.checks
+    missed = [check.what for check in trees if not check.holds]
+    assert len(trees) == 4
+    assert missed == ['`walnut.mtg`, largest error over motion']
+    assert over.holds
+    assert '| walnut.mtg | 9 | 0.040 | 0.040 | 0.040 | 0.040 | 0.50 | 0.100 |' in section.table
+
+
+@pytest.mark.long
+def test_a_tree_on_its_table_sways_as_its_modes() -> None:
+    found = departure(str(OURS))
+    assert found.branches == 121
+    assert max(found.errors) < LIMIT
+    assert 0.0 < max(found.over_estimates) < 1.0
+    assert max(found.outside) == 0.0

@@ -1,0 +1,55 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What grown trees of ten species look like, bare and in leaf, on one sheet."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from tree_sway.commands.progress import bar
+from tree_sway.core.growth.grow import grow
+from tree_sway.core.leaves.flutter import leaf_poses
+from tree_sway.core.leaves.foliage import leaf_clusters
+from tree_sway.core.tree.species import species_named
+from tree_sway.pictures.plotting import new_figure, save_figure
+from tree_sway.pictures.projection import Camera
+from tree_sway.pictures.tree_drawing import draw_tree, Frame
+
+SPECIES = (
+    'oak', 'beech', 'birch', 'ash', 'sycamore', 'walnut', 'spruce', 'sitka', 'pine', 'douglas_fir',
+)  # fmt: skip
+HEIGHT = 16.0
+"""Of each tree [m]; captions name it."""
+
+_CLUSTERS = 3000
+_FRAME = Frame(-0.51 * HEIGHT, 0.51 * HEIGHT, -0.07 * HEIGHT, 1.08 * HEIGHT)
+
+
+def chart_habits(out_dir: str | Path) -> list[Path]:
+    """
+    Draw ``habits.png``.
+
+    Parameters
+    ----------
+    out_dir
+        Folder to write into; made if it is not there. A file that is there is written over.
+
+    """
+    folder = Path(out_dir)
+    folder.mkdir(parents=True, exist_ok=True)
+    camera = Camera(elevation=0.05)
+    half = len(SPECIES) // 2
+    figure = new_figure(2.9 * half, 13.0)
+    axes = figure.subplots(4, half)
+    for i, key in enumerate(bar(list(SPECIES), 'habits')):
+        tree = grow(key, HEIGHT, rng=np.random.default_rng(1))
+        clusters = leaf_clusters(tree, np.random.default_rng(0), count=_CLUSTERS)
+        leaves = leaf_poses(clusters, tree.rest_poses), clusters.size
+        row, column = 2 * (i // half), i % half
+        for below, worn in enumerate((None, leaves)):
+            draw_tree(axes[row + below, column], tree, tree.start, tree.end, camera, _FRAME, worn)
+        axes[row, column].set_title(species_named(key).title, y=0.98, fontsize=12)
+    figure.subplots_adjust(0.0, 0.0, 1.0, 0.97, 0.0, 0.02)
+    return [save_figure(figure, folder / 'habits.png', 80.0)]

@@ -1,0 +1,97 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The table of winds against all coordinates, on built-in and on scanned trees."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway.core.growth.builtin import BUILTIN_TREES
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.wind.climate import WindClimate
+from tree_sway.files.trees.source import open_tree
+from tree_sway_lab.bench.sizes import against, gusts_and_turns
+from tree_sway_lab.tip_error import record_tips
+from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
+from tree_sway_lab.validation.winds import FRAME
+
+LIMIT = 0.03
+SPEEDS = (2.0, 5.0, 8.0, 12.0)
+"""Mean winds in [m/s]."""
+
+SCANS = ('tree121.csv', 'qsm_archi.csv', 'qsm_treeqsm_v5.mat', 'walnut.mtg')
+"""Files in the folder of data, trees that stand."""
+
+
+class Departure(NamedTuple):
+    """
+    How far one tree on its table is from `full` in each of `SPEEDS`.
+
+    Parameters
+    ----------
+    branches
+        How many it has.
+    errors
+        Root mean square gap of all segments over their motion.
+    over_estimates
+        Root mean square gap of all tips over the error that is estimated for the table.
+    outside
+        Share of steps outside of the table.
+
+    """
+
+    branches: int
+    errors: list[float]
+    over_estimates: list[float]
+    outside: list[float]
+
+
+def measure(effort: Effort) -> Section:
+    """Run both models on every tree, in turbulence with a gust, a slow turn and a sudden one."""
+    folder = effort.data / 'trees' if effort.data else Path()
+    files = [folder / name for name in SCANS if effort.data and (folder / name).is_file()]
+    sources = [*BUILTIN_TREES, *map(str, files)]
+    found = dict(zip(sources, effort.each(departure, sources), strict=True))
+    checks = [
+        Check(f'`{Path(source).name}`, largest error over motion', max(each.errors), high=LIMIT)
+        for source, each in found.items()
+    ]
+    over = [value for each in found.values() for value in each.over_estimates]
+    checks.append(Check('largest error over the estimate of the model', max(over), high=1.0))
+    rows = [
+        [Path(source).name, str(each.branches), *(f'{e:.3f}' for e in each.errors),
+         f'{max(each.over_estimates):.2f}', f'{max(each.outside):.3f}']
+        for source, each in found.items()
+    ]  # fmt: skip
+    text = (
+        'Gap between the default model, all its coordinates shown, and `full` over the motion of '
+        'all segments, in 20 s of simulated wind with a gust of 1.6 times, a slow turn and a '
+        'sudden one by 90 degrees; and the gap of the tips over the estimated error.'
+    )
+    head = ['tree', 'branches', *(f'{speed:g} m/s' for speed in SPEEDS)]
+    head += ['most over estimate', 'most steps outside of the table']
+    return Section('The table of winds', text, checks, markdown_table(head, rows))
+
+
+def departure(source: str) -> Departure:
+    """Measure a built-in tree or a file."""
+    opened = open_tree(source)
+    tree, species = opened.tree, opened.species
+    tabled = AdaptiveSimulator(tree, species, tolerance=0.0)
+    full = SwaySimulator(tree, species, model='full')
+    errors, over, outside = [], [], []
+    for speed in SPEEDS:
+        wind, before = gusts_and_turns(speed), tabled.bank.oscillators.n_outside
+        errors.append(against(tabled, full, wind))
+        outside.append((tabled.bank.oscillators.n_outside - before) / len(wind))
+        tabled.reset()
+        full.reset()
+        gap = record_tips(tabled, tree, wind, FRAME) - record_tips(full, tree, wind, FRAME)
+        metres = float(np.sqrt(np.square(gap).sum(axis=2).mean()))
+        estimate = tabled.estimates(WindClimate.of_samples(wind, 1.0 / FRAME))[-1]
+        over.append(metres / estimate.error)
+    return Departure(tree.n_branches, errors, over, outside)

@@ -1,0 +1,129 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+One model on one kind of tree in one wind: error, roughness and the first frame after a step.
+
+The three are given together: a model can be near the truth and shake, or be smooth and wrong.
+
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+import math
+import time
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.simulator.protocol import TreeSimulator
+from tree_sway.core.tree.tree import Tree
+from tree_sway_lab.kinds.kinds import kind_called
+from tree_sway_lab.model_names import simulator_called
+from tree_sway_lab.tip_error import record_tips, roughness, tip_error
+from tree_sway_lab.validation.truth import FINE, Fineness, SETTINGS, true_tips, WOOD
+from tree_sway_lab.validation.winds import FRAME, STEP_FRAME, wind_called
+
+SECONDS = 6.0
+"""Of turbulence."""
+
+
+class Trial(NamedTuple):
+    """
+    What a model did.
+
+    Parameters
+    ----------
+    kind, wind, model
+        What was run.
+    error
+        Distance of tips from the truth's over their motion from rest, root mean square, in [-].
+    roughness
+        Second difference of the tips over time, root mean square, over the truth's, in [-].
+    jump, true_jump
+        Largest move of a tip in the first frame after the wind rises from 5 to 10 m/s in [m]; nan
+        in other winds.
+    stride, true_stride
+        Largest move of a tip in any frame in [m].
+    cost
+        Time to step and to place a frame in [us], the median.
+
+    """
+
+    kind: str
+    wind: str
+    model: str
+    error: float
+    roughness: float
+    jump: float
+    true_jump: float
+    stride: float
+    true_stride: float
+    cost: float
+
+
+def tried(kind: str, wind: str, model: str, fineness: Fineness = FINE) -> Trial:
+    """
+    Run a model beside the truth, as long as there is a truth (`true_tips`).
+
+    Parameters
+    ----------
+    kind
+        A kind of tree, as of `kind_called`.
+    wind
+        A wind, as of `wind_called`.
+    model
+        A model, as of `simulator_called`.
+    fineness
+        Of the truth.
+
+    """
+    tree, blowing = kind_called(kind), wind_called(wind, SECONDS)
+    truth = true_tips(tree, blowing, fineness)
+    simulator = _simulator(kind, model)
+    simulator.reset()
+    tips = record_tips(simulator, tree, blowing[: len(truth)], FRAME)
+    strides, true_strides = _strides(tips), _strides(truth)
+    jumps = math.nan, math.nan
+    if wind == 'step' and len(strides) >= STEP_FRAME:
+        jumps = float(strides[STEP_FRAME - 1]), float(true_strides[STEP_FRAME - 1])
+    return Trial(
+        kind,
+        wind,
+        model,
+        tip_error(tree, tips, truth),
+        roughness(tips, truth),
+        *jumps,
+        float(strides.max()),
+        float(true_strides.max()),
+        frame_cost(simulator, tree, blowing),
+    )
+
+
+@lru_cache(maxsize=4)
+def _simulator(kind: str, model: str) -> TreeSimulator:
+    return judged_simulator(model, kind_called(kind))
+
+
+def judged_simulator(model: str, tree: Tree) -> TreeSimulator:
+    """Make a simulator of a tree of `WOOD` on a model, as of `simulator_called`."""
+    return simulator_called(model, tree, WOOD, SETTINGS)
+
+
+def frame_cost(simulator: TreeSimulator, tree: Tree, wind: Floats) -> float:
+    """Time to step and to place a frame in [us], the median of 200."""
+    poses = np.empty((tree.n_segments, 7))
+    spent = []
+    for blowing in wind[:200]:
+        begun = time.perf_counter()
+        simulator.step(blowing, FRAME)
+        simulator.place(poses)
+        spent.append(time.perf_counter() - begun)
+    return 1e6 * float(np.median(spent))
+
+
+def _strides(tips: Floats) -> Floats:
+    """Largest move of a tip in each frame but the first in [m], (t - 1,)."""
+    out: Floats = np.linalg.norm(np.diff(tips, axis=0), axis=2).max(axis=1)
+    return out

@@ -1,0 +1,286 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The command line: what is found, what is refused, and how it says so."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+import subprocess
+import sys
+import warnings
+
+import pytest
+
+from tree_sway.commands import cli
+
+#: All commands but those of the laboratory.
+ALL, _ = cli._table('')
+
+
+def run(*arguments: str) -> tuple[int, str]:
+    """Exit code of a command line, whether it returns or raises it."""
+    try:
+        return cli.main(arguments), ''
+    except SystemExit as error:
+        return int(error.code or 0), ''
+
+
+def one_line(text: str) -> str:
+    """Return the only line of a text."""
+    lines = text.strip().splitlines()
+    assert len(lines) == 1, text
+    return lines[0]
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'expected'),
+    [
+        ([], 'required: COMMAND'),
+        (['sway'], "invalid choice: 'sway'"),
+        (['dmeo'], "did you mean 'demo'?"),
+        (['demo', '--sped', '3'], "unrecognized arguments: --sped; did you mean '--speed'?"),
+        (['plot', 'benjamina', '--model', 'ful'], "did you mean 'full'?"),
+        (['info', 'oak'], 'it is a species: tree-sway grow --species oak --height 10 -o oak.yaml'),
+        (['info', 'x' * 300], 'File name too long'),
+        (['info'], 'required: TREE'),
+        (['info', 'nope'], "no tree 'nope'; give a file, or one of benjamina"),
+        (['info', 'benjamin'], "did you mean 'benjamina'?"),
+        (['info', 'benjamina', '--species', 'elm'], "unknown species 'elm'; use one of: alder"),
+        (['info', 'benjamina', '--species', 'brich'], "did you mean 'birch'? use one of: alder"),
+        (['info', 'benjamina', '--modulus', '-1'], '--modulus: -1 is not positive'),
+        (['info', 'benjamina', '--density', 'nan'], '--density: nan is not positive'),
+        (['info', 'benjamina', '--count', '0'], '--count: 0 frequencies'),
+        (['info', 'benjamina', '--seed', '-1'], 'seed -1 is negative'),
+        (['plot', '--seconds', '0'], '--seconds: 0 s'),
+        (['plot', '--wind', '/no/such.csv'], '/no/such.csv: no such file'),
+        (
+            ['grow', '--species', 'oak', '--height', 'tall', '-o', 'x'],
+            "invalid float value: 'tall'",
+        ),
+        (['grow', '--species', 'oak', '--height', '12', '-o', 'x.doc'], "cannot write '.doc'"),
+        (['lab', 'bench', 'jog'], "invalid choice: 'jog'"),
+        (['lab', 'bench', 'step', '--rounds', '0'], '--rounds: 0'),
+        (['demo', '--seconds', '-1'], '--seconds: -1'),
+        (['lab', 'docs', '/no/README.md'], '/no/README.md: No such file'),
+    ],
+)
+def test_what_the_user_can_mend_is_one_line_and_exit_code_2(
+    arguments: list[str], expected: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, _ = run(*arguments)
+    out, err = capsys.readouterr()
+    assert code == 2
+    assert out == ''
+    line = one_line(err)
+    assert line.startswith('tree-sway')
+    assert expected in line
+
+
+def test_help_and_version_need_no_module(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run('--help')[0] == 0
+    text = capsys.readouterr().out
+    listed = {line.split()[0] for line in text.splitlines() if line.startswith('    ')}
+    assert set(ALL) <= listed
+    assert run('--version')[0] == 0
+    assert capsys.readouterr().out.count('.') == 2
+
+
+@pytest.mark.parametrize('command', ALL)
+def test_every_command_has_its_module_and_help(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(command, '--help')[0] == 0
+    text = ' '.join(capsys.readouterr().out.split())
+    assert f'usage: tree-sway {command}' in text
+    summary, example, _ = ALL[command]
+    assert f'{summary[0].upper()}{summary[1:]}.' in text  # DDS and MuJoCo keep their capitals
+    assert f'example: tree-sway {example}' in text
+
+
+@pytest.mark.parametrize('command', ALL)
+def test_the_example_of_a_command_is_one_of_it(command: str) -> None:
+    example = ALL[command].example.split()
+    assert cli._parser(command, ALL, '').parse_args(example).command == command
+
+
+@pytest.mark.parametrize(
+    ('module', 'cure'),
+    [
+        ('numba', 'pip install "tree_sway_ros[fast]"'),
+        ('serial.tools', 'pip install "tree_sway_ros[serial]"'),
+        ('PIL', 'pip install "tree_sway_ros[plot]"'),
+        ('geometry_msgs.msg', 'source a ROS 2 installation'),
+        ('left_pad', 'install tree_sway_ros again'),
+    ],
+)
+def test_the_cure_for_a_missing_module_is_from_our_own_table(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], module: str, cure: str
+) -> None:
+    def missing(_name: str) -> object:
+        raise ModuleNotFoundError(f"No module named '{module}'", name=module)
+
+    monkeypatch.setattr(cli.importlib, 'import_module', missing)
+    monkeypatch.setattr(cli, '_parser', lambda *_: argparse.Namespace(parse_args=lambda given:
+        argparse.Namespace(quiet=False, command='info')))  # fmt: skip
+    assert cli.main(['info', 'benjamina']) == 2
+    printed = one_line(capsys.readouterr().err)
+    assert cure in printed
+    assert f'pip install {module.partition(".")[0]}' not in printed
+
+
+def test_every_extra_that_is_advised_is_one_of_the_package() -> None:
+    text = (Path(__file__).parents[2] / 'setup.py').read_text(encoding='utf-8')
+    for extra in {*cli.EXTRAS.values(), 'ros'}:
+        assert f"    '{extra}': [" in text
+
+
+def test_a_warning_is_a_note_on_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Slow:
+        """A command that warns."""
+
+        @staticmethod
+        def add_arguments(parser: object) -> None:
+            """None."""
+
+        @staticmethod
+        def run(arguments: object) -> int:
+            warnings.warn('numba is\nnot installed', RuntimeWarning, stacklevel=1)
+            return 0
+
+    monkeypatch.setattr(cli, '_module', lambda command: Slow)
+    assert cli.main(['info']) == 0
+    assert capsys.readouterr().err == 'note: numba is not installed\n'
+
+
+def test_a_missing_module_of_ours_is_a_fault_and_not_hidden(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def missing(name: str) -> object:
+        raise ModuleNotFoundError('gone', name='tree_sway.core.gone')
+
+    monkeypatch.setattr(cli, '_module', missing)
+    with pytest.raises(ModuleNotFoundError):
+        cli.main(['info', 'benjamina'])
+
+
+def test_quiet_leaves_errors_alone(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    out = str(tmp_path / 'tree.obj')
+    assert cli.main(['convert', 'goldcrest', '-o', out, '--quiet']) == 0
+    assert capsys.readouterr().err == ''
+    assert cli.main(['info', 'nope', '--quiet']) == 2
+    assert "no tree 'nope'" in one_line(capsys.readouterr().err)
+
+
+@pytest.mark.parametrize('command', [['convert', 'goldcrest'], ['plot', 'goldcrest']])
+def test_a_file_that_is_there_is_not_written_over_in_silence(
+    command: list[str], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / 'tree.obj'
+    path.write_text('mine')
+    assert cli.main([*command, '-o', str(path)]) == 2
+    assert 'is there already; name another file, or write over it' in capsys.readouterr().err
+    assert path.read_text() == 'mine'
+
+
+def test_a_file_is_written_over_with_force(tmp_path: Path) -> None:
+    path = tmp_path / 'tree.obj'
+    path.write_text('mine')
+    assert cli.main(['convert', 'goldcrest', '-o', str(path), '--force']) == 0
+    assert path.read_text() != 'mine'
+
+
+def run_process(command: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a line of bash in which $TREE_SWAY is this command line."""
+    return subprocess.run(
+        ['bash', '-o', 'pipefail', '-c', command],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, 'TREE_SWAY': f'{sys.executable} -m tree_sway.commands.cli'}
+        | environment,
+    )
+
+
+@pytest.mark.skipif(not Path('/dev/full').exists(), reason='needs the device /dev/full')
+def test_a_full_disk_under_standard_output_is_one_line() -> None:
+    result = run_process('$TREE_SWAY info goldcrest --quiet > /dev/full')
+    assert result.returncode == 2
+    assert 'No space left on device' in one_line(result.stderr)
+
+
+@pytest.mark.parametrize('where', ['>&-', '2>&-', '>&- 2>&-'])
+def test_closed_output_is_no_error(where: str) -> None:
+    result = run_process(f'$TREE_SWAY info goldcrest {where}')
+    assert result.returncode == 0
+    assert 'Traceback' not in result.stderr
+
+
+def test_letters_that_a_terminal_lacks_are_escaped(tmp_path: Path) -> None:
+    plain = {'LC_ALL': 'C', 'PYTHONUTF8': '0', 'PYTHONCOERCECLOCALE': '0'}
+    name = tmp_path / 'b\u00e4um.yaml'
+    result = run_process(f"$TREE_SWAY convert goldcrest -o '{name}'", **plain)
+    assert result.returncode == 0, result.stderr
+    assert 'um.yaml: goldcrest' in result.stdout
+    result = run_process(f"$TREE_SWAY info -q '{name}'", **plain, PYTHONIOENCODING='ascii')
+    assert result.stderr == ''
+
+
+def test_the_shell_completes_names(tmp_path: Path) -> None:
+    pytest.importorskip('argcomplete', reason='needs argcomplete')
+    line = 'tree-sway plot --mod'
+    asked = {
+        '_ARGCOMPLETE': '1',
+        'COMP_LINE': line,
+        'COMP_POINT': str(len(line)),
+        '_ARC_DEBUG': '',
+    }
+    result = run_process('$TREE_SWAY 8>&1 9>/dev/null', **asked, IFS='\013')
+    assert {word.strip() for word in result.stdout.split('\013')} == {'--model', '--modulus'}
+
+
+def test_a_reader_that_goes_away_is_no_error() -> None:
+    command = f'{sys.executable} -m tree_sway.commands.cli info goldcrest --json --quiet | head -1'
+    result = subprocess.run(
+        ['bash', '-o', 'pipefail', '-c', command], capture_output=True, text=True, check=False
+    )
+    assert result.stdout == '{\n'
+    assert result.stderr == ''
+
+
+@pytest.mark.parametrize('name', ['~nosuchuser/tree.yaml', 'x' * 300 + '.yaml', 'a\0b.yaml'])
+def test_a_name_that_is_no_path_is_one_line(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in (
+        ('info', name),
+        ('convert', 'benjamina', '-o', name),
+        ('info', 'benjamina', '--species', name),
+        ('calibrate', 'benjamina', '--record', name, '-o', 'x.yaml'),
+    ):
+        code, _ = run(*arguments)
+        assert code == 2
+        assert one_line(capsys.readouterr().err)
+
+
+def test_names_outside_ascii_on_an_ascii_terminal(tmp_path: Path) -> None:
+    result = subprocess.run(
+        [
+            sys.executable,
+            '-m',
+            'tree_sway.commands.cli',
+            'convert',
+            'benjamina',
+            '-o',
+            'Bäume.obj',
+        ],
+        cwd=tmp_path,
+        env={**os.environ, 'PYTHONIOENCODING': 'ascii'},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (result.returncode, result.stderr) == (0, '')
+    assert r'B\xe4ume.obj: benjamina' in result.stdout
+    assert (tmp_path / 'Bäume.obj').is_file()

@@ -1,0 +1,177 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The commands that write files: plot, grow, convert."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tree_sway.commands import cli
+from tree_sway.files.trees.source import open_tree
+
+PNG = b'\x89PNG\r\n\x1a\n'
+SEEDLING = str(Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml')
+
+
+@pytest.fixture
+def wind_file(tmp_path: Path) -> Path:
+    """Six seconds of a wind that freshens from the west."""
+    path = tmp_path / 'wind.csv'
+    rows = [f'{0.1 * k:.1f},{3 + 0.05 * k:.2f},0.5,0' for k in range(60)]
+    path.write_text('\n'.join(['time,u,v,w', *rows]) + '\n')
+    return path
+
+
+def test_plot_draws_wind_and_tip(
+    tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    picture = tmp_path / 'sway.png'
+    assert cli.main(['plot', 'goldcrest', '--wind', str(wind_file), '-o', str(picture)]) == 0
+    assert picture.read_bytes().startswith(PNG)
+    assert capsys.readouterr().out == f'{picture}\n'
+
+
+@pytest.mark.parametrize('arguments', [['goldcrest', '--portrait'], ['--portrait', SEEDLING]])
+def test_plot_tree_draws_the_tree(tmp_path: Path, arguments: list[str]) -> None:
+    picture = tmp_path / 'tree.png'
+    assert cli.main(['plot', *arguments, '--leaves', 'on', '-o', str(picture)]) == 0
+    assert picture.read_bytes().startswith(PNG)
+
+
+def test_plot_refuses_a_wind_too_short_to_draw(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / 'wind.csv'
+    path.write_text('time,u,v,w\n0,1,0,0\n0.01,1,0,0\n')
+    arguments = ['plot', SEEDLING, '--wind', str(path), '-o', str(tmp_path / 'x.png')]
+    assert cli.main(arguments) == 2
+    assert 'wind.csv: too short a wind' in capsys.readouterr().err
+
+
+def test_plot_refuses_a_format_it_cannot_draw(
+    tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ['plot', SEEDLING, '--wind', str(wind_file), '-o', str(tmp_path / 'x.doc')]
+    assert cli.main(arguments) == 2
+    assert "'.doc' is no picture format" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ('diameter', 'warning'),
+    [('0.18', 'cannot stand'), ('0.2', 'near to bending over'), ('0.4', '')],
+)
+def test_a_stem_that_its_crown_nearly_bends_over_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], diameter: str, warning: str
+) -> None:
+    size = ['--height', '15', '--diameter', diameter, '-o', str(tmp_path / 'willow.yaml')]
+    assert cli.main(['grow', '--species', 'Salix alba', *size]) == 0
+    printed = capsys.readouterr().err
+    assert warning in printed
+    assert bool(printed) == bool(warning)
+
+
+def test_a_grown_tree_is_as_high_as_asked_for(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / 'spruce.yaml'
+    command = ['grow', '--species', 'spruce', '--height', '7', '--seed', '2', '-o', str(path)]
+    assert cli.main(command) == 0
+    assert 'spruce, ' in capsys.readouterr().out
+    tree = open_tree(path).tree
+    assert tree.height == pytest.approx(7.0)
+    assert tree.species == 'spruce'
+
+
+def test_converting_keeps_the_tree(tmp_path: Path) -> None:
+    first, second = tmp_path / 'a.yaml', tmp_path / 'b.yaml'
+    assert cli.main(['convert', 'goldcrest', '--density', '777', '-o', str(first)]) == 0
+    assert cli.main(['convert', str(first), '-o', str(second)]) == 0
+    built_in, again = open_tree('goldcrest'), open_tree(second)
+    for name in ('start', 'end', 'base_diameter', 'tip_diameter', 'segment_parent'):
+        assert np.array_equal(getattr(again.tree, name), getattr(built_in.tree, name)), name
+    assert again.species.density == 777.0
+
+
+def test_a_folder_that_is_not_there_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(['convert', 'goldcrest', '-o', '/no/such/folder/x.yaml']) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert '/no/such/folder/x.yaml' in line
+
+
+def test_a_tree_that_sways_by_a_skin_or_by_weights(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for way in ('skin', 'morph'):
+        path = tmp_path / f'{way}.glb'
+        arguments = ['convert', SEEDLING, '--leaves', 'on', '--sway', way, '-o', str(path)]
+        assert cli.main(arguments) == 0
+        assert path.read_bytes().startswith(b'glTF')
+        assert (b'"skins"' in path.read_bytes()) == (way == 'skin')
+        assert (b'"targetNames"' in path.read_bytes()) == (way == 'morph')
+        assert b'"leaves"' in path.read_bytes()
+    assert 'weights; in a breeze that moves it by' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        ([SEEDLING, '-o', 'tree.obj', '--sway'], "--sway: 'tree.obj' cannot sway; write a .glb"),
+        (['FOREST', '-o', 'trees.glb', '--sway', 'morph'], '--sway: a forest by morph targets'),
+    ],
+)
+def test_what_cannot_sway(
+    tmp_path: Path, arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    forest = tmp_path / 'forest.yaml'
+    two = ', '.join(f'{{name: {name}, tree: {SEEDLING}}}' for name in 'ab')
+    forest.write_text(f'trees: [{two}]\n')
+    given = [str(forest) if word == 'FOREST' else word for word in arguments]
+    assert cli.main(['convert', *given]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_simulated_tree_is_a_table_with_units(
+    tmp_path: Path, wind_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tables = [tmp_path / f'sway{suffix}' for suffix in ('.csv', '.json')]
+    for path in tables:
+        wind = ['--wind', str(wind_file), '--branch', 'stem', '--seconds', '2']
+        assert cli.main(['simulate', SEEDLING, *wind, '-o', str(path)]) == 0
+    assert capsys.readouterr().out.startswith(f'{tables[0]}: SwayRecord of seedling')
+    head, *rows = tables[0].read_text().splitlines()
+    assert head.split(',')[:2] == ['time [s]', 'wind_x [m/s]']
+    assert 'stem tip_x [m]' in head
+    assert len(rows) == 120
+    columns = json.loads(tables[1].read_text())
+    assert [float(row.split(',')[-1]) for row in rows] == columns['strain_north [-]']
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        (['-o', 'x.xls'], "'.xls' is no table; end it with one of: .csv, .parquet, .json"),
+        (['--branch', 'stam', '-o', 'x.csv'], "no branch 'stam'; did you mean 'stem'?"),
+    ],
+)
+def test_what_cannot_be_simulated(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(['simulate', SEEDLING, *arguments]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_what_was_made_of_a_station_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / 'station.csv'
+    rows = [f'{60 * k},{4 + k % 3},270,{8 + k % 3}' for k in range(6)]
+    path.write_text('\n'.join(['time,speed,direction,gust', *rows, '400,x,270,8']))
+    arguments = ['simulate', SEEDLING, '--wind', str(path), '--seconds', '1']
+    assert cli.main([*arguments, '-o', str(tmp_path / 'sway.csv')]) == 0
+    notes = capsys.readouterr().err
+    assert 'turbulence is simulated about them by their gusts, seed 0' in notes
+    assert "1 rows refused; line 8: speed is 'x'" in notes

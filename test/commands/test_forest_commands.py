@@ -1,0 +1,94 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Commands that take a forest as they take a tree, and options of readers."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tree_sway.commands import cli
+from tree_sway.files.trees.source import open_scene
+
+SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
+SCAN = SEEDLING.parent / 'fork.treeqsm23.txt'
+
+
+@pytest.fixture
+def forest(tmp_path: Path) -> str:
+    path = tmp_path / 'glade.yaml'
+    path.write_text(
+        f'trees:\n- {{name: a, tree: {SEEDLING}, leaf_on: true}}\n- {{name: b, tree: {SEEDLING}, '
+        f'x: 3, species: birch}}\n'
+    )
+    return str(path)
+
+
+def test_info_sums_up(forest: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(['info', forest, '--json']) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts['segments'] == sum(tree['segments'] for tree in facts['trees']) == 12
+    assert facts['mass'] == pytest.approx(sum(tree['mass'] for tree in facts['trees']))
+    assert [tree['in_leaf'] for tree in facts['trees']] == [True, False]
+    assert [tree['species'] for tree in facts['trees']] == ['oak', 'birch']
+    assert facts['trees'][1]['place'] == {'x': 3.0, 'y': 0.0, 'z': 0.0, 'yaw': 0.0}
+    assert cli.main(['info', forest]) == 0
+    text = capsys.readouterr().out
+    assert '2 trees of 2 kinds, 8 branches, 12 segments' in text
+    assert text.count(' Hz') == 2
+
+
+@pytest.mark.parametrize(
+    'arguments', [['--portrait', '{}'], ['{}', '--seconds', '1', '--model', 'branch']]
+)
+def test_plot_draws_it(forest: str, tmp_path: Path, arguments: list[str]) -> None:
+    pytest.importorskip('matplotlib')
+    picture = tmp_path / 'glade.png'
+    arguments = [each.format(forest) for each in arguments]
+    assert cli.main(['plot', *arguments, '--leaves', '-o', str(picture)]) == 0
+    assert picture.stat().st_size > 5000
+
+
+def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -> None:
+    out = tmp_path / 'glade.obj'
+    assert cli.main(['convert', forest, '-o', str(out)]) == 0
+    objects = [line[2:] for line in out.read_text().splitlines() if line.startswith('o ')]
+    assert objects == ['_'.join(name.split()) for name in open_scene(forest).tree.segment_names]
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        (['convert', '{}', '-o', 'x.yaml'], 'a forest as the YAML of one tree'),
+        (['info', '{}', '--modulus', '1e9'], 'modulus or density for a whole forest'),
+        (['info', '{}', '--option', 'merge_below=1'], "option 'merge_below' for a forest"),
+        (['lab', 'compare', '{}'], 'a forest, where one tree is asked for'),
+        (['info', str(SCAN), '--option', 'up'], 'write NAME=VALUE'),
+        (
+            ['info', str(SCAN), '--option', 'merge_below=x'],
+            "option merge_below is 'x'; give a number",
+        ),
+        (['info', str(SCAN), '--option', 'tapper=true'], "no option 'tapper'; it has: "),
+        (['info', 'benjamina', '--option', 'up=z'], "option 'up' for a built-in tree"),
+    ],
+)
+def test_what_cannot_be_says_why(
+    forest: str, arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main([each.format(forest) for each in arguments]) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count('\n') == 1
+
+
+def test_twigs_of_a_scan_are_made_thin(capsys: pytest.CaptureFixture[str]) -> None:
+    volumes = []
+    for option in ([], ['--option', 'twig_diameter=0.001', '--option', 'species=oak']):
+        assert cli.main(['info', str(SCAN), '--json', *option]) == 0
+        facts = json.loads(capsys.readouterr().out)
+        volumes.append(facts['volume'])
+    assert facts['species'] == 'oak'
+    assert any('tapers to 0.001 m' in note for note in facts['notes'])
+    assert volumes[1] < volumes[0]

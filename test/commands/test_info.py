@@ -1,0 +1,122 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What `tree-sway info` says, against what is known of the tree."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from tree_sway_lab.bench.bench_tree import bench_tree
+
+from tree_sway.commands import cli
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.files.export.tree_export import write_tree
+
+MODULUS, DENSITY = 8e9, 900.0
+
+
+def facts(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]:
+    """Return what the command says of a tree, for programs."""
+    assert cli.main(['info', *arguments, '--json']) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert isinstance(found, dict)
+    return found
+
+
+def write_pole(path: Path, length: float, diameter: float, n: int = 20) -> str:
+    """Write a clamped uniform rod, leaning a little to the east."""
+    along = np.array([0.2, 0.0, 1.0]) / np.hypot(0.2, 1.0)
+    nodes = np.outer(np.linspace(0.0, length, n + 1), along)
+    write_tree(path, tree_from_segments(nodes[:-1], nodes[1:], np.full(n, diameter)))
+    return str(path)
+
+
+def test_a_clamped_rod_has_the_frequency_of_the_books(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Uniform cantilever: w = 3.516 sqrt(EI / rho A L^4) (Blevins 1979, table 8-1)."""
+    length, diameter = 3.0, 0.05
+    path = write_pole(tmp_path / 'pole.yaml', length, diameter)
+    wood = ['--modulus', str(MODULUS), '--density', str(DENSITY), '--gravity', 'off']
+    found = facts(capsys, path, *wood, '--count', '2')
+    radius_of_gyration = diameter / 4.0
+    wave = np.sqrt(MODULUS / DENSITY) * radius_of_gyration / length**2
+    assert found['frequencies'] == pytest.approx([3.516 * wave / (2 * np.pi)] * 2, rel=0.01)
+    first, second = np.array([mode['axis'] for mode in found['modes']])
+    along = np.array([0.2, 0.0, 1.0]) / np.hypot(0.2, 1.0)
+    assert [first @ along, second @ along, first @ second] == pytest.approx([0.0] * 3, abs=1e-4)
+    assert found['mass'] == pytest.approx(DENSITY * np.pi / 4 * diameter**2 * length)
+    assert found['breast_height_diameter'] == pytest.approx(diameter)
+
+
+def test_its_own_weight_makes_a_tree_softer(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write_pole(tmp_path / 'pole.yaml', 8.0, 0.05)
+    with_weight = facts(capsys, path, '--gravity', 'on')['frequencies'][0]
+    without = facts(capsys, path, '--gravity', 'off')['frequencies'][0]
+    assert with_weight < 0.99 * without
+
+
+def test_a_tree_that_cannot_stand_still_tells_its_size(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write_pole(tmp_path / 'pole.yaml', 30.0, 0.02)
+    found = facts(capsys, path)
+    assert found['height'] == pytest.approx(30.0 / np.hypot(0.2, 1.0))
+    assert found['gravity'] == 0.0
+    assert 'buckles under its own weight' in found['notes'][-1]
+    assert found['frequencies'][:2] == pytest.approx([0.0098, 0.0098], rel=0.01)
+
+
+def test_natural_modes_are_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / 'bench.yaml'
+    write_tree(path, bench_tree())
+    found = facts(capsys, str(path), '--count', '6')
+    assert (found['branches'], found['segments']) == (121, 726)
+    assert len(found['frequencies']) == 6
+    assert found['frequencies'] == sorted(found['frequencies'])
+    for mode in found['modes']:
+        assert np.linalg.norm(mode['axis']) == pytest.approx(1.0, abs=1e-5)
+        assert mode['damping_ratio'] == pytest.approx(0.04)
+
+
+def test_leaves_weigh_and_slow(capsys: pytest.CaptureFixture[str]) -> None:
+    bare = facts(capsys, 'goldcrest', '--count', '1', '--leaves', 'off')
+    leafy = facts(capsys, 'goldcrest', '--count', '1')
+    assert leafy['mass'] > bare['mass']
+    assert leafy['frequencies'][0] < bare['frequencies'][0]
+    assert leafy['modes'][0]['damping_ratio'] > bare['modes'][0]['damping_ratio']
+
+
+def test_the_text_says_the_same(capsys: pytest.CaptureFixture[str]) -> None:
+    found = facts(capsys, 'goldcrest')
+    assert cli.main(['info', 'goldcrest']) == 0
+    text = capsys.readouterr().out
+    assert f'{found["branches"]} branches, {found["segments"]} segments' in text
+    assert f'{found["frequencies"][0]:.3f}' in text
+    assert 'an estimate' in text
+
+
+@pytest.mark.parametrize(
+    ('option', 'cure'),
+    [
+        (('--modulus', '9.4'), '9.4 GPa are --modulus 9.4e+09'),
+        (('--density', '0.95'), '0.95 g/cm^3 are --density 950'),
+    ],
+)
+def test_wood_in_another_unit_is_refused(
+    capsys: pytest.CaptureFixture[str], option: tuple[str, str], cure: str
+) -> None:
+    assert cli.main(['info', 'goldcrest', *option]) == 2
+    assert cure in capsys.readouterr().err
+
+
+def test_what_is_odd_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    assert facts(capsys, 'goldcrest')['warnings'] == []
+    odd = facts(capsys, 'goldcrest', '--modulus', '1e11')['warnings']
+    assert [each.split(',')[0] for each in odd] == ['a modulus of 100 GPa']

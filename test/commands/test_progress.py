@@ -1,0 +1,57 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What is shown while a command works: nothing for short waits, a bar or lines for long ones."""
+
+from __future__ import annotations
+
+import io
+import sys
+
+import pytest
+
+from tree_sway.commands import progress
+
+
+class Terminal(io.StringIO):
+    """A terminal that remembers what was written."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_short_wait_shows_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert list(progress.bar(range(5), 'working')) == [0, 1, 2, 3, 4]
+    with progress.waiting('working'):
+        pass
+    assert capsys.readouterr().err == ''
+
+
+def test_a_long_wait_without_a_terminal_shows_lines(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    clock = iter(range(0, 100, 4))
+    monkeypatch.setattr(progress.time, 'monotonic', lambda: next(clock))
+    assert len(list(progress.bar(range(7), 'working'))) == 7
+    assert capsys.readouterr().err.splitlines() == [f'working: {n} of 7' for n in (0, 3, 6)]
+
+
+def test_a_long_wait_on_a_terminal_shows_a_bar(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip('tqdm')
+    terminal = Terminal()
+    monkeypatch.setattr(sys, 'stderr', terminal)
+    monkeypatch.setattr(progress, 'PATIENCE', 0.0)
+    assert list(progress.bar(range(3), 'working')) == [0, 1, 2]
+    assert 'working:' in terminal.getvalue()
+    assert '/3' in terminal.getvalue()
+
+
+def test_a_wait_that_is_not_counted_is_told(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(progress, 'PATIENCE', 0.0)
+    before = set(progress.threading.enumerate())
+    with progress.waiting('calibrating') as nothing:
+        for thread in set(progress.threading.enumerate()) - before:
+            thread.join()
+    assert nothing is None
+    assert capsys.readouterr().err == 'calibrating ...\n'

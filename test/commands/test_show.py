@@ -1,0 +1,81 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway show`` as a user starts it: a page with a moving tree, and what it refuses."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from pathlib import Path
+import re
+import subprocess
+import sys
+import threading
+
+import pytest
+
+aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
+
+from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.page.protocol import decode_description, decode_frame  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[2]
+SEEDLING = ROOT / 'test' / 'files' / 'data' / 'seedling.yaml'
+DEADLINE = 120.0
+
+
+def test_the_page_is_served_and_the_tree_moves() -> None:
+    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'show', str(SEEDLING)]
+    command += ['--port', '0', '--stand', '2']
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    timer = threading.Timer(DEADLINE, process.kill)
+    timer.start()
+    try:
+        assert process.stdout is not None
+        url = next(found[1] for line in process.stdout if (found := re.search(r'(http\S+)', line)))
+
+        async def look() -> None:
+            async with (
+                aiohttp.ClientSession() as session,
+                session.ws_connect(f'{url}stream') as ws,
+            ):
+                await ws.send_json({'credit': 64})
+                description, states, names = None, set(), []
+                while len(states) < 10:
+                    message = await asyncio.wait_for(ws.receive(), DEADLINE)
+                    if message.type is aiohttp.WSMsgType.TEXT:
+                        hello = json.loads(message.data).get('hello')
+                        names = [each['name'] for each in hello['controls']] if hello else names
+                    elif message.data[:4] == b'TSWD':
+                        description = decode_description(message.data)
+                    else:
+                        states.add(decode_frame(message.data).coordinates.tobytes())
+                assert [tree['name'] for tree in description.header['trees']] == [
+                    'seedling1',
+                    'seedling2',
+                ]
+                assert {'mean_speed', 'model', 'tree', 'pause'} <= set(names)
+
+        asyncio.run(look())
+    finally:
+        timer.cancel()
+        process.kill()
+        process.wait()
+        process.stdout.close()
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'told'),
+    [
+        (['--address', '0.0.0.0'], 'without a token'),
+        (['--port', '70000'], 'port 70000'),
+        (['--stand', '0'], 'a stand of 0'),
+        (['--speed', '400'], 'out of range'),
+        (['--wind', 'no_such.csv'], 'no_such.csv'),
+    ],
+)
+def test_what_cannot_be_served_is_refused_in_words(
+    arguments: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(['show', str(SEEDLING), '--seconds', '0', *arguments]) == 2
+    assert told in capsys.readouterr().err

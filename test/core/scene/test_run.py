@@ -1,0 +1,258 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""One loop steps every live tree: its grid of time, its gate, its wind, its jumps of clocks."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from tree_sway.core.scene.run import LONGEST_JUMP, Run
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.wind.averaging import WindAverage
+from tree_sway.core.wind.gate import WindGate
+from tree_sway.core.wind.intake import WindIntake
+from tree_sway.core.wind.simulated.anemometer import AnemometerModel
+from tree_sway.core.wind.simulated.sensor_faults import SensorFaults
+from tree_sway.errors import ParameterError
+
+SECOND = 10**9
+PERIOD = round(1e9 / 60)
+START = 1_700_000_000 * 10**9 // PERIOD * PERIOD
+TREE = tree_from_segments(
+    [[0, 0, 0], [0, 0, 1], [0, 0, 2]], [[0, 0, 1], [0, 0, 2], [0, 0, 3]], [0.05, 0.04, 0.03]
+)
+
+
+class Recorder:
+    """A simulator that only writes down its steps."""
+
+    def __init__(self, cost=0.0):
+        self.steps = []
+        self.resets = 0
+        self.cost = cost
+
+    simulators = ()
+
+    def step(self, wind, dt):
+        self.steps.append((float(wind[0]), dt))
+        if self.cost:
+            time.sleep(self.cost)
+        return 0
+
+    def place(self, out=None):
+        return out
+
+    def reset(self):
+        self.resets += 1
+
+
+def running(simulator, **options):
+    made = Run(simulator, make_wind=lambda: WindAverage(**options), timer=time.perf_counter)
+    made.restart(START + PERIOD)
+    simulator.resets = 0
+    return made
+
+
+def play(made, lateness):
+    """Drive through ten seconds of wind, by ticks that stand for so many periods in turn."""
+    index, sample = 0, 0
+    for periods in lateness:
+        index += periods
+        now = START + index * PERIOD
+        while START + sample * 50_000_000 <= now:
+            wind = 5.0 + 3.0 * np.sin(0.3 * sample)
+            made.offer(START + sample * 50_000_000, (wind, 0.0, 0.0))
+            sample += 1
+        made.advance(now, delay=0.02, most=periods)
+
+
+def test_each_period_is_a_step():
+    simulator = Recorder()
+    running(simulator).advance(START + 3 * PERIOD)
+    assert [dt for _, dt in simulator.steps] == pytest.approx([1 / 60] * 3, rel=1e-6)
+
+
+def test_late_ticks_leave_no_trace_in_the_motion():
+    poses = []
+    for lateness in ([1] * 600, [4] * 150, [1, 7, 2, 20, 3, 5, 8, 4] * 12):
+        simulator = SwaySimulator(TREE, model='branch')
+        made = running(simulator)
+        made.warm_up()
+        play(made, lateness)
+        poses.append(simulator.place().copy())
+    np.testing.assert_array_equal(poses[0], poses[1])
+    np.testing.assert_array_equal(poses[0], poses[2])
+    assert np.abs(poses[0] - SwaySimulator(TREE).place()).max() > 1e-4
+
+
+def test_a_slow_simulator_takes_one_long_step_instead_of_a_backlog():
+    simulator = Recorder(cost=0.012)
+    made = running(simulator)
+    made._cost = 0.012
+    made.advance(START + 20 * PERIOD)
+    assert [dt for _, dt in simulator.steps] == pytest.approx([20 / 60], rel=1e-6)
+
+
+def test_pausing_stops_the_motion_and_not_the_wind():
+    simulator = Recorder()
+    made = running(simulator)
+    made.is_paused = True
+    play(made, [1] * 60)
+    assert simulator.steps == []
+    assert made.wind_state == 'live'
+
+
+def test_a_restart_forgets_wind_and_motion():
+    simulator = Recorder()
+    made = running(simulator)
+    play(made, [1] * 60)
+    made.offer(START + 10**12, (9.0, 0.0, 0.0))
+    made.restart(START - 10**12)
+    made.advance(START - 10**12)
+    assert simulator.resets == 1
+    assert simulator.steps[-1][0] == 0.0
+    assert made.wind_state == 'none'
+
+
+def test_no_wind_is_calm():
+    simulator = Recorder()
+    made = running(simulator)
+    made.advance(START + PERIOD)
+    assert simulator.steps == [(0.0, pytest.approx(1 / 60, rel=1e-6))]
+    assert made.wind_state == 'none'
+
+
+def test_the_wind_is_held_then_dies():
+    simulator = Recorder()
+    made = running(simulator, timeout=0.5, decay=0.2)
+    play(made, [1] * 60)
+    states, winds = [], []
+    for tick in range(61, 61 + 180):
+        made.advance(START + tick * PERIOD)
+        states.append(made.wind_state)
+        winds.append(simulator.steps[-1][0])
+    assert [s for i, s in enumerate(states) if s not in states[:i]] == [
+        'live',
+        'holding',
+        'decaying',
+        'stale',
+    ]
+    assert abs(winds[-1]) < 1e-3
+    assert np.abs(np.diff(winds)).max() < 1.0
+
+
+def test_requests_are_done_before_the_next_step():
+    made = running(Recorder())
+    done = []
+    made.request(lambda: done.append(1))
+    assert done == []
+    made.advance(START + PERIOD)
+    assert done == [1]
+
+
+def test_warming_up_leaves_a_tree_at_rest():
+    simulator = SwaySimulator(TREE)
+    rest = simulator.place().copy()
+    Run(simulator).warm_up()
+    np.testing.assert_array_equal(simulator.place(), rest)
+
+
+def test_a_jump_of_the_clock_is_no_long_wind():
+    simulator = Recorder()
+    made = running(simulator)
+    made.offer(START, (5.0, 0.0, 0.0))
+    made.advance(START + PERIOD)
+    most = LONGEST_JUMP // PERIOD
+    assert made.advance(START + 60 * SECOND) == most
+    assert made.advance(2**62) == most
+    assert made.clamped == 2
+    assert made.advance(START + 61 * SECOND) == 1  # set back: it begins again
+    assert len(simulator.steps) == 2 * most + 2
+
+
+def test_a_sample_that_says_2038_holds_nothing():
+    simulator = Recorder()
+    made = running(simulator)
+    for tick in range(1, 181):
+        now = START + tick * PERIOD
+        stamp = 2_147_483_647 * SECOND if tick == 60 else now
+        made.offer(stamp, (5.0, 0.0, 0.0), now)
+        assert made.advance(now) == 1
+    assert made.counts.future_stamp == 1
+    assert simulator.steps[-1][0] == pytest.approx(5.0)
+
+
+def largest_moves(seed, gate):
+    """Largest move of the tip per frame [m] in and after a spike of a second, and the winds."""
+    sensor, faults = AnemometerModel(6.0, seed=seed), SensorFaults('spike', 15.0, 1.0)
+    simulator, tips, winds = SwaySimulator(TREE, model=12, damping_ratio=0.05), [], []
+
+    def note(end, wind):
+        tips.append(simulator.tip_displacement)
+        winds.append(wind)
+
+    made = Run(simulator, intake=WindIntake(gate=gate), stepped=note)
+    made.advance(START)
+    for tick in range(round(20 * sensor.rate)):
+        at = tick / sensor.rate
+        for sample in faults.sent(at, START + round(at * SECOND), sensor.sample(tick)):
+            made.offer(sample.stamp, tuple(sample.vector))
+        made.advance(START + round(at * SECOND), may_join=False)
+    assert made.counts.forced == (gate.counts.spike > 0)
+    return np.linalg.norm(np.diff(tips, axis=0), axis=1)[14 * 60 :].max(), np.array(winds)
+
+
+@pytest.mark.parametrize('seed', [0, 1, 2])
+def test_a_spike_of_a_second_jerks_no_tree(seed):
+    moved, winds = largest_moves(seed, WindGate())
+    through, _ = largest_moves(seed, WindGate(max_rate=1e4))
+    print(f'largest move per frame {1e3 * moved:.1f} mm, ungated {1e3 * through:.1f} mm')
+    assert moved < 0.5 * through
+    assert moved < 5e-3
+    assert np.linalg.norm(np.diff(winds[300:], axis=0), axis=1).max() * 60.0 < 45.0
+
+
+def test_a_dropout_is_held_then_fades_and_the_wind_comes_back_without_a_step():
+    simulator = Recorder()
+    made = running(simulator)
+    for tick in range(1, 60 * 30):
+        now = START + tick * PERIOD
+        if tick % 3 == 0 and not 300 < tick < 1200:
+            made.offer(now, (8.0, 0.0, 0.0))
+        made.advance(now)
+    winds = np.array([wind for wind, _ in simulator.steps])
+    assert winds[350] == pytest.approx(8.0)  # held
+    assert 0.0 < winds[1190] < 0.2  # after 13 s of tau 3 s
+    assert winds[-1] == pytest.approx(8.0)
+    assert np.abs(np.diff(winds[10:])).max() < 0.5
+
+
+def test_a_run_goes_on_from_the_memory_of_another_bit_for_bit():
+    runs = [running(SwaySimulator(TREE, model=12)) for _ in '12']
+    play(runs[0], [1] * 200)
+    runs[0].offer(START + 220 * PERIOD, (9.0, 1.0, 0.0))
+    runs[1].simulator.set_state(runs[0].simulator.state())
+    runs[1].recall(*runs[0].memory())
+    for made in runs:
+        for tick in range(201, 300):
+            if tick % 3 == 0 and tick > 220:
+                made.offer(START + tick * PERIOD, (6.0 + 0.01 * tick, 0.0, 0.0))
+            made.advance(START + tick * PERIOD, may_join=False)
+    assert (runs[0].simulator.place() == runs[1].simulator.place()).all()
+
+
+@pytest.mark.parametrize(
+    'broken',
+    [[], [0.0] * 9, [0.0] * 10, ['x'], [[1.0]], [1e300] * 14, None, {}, [0.0] * 13],
+)
+def test_a_memory_that_no_run_has_is_refused(broken):
+    made = running(Recorder())
+    play(made, [1] * 60)
+    before = made.memory()
+    with pytest.raises(ParameterError):
+        made.recall(START, 0, broken, [])
+    assert made.memory() == before

@@ -1,0 +1,69 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Stands dealt over solvers: every tree in one shard, and swaying there as in the whole."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tree_sway.core.scene.shard import dealt
+from tree_sway.errors import ParameterError
+from tree_sway.files.trees.source import open_scene
+
+ROWS = [(4.0 * i, 3.0 * (i % 3), ('pine', 'oak')[i % 2], 1.5 + 0.1 * i) for i in range(7)]
+
+
+@pytest.fixture
+def stand(tmp_path):
+    path = tmp_path / 'stand.csv'
+    lines = [','.join(map(str, row)) for row in ROWS]
+    path.write_text('\n'.join(['x,y,species,height', *lines]) + '\n')
+    return open_scene(str(path))
+
+
+@pytest.mark.parametrize('shards', [1, 2, 3, 7])
+def test_every_tree_is_in_one_shard_in_the_order_of_the_file(stand, shards):
+    parts = [dealt(stand, shard, shards) for shard in range(shards)]
+    assert [each.name for part in parts for each in part.trees] == [e.name for e in stand.trees]
+    assert all(part.trees for part in parts)
+
+
+def test_a_giant_leaves_no_shard_without_a_tree(stand):
+    giant = replace(stand.trees[0], tree=stand.tree)
+    scene = replace(stand, trees=[*stand.trees[1:], giant])
+    for trees in (scene.trees, scene.trees[::-1]):
+        sizes = [len(dealt(replace(scene, trees=trees), k, 4).trees) for k in range(4)]
+        assert min(sizes) >= 1
+        assert sum(sizes) == 7
+
+
+def test_shards_sway_as_the_whole(stand):
+    stand = replace(stand, anemometer=(-5.0, 0.0, 0.0))
+    sims = [part.simulator() for part in (stand, dealt(stand, 0, 2), dealt(stand, 1, 2))]
+    for k in range(90):
+        for sim in sims:
+            sim.step((6.0 + np.sin(0.3 * k), 1.0, 0.0), 1 / 60)
+    whole, *parts = (sim.place() for sim in sims)
+    assert (np.vstack(parts) == whole).all()
+
+
+def test_a_stand_that_is_moved_sways_where_it_is(stand):
+    moved = stand.moved(x=100.0, yaw=0.5)
+    assert moved.simulator().place()[0, 0] == pytest.approx(moved.trees[0].x)
+
+
+@pytest.mark.parametrize(
+    ('shard', 'shards', 'what'),
+    [(2, 2, 'shard 2 of 2'), (0, 8, '8 shards of 7'), (1, 1, '1 of 1')],
+)
+def test_a_shard_that_there_is_not_is_refused(stand, shard, shards, what):
+    with pytest.raises(ParameterError, match=what):
+        dealt(stand, shard, shards)
+
+
+def test_one_tree_cannot_be_dealt():
+    with pytest.raises(ParameterError, match='one tree'):
+        dealt(open_scene('benjamina'), 0, 2)

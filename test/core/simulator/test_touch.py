@@ -1,0 +1,186 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A branch that is pushed: moments by differences, compliance, reaction, release, refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from tree_sway_lab.bench.bench_tree import bench_tree
+from tree_sway_lab.kinds.kinds import kind_called
+from tree_sway_lab.validation.truth import WOOD
+
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.simulator.pull import moments_of_force
+from tree_sway.core.simulator.simulator import LOAD_HELD
+from tree_sway.errors import ParameterError
+
+DT = 1.0 / 60.0
+CALM = (0.0, 0.0, 0.0)
+
+
+@pytest.fixture(scope='module')
+def tree():
+    return bench_tree()
+
+
+def place_of(poses, tree, segment, along=0.5):
+    """Where on a segment somebody pushes, (3,)."""
+    away = (along * tree.length[segment], 0.0, 0.0)
+    return poses[segment, :3] + Rotation.from_quat(poses[segment, 3:]).apply(away)
+
+
+def moved(sim, segment):
+    """Displacement from rest of the middle of a segment, (3,)."""
+    tree = sim.tree
+    return place_of(sim.place(), tree, segment) - 0.5 * (tree.start[segment] + tree.end[segment])
+
+
+def outer_segment(tree):
+    """Return a segment half way along the last branch, far from the root."""
+    return int(tree.branch_first[-2] + 2)
+
+
+@pytest.mark.parametrize(('name', 'along'), [('bench', 0.0), ('bench', 0.3), ('palm', 1.0)])
+def test_moments_are_the_derivatives_of_places(tree, name, along):
+    if name == 'palm':  # whose branches are cut
+        tree = kind_called('palm')
+    sim = make_simulator(tree, WOOD, model='full')
+    assert (len(sim.bank.branches) > tree.n_branches) == (name == 'palm')
+    for _ in range(90):
+        sim.step((14.0, 5.0, 1.0), DT)
+    x = 5.0 * sim.rotations()
+    poses = sim.place_rotations(x)
+    assert np.abs(x).max() > 0.05  # it is bent
+    rng = np.random.default_rng(3)
+    for segment in (outer_segment(tree), 1, tree.n_segments - 1):
+        records = sim.bank.branches
+        holds = (records['first'] <= segment) & (segment < records['end'])
+        branch = int(np.flatnonzero(holds)[0])
+        force, moments = rng.normal(size=3), np.empty(len(x))
+        moments_of_force(
+            sim.bank.branches, sim.bank.segments, tree.rest_frame, poses, x, branch, segment,
+            place_of(poses, tree, segment, along), force, moments,
+        )  # fmt: skip
+        by_differences = np.empty(len(x))
+        for i, step in enumerate(np.eye(len(x)) * 1e-5):
+            there, back = (
+                place_of(sim.place_rotations(x + sign * step), tree, segment, along)
+                for sign in (1.0, -1.0)
+            )
+            by_differences[i] = force @ (there - back) / 2e-5
+        largest = np.abs(by_differences).max()
+        np.testing.assert_allclose(moments, by_differences, atol=1e-3 * largest)
+
+
+@pytest.mark.parametrize('model', [60, 'auto', 'full'])
+def test_every_model_moves_by_the_same_and_the_foot_holds_the_force(tree, model):
+    segment, force = outer_segment(tree), np.array([3.0, 1.0, -0.5])
+    sims = [make_simulator(tree, WOOD, model=each) for each in ('full', model)]
+    for sim in sims:
+        for _ in range(round(15.0 / DT)):
+            sim.push(segment, force, 1.0)
+            sim.step(CALM, DT)
+    truth, found = (moved(sim, segment) for sim in sims)
+    assert np.linalg.norm(found - truth) < 0.05 * np.linalg.norm(truth)
+    assert found @ force > 0.0
+    load = sims[1].push_load
+    np.testing.assert_allclose(load[:3], force)
+    arm = place_of(sims[1].place(), tree, segment) - tree.start[0]
+    np.testing.assert_allclose(load[3:], np.cross(arm, force), rtol=1e-3)
+
+
+def test_twice_the_force_moves_twice_as_far_where_it_bends_little(tree):
+    segment = outer_segment(tree)
+    found = []
+    for scale in (0.01, 0.02):
+        sim = make_simulator(tree, WOOD, model=60)
+        for _ in range(round(15.0 / DT)):
+            sim.push(segment, (scale, 0.0, 0.0), 1.0)
+            sim.step(CALM, DT)
+        found.append(moved(sim, segment))
+    np.testing.assert_allclose(found[1], 2.0 * found[0], rtol=0.01, atol=1e-9)
+
+
+def test_it_acts_for_its_time_then_swings_freely(tree):
+    segment = outer_segment(tree)
+    sim = make_simulator(tree, WOOD, model=60)
+    sim.push(segment, (5.0, 0.0, 0.0), 0.5)
+    for _ in range(30):
+        sim.step(CALM, DT)
+        assert sim.push_load[0] == 5.0
+    sim.step(CALM, DT)
+    assert not sim.push_load.any()
+    reach = [np.linalg.norm(moved(sim, segment))]
+    for _ in range(round(30.0 / DT)):
+        sim.step(CALM, DT)
+        reach.append(np.linalg.norm(moved(sim, segment)))
+    assert 0.0 < max(reach[-120:]) < 0.1 * max(reach)
+
+
+def test_in_wind_it_adds_to_what_the_wind_does(tree):
+    segment = outer_segment(tree)
+    moves = []
+    for model in ('full', 60):
+        rests = []
+        for force in (0.0, 3.0):
+            sim = make_simulator(tree, WOOD, model=model)
+            for _ in range(round(15.0 / DT)):
+                sim.push(segment, (0.0, force, 0.0), 1.0)
+                sim.step((6.0, 0.0, 0.0), DT)
+            rests.append(moved(sim, segment))
+        moves.append(rests[1] - rests[0])
+    assert np.linalg.norm(moves[1] - moves[0]) < 0.1 * np.linalg.norm(moves[0])
+
+
+def test_a_force_beyond_bounds_is_clamped_and_counted(tree):
+    sim = make_simulator(tree, WOOD, model=60)
+    sim.push(outer_segment(tree), (1e12, 0.0, -1e12), 1.0)
+    statuses = {sim.step(CALM, DT) for _ in range(60)}
+    assert LOAD_HELD in statuses
+    assert sim.counts.held > 0
+    assert np.isfinite(sim.place()).all()
+
+
+@pytest.mark.parametrize(
+    ('segment', 'force', 'seconds', 'along'),
+    [
+        (-1, (1.0, 0.0, 0.0), 1.0, 0.5),
+        (10**9, (1.0, 0.0, 0.0), 1.0, 0.5),
+        (1, (np.nan, 0.0, 0.0), 1.0, 0.5),
+        (1, (np.inf, 0.0, 0.0), 1.0, 0.5),
+        (1, (1.0, 0.0), 1.0, 0.5),
+        (1, 'hard', 1.0, 0.5),
+        (1, None, 1.0, 0.5),
+        (1, (1.0, 0.0, 0.0), 0.0, 0.5),
+        (1, (1.0, 0.0, 0.0), np.nan, 0.5),
+        (1, (1.0, 0.0, 0.0), 1e9, 0.5),
+        (1, (1.0, 0.0, 0.0), 1.0, 1.5),
+        (1.5, (1.0, 0.0, 0.0), 1.0, 0.5),
+        ('stem', (1.0, 0.0, 0.0), 1.0, 0.5),
+    ],
+)
+def test_a_push_that_cannot_be_is_refused_and_counted(tree, segment, force, seconds, along):
+    sim = make_simulator(tree, WOOD, model=20)
+    with pytest.raises(ParameterError, match='push'):
+        sim.push(segment, force, seconds, along=along)
+    assert sim.counts.refused_pushes == 1
+    sim.step(CALM, DT)
+    assert not sim.push_load.any()
+
+
+def test_branches_by_themselves_cannot_be_pushed(tree):
+    sim = make_simulator(tree, WOOD, model='branch')
+    with pytest.raises(ParameterError, match='branch'):
+        sim.push(1, (1.0, 0.0, 0.0), 1.0)
+    assert sim.counts.refused_pushes == 1
+
+
+def test_a_reset_ends_every_push(tree):
+    sim = make_simulator(tree, WOOD, model=20)
+    sim.push(1, (1.0, 0.0, 0.0), 9.0)
+    sim.step(CALM, DT)
+    sim.reset()
+    sim.step(CALM, DT)
+    assert not sim.rotations().any()

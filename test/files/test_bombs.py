@@ -1,0 +1,165 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Small files that claim much: refused within 5 s of a processor and 1 GiB of memory."""
+
+from collections.abc import Callable
+import io
+from pathlib import Path
+import sqlite3
+import struct
+import subprocess
+import sys
+import zlib
+
+import pytest
+from scipy.io import savemat
+
+READ = """
+import os, resource, sys
+os.environ['OPENBLAS_NUM_THREADS'] = '1'
+resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+from tree_sway.errors import TreeSwayError
+from tree_sway.files.trees.tree_file import read_trees
+from tree_sway.files.wind.wind_file import read_wind
+used = resource.getrusage(resource.RUSAGE_SELF)
+resource.setrlimit(resource.RLIMIT_CPU, 2 * (5 + int(used.ru_utime + used.ru_stime) + 1,))
+try:
+    (read_wind if sys.argv[2] == 'wind' else read_trees)(sys.argv[1])
+except TreeSwayError as error:
+    print(error)
+"""
+
+
+def record(kind: int, body: bytes) -> bytes:
+    return struct.pack('<BQ', kind, len(body)) + body
+
+
+def chunk(name: bytes, packed: bytes) -> bytes:
+    head = struct.pack('<QQQII', 0, 0, 1 << 40, 0, len(name)) + name
+    return record(0x06, head + struct.pack('<Q', len(packed)) + packed)
+
+
+def chunks_in_chunks(path: Path) -> None:
+    inside = b''
+    for _ in range(30):
+        inside = chunk(b'', inside)
+    path.write_bytes(b'\x89MCAP0\r\n' + inside)
+
+
+def zstd_of(size: int) -> bytes:
+    zstd = pytest.importorskip('backports.zstd', reason='rosbags is not installed')
+    engine, packed = zstd.ZstdCompressor(), []
+    for _ in range(size >> 24):
+        packed.append(engine.compress(bytes(1 << 24)))
+    return b''.join([*packed, engine.flush()])
+
+
+def packed_chunk(path: Path) -> None:
+    schema = record(0x03, struct.pack('<H', 1) + struct.pack('<I', 4) + b'kind')
+    path.write_bytes(b'\x89MCAP0\r\n' + schema + chunk(b'zstd', zstd_of(3 << 30)))
+
+
+def packed_bag(path: Path) -> None:
+    path.mkdir()
+    (path / 'bag.mcap.zstd').write_bytes(zstd_of(3 << 30))
+
+
+def database(path: Path, messages: str) -> None:
+    base = sqlite3.connect(path)
+    base.execute('CREATE TABLE topics (id, name, type, serialization_format)')
+    base.execute("INSERT INTO topics VALUES (1, '/wind', 'geometry_msgs/msg/Vector3', 'cdr')")
+    base.execute(messages)
+    if messages.startswith('CREATE TABLE'):
+        base.execute('INSERT INTO messages (topic_id, timestamp) VALUES (1, 1)')
+    base.commit()
+    base.close()
+
+
+def view_without_end(path: Path) -> None:
+    database(
+        path,
+        'CREATE VIEW messages AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) '
+        'SELECT 1 AS topic_id, i AS timestamp, zeroblob(1000000) AS data FROM n',
+    )
+
+
+def computed_column(path: Path) -> None:
+    database(path, 'CREATE TABLE messages (topic_id, timestamp, data AS (zeroblob(900000000)))')
+
+
+def element(kind: int, body: bytes) -> bytes:
+    return struct.pack('<II', kind, len(body)) + body
+
+
+def matlab(path: Path, count: int) -> None:
+    """Write a cell array of so many empty arrays, compressed."""
+    empty = element(
+        14, element(6, struct.pack('<II', 6, 0)) + element(5, bytes(8)) + element(1, b'')
+        + element(9, b''),
+    )  # fmt: skip
+    head = element(6, struct.pack('<II', 1, 0)) + element(5, struct.pack('<2i', 1, count))
+    packed = zlib.compress(element(14, head + element(1, b'QSM\0\0\0\0\0') + empty * count), 9)
+    stream = io.BytesIO()
+    savemat(stream, {})
+    path.write_bytes(stream.getvalue()[:128] + struct.pack('<II', 15, len(packed)) + packed)
+
+
+def many_cells(path: Path) -> None:
+    matlab(path, 1_500_000)
+    assert path.stat().st_size < 400_000
+
+
+def endless_claim(path: Path) -> None:
+    h5py = pytest.importorskip('h5py', reason='h5py is not installed')
+    with h5py.File(path, 'w') as stream:
+        stream.create_dataset('QSM/cylinder/radius', (1_000_000_000,), 'f8')
+
+
+def line_ends(path: Path) -> None:
+    path.write_bytes(b'time,u,v\n0,1,2\n' + b'\n' * 200_000_000)
+
+
+def million_keys(path: Path) -> None:
+    path.write_text('branches:\n' + '\n'.join(f'k{i}: 1' for i in range(1_000_000)))
+
+
+BOMBS: dict[str, tuple[Callable[[Path], None], str]] = {
+    'chunks.mcap': (chunks_in_chunks, 'a chunk in a chunk'),
+    'packed.mcap': (packed_chunk, 'unpacks to more than 50 times its size'),
+    'packed': (packed_bag, 'unpacks to more than 50 times its size'),
+    'view.db3': (view_without_end, 'no plain tables of topics'),
+    'computed.db3': (computed_column, 'no plain tables of topics'),
+    'cells.mat': (many_cells, 'more than 100000 arrays'),
+    'claim.mat': (endless_claim, 'more than 768 MiB of memory or 10 s, or is damaged'),
+    'ends.csv': (line_ends, 'more than 4000000 lines'),
+    'keys.yaml': (million_keys, 'more than 600000 keys and values'),
+}
+
+
+@pytest.mark.parametrize('name', BOMBS)
+def test_a_bomb_is_refused_in_one_line(name: str, tmp_path: Path) -> None:
+    make, reason = BOMBS[name]
+    make(tmp_path / name)
+    kind = 'tree' if name.endswith(('.mat', '.yaml')) else 'wind'
+    command = [sys.executable, '-c', READ, str(tmp_path / name), kind]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert (ended.returncode, ended.stderr) == (0, '')
+    assert reason in ended.stdout
+    assert len(ended.stdout) < 700
+
+
+@pytest.mark.parametrize(
+    'text',
+    ['x' * 5000, '\x1b[2J\x07' * 100, 'a\nb\r\nc\td' * 50],
+    ids=['long', 'escapes', 'lines'],
+)
+def test_cells_of_a_file_are_cut_and_escaped_in_messages(text: str, tmp_path: Path) -> None:
+    from tree_sway.errors import TreeSwayError
+    from tree_sway.files.trees.tree_file import read_tree
+
+    path = tmp_path / 'a.yaml'
+    path.write_text('species: "' + text.encode('unicode_escape').decode() + '"\nsegments: []\n')
+    with pytest.raises(TreeSwayError) as raised:
+        read_tree(path)
+    assert str(raised.value).isprintable()
+    assert len(str(raised.value)) < 2000

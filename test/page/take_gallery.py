@@ -1,0 +1,133 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Take the pictures of doc/gallery.md from the page, in a headless Chromium.
+
+    python test/page/take_gallery.py doc/pictures/gallery --walnut walnut.mtg
+
+Trees that are no file are grown. Pictures in full quality are drawn as with a graphics unit.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+from dataclasses import dataclass
+import io
+from pathlib import Path
+import tempfile
+
+from PIL import Image
+
+from conftest import Browser
+from tree_sway.commands import cli, show
+from tree_sway.page.server import PageServer, PageSettings
+from tree_sway.page.session import Choices, Session
+from tree_sway.page.wind_source import SimulatedWind
+
+STAND = Path(__file__).parents[2] / 'config' / 'stand.yaml'
+HEIGHTS = {'oak': 18, 'birch': 16, 'spruce': 22, 'pine': 20, 'willow': 12, 'walnut': 8}
+WIDTH = 960
+_EVENING = "document.getElementById('theme').click();"
+_AUTUMN = "document.getElementById('season').click();"
+
+
+@dataclass(frozen=True)
+class View:
+    """A picture: of which tree, in which quality, what is done before it is taken."""
+
+    name: str
+    tree: str
+    is_full: bool = True
+    script: str = ''
+    is_dark: bool = False
+    is_phone: bool = False
+
+
+VIEWS = (
+    View('benjamina', 'benjamina'),
+    View('benjamina_near', 'benjamina', script='treeSway.scene.camera.zoom(0.3)'),
+    View('benjamina_software', 'benjamina', is_full=False),
+    View('benjamina_dark', 'benjamina', is_dark=True),
+    View('benjamina_phone', 'benjamina', is_phone=True),
+    View('goldcrest', 'goldcrest'),
+    View('oak', 'oak'),
+    View('oak_autumn', 'oak', script=_EVENING + _AUTUMN),
+    View('birch', 'birch'),
+    View('spruce', 'spruce'),
+    View('pine', 'pine'),
+    View('willow', 'willow'),
+    View('walnut', 'walnut'),
+    View('walnut_software', 'walnut', is_full=False),
+    View('walnut_near', 'walnut', script='treeSway.scene.camera.zoom(0.35)'),
+    View('walnut_far', 'walnut', script='treeSway.scene.camera.zoom(4)'),
+    View('stand', str(STAND)),
+    View('stand_software', str(STAND), is_full=False),
+    View('stand_near', str(STAND), is_full=False, script='treeSway.scene.camera.zoom(0.3)'),
+)
+
+
+def main() -> None:
+    """Take all pictures, or those that are named."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument('folder', type=Path)
+    parser.add_argument('names', nargs='*')
+    parser.add_argument('--walnut', help='a scanned walnut; one is grown if left out')
+    given = parser.parse_args()
+    given.folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as grown:
+        for view in VIEWS:
+            if not given.names or view.name in given.names:
+                tree = view.tree
+                if tree == 'walnut' and given.walnut:
+                    tree = given.walnut
+                elif tree in HEIGHTS:
+                    tree = f'{grown}/{tree}.yaml'
+                    words = ['--species', view.tree, '--height', str(HEIGHTS[view.tree])]
+                    if not Path(tree).exists():
+                        cli.main(['grow', *words, '-o', tree])
+                take(view, tree, given.folder / f'{view.name}.jpg')
+
+
+def take(view: View, tree: str, path: Path) -> None:
+    """Take one picture."""
+    parser = argparse.ArgumentParser()
+    show.add_arguments(parser)
+    arguments = parser.parse_args([tree])
+    session = Session(
+        lambda wanted: show.build_scene(wanted, arguments),
+        Choices(Path(tree).name),
+        SimulatedWind(9.0),
+    )
+    with PageServer(PageSettings(port=0), None, session.status) as server:
+        session.serve(server)
+        try:
+            asyncio.run(look(server.url, view, path))
+        finally:
+            session.stop()
+
+
+async def look(url: str, view: View, path: Path) -> None:
+    """Open the page, wait until the tree sways, and save what is seen."""
+    width, height = (390, 844) if view.is_phone else (1280, 800)
+    async with Browser() as browser:
+        address = f'{url}?quality=full' if view.is_full else url
+        await browser.open(address, width=width, height=height, dark=view.is_dark)
+        await browser.until("window.treeSway && treeSway.state === 'live' && treeSway.fps > 0")
+        if view.script:
+            await browser.run(view.script)
+        await browser.until('treeSway.traces.wind._points.length > 6')
+        drawn = await browser.run('treeSway.scene._frame')
+        await browser.until(f'treeSway.scene._frame > {drawn} + 3')
+        if not view.is_full:
+            await asyncio.sleep(8.0)  # until the page has found its pace
+        image = Image.open(io.BytesIO(await browser.screenshot())).convert('RGB')
+        if not view.is_phone:
+            image = image.resize((WIDTH, WIDTH * height // width), Image.Resampling.LANCZOS)
+        image.save(path, quality=82, optimize=True)
+        print(path, path.stat().st_size, await browser.run('treeSway.fps'), browser.console)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,187 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures: that they are written, and that what they show is there."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.core.leaves.foliage import leaf_clusters
+from tree_sway.core.scene.placed_tree import joined, PlacedTree
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import FormatError, MissingDependencyError, ParameterError
+from tree_sway.pictures.animation import animate_poses
+from tree_sway.pictures.pictures import picture_in_wind
+from tree_sway.pictures.plots import plot_wind_and_tip
+
+pytest.importorskip('matplotlib')
+Image = pytest.importorskip('PIL.Image')
+
+
+def pole() -> Tree:
+    return tree_from_segments([[0, 0, 0], [0, 0, 1.0]], [[0, 0, 1.0], [0, 0, 2.0]], [0.2, 0.1])
+
+
+def leaning(tree: Tree, angle: float) -> np.ndarray:
+    """Pose block of the tree turned towards the east as a whole."""
+    turn = np.array(
+        [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]
+    )
+    return replace(tree, start=tree.start @ turn.T, end=tree.end @ turn.T).rest_poses
+
+
+def pixels(path: Path) -> np.ndarray:
+    return np.asarray(Image.open(path).convert('RGB')).astype(float)
+
+
+def in_calm(tree: Tree, path: Path, **options: Any) -> Path:
+    return picture_in_wind(tree, leaning(tree, 0.0), [0.0, 0.0, 0.0], path, **options)
+
+
+def at_rest(tree: Tree, path: Path, **options: Any) -> np.ndarray:
+    """Return the half that shows the tree at rest, of a tree that is not wide."""
+    picture = pixels(in_calm(tree, path, **options))
+    return picture[:, : picture.shape[1] // 2]
+
+
+def dark_columns(picture: np.ndarray) -> np.ndarray:
+    """Columns that show bark, below the title and above the ground."""
+    rows = picture[int(0.15 * len(picture)) : int(0.6 * len(picture))]
+    return np.flatnonzero((rows.max(axis=2) < 180).any(axis=0))
+
+
+def test_bark_is_as_thick_as_it_is(tmp_path: Path) -> None:
+    picture = at_rest(pole(), tmp_path / 'pole.png')
+    dark = picture.max(axis=2) < 180
+    lower, upper = int(0.65 * len(picture)), int(0.25 * len(picture))
+    # 0.2 m below, 0.1 m above; an edge of a pixel or two on top of each.
+    assert 1.6 < dark[lower].sum() / dark[upper].sum() < 2.3
+
+
+def test_wind_from_the_west_leans_the_right_hand_tree_to_the_right(tmp_path: Path) -> None:
+    tree = pole()
+    path = tmp_path / 'wind.png'
+    assert picture_in_wind(tree, leaning(tree, 0.5), [8.0, 0.0, 0.0], path) == path
+    picture = pixels(path)
+    left, right = np.split(picture[:, : picture.shape[1] // 2 * 2], 2, axis=1)
+    still, moved = dark_columns(left[:, : -left.shape[1] // 5]), dark_columns(right)
+    assert np.ptp(moved) > 2 * np.ptp(still)
+    # The root stays, the top goes to the right.
+    assert moved.max() > still.max() + 30
+    blue = (picture[..., 2] > picture[..., 0] + 80).any(axis=0)
+    assert blue[: len(blue) // 2].sum() == 0 < blue[len(blue) // 2 :].sum()
+
+
+def test_several_trees_stand_side_by_side(tmp_path: Path) -> None:
+    trees = [PlacedTree(f'pole{i}', pole(), x=3.0 * i).placed() for i in range(3)]
+    joint = joined(trees)
+    leaves = leaf_clusters(trees[1], np.random.default_rng(0), count=30)
+    leaves = replace(leaves, segment=leaves.segment + trees[0].n_segments)
+    poses = joint.rest_poses
+    path = picture_in_wind(trees, poses, [6.0, 0.0, 0.0], tmp_path / 'row.png', leaves=leaves)
+    picture = pixels(path)
+    assert picture.shape[0] > 0.7 * picture.shape[1]  # at rest above, in wind below
+    row = picture[int(0.36 * len(picture))]
+    dark = np.flatnonzero(row.max(axis=1) < 180)
+    assert np.count_nonzero(np.diff(dark) > 50) == 2
+    is_green = picture[..., 1] > np.maximum(picture[..., 0], picture[..., 2]) + 25
+    green = np.flatnonzero(is_green.any(axis=0))
+    assert 0.3 * picture.shape[1] < green.min() < green.max() < 0.7 * picture.shape[1]
+
+
+@pytest.mark.parametrize('name', ['benjamina', 'broadleaf'])
+def test_a_whole_tree_fits_its_picture(name: str, tmp_path: Path) -> None:
+    picture = pixels(in_calm(builtin_tree(name), tmp_path / 'tree.png', title=''))
+    border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
+    assert border.min() > 250.0
+    assert (picture.max(axis=2) < 180).mean() > 0.01
+
+
+@pytest.mark.parametrize(('suffix', 'kind'), [('.gif', 'GIF'), ('.png', 'PNG')])
+def test_a_moving_picture_has_its_frames_and_its_pace(
+    tmp_path: Path, suffix: str, kind: str
+) -> None:
+    tree = pole()
+    frames = [leaning(tree, angle) for angle in (0.0, 0.2, 0.4)]
+    path = tmp_path / f'sway{suffix}'
+    animate_poses(tree, frames, np.ones((3, 3)), path, rate=20.0, pixels=160)
+    image = Image.open(path)
+    assert (image.format, image.n_frames) == (kind, 3)
+    assert image.info['duration'] == pytest.approx(50.0)
+    first = np.asarray(image.convert('RGB')).astype(float)
+    image.seek(2)
+    assert np.abs(np.asarray(image.convert('RGB')) - first).max() > 100
+
+
+def test_leaves_are_green_and_move_with_the_tree(tmp_path: Path) -> None:
+    tree = builtin_tree('benjamina')
+    leaves = leaf_clusters(tree, np.random.default_rng(0), count=300)
+    bare = at_rest(tree, tmp_path / 'bare.png')
+    green = at_rest(tree, tmp_path / 'leafy.png', leaves=leaves)
+
+    def is_green(picture: np.ndarray) -> np.ndarray:
+        return picture[..., 1] > picture[..., [0, 2]].max(axis=2) + 20
+
+    assert is_green(bare).sum() == 0
+    assert is_green(green).mean() > 0.05
+    beside = pixels(
+        picture_in_wind(tree, leaning(tree, 0.3), [8, 0, 0], tmp_path / 'w.png', leaves=leaves)
+    )
+    left, right = np.split(is_green(beside)[:, : beside.shape[1] // 2 * 2], 2, axis=1)
+    middle = [
+        np.average(np.arange(side.shape[1]), weights=side.sum(axis=0)) for side in (left, right)
+    ]
+    assert middle[1] > middle[0] + 30
+
+
+def test_a_moving_picture_with_leaves(tmp_path: Path) -> None:
+    tree = pole()
+    leaves = leaf_clusters(tree, np.random.default_rng(0), count=30)
+    path = tmp_path / 'leaves.gif'
+    still = [leaning(tree, 0.0)] * 2
+    animate_poses(tree, still, np.full((2, 3), 5.0), path, rate=7.3, leaves=leaves, pixels=160)
+    image = Image.open(path)
+    first = np.asarray(image.convert('RGB')).astype(float)
+    image.seek(1)
+    # The tree stands still; its leaves do not.
+    assert np.abs(np.asarray(image.convert('RGB')) - first).max() > 30
+
+
+def test_what_is_no_moving_picture_is_refused(tmp_path: Path) -> None:
+    tree = pole()
+    with pytest.raises(FormatError, match=r"'\.jpg' is no moving picture; .*\.gif"):
+        animate_poses(tree, [leaning(tree, 0.0)], np.ones((1, 3)), tmp_path / 'a.jpg')
+    with pytest.raises(ParameterError, match='0 frames'):
+        animate_poses(tree, [], np.ones((0, 3)), tmp_path / 'a.gif')
+    with pytest.raises(FormatError, match='cannot be written'):
+        animate_poses(tree, [leaning(tree, 0.0)], np.ones((1, 3)), tmp_path / 'no' / 'a.gif')
+
+
+def test_plot_of_wind_and_tip(tmp_path: Path) -> None:
+    time = np.linspace(0.0, 10.0, 200)
+    wind = np.stack([5.0 + np.sin(time), np.zeros(200), np.zeros(200)], axis=1)
+    tip = 0.02 * wind
+    path = plot_wind_and_tip(time, wind, tip, tmp_path / 'plot.png', title='a pole')
+    assert Image.open(path).width > 800
+    with pytest.raises(ParameterError, match='do not go together'):
+        plot_wind_and_tip(time, wind[:-1], tip, path)
+
+
+def test_a_name_that_is_no_picture_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match=r"'\.doc' is no picture format; .*\.png"):
+        in_calm(pole(), tmp_path / 'tree.doc')
+    with pytest.raises(FormatError, match='cannot be written: No such file'):
+        in_calm(pole(), tmp_path / 'nowhere' / 'tree.png')
+
+
+def test_without_matplotlib_the_cure_is_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setitem(__import__('sys').modules, 'matplotlib.figure', None)
+    with pytest.raises(MissingDependencyError, match=r'pip install matplotlib'):
+        in_calm(pole(), tmp_path / 'tree.png')

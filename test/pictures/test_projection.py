@@ -1,0 +1,60 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""From poses back to segments, and to the picture plane."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+import numpy as np
+import pytest
+
+from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.pictures.projection import Camera
+
+POINTS = arrays(np.float64, (5, 3), elements=st.floats(-10, 10))
+
+
+def test_rest_poses_give_the_tree_back() -> None:
+    tree = builtin_tree('goldcrest')
+    poses = tree.rest_poses
+    np.testing.assert_allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, rtol=1e-12)
+    start, end = ends_of_poses(poses, tree.length)
+    np.testing.assert_array_equal(start, tree.start)
+    np.testing.assert_allclose(end, tree.end, atol=1e-12)
+
+
+@pytest.mark.parametrize('axis', [*np.eye(3), *-np.eye(3)])
+def test_rest_poses_of_segments_along_every_axis(axis: np.ndarray) -> None:
+    start = np.ones((1, 3))
+    tree = tree_from_segments(start, start + 2.0 * axis, [0.1])
+    end = ends_of_poses(tree.rest_poses, tree.length)[1]
+    np.testing.assert_allclose(end, start + 2.0 * axis, atol=1e-12)
+
+
+def test_a_quarter_turn_about_z_takes_x_to_y() -> None:
+    half = np.sqrt(0.5)
+    end = ends_of_poses([[1.0, 2.0, 3.0, 0.0, 0.0, half, half]], [2.0])[1]
+    np.testing.assert_allclose(end, [[1.0, 4.0, 3.0]], atol=1e-12)
+
+
+@given(points=POINTS, azimuth=st.floats(-4, 4), elevation=st.floats(-1.5, 1.5))
+def test_projection_keeps_distances(points: np.ndarray, azimuth: float, elevation: float) -> None:
+    seen = Camera(azimuth, elevation).project(points)
+    np.testing.assert_allclose(
+        np.linalg.norm(seen[1:] - seen[0], axis=1),
+        np.linalg.norm(points[1:] - points[0], axis=1),
+        atol=1e-9,
+    )
+
+
+def test_from_the_south_east_is_right_and_north_is_away() -> None:
+    seen = Camera(elevation=0.0).project(np.eye(3))
+    np.testing.assert_allclose(seen, [[1, 0, 0], [0, 0, 1], [0, 1, 0]], atol=1e-12)
+
+
+def test_from_above_what_is_farther_is_higher_in_the_picture() -> None:
+    near, far = Camera(elevation=0.3).project([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    assert far[1] > near[1]
+    assert far[2] > near[2]

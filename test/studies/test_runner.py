@@ -1,0 +1,207 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Studies over processes: the same numbers in any number of them; what is killed loses nothing."""
+
+from __future__ import annotations
+
+import csv
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from tree_sway.commands import cli
+from tree_sway.errors import FormatError, TreeSwayError
+from tree_sway.studies import command
+from tree_sway.studies.plan import Case
+from tree_sway.studies.runner import batches, compute_to_file, result_path, run_study
+from tree_sway.studies.table import write_table
+
+pytest.importorskip('distributed', reason='needs dask.distributed')
+pytest.importorskip('cryptography', reason='needs cryptography')
+
+SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
+
+
+def cases(seeds=4, **changes):
+    given = {'settings': {'model': 'branch'}, 'seconds': 1.0, **changes}
+    tree = {'file': str(SEEDLING)}
+    return [Case(tree, {'speed': 4.0, 'intensity': 0.2, 'seed': k}, **given) for k in range(seeds)]
+
+
+@pytest.fixture(scope='module')
+def alone(tmp_path_factory):
+    """Rows computed in this process, one after the other."""
+    folder = tmp_path_factory.mktemp('alone')
+    for case in cases():
+        compute_to_file(case, folder)
+    return run_study(cases(), folder)
+
+
+def test_two_processes_give_the_same_numbers_bit_for_bit(alone, tmp_path):
+    told = []
+    rows = run_study(cases(), tmp_path, workers=2, progress=lambda *done: told.append(done))
+    assert rows == alone
+    assert told[0] == (0, 4)
+    assert told[-1] == (4, 4)
+    assert {'frequency', 'tip_largest', 'base_moment_rms', 'strain_largest'} <= set(rows[0])
+    assert rows[0]['tip_largest'] > 0.0
+
+
+def test_what_is_finished_is_not_computed_again(alone, tmp_path):
+    run_study(cases(2), tmp_path, workers=1)
+    stamps = {case.name: result_path(tmp_path, case).stat().st_mtime_ns for case in cases(2)}
+    assert run_study(cases(), tmp_path, workers=2) == alone
+    assert all(
+        result_path(tmp_path, case).stat().st_mtime_ns == stamps[case.name] for case in cases(2)
+    )
+
+
+def test_a_tree_is_set_up_once_for_many_winds():
+    same, other = cases(8), cases(8, settings={'model': 'branch'})
+    mixed = [case for pair in zip(same, other, strict=True) for case in pair]
+    parts = batches(mixed, workers=1)
+    assert sorted(map(len, parts)) == [4, 4, 4, 4]
+    assert all(len({str(case.settings) for case in part}) == 1 for part in parts)
+    assert sorted(str(case) for part in parts for case in part) == sorted(map(str, mixed))
+    assert max(map(len, batches(same, workers=2))) == 1
+
+
+def workers_of(parent: int) -> list[int]:
+    """List processes that a process has spawned to compute."""
+    found = []
+    for path in Path('/proc').glob('[0-9]*/stat'):
+        try:
+            fields = path.read_text().rpartition(')')[2].split()
+            command = (path.parent / 'cmdline').read_bytes()
+        except OSError:
+            continue
+        if int(fields[1]) == parent and b'spawn_main' in command:
+            found.append(int(path.parent.name))
+    return found
+
+
+@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find a worker to kill')
+def test_a_killed_worker_loses_nothing(alone, tmp_path):
+    killed = []
+
+    def kill_one(done, total):
+        if done == 1:
+            killed.append(workers_of(os.getpid())[0])
+            os.kill(killed[0], signal.SIGKILL)
+
+    rows = run_study(cases(6), tmp_path, workers=2, progress=kill_one)
+    assert killed
+    assert len(rows) == 6
+    assert rows[:4] == alone
+
+
+@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find the workers')
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_whatever_ends_a_study_ends_its_workers(tmp_path, number):
+    study = tmp_path / 'study.yaml'
+    study.write_text('trees: [benjamina]\nwinds: [{speed: 4, seeds: 9}]\nseconds: 3600\n')
+    words = ['study', str(study), '-o', str(tmp_path / 'o.csv'), '--workers', '2']
+    command = [sys.executable, '-m', 'tree_sway.commands.cli', *words]
+    with subprocess.Popen(command, start_new_session=True, stderr=subprocess.PIPE) as process:
+        workers = until(lambda: [w for w in workers_of(process.pid) if is_busy(w)], 60.0)
+        began = time.monotonic()
+        os.killpg(process.pid, number)
+        process.wait(10.0)
+        until(lambda: not any(Path('/proc', str(each)).exists() for each in workers), 10.0)
+        assert time.monotonic() - began < 10.0
+        assert b'Traceback' not in process.stderr.read()
+    assert process.returncode == (130 if number == signal.SIGINT else -number)
+
+
+def until(found, seconds):
+    """Return what is found as soon as there is something."""
+    end = time.monotonic() + seconds
+    while not (there := found()):
+        assert time.monotonic() < end, 'it did not come to that'
+        time.sleep(0.02)
+    return there
+
+
+def is_busy(process: int) -> bool:
+    """Whether a worker has loaded what it computes with."""
+    return b'libscipy' in Path('/proc', str(process), 'maps').read_bytes()
+
+
+def test_a_case_that_cannot_be_leaves_the_others(tmp_path):
+    wrong = cases(1, settings={'model': 'best'})
+    with pytest.raises(TreeSwayError, match="unknown model 'best'"):
+        run_study([*wrong, *cases(2)], tmp_path, workers=1)
+    assert all(result_path(tmp_path, case).is_file() for case in cases(2))
+
+
+def test_a_series_is_kept_where_it_is_asked_for(tmp_path):
+    case = cases(1, series=True)[0]
+    compute_to_file(case, tmp_path)
+    lines = (tmp_path / f'{case.name}.csv').read_text().splitlines()
+    assert len(lines) == 61
+
+
+def test_a_cluster_of_two_workers_gives_the_same_and_outlives_one(alone, tmp_path):
+    import distributed
+
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
+    ) as cluster:
+        doomed = next(iter(cluster.workers.values())).pid
+        told = []
+
+        def progress(done, total):
+            told.append(done)
+            if done == 2:
+                os.kill(doomed, signal.SIGKILL)
+
+        rows = run_study(
+            cases(6), tmp_path, scheduler=cluster.scheduler_address, progress=progress
+        )
+    assert rows[:4] == alone
+    assert len(rows) == 6
+
+
+def test_tables_are_csv_or_parquet(alone, tmp_path):
+    write_table(alone, tmp_path / 'rows.csv')
+    with (tmp_path / 'rows.csv').open() as file:
+        read = list(csv.DictReader(file))
+    assert [float(row['tip_rms']) for row in read] == [row['tip_rms'] for row in alone]
+    parquet = pytest.importorskip('pyarrow.parquet', reason='needs pyarrow')
+    write_table(alone, tmp_path / 'rows.parquet')
+    assert parquet.read_table(tmp_path / 'rows.parquet').to_pylist() == alone
+    with pytest.raises(FormatError, match=r'end it with one of: \.csv, \.parquet'):
+        write_table(alone, tmp_path / 'rows.xlsx')
+
+
+def test_the_command_resumes_its_own_table_and_writes_over_no_other(tmp_path, capsys):
+    study, table = tmp_path / 'study.yaml', tmp_path / 'study.csv'
+    study.write_text(
+        f'trees: [{SEEDLING}]\nwinds: [{{speed: 4}}]\nsettings: {{model: branch}}\nseconds: 1\n'
+    )
+    words = ['study', str(study), '-o', str(table), '--workers', '1']
+    table.write_text('of another kind')
+    assert cli.main(words) == 2
+    assert 'is there already; name another file, or write over it' in capsys.readouterr().err
+    assert table.read_text() == 'of another kind'
+    assert cli.main([*words, '--force']) == 0
+    assert cli.main(words) == 0
+    assert len(table.read_text().splitlines()) == 2
+
+
+def test_the_time_that_is_left_is_said_at_once_and_learned_from_each_case(monkeypatch, capsys):
+    now = [100.0]
+    monkeypatch.setattr(command.time, 'monotonic', lambda: now[0])
+    progress = command.Progress(cases(20), workers=2)
+    progress(0, 20)
+    assert capsys.readouterr().err == '0 of 20 cases, about 2 s left\n'
+    now[0] += 600.0
+    progress(2, 20)
+    assert capsys.readouterr().err == '2 of 20 cases, about 90 min left\n'
+    progress(20, 20)
+    assert capsys.readouterr().err == '20 of 20 cases\n'

@@ -1,0 +1,107 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Trees that sway in measured wind: a reduced-order model of a tree, its files, its page. No ROS.
+
+The names below are all that most users need. Each is imported when it is first asked for, so that
+``import tree_sway`` itself costs nothing.
+
+Examples
+--------
+>>> import tree_sway as sway
+>>> tree = sway.open_tree("goldcrest")
+>>> record = sway.simulate(tree, sway.read_wind("wind.csv"))
+
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any, TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tree_sway.core.growth.grow import grow
+    from tree_sway.core.identification.calibration import calibrate
+    from tree_sway.core.scene.make import make_simulator
+    from tree_sway.core.scene.placed_tree import PlacedTree
+    from tree_sway.core.scene.scene import Scene
+    from tree_sway.core.scene.simulate import simulate
+    from tree_sway.core.scene.sway_record import SwayRecord
+    from tree_sway.core.simulator.protocol import Simulator
+    from tree_sway.core.simulator.settings import Settings
+    from tree_sway.core.tree.building import tree_from_segments
+    from tree_sway.core.tree.species import species_named
+    from tree_sway.core.tree.tree import Tree
+    from tree_sway.core.tree.wood import Species
+    from tree_sway.core.wind.averaging import WindAverage
+    from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+    from tree_sway.errors import TreeSwayError
+    from tree_sway.files.export.tree_export import write_tree
+    from tree_sway.files.trees.source import open_scene, open_tree
+    from tree_sway.files.wind.wind_file import read_wind
+    from tree_sway.page.client import StreamClient
+
+__version__ = '0.1.0'
+
+_MODULES = {
+    'core.growth.grow': ('grow',),
+    'core.identification.calibration': ('calibrate',),
+    'core.scene.make': ('make_simulator',),
+    'core.scene.placed_tree': ('PlacedTree',),
+    'core.scene.scene': ('Scene',),
+    'core.scene.simulate': ('simulate',),
+    'core.scene.sway_record': ('SwayRecord',),
+    'core.simulator.protocol': ('Simulator',),
+    'core.simulator.settings': ('Settings',),
+    'core.tree.building': ('tree_from_segments',),
+    'core.tree.species': ('species_named',),
+    'core.tree.tree': ('Tree',),
+    'core.tree.wood': ('Species',),
+    'core.wind.averaging': ('WindAverage',),
+    'core.wind.simulated.turbulence': ('simulate_turbulence',),
+    'errors': ('TreeSwayError',),
+    'files.export.tree_export': ('write_tree',),
+    'files.trees.source': ('open_scene', 'open_tree'),
+    'files.wind.wind_file': ('read_wind',),
+    'page.client': ('StreamClient',),
+}
+_HOMES = {name: module for module, names in _MODULES.items() for name in names}
+
+__all__ = [
+    'PlacedTree',
+    'Scene',
+    'Settings',
+    'Simulator',
+    'Species',
+    'StreamClient',
+    'SwayRecord',
+    'Tree',
+    'TreeSwayError',
+    'WindAverage',
+    '__version__',
+    'calibrate',
+    'grow',
+    'make_simulator',
+    'open_scene',
+    'open_tree',
+    'read_wind',
+    'simulate',
+    'simulate_turbulence',
+    'species_named',
+    'tree_from_segments',
+    'write_tree',
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a name from where it lives."""
+    if name not in _HOMES:
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    value = getattr(import_module(f'{__name__}.{_HOMES[name]}'), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Return what may be asked for."""
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,176 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway calibrate``: fit a tree's modulus and damping to one measured sway."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+import sys
+
+from tree_sway.commands.arguments import (
+    add_leaves_argument,
+    add_output_arguments,
+    add_tree_arguments,
+    opened_tree,
+    output_path,
+    told_leaves,
+    write_tree_file,
+)
+from tree_sway.commands.progress import waiting
+from tree_sway.core.checks import within
+from tree_sway.core.identification.calibration import calibrate, Calibration
+from tree_sway.core.identification.measured_sway import estimate_sway, KINDS
+from tree_sway.core.identification.sway_estimate import SwayEstimate
+from tree_sway.core.simulator.season import is_in_leaf
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.tree.plausibility import sway_oddity
+from tree_sway.core.tree.species import Species, species_keys, species_named
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.text_file import path_of
+from tree_sway.files.wind.sway_table import read_csv_sway
+
+_YAML = ('.yaml', '.yml')
+_FAR = 2.0
+_WOOD = (0.3e9, 200e9)
+"""A modulus outside of this [Pa] is ten times beyond any green wood's."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add = parser.add_argument
+    add_tree_arguments(parser)
+    add_leaves_argument(parser)
+    add('--frequency', type=float, metavar='HZ', help='measured slowest sway [Hz]')
+    add(
+        '--damping',
+        type=float,
+        metavar='Z',
+        help="measured damping ratio [-]; wins over the record's",
+    )
+    add(
+        '--record',
+        metavar='FILE',
+        help='CSV of the sway instead: time and x, y or tilt_x or ax ...',
+    )
+    add(
+        '--branch', metavar='NAME', help='branch that was measured, such as stem; the slowest sway'
+    )
+    add('--kind', choices=KINDS, help='of the record; found from it if left out')
+    add(
+        '--band',
+        type=float,
+        nargs=2,
+        metavar=('LOW', 'HIGH'),
+        help="where in the record's spectrum to look for the sway [Hz]",
+    )
+    add_output_arguments(parser, 'tree with the fitted wood to write: .yaml')
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Fit the tree and write it."""
+    _check(arguments)
+    output = output_path(arguments)
+    tree_file = opened_tree(arguments)
+    frequency, damping, error = arguments.frequency, arguments.damping, 0.0
+    if arguments.record is not None:
+        found = _measured(arguments)
+        frequency, error = found.frequency, found.frequency_error / found.frequency
+        damping = found.damping_ratio if damping is None else damping
+    settings = Settings(in_leaf=told_leaves(arguments))
+    with waiting('calibrating'):
+        fitted = calibrate(tree_file.tree, tree_file.species, frequency, damping, settings,
+                           arguments.branch)  # fmt: skip
+    if not _WOOD[0] <= fitted.species.modulus <= _WOOD[1]:
+        raise ParameterError(
+            f'{frequency:.4g} Hz would take a modulus of {fitted.species.modulus / 1e9:.4g} GPa, '
+            'where green wood has 3 to 20',
+            where=tree_file.source,
+            cure='check the frequency, the density, the diameters, and which branch swayed',
+        )
+    in_leaf = is_in_leaf(tree_file.species, settings.in_leaf)
+    oddity = sway_oddity(tree_file.tree, fitted.species, fitted.frequency)
+    for each in (*tree_file.of_species(fitted.species).warnings, *([oddity] if oddity else [])):
+        print(f'warning: {each}', file=sys.stderr)
+    if arguments.branch is None and fitted.branch != tree_file.tree.branch_names[0]:
+        stem = tree_file.tree.branch_names[0]
+        print(f'note: this sway is of a limb; one measured on the stem: --branch {stem}',
+              file=sys.stderr)  # fmt: skip
+    for line in _summary(tree_file.species, fitted, error, in_leaf=in_leaf):
+        print(line)
+    write_tree_file(output, tree_file.tree, fitted.species)
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Refuse what cannot work before anything slow is done."""
+    if (arguments.frequency is None) == (arguments.record is None):
+        given = 'both' if arguments.record is not None else 'neither'
+        raise ParameterError(f'{given} of --frequency and --record', cure='give one of the two')
+    for name in ('kind', 'band'):
+        if arguments.record is None and getattr(arguments, name) is not None:
+            raise ParameterError('no record', where=f'--{name}', cure='give --record too')
+    if arguments.frequency is not None:
+        within('--frequency', arguments.frequency, 0.0, 1e3, 'Hz', above=True)
+    if arguments.damping is not None:
+        within('--damping', arguments.damping, 0.0, 1.0)
+    if Path(arguments.output).suffix.lower() not in _YAML:
+        raise ParameterError(
+            f"'{arguments.output}' cannot carry wood", where='--output', cure='write a .yaml file'
+        )
+
+
+def _measured(arguments: argparse.Namespace) -> SwayEstimate:
+    """Return what the record says, and print it."""
+    record = read_csv_sway(path_of(arguments.record))
+    band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
+    try:
+        found = estimate_sway(record.time, record.motion, arguments.kind, band)
+    except FormatError as error:
+        raise error.inside(record.source) from None
+    print(
+        f'{record.source}: {record.quantity} in {", ".join(record.columns)}, '
+        f'{found.kind} ({found.cycles:.0f} cycles)'
+    )
+    print(
+        f'  measured   {found.frequency:.4g} +- {found.frequency_error:.2g} Hz, '
+        f'damping {found.damping_ratio:.3g} +- {found.damping_error:.2g}'
+    )
+    return found
+
+
+def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: bool) -> list[str]:
+    """Say what changed, for people; `error` is the frequency's relative standard error."""
+    after, table = fitted.species, species_named(before.key)
+    moduli = [species_named(key).modulus / 1e9 for key in species_keys()]
+    was = (
+        'could not stand'
+        if fitted.frequency_before is None
+        else f'{fitted.frequency_before:.4g} Hz'
+    )
+    spread = f' +- {100.0 * fitted.sensitivity * error:.1f} %' if error else ''
+    lines = [
+        f"  frequency  {was} -> {fitted.frequency:.4g} Hz, most in branch '{fitted.branch}'",
+        f'  modulus    {before.modulus / 1e9:.3g} -> {after.modulus / 1e9:.4g} GPa{spread}, '
+        f"{after.modulus / table.modulus:.3g} times the table's for {table.title}"
+        f'{" (an estimate)" if table.is_estimate else ""}; all species there: '
+        f'{min(moduli):.3g} to {max(moduli):.3g} GPa',
+    ]
+    if not min(moduli) / _FAR < after.modulus / 1e9 < max(moduli) * _FAR:
+        lines.append(
+            '  note       no green wood has such a modulus: check density, diameters and leaves, '
+            'and '
+            'whether this was the slowest sway'
+        )
+    season = 'damping_in_leaf' if in_leaf else 'damping_bare'
+    old, new = getattr(before, season), getattr(after, season)
+    if new == old:
+        lines.append(f'  damping    {old:.3g} {"in leaf" if in_leaf else "bare"}, as it was')
+    else:
+        lines += [
+            f'  damping    {old:.3g} -> {new:.3g} {"in leaf" if in_leaf else "bare"}',
+            "  note       a measured damping holds that of the air; the solver adds the air's "
+            'drag to it, '
+            'so it damps a little more than the tree in strong wind',
+        ]
+    return lines

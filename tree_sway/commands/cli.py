@@ -1,0 +1,258 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+# PYTHON_ARGCOMPLETE_OK
+"""
+The command line ``tree-sway``: one module per command, imported when it is asked for.
+
+A module of a command has ``add_arguments(parser)`` and ``run(arguments) -> int``. Whatever the
+user can mend ends as one line on standard error and exit code 2.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+import contextlib
+import importlib
+from importlib.metadata import entry_points
+import io
+import os
+import re
+import sys
+from typing import Any, NoReturn
+import warnings
+
+from tree_sway.commands.command import Command
+from tree_sway.errors import nearest, TreeSwayError
+
+COMMANDS: dict[str, Command] = {
+    'show': Command(
+        'a tree in wind on a page of the browser, without ROS',
+        'show goldcrest --seconds 10',
+        'tree_sway.commands.show',
+    ),
+    'info': Command(
+        'what a tree is: size, masses, natural frequencies',
+        'info benjamina',
+        'tree_sway.commands.info',
+    ),
+    'grow': Command(
+        'make a tree of a species and a height',
+        'grow --species oak --height 12 -o oak.yaml',
+        'tree_sway.commands.grow',
+    ),
+    'convert': Command(
+        'write a tree in another format',
+        'convert goldcrest -o goldcrest.obj',
+        'tree_sway.commands.convert',
+    ),
+    'calibrate': Command(
+        'fit modulus and damping to one measured sway',
+        'calibrate goldcrest --frequency 3 -o measured.yaml',
+        'tree_sway.commands.calibrate',
+    ),
+    'simulate': Command(
+        'a tree through a wind: tips, base moment and strain over time, as a table',
+        'simulate goldcrest --wind canopy --seconds 10 -o sway.csv',
+        'tree_sway.commands.simulate',
+    ),
+    'plot': Command(
+        'pictures of a tree, and of the wind and the motion of its tip',
+        'plot benjamina --seconds 20 -o sway.png',
+        'tree_sway.commands.plot',
+    ),
+    'render': Command(
+        'a tree in wind as a moving picture: GIF, MP4 or frames',
+        'render goldcrest --speed 9 --seconds 2 -o sway.gif',
+        'tree_sway.commands.render',
+    ),
+    'relay': Command(
+        'one tree at several sites: send the wind, and receive it',
+        'relay send goldcrest --listen tcp/127.0.0.1:0 --seconds 1',
+        'tree_sway.commands.relay',
+    ),
+    'study': Command(
+        'many trees in many winds with many settings, over all cores',
+        'study study.yaml -o study.csv',
+        'tree_sway.studies.command',
+    ),
+}
+
+#: Entry points of this group are further tables of commands: those of the nodes are merged with
+#: the table above, those of the laboratory stand under the name of their entry point.
+GROUP = 'tree_sway.commands'
+MERGED = 'ros'
+_ROS_CURE = 'it needs ROS: source a ROS 2 installation, or pip install "tree_sway_ros[ros]"'
+#: Commands of other packages, with what to do where they are missing.
+_ELSEWHERE = {
+    **dict.fromkeys(('demo', 'listen', 'record'), _ROS_CURE),
+    'lab': 'it belongs to the laboratory: pip install ./lab in the checkout',
+}
+#: The extra of the package that brings a module: what is not here is in no extra, and no advice
+#: is made from the name of a module, which may be that of another project.
+EXTRAS = {
+    **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
+    **dict.fromkeys(('cryptography', 'dask', 'distributed', 'pyarrow'), 'study'),
+    **{'h5py': 'h5', 'numba': 'fast', 'rosbags': 'bag', 'serial': 'serial', 'tqdm': 'progress'},
+    'zenoh': 'relay',
+}
+_OF_ROS = re.compile(r'rclpy|\w+_msgs|\w+_srvs|builtin_interfaces|ament_\w+|rosidl\w*|launch\w*')
+_FAILURE = 2
+_INTERRUPTED = 130
+_CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
+_UNRECOGNIZED = re.compile(r'unrecognized arguments: (?:\S+ )*?(--[\w-]+)')
+
+
+class _OneLineParser(argparse.ArgumentParser):
+    """Errors on one line, without the usage before it, and with the name that may be meant."""
+
+    chosen: argparse.ArgumentParser | None = None
+
+    def error(self, message: str) -> NoReturn:
+        """Print what is wrong and where to read more, and exit."""
+        guess = ''
+        if wrong := _CHOICE.search(message):
+            guess = nearest(wrong[1], re.findall(r'[\w.-]+', wrong[2]))
+        elif wrong := _UNRECOGNIZED.search(message):
+            guess = nearest(wrong[1], (self.chosen or self)._option_string_actions)
+        where = (self.chosen or self).prog
+        text = '; '.join(filter(None, (message, guess, f'see {where} --help')))
+        print(f'{where}: {text}', file=sys.stderr)
+        raise SystemExit(_FAILURE)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """
+    Run a command by its arguments, `sys.argv` if None.
+
+    The exit code is 0, or 2 if the user can mend it, with one line that says how.
+    """
+    with warnings.catch_warnings():
+        warnings.showwarning = _show_warning  # type: ignore[assignment]
+        return _main(list(sys.argv[1:] if argv is None else argv))
+
+
+def _main(given: list[str]) -> int:
+    words = _completed() or given
+    _write_any_name()
+    table, group = _table(words[0] if words else '')
+    command = words[bool(group)] if len(words) > bool(group) else ''
+    if not group and command in _ELSEWHERE and command not in table:
+        return _fail(command, _ELSEWHERE[command])
+    try:
+        parser = _parser(command, table, group)
+        _offer_completion(parser)
+        arguments = parser.parse_args(given[bool(group) :])
+        with _silence() if arguments.quiet else contextlib.nullcontext():
+            code = int(_module(table[arguments.command]).run(arguments))
+            if sys.stdout is not None:
+                sys.stdout.flush()  # a full disk is reported here, not while Python ends
+        return code
+    except TreeSwayError as error:
+        return _fail(command, str(error))
+    except ModuleNotFoundError as error:
+        if str(error.name).startswith('tree_sway'):
+            raise
+        return _fail(command, f'{error}; {_cure_of_missing(str(error.name))}')
+    except BrokenPipeError:
+        # Whoever read our output has gone; keep Python from complaining when it flushes.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except OSError as error:
+        name = _shortened(str(error.filename))
+        return _fail(command, f'{name}: {error.strerror}' if error.filename else str(error))
+    except KeyboardInterrupt:
+        return _INTERRUPTED
+
+
+def _show_warning(message: Warning | str, *_where: Any) -> None:
+    """Say what a library warns of on one line, without its line of code."""
+    if sys.stderr is not None:
+        print(f'note: {" ".join(str(message).split())}', file=sys.stderr)
+
+
+def _write_any_name() -> None:
+    """Have names that a terminal has no letters for printed with escapes, instead of a crash."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors='backslashreplace')
+
+
+def _silence() -> Any:
+    """Take notes and progress away; errors are printed after this ends."""
+    return contextlib.redirect_stderr(io.StringIO())
+
+
+def _fail(command: str, text: str) -> int:
+    print(f'tree-sway {command}: {" ".join(text.split())}', file=sys.stderr)
+    return _FAILURE
+
+
+def _cure_of_missing(module: str) -> str:
+    """Say what brings a module that is missing, by our own table of extras."""
+    package = module.partition('.')[0]
+    if _OF_ROS.fullmatch(package):
+        return _ROS_CURE
+    if package in EXTRAS:
+        return f'install it: pip install "tree_sway_ros[{EXTRAS[package]}]"'
+    return 'the installation is not whole: install tree_sway_ros again'
+
+
+def _shortened(name: str) -> str:
+    return name if len(name) <= 80 else f'{name[:60]}...{name[-17:]}'
+
+
+def _table(first: str) -> tuple[dict[str, Command], str]:
+    """Return the commands among which the first word chooses, and the name of their group."""
+    table = dict(COMMANDS)
+    if first in table:
+        return table, ''  # entry points are not looked for where they are not needed
+    for point in entry_points(group=GROUP):
+        if point.name == MERGED:
+            table.update(point.load())
+        elif point.name == first:
+            return point.load(), first
+    return table, ''
+
+
+def _module(command: Command) -> Any:
+    return importlib.import_module(command.module)
+
+
+def _parser(chosen: str, table: dict[str, Command], group: str) -> _OneLineParser:
+    """Parse all commands, but only the chosen one's arguments, as importing others takes long."""
+    program = f'tree-sway {group}'.strip()
+    parser = _OneLineParser(prog=program, description='Trees that sway in measured wind.')
+    version = importlib.import_module('tree_sway').__version__
+    parser.add_argument('--version', action='version', version=version)
+    commands = parser.add_subparsers(dest='command', metavar='COMMAND', required=True)
+    for name, command in table.items():
+        sub = commands.add_parser(
+            name,
+            help=command.summary,
+            description=f'{command.summary[0].upper()}{command.summary[1:]}.',
+            epilog=f'example: {program} {command.example}',
+        )
+        sub.add_argument(
+            '-q', '--quiet', action='store_true', help='no notes and no progress, errors alone'
+        )
+        if name == chosen:
+            _module(command).add_arguments(sub)
+            parser.chosen = sub
+    return parser
+
+
+def _completed() -> list[str]:
+    """Return the words whose completion the shell wants; empty when it wants none."""
+    return os.environ.get('COMP_LINE', '').split()[1:] if '_ARGCOMPLETE' in os.environ else []
+
+
+def _offer_completion(parser: argparse.ArgumentParser) -> None:
+    """Answer the shell that asks for completions, where argcomplete is installed."""
+    if '_ARGCOMPLETE' in os.environ:
+        with contextlib.suppress(ImportError):
+            importlib.import_module('argcomplete').autocomplete(parser)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,84 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway convert``: any tree this package reads, written in a format that others read."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+import sys
+
+from tree_sway.commands.arguments import (
+    add_leaves_argument,
+    add_output_arguments,
+    add_tree_arguments,
+    drawn_leaves,
+    opened_scene,
+    OUTPUT_HELP,
+    output_path,
+    told_leaves,
+    what_was_written,
+)
+from tree_sway.commands.progress import waiting
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.errors import ParameterError
+from tree_sway.files.export.gltf_tree import morphing_tree
+from tree_sway.files.export.tree_export import GLTF_SUFFIXES, write_gltf, write_tree
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_tree_arguments(parser, forests=True)
+    add_leaves_argument(parser)
+    add_output_arguments(parser, OUTPUT_HELP)
+    parser.add_argument(
+        '--sway',
+        nargs='?',
+        choices=('skin', 'morph'),
+        const='skin',
+        help='how a .glb or .gltf is to sway: by a joint per segment, set from segment_poses, or '
+        "by some 20 weights, set from the tree's state (skin)",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Read a tree and write it."""
+    output = output_path(arguments)
+    is_gltf = Path(output).suffix.lower() in GLTF_SUFFIXES
+    if arguments.sway is not None and not is_gltf:
+        raise ParameterError(
+            f"'{output}' cannot sway", where='--sway', cure='write a .glb or .gltf file'
+        )
+    scene = opened_scene(arguments)
+    for note in scene.notes:
+        print(f'note: {note}', file=sys.stderr)
+    for oddity in scene.warnings:
+        print(f'warning: {oddity}', file=sys.stderr)
+    if arguments.sway == 'morph':
+        _write_morphing(scene, arguments)
+    else:
+        species = scene.species if scene.is_one_tree else None
+        leaves = drawn_leaves(scene, arguments) if is_gltf else None
+        write_tree(output, scene.tree, species, leaves)
+    print(what_was_written(output, scene.tree))
+    return 0
+
+
+def _write_morphing(scene: Scene, arguments: argparse.Namespace) -> None:
+    """Write a tree with morph targets and say what their linear form leaves out."""
+    if not scene.is_one_tree:
+        raise ParameterError(
+            'a forest by morph targets', where='--sway', cure='convert its trees one by one'
+        )
+    settings = Settings(in_leaf=told_leaves(arguments))
+    with waiting('finding what sways'):
+        simulator = SwaySimulator(scene.tree, scene.species, settings)
+        document, form = morphing_tree(simulator, drawn_leaves(scene, arguments))
+    write_gltf(arguments.output, document)
+    print(
+        f'  {len(form.names)} weights; in a breeze that moves it by {1e3 * form.motion_rms:.3g} '
+        f'mm (rms; at most {1e3 * form.motion_greatest:.3g}), the linear form is off by '
+        f'{1e3 * form.rms:.2g} mm (at most {1e3 * form.greatest:.2g})'
+    )

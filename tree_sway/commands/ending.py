@@ -1,0 +1,96 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Asked to end, a process ends soon, whatever it is doing.
+
+Ctrl-C and SIGTERM set a flag that a loop looks at, or break into what runs before there is a loop.
+Python looks at signals between two of its own instructions, and the compiler of the kernels may
+not come back to one for seconds; so a thread watches as well, and ends the process when the time
+is over.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+import signal
+import sys
+import threading
+from types import FrameType
+
+LONGEST = 1.5
+"""From the signal to the end of a process that runs [s], if it does not end by itself before."""
+SHORTEST = 0.3
+"""The same of a process that only starts: nothing is open that would have to be closed."""
+_GRACE = 0.2
+"""So much later [s] a process ends that even its threads cannot end."""
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class Ending:
+    """
+    A context that hears SIGINT and SIGTERM; in the main thread only, elsewhere it does nothing.
+
+    Once asked to end, nothing that is raised leaves it: what is broken off may complain of
+    anything.
+    """
+
+    def __init__(self) -> None:
+        self.is_asked = False
+        self.limit = SHORTEST
+        self._breaks_in = True
+        self._over = threading.Event()
+        self._pipe: tuple[int, int] | None = None
+        self._before: list[object] = []
+
+    def look(self) -> None:
+        """From now on a loop looks at `is_asked`: break into nothing any more."""
+        self._breaks_in = False
+        self.limit = LONGEST
+        if self.is_asked:
+            raise KeyboardInterrupt
+
+    def __enter__(self) -> Ending:
+        if threading.current_thread() is not threading.main_thread():
+            return self
+        self._before = [signal.signal(number, self._hear) for number in _SIGNALS]
+        self._pipe = os.pipe()
+        os.set_blocking(self._pipe[1], False)
+        signal.set_wakeup_fd(self._pipe[1], warn_on_full_buffer=False)
+        threading.Thread(target=self._watch, name='ending', daemon=True).start()
+        return self
+
+    def __exit__(self, *_: object) -> bool:
+        if not self._before:
+            return False
+        self._over.set()
+        for number, before in zip(_SIGNALS, self._before, strict=True):
+            # What was asked to end stays deaf: a second Ctrl-C amid the last lines is no error.
+            after = signal.SIG_IGN if self.is_asked else before
+            signal.signal(number, after)  # type: ignore[arg-type]
+        faulthandler.cancel_dump_traceback_later()
+        if self._pipe is not None:
+            signal.set_wakeup_fd(-1)
+            os.close(self._pipe[1])
+        return self.is_asked
+
+    def _hear(self, _number: int, _frame: FrameType | None) -> None:
+        is_first, self.is_asked = not self.is_asked, True
+        if is_first:
+            self._end_by_all_means()
+        if is_first and self._breaks_in:
+            sys.unraisablehook = lambda _args: None  # nor does what cannot raise complain
+            raise KeyboardInterrupt
+
+    def _end_by_all_means(self) -> None:
+        """Leaving the graph, the middleware may hold the interpreter: then C ends the process."""
+        self._nowhere = open(os.devnull, 'w')
+        faulthandler.dump_traceback_later(self.limit + _GRACE, exit=True, file=self._nowhere)
+
+    def _watch(self) -> None:
+        assert self._pipe is not None
+        while heard := os.read(self._pipe[0], 1):
+            if heard[0] in _SIGNALS and not self._over.wait(self.limit):
+                sys.stdout.flush()
+                os._exit(0)
+        os.close(self._pipe[0])

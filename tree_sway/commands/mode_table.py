@@ -1,0 +1,74 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Natural modes for people: frequency, damping, direction, and the branch that bends most."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.bank import Bank
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+
+_SMALL_ANGLE = 1e-4
+
+
+@dataclass(frozen=True)
+class ModeRow:
+    """
+    A natural mode: frequency [Hz] and damping ratio of wood and leaves, both without air.
+
+    ``axis`` is the unit vector (its sign means nothing) that most of the moving mass sways along,
+    ``branch`` the one that bends most.
+    """
+
+    frequency: float
+    damping_ratio: float
+    axis: Floats
+    branch: str
+
+    @property
+    def direction(self) -> str:
+        """Describe the axis for people: degrees from east to north, and upwards if not level."""
+        x, y, z = self.axis if self.axis[np.argmax(np.abs(self.axis))] > 0.0 else -self.axis
+        level = float(np.hypot(x, y))
+        up = float(np.degrees(np.arctan2(z, level)))
+        if abs(up) > 80.0:
+            return 'up and down'
+        azimuth = float(np.degrees(np.arctan2(y, x))) % 180.0
+        side = up if y > 0.0 or (y == 0.0 and x > 0.0) else -up
+        return f'{azimuth:5.1f} deg' + (f', {side:+.0f} up' if abs(side) >= 10.0 else '')
+
+
+def mode_table(
+    tree: Tree, species: Species, settings: Settings, count: int
+) -> tuple[list[ModeRow], float]:
+    """List the slowest natural modes of a tree, a number of them or all, and its mass in [kg]."""
+    whole = CalibratedTree(tree, species, settings)
+    bank = whole.bank(0)
+    modes = whole.natural_modes(min(count, whole.coupled.reduction.n_coordinates))
+    layer = whole.coupled
+    owner = np.repeat(layer.branch, layer.branches['n_coordinates'])
+    rows = []
+    for frequency, shape in zip(modes.frequencies.tolist(), modes.shapes.T, strict=True):
+        branch = tree.branch_names[int(owner[np.argmax(np.abs(shape))])]
+        rows.append(ModeRow(frequency, whole.damping_ratio, _axis(tree, bank, shape), branch))
+    return rows, bank.mass
+
+
+def _axis(tree: Tree, bank: Bank, shape: Floats) -> Floats:
+    """Principal direction of the motion of the wood in a mode, (3,)."""
+    poses = np.zeros((tree.n_segments, 7))
+    small = _SMALL_ANGLE / np.abs(shape).max() * shape
+    bank.place(small, tree.start[0], poses)
+    start, end = ends_of_poses(poses, tree.length)
+    moved = (start + end - tree.start - tree.end) / (2.0 * _SMALL_ANGLE)
+    _, axes = np.linalg.eigh(np.einsum('n,ni,nj->ij', tree.volume, moved, moved))
+    axis: Floats = axes[:, -1]
+    return axis

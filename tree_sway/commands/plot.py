@@ -1,0 +1,135 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway plot``: wind and motion of the tip over time, or by ``--portrait`` the tree."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+import sys
+from typing import Any
+
+import numpy as np
+
+from tree_sway.commands.arguments import (
+    add_output_arguments,
+    add_sway_arguments,
+    drawn_leaves,
+    opened_record,
+    opened_scene,
+    output_path,
+    told_leaves,
+)
+from tree_sway.commands.progress import bar, waiting
+from tree_sway.core.checks import within
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.wind.convention import velocity_of_bearing
+from tree_sway.core.wind.frame_means import recorded_means
+from tree_sway.core.wind.simulated.anemometer import AnemometerModel
+from tree_sway.errors import ParameterError, TreeError
+from tree_sway.pictures.pictures import picture_in_wind
+from tree_sway.pictures.plots import plot_wind_and_tip
+
+_SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
+_STEP = 1.0 / 60.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_sway_arguments(parser)
+    parser.add_argument(
+        '--portrait',
+        action='store_true',
+        help='draw the tree at rest and, beside it, in a steady wind',
+    )
+    parser.set_defaults(speed=None)
+    parser.add_argument(
+        '--from',
+        dest='bearing',
+        type=float,
+        metavar='DEGREES',
+        help='where the steady or simulated wind comes from, clockwise from north: 90 is from the '
+        'east, at the right of a picture (270, a westerly)',
+    )
+    parser.add_argument(
+        '--seconds', type=float, default=60.0, metavar='N', help='how long (%(default)s)'
+    )
+    picture = 'picture (sway.png, or the next name that is free)'
+    add_output_arguments(parser, picture, required=False)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Draw, and say where the picture is."""
+    if not 0.0 < arguments.seconds <= 3600.0:
+        raise ParameterError(f'{arguments.seconds:g} s', where='--seconds', cure='give 0 to 3600')
+    _refuse_bearing(arguments)
+    output = output_path(arguments, 'sway.png')
+    scene = opened_scene(arguments)
+    draw = _portrait if arguments.portrait else _motion
+    draw(scene, arguments, output)
+    print(output)
+    return 0
+
+
+def _refuse_bearing(arguments: argparse.Namespace) -> None:
+    """Refuse what is no direction, or one for a record, which has its own."""
+    if arguments.bearing is None:
+        arguments.bearing = 270.0
+    elif arguments.wind is not None and not arguments.portrait:
+        raise ParameterError('a direction for a record, which has its own', where='--from')
+    within('--from', arguments.bearing, -360.0, 360.0, 'degrees')
+
+
+def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
+    speed = 10.0 if arguments.speed is None else arguments.speed
+    simulator = _simulator(scene, arguments)
+    wind = np.array(velocity_of_bearing(speed, math.radians(arguments.bearing)))
+    for _ in bar(range(round(_SETTLING / _SETTLING_STEP)), 'settling in the wind'):
+        simulator.step(wind, _SETTLING_STEP)
+    picture_in_wind(
+        [each.placed() for each in scene.trees],
+        simulator.place(),
+        wind,
+        output,
+        leaves=drawn_leaves(scene, arguments),
+    )
+
+
+def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
+    """Simulate what is drawn; a scan too noisy to stand has no weight."""
+    model: dict[str, Any] = {'model': arguments.model, 'in_leaf': told_leaves(arguments)}
+    try:
+        with waiting('setting up the tree'):
+            return scene.simulator(**model)
+    except TreeError as error:
+        light = scene.simulator(**model, gravity=0.0)
+        print(f'note: without its own weight, as it cannot stand: {error}', file=sys.stderr)
+        return light
+
+
+def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
+    speed = 6.0 if arguments.speed is None else arguments.speed
+    source = f'simulated wind, mean {speed:g} m/s'
+    if arguments.wind is None:
+        model = AnemometerModel(speed, bearing_to=math.radians(arguments.bearing + 180.0))
+        ticks = range(math.ceil(arguments.seconds * model.rate) + 1)
+        time, velocity = np.array(ticks) / model.rate, np.array([*map(model.sample, ticks)])
+        if arguments.bearing != 270.0:
+            source += f' from {arguments.bearing:g} degrees'
+    else:
+        record = opened_record(arguments)
+        time, velocity, source = record.time, record.velocity, Path(record.source).name
+    wind = np.zeros((0, 3))
+    if len(time) > 1:
+        wind = recorded_means(time, velocity, _STEP)[: round(arguments.seconds / _STEP)]
+    if len(wind) < 2:
+        raise ParameterError('too short a wind to draw', where=source, cure='give a longer one')
+    simulator, tip = _simulator(scene, arguments), []
+    for mean in bar(wind, 'swaying'):
+        simulator.step(mean, _STEP)
+        tip.append(simulator.tip_displacement)
+    title = f'{scene.tree.name}, {arguments.model}, {source}'
+    end = _STEP * np.arange(1, len(wind) + 1)
+    plot_wind_and_tip(end, wind, np.array(tip), output, title=title)

@@ -1,0 +1,105 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway render``: a tree in wind as a moving picture, without a screen."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+import time
+from typing import Any
+
+import numpy as np
+
+from tree_sway.commands.arguments import (
+    add_output_arguments,
+    add_sway_arguments,
+    opened_scene,
+    opened_wind,
+    output_path,
+    told_leaves,
+)
+from tree_sway.commands.progress import bar, waiting
+from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import within
+from tree_sway.core.scene.run import Run
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.wind.gate import WindGate
+from tree_sway.core.wind.intake import WindIntake
+from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.page.wind_source import blow, WindSource
+
+_STEPS_PER_SECOND = 120.0
+_RUN_IN = 20.0
+_BLADES = 2800
+"""Of all leaves: a frame must take less time than it shows."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add = parser.add_argument
+    add_sway_arguments(parser)
+    add('--seconds', type=float, default=8.0, metavar='N', help='of the film (%(default)s)')
+    add('--start', type=float, default=0.0, help='of the wind [s] (%(default)s)')
+    add('--rate', type=float, default=20.0, help='pictures per second [Hz] (%(default)s)')
+    add('--pixels', type=int, default=480, help='height of the picture (%(default)s)')
+    add_output_arguments(parser, 'file to write: .gif, .png, .mp4, or a folder for its frames')
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Sway the tree, paint it, and say how long that took."""
+    for name, low, high in (('seconds', 0.1, 3600.0), ('rate', 1.0, 120.0), ('pixels', 64, 4320)):
+        within(f'--{name}', getattr(arguments, name), low, high)
+    from tree_sway.pictures.animation import animate_poses
+    from tree_sway.pictures.leaf_drawing import blades_per_cluster
+
+    target = output_path(arguments)
+    scene = opened_scene(arguments)
+    wind = opened_wind(arguments)
+    with waiting('setting up the tree'):
+        simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
+    clusters = _BLADES // blades_per_cluster(scene.tree.species)
+    began = time.monotonic()
+    frames, winds = _swayed(simulator, wind, arguments)
+    animate_poses(
+        scene.tree,
+        frames,
+        winds,
+        target,
+        rate=arguments.rate,
+        leaves=scene.leaves(told_leaves(arguments), clusters),
+        pixels=arguments.pixels,
+        watched=_watched,
+    )
+    spent = time.monotonic() - began
+    print(
+        f'{target}: {scene.tree.name}, {len(frames)} pictures, {arguments.seconds:g} s of wind '
+        f'in {spent:.1f} s'
+    )
+    return 0
+
+
+def _swayed(
+    simulator: Simulator, wind: WindSource, arguments: argparse.Namespace
+) -> tuple[list[Floats], Floats]:
+    """Poses and wind of every picture, once the start from rest is forgotten."""
+    steps = max(1, round(_STEPS_PER_SECOND / arguments.rate))
+    intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
+    run = Run(simulator, arguments.rate * steps, intake=intake)
+    first = round(1e9 * max(0.0, arguments.start - _RUN_IN)) // run.period
+    tick = round(1e9 * arguments.start) // run.period
+    for each in range(first, tick):
+        blow(run, wind, each * run.period)
+    frames, winds = [], []
+    for _ in bar(range(max(1, round(arguments.seconds * arguments.rate))), 'swaying'):
+        for _ in range(steps):
+            tick += 1
+            blow(run, wind, tick * run.period)
+        frames.append(simulator.place().copy())
+        winds.append(simulator.wind.copy())
+    return frames, np.array(winds)
+
+
+def _watched(images: Iterator[Any], count: int) -> Iterator[Any]:
+    for _ in bar(range(count), 'painting'):
+        yield next(images)

@@ -1,0 +1,154 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway show``: a tree in wind on a page of the browser, without ROS."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+import math
+from pathlib import Path
+import sys
+import time
+import webbrowser
+
+from tree_sway.commands.arguments import (
+    add_sway_arguments,
+    opened_scene,
+    opened_wind,
+    told_leaves,
+)
+from tree_sway.commands.page_arguments import add_page_arguments, page_settings
+from tree_sway.core.fidelity.estimate import DIAL
+from tree_sway.core.growth.builtin import BUILTIN_TREES
+from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.simulator.settings import MODELS, Settings, USUAL
+from tree_sway.errors import ParameterError
+from tree_sway.files.trees.source import open_scene
+from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET
+from tree_sway.page.server import PageServer
+from tree_sway.page.session import Choices, Session
+from tree_sway.page.wind_source import SimulatedWind, WindSource
+from tree_sway.parameters.sway_parameters import (
+    BEARING_TO,
+    DAMPING_RATIO,
+    INTENSITY,
+    MEAN_SPEED,
+    MODEL,
+    TOLERANCE,
+)
+
+_SPACING = 1.2
+"""Between the trees of a stand over the greater of height and spread of one."""
+
+_COUNTS = ('1', '9', '100')
+_LABELS = {
+    'mean_speed': 'Wind',
+    'intensity': 'Gustiness',
+    'bearing_to': 'Blows to',
+    'tolerance': 'Tolerance',
+    'damping_ratio': 'Damping',
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add_sway_arguments(parser, 'a wind record, played over and over; simulated if left out')
+    parser.add_argument(
+        '--stand', type=int, default=1, metavar='N', help='number of trees (%(default)s)'
+    )
+    parser.add_argument(
+        '--seconds', type=float, metavar='N', help='end after this time [s]; else by Ctrl-C'
+    )
+    parser.add_argument('--read-only', action='store_true', help='viewers may change nothing')
+    add_page_arguments(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve the page until the time is over or Ctrl-C."""
+    settings = page_settings(arguments)
+    if arguments.stand < 1:
+        raise ParameterError(f'a stand of {arguments.stand}', cure='ask for 1 tree or more')
+    wind = opened_wind(arguments)
+    print(f'{arguments.tree}: starting (the first start compiles, up to a minute)', flush=True)
+    choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
+    session = Session(lambda wanted: build_scene(wanted, arguments), choices, wind)
+    panel = ControlPanel()
+    if not arguments.read_only:
+        is_one_tree = session.status()['trees'] == arguments.stand
+        panel = ControlPanel(_controls(choices, wind, is_one_tree=is_one_tree), session.apply)
+    with PageServer(settings, panel, session.status) as server:
+        session.serve(server)
+        print(f'open {server.url} (Ctrl-C ends)', flush=True)
+        if arguments.open:
+            webbrowser.open(server.url)
+        try:
+            end = math.inf if arguments.seconds is None else time.monotonic() + arguments.seconds
+            while session.failure is None and time.monotonic() < end:
+                session.wait(min(0.1, end - time.monotonic()))
+        except KeyboardInterrupt:
+            print('', file=sys.stderr)
+        finally:
+            session.stop()
+        if session.failure is not None:
+            raise session.failure
+    return 0
+
+
+def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
+    """Make the simulator of what was chosen."""
+    is_first = choices.tree == Path(arguments.tree).name
+    scene = opened_scene(arguments) if is_first else open_scene(choices.tree)
+    count = int(choices.count)
+    if count > 1:
+        if not scene.is_one_tree:
+            raise ParameterError('a stand of a forest', where='--stand', cure='name one tree')
+        scene = stand(scene, count, choices.model)
+    damping, in_leaf = choices.damping_ratio or None, told_leaves(arguments)
+    settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
+    return scene.simulator(settings, model=choices.model)
+
+
+def stand(scene: Scene, count: int, model: str) -> Scene:
+    """Trees of one kind on a grid, each turned another way; on their table where they have one."""
+    tree, one = scene.tree, scene.trees[0]
+    low, high = tree.start.min(axis=0), tree.end.max(axis=0)
+    spacing = _SPACING * float(max(*(high - low)[:2], 0.5 * tree.height))
+    across = math.ceil(math.sqrt(count))
+    trees = [
+        PlacedTree(
+            f'{tree.name}{i + 1}',
+            tree,
+            x=spacing * (i % across - 0.5 * (across - 1)),
+            y=spacing * (i // across - 0.5 * (across - 1)),
+            yaw=2.4 * i,
+            species=one.species,
+            model=USUAL if model == 'auto' else model,
+        )
+        for i in range(count)
+    ]
+    return Scene(trees, f'{count} of {tree.name}', scene.source)
+
+
+def _controls(
+    choices: Choices, wind: WindSource, *, is_one_tree: bool = True
+) -> tuple[Control, ...]:
+    """Make what viewers may change, with the ranges of the nodes' parameters."""
+    controls = []
+    if isinstance(wind, SimulatedWind):
+        for each in (MEAN_SPEED, INTENSITY, BEARING_TO):
+            controls.append(Control.of(each, _LABELS[each.name], wind.values[each.name]))
+    if is_one_tree:
+        models = tuple(dict.fromkeys(('auto', *map(str, DIAL), *MODELS[1:], choices.model)))
+        controls.append(replace(Control.of(MODEL, 'Model', choices.model), choices=models))
+    controls += [Control.of(each, _LABELS[each.name]) for each in (TOLERANCE, DAMPING_RATIO)]
+    trees = (*BUILTIN_TREES, *(() if choices.tree in BUILTIN_TREES else (choices.tree,)))
+    counts = tuple(dict.fromkeys((*_COUNTS, choices.count)))
+    controls.append(Control('tree', 'Tree', choices.tree, 'What is shown.', choices=trees))
+    if is_one_tree:
+        # The trees of a stand have models of their own, and are as many as its file says.
+        how_many = Control('count', 'Stand of', choices.count, 'How many of it.', choices=counts)
+        controls.append(how_many)
+    return (*controls, *PAUSE_AND_RESET)

@@ -1,0 +1,74 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway simulate``: a tree taken through a wind from rest, to a table of its motion."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from tree_sway.commands.arguments import (
+    add_leaves_argument,
+    add_model_argument,
+    add_output_arguments,
+    add_tree_arguments,
+    add_wind_arguments,
+    opened_record,
+    opened_tree,
+    output_path,
+    told_leaves,
+)
+from tree_sway.commands.progress import waiting
+from tree_sway.core.scene.simulate import simulate, WindSamples
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.errors import nearest, ParameterError
+from tree_sway.files.export.table_writing import refuse_no_table, write_columns
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add = parser.add_argument
+    add_tree_arguments(parser)
+    add_wind_arguments(parser)
+    add_model_argument(parser)
+    add_leaves_argument(parser)
+    which = 'branch whose tip is written, may be repeated; the one with the highest tip'
+    add('--branch', action='append', default=[], metavar='NAME', help=which)
+    add('--rate', type=float, default=60.0, metavar='HZ', help='rows per second (%(default)s)')
+    add('--seconds', type=float, metavar='N', help='length; all of a record, or 60')
+    add_output_arguments(parser, 'table to write: .csv, .parquet or .json')
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Simulate the tree and write what it did."""
+    output = Path(output_path(arguments))
+    refuse_no_table(output)
+    tree_file = opened_tree(arguments)
+    names = tree_file.tree.branch_names
+    for name in arguments.branch:
+        if name not in names:
+            cure = nearest(name, names) or f'such as {names[0]}'
+            raise ParameterError(f"no branch '{name}'", where='--branch', cure=cure)
+    with waiting('simulating'):
+        record = simulate(
+            tree_file,
+            _wind(arguments),
+            rate=arguments.rate,
+            seconds=arguments.seconds,
+            branches=[names.index(name) for name in arguments.branch] or None,
+            model=arguments.model,
+            in_leaf=told_leaves(arguments),
+        )
+    write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
+    print(f'{output}: {record}')
+    return 0
+
+
+def _wind(arguments: argparse.Namespace) -> WindSamples | np.ndarray:
+    """Return the record that is named, or simulated wind."""
+    if arguments.wind is None:
+        rng, seconds = np.random.default_rng(0), arguments.seconds or 60.0
+        return simulate_turbulence(arguments.speed, rate=arguments.rate, duration=seconds, rng=rng)
+    return opened_record(arguments)

@@ -1,0 +1,99 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Branches that turn far in the wind, or that run in a bow, cut into several key segments.
+
+One key segment bends as one shape and meets the wind as one body. What turns by more than some
+15 degrees takes other shapes in strong wind than in a breeze, and what runs in a bow meets the
+wind otherwise at either end: each is a chain of key segments, as the paper has it (Kanda & Ohya
+2003, 3.2), each piece a branch on the one before.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.tree.tree import Tree
+
+TURN = np.deg2rad(15.0)
+"""Turn of a branch in [rad] that one key segment may make."""
+
+BOW = np.deg2rad(25.0)
+"""Angle in [rad] between the ends of a branch at rest that one key segment may span."""
+
+MOST_PIECES = 3
+"""Pieces of a branch; more add little."""
+
+
+@dataclass(frozen=True)
+class CutTree:
+    """
+    A tree whose branches are pieces of those of another.
+
+    Parameters
+    ----------
+    tree
+        The pieces as branches.
+    branch
+        Branch that each is a piece of, (p,).
+    row
+        Each segment's row in the other tree, (n,).
+    share
+        Length of each piece over that of its branch, (p,).
+
+    """
+
+    tree: Tree
+    branch: Ints
+    row: Ints
+    share: Floats
+
+
+def whole_tree(tree: Tree) -> CutTree:
+    """Return a tree that is not cut."""
+    b = tree.n_branches
+    return CutTree(tree, np.arange(b), np.arange(tree.n_segments), np.ones(b))
+
+
+def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
+    """
+    Count the key segments of each branch, (b,), by its turn in [rad], (b,), and its bow.
+
+    A piece has two segments or more.
+    """
+    first, last = tree.branch_first[:-1], tree.branch_first[1:] - 1
+    cosine = np.einsum('bk,bk->b', tree.direction[first], tree.direction[last])
+    bow = np.arccos(np.clip(cosine, -1.0, 1.0))
+    most = np.minimum(np.diff(tree.branch_first) // 2, MOST_PIECES)
+    most_turned = np.nan_to_num(np.maximum(turn / TURN, bow / BOW), nan=1.0)
+    wanted = np.ceil(np.minimum(most_turned, MOST_PIECES)).astype(np.int64)
+    pieces: Ints = np.clip(wanted, 1, np.maximum(most, 1))
+    return pieces
+
+
+def cut_tree(tree: Tree, pieces: Ints) -> CutTree:
+    """Cut each branch at nodes into a number of pieces, (b,), of about as many segments."""
+    if (pieces == 1).all():
+        return whole_tree(tree)
+    from tree_sway.core.tree.building import tree_from_segments
+
+    size = np.diff(tree.branch_first)
+    within = np.arange(tree.n_segments) - np.repeat(tree.branch_first[:-1], size)
+    first = np.cumsum(pieces) - pieces
+    key = np.repeat(first, size) + within * np.repeat(pieces, size) // np.repeat(size, size)
+    names = np.repeat(np.array(tree.branch_names, dtype=object), pieces)
+    cut = tree_from_segments(
+        tree.start,
+        tree.end,
+        np.stack([tree.base_diameter, tree.tip_diameter], axis=1),
+        parent=tree.segment_parent,
+        branch=key,
+        branch_names=names.tolist(),
+        name=tree.name,
+        species=tree.species,
+    )
+    branch = tree.branch_of_segment[cut.source_index[cut.branch_first[:-1]]]
+    return CutTree(cut, branch, cut.source_index, cut.branch_length / tree.branch_length[branch])

@@ -1,0 +1,339 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Every branch as a bending body: its axes, its mass and load along it, the fields it bends by.
+
+A branch turns about two fixed axes across its chord. Its coordinates are the components of a
+rotation vector, ``x e2 - y e1``: a positive x moves the tip along e1, a positive y along e2. What
+a branch carries loads it and shapes it: the shear force and the moment of each child's subtree
+enter at the child's place.
+
+Symbols: b chord direction, e1, e2 across it; psi slope shape; c drag area per length [m]; mu mass
+per length [kg/m].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.branch.beam import (
+    Attachments,
+    BranchBeam,
+    cross,
+    RotationField,
+    SlopeShape,
+)
+from tree_sway.core.branch.shapes import (
+    Carried,
+    FEWER_TURNS,
+    N_PAIRS,
+    N_TURNS,
+    shaken_energies,
+    shape_fields,
+    wind_loads,
+)
+from tree_sway.core.checks import one_of_each
+from tree_sway.core.tree.tree import Tree
+
+_LEFT = 1e-4
+"""Share of the energy of all branches but the stem that static fields alone may leave out."""
+
+_FEW, _ONE_OF = 24, 50
+"""Branches beside the stem with further shapes: at most this number, or one in this number."""
+
+_LIGHT = 1e-3
+"""Share of the mass of a tree below which a branch with all it carries is never asked."""
+
+
+@dataclass(frozen=True)
+class BranchModel:
+    """
+    One branch, ready to be reduced.
+
+    Parameters
+    ----------
+    beam
+        Its quadrature and bending.
+    drag_area
+        Area that the wind meets per length at each point in [m], (p, 5).
+    mass
+        Mass per length at each point in [kg/m], (p, 5).
+    shape
+        Slope per unit of its key rotation, as a plain branch is drawn.
+    fields
+        How it moves per unit of its key rotation x, y and of what an enriched branch has beyond.
+    children
+        The branches it carries, in the order of ``beam.children``.
+
+    """
+
+    beam: BranchBeam
+    drag_area: Floats
+    mass: Floats
+    shape: SlopeShape
+    fields: tuple[RotationField, ...]
+    children: Ints
+
+    @cached_property
+    def inertia_share(self) -> float:
+        """
+        Inertia that gives its beam's first frequency, over that of the static shape [-].
+
+        Inverse iteration from the static shape: each turn bends the branch by its own inertia.
+        """
+        beam, shape = self.beam, self.shape
+        static = _square_frequency(beam, shape, self.mass)
+        none = np.zeros(0)
+        for _ in range(4):
+            bending = beam.bending_moment(self.mass * shape.deflection, none, none)
+            shape = SlopeShape(beam, bending / bending.max() / beam.second_moment)
+        return static / _square_frequency(beam, shape, self.mass)
+
+
+def branch_models(
+    tree: Tree,
+    density: float,
+    *,
+    carries: bool,
+    shear_ratio: float = 1.0 / 14.0,
+    enriched: frozenset[int] = frozenset(),
+    speed_profile: Floats | None = None,
+    leaf_mass: Floats | None = None,
+    leaf_area: Floats | None = None,
+    root_compliance: float = 0.0,
+) -> list[BranchModel]:
+    """Model each branch of a tree; parameters are those of `TreeBeams` and its `models`."""
+    beams = TreeBeams(
+        tree,
+        density,
+        shear_ratio=shear_ratio,
+        speed_profile=speed_profile,
+        leaf_mass=leaf_mass,
+        leaf_area=leaf_area,
+        root_compliance=root_compliance,
+    )
+    return beams.models(carries=carries, enriched=enriched)
+
+
+class TreeBeams:
+    """
+    Every branch of a tree as a beam, and what it hands down: the same for every model.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    density
+        Of green wood in [kg/m^3].
+    shear_ratio
+        Shear modulus over Young's in [-].
+    speed_profile
+        Wind speed over that at the anemometer at each segment's middle [-], (n,); 1 if None.
+    leaf_mass, leaf_area
+        Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
+    root_compliance
+        Of the stem, as of `BranchBeam`.
+    known
+        Other beams of the same wood, and which of them each branch is, -1 for none, (b,).
+
+    """
+
+    def __init__(
+        self,
+        tree: Tree,
+        density: float,
+        *,
+        shear_ratio: float = 1.0 / 14.0,
+        speed_profile: Floats | None = None,
+        leaf_mass: Floats | None = None,
+        leaf_area: Floats | None = None,
+        root_compliance: float = 0.0,
+        known: tuple[TreeBeams, Ints] | None = None,
+    ) -> None:
+        """Sum up what hangs on each branch."""
+        n = tree.n_branches
+        if leaf_mass is not None:
+            leaf_mass = one_of_each('leaf_mass', leaf_mass, n, 'branch')
+        if leaf_area is not None:
+            leaf_area = one_of_each('leaf_area', leaf_area, n, 'branch')
+        self._tree, self._shear_ratio = tree, shear_ratio
+        self._bare: list[tuple[BranchBeam, Floats, Floats, Ints]] = []
+        self._known: dict[tuple[int, ...], BranchModel] = {}
+        area, area_moment = np.zeros(n), np.zeros((n, 3))
+        weight, weight_moment, weight_second = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
+        force, torque = np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
+        self._sums = Carried(
+            area, area_moment, force, torque, weight, weight_moment, weight_second
+        )
+        children_of: list[list[int]] = [[] for _ in range(n)]
+        for branch in range(1, n):
+            children_of[tree.branch_parent[branch]].append(branch)
+        for branch in range(n - 1, -1, -1):
+            children = np.array(children_of[branch], dtype=np.int64)
+            same = known[1][branch] if known is not None else -1
+            if known is not None and same >= 0:
+                beam, drag_area, mass, _ = known[0]._bare[same]
+            else:
+                beam, drag_area, mass = self._beam(
+                    branch, children, density, leaf_mass, leaf_area, speed_profile,
+                    root_compliance if branch == 0 else 0.0,
+                )  # fmt: skip
+            self._bare.append((beam, drag_area, mass, children))
+            point = beam.point.reshape(-1, 3)
+            dm, load = beam.weight * mass, beam.weight * drag_area
+            area[branch] = load.sum() + area[children].sum()
+            area_moment[branch] = load.ravel() @ point + area_moment[children].sum(axis=0)
+            loads = wind_loads(beam, drag_area)
+            force[branch] = beam.integral(loads) + force[children].sum(axis=0)
+            torque[branch] = beam.integral(cross(beam.point[:, :, None], loads))
+            torque[branch] += torque[children].sum(axis=0)
+            weight[branch] = dm.sum() + weight[children].sum()
+            weight_moment[branch] = dm.ravel() @ point + weight_moment[children].sum(axis=0)
+            weight_second[branch] = (dm.reshape(-1, 1) * point).T @ point
+            weight_second[branch] += weight_second[children].sum(axis=0)
+        self._bare.reverse()
+
+    def _beam(
+        self,
+        branch: int,
+        children: Ints,
+        density: float,
+        leaf_mass: Floats | None,
+        leaf_area: Floats | None,
+        speed_profile: Floats | None,
+        root_compliance: float,
+    ) -> tuple[BranchBeam, Floats, Floats]:
+        """Lay a branch out: its beam, and drag area [m] and mass [kg/m] per length."""
+        tree = self._tree
+        here = tree.segments_of(branch)
+        beam = BranchBeam(
+            tree.start[here] - tree.start[0],
+            tree.end[here] - tree.start[0],
+            tree.base_diameter[here],
+            tree.tip_diameter[here],
+            _places(tree, branch, children),
+            root_compliance,
+        )
+        length = float(beam.node[-1])
+        mass = density * beam.area
+        drag_area = beam.diameter.copy()
+        if leaf_mass is not None:
+            mass += leaf_mass[branch] / length
+        if leaf_area is not None:
+            drag_area += leaf_area[branch] / length
+        if speed_profile is not None:
+            drag_area *= (speed_profile[here] ** 2)[beam.segment, None]
+        return beam, drag_area, mass
+
+    def turns(self, modulus: float) -> Floats:
+        """
+        Bound the turns of the chords [rad] of all branches, (b,).
+
+        By the loads of even winds along x and y of a dynamic pressure of 1 kg/m/s^2, as beams
+        that bend and do not hang.
+        """
+        turns = np.zeros(len(self._bare))
+        for branch, (beam, drag_area, _, children) in enumerate(self._bare):
+            carried = self._sums[children]
+            moments = beam.moment_in_space(
+                wind_loads(beam, drag_area)[:, :, :2], carried.force[:, :2], carried.moment[:, :2]
+            )
+            slopes = beam.from_base(beam.curvature_in_space(moments, self._shear_ratio))[0]
+            ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
+            turns[branch] = np.sqrt(np.square(ends).sum(axis=1).max()) / beam.chord_length
+        return turns / modulus
+
+    def models(
+        self, *, carries: bool, enriched: frozenset[int] = frozenset()
+    ) -> list[BranchModel]:
+        """
+        Model each branch; where two models of the sway do not differ, it is the same.
+
+        Parameters
+        ----------
+        carries
+            Whether children load and shape their parents; if not, every branch is alone (the
+            paper).
+        enriched
+            Branches that get further shapes and twists.
+
+        Returns
+        -------
+        list of BranchModel
+            In the order of the tree's branches.
+
+        """
+        return [
+            self._model(branch, len(bare[3]) if carries else 0, *self._richness(branch, enriched))
+            for branch, bare in enumerate(self._bare)
+        ]
+
+    def enriched(self, choice: str) -> frozenset[int]:
+        """
+        Choose the branches that get further shapes and twists.
+
+        Parameters
+        ----------
+        choice
+            ``none``, the ``stem``, all ``carriers`` of others, ``all``, or those ``needed``: the
+            stem and the branches that bend most unlike their static fields when they are shaken,
+            until what is left of that energy is `_LEFT` of that of all branches.
+
+        """
+        parent = self._tree.branch_parent
+        if choice != 'needed':
+            chosen = {
+                'none': (), 'stem': (0,), 'carriers': (0, *parent[1:].tolist()),
+                'all': range(len(parent))
+            }  # fmt: skip
+            return frozenset(chosen[choice])
+        heavy = np.flatnonzero(self._sums.mass[1:] > _LIGHT * self._sums.mass[0]) + 1
+        if len(heavy) == 0:
+            return frozenset((0,))
+        energies = np.array([self._shaken(branch) for branch in heavy.tolist()])
+        order = np.argsort(-energies[:, 1], kind='stable')
+        left = np.cumsum(energies[order[::-1], 1])[::-1]
+        needed = heavy[order[left > _LEFT * energies[:, 0].sum()]]
+        most = max(_FEW, len(parent) // _ONE_OF)
+        return frozenset((0, *needed[:most].tolist()))
+
+    def _shaken(self, branch: int) -> tuple[float, float]:
+        beam, _, mass, children = self._bare[branch]
+        fields = self._model(branch, len(children), 1, 0).fields
+        return shaken_energies(beam, mass, self._sums[children], self._shear_ratio, fields)
+
+    def _model(self, branch: int, n_carried: int, n_pairs: int, n_turns: int) -> BranchModel:
+        """Model a branch, unless that is done."""
+        key = branch, n_carried, n_pairs, n_turns
+        if key not in self._known:
+            beam, drag_area, mass, children = self._bare[branch]
+            carried = self._sums[children[:n_carried]]
+            shape, fields = shape_fields(
+                beam, drag_area, mass, carried, self._shear_ratio, n_pairs, n_turns
+            )
+            self._known[key] = BranchModel(beam, drag_area, mass, shape, fields, children)
+        return self._known[key]
+
+    def _richness(self, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
+        """Pairs of a branch, and further fields by what turns about its chord."""
+        if branch not in enriched:
+            return 1, 0
+        return N_PAIRS, N_TURNS if self._tree.branch_parent[branch] < 0 else FEWER_TURNS
+
+
+def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
+    """Where children sit on the segments of their parent."""
+    if len(children) == 0:
+        return Attachments(np.zeros(0, dtype=np.int64), np.zeros(0))
+    first = tree.branch_first[children]
+    carrying = tree.segment_parent[first]
+    return Attachments(carrying - tree.branch_first[branch], tree.place_on_parent[first])
+
+
+def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:
+    """Rayleigh's quotient of a shape for a modulus of 1, in [1/s^2]."""
+    return shape.stiffness(shape, 1.0) / float(beam.integral(mass * shape.deflection**2))

@@ -1,0 +1,356 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The fields of rotation by which a branch bends and twists in space.
+
+A plain branch has two: those in which winds bend and twist it with all that it carries, so that
+its chord turns about one axis or the other. An enriched branch has further ones: what the inertia
+of these bends it into, and so on; and how it is twisted by all it carries when that turns about
+the chord as one (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space
+of its flexibility and inertia). They are orthogonal in bending energy. A crooked branch bends and
+twists in one: no coordinate of its own is spent on twist.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.branch.beam import (
+    BranchBeam,
+    cross,
+    cross_matrix,
+    RotationField,
+    SlopeShape,
+)
+
+N_PAIRS = 3
+"""Pairs of fields of an enriched branch: the static ones, then by inertia."""
+
+N_TURNS, FEWER_TURNS = 3, 1
+"""Further fields by what turns about the chord: of a stem, and of any other branch."""
+
+MAX_COORDINATES = 12
+"""Most fields of a branch."""
+
+_APART, _LEFT_APART = 24, 1e-4
+"""
+Cases in which what a branch carries swings apart, and the share of their energy that the fields
+may leave out.
+
+"""
+
+_NEGLIGIBLE = 1e-4
+"""Share of a field that must be new."""
+
+_UPWARD = 0.3
+_WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
+
+
+@dataclass(frozen=True)
+class Carried:
+    """
+    What each child of a branch hands down: sums over its subtree, about the root of the tree.
+
+    Parameters
+    ----------
+    area, area_moment
+        Drag area in [m^2], (c,), and its first moment in [m^3], (c, 3).
+    force, moment
+        Force of winds along x, y and z, as of `wind_loads`, and its moment about the root of the
+        tree, both (c, 3, 3), the wind first.
+    mass, mass_moment, mass_second
+        Mass in [kg], (c,), its first moment in [kg m], (c, 3), and second in [kg m^2], (c, 3, 3).
+
+    """
+
+    area: Floats
+    area_moment: Floats
+    force: Floats
+    moment: Floats
+    mass: Floats
+    mass_moment: Floats
+    mass_second: Floats
+
+    def __getitem__(self, children: Ints) -> Carried:
+        """Pick some of the subtrees."""
+        return Carried(
+            self.area[children],
+            self.area_moment[children],
+            self.force[children],
+            self.moment[children],
+            self.mass[children],
+            self.mass_moment[children],
+            self.mass_second[children],
+        )
+
+
+def across(chord: Floats) -> tuple[Floats, Floats]:
+    """
+    Two unit vectors across a chord (3,): e1 in the vertical plane, or along x for an upright one.
+
+    (b, e1, e2) is right-handed.
+    """
+    reference = np.array([1.0, 0.0, 0.0]) if abs(chord[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
+    e1 = reference - (reference @ chord) * chord
+    e1 /= np.linalg.norm(e1)
+    return e1, cross_matrix(chord) @ e1
+
+
+def shape_fields(
+    beam: BranchBeam,
+    drag_area: Floats,
+    mass: Floats,
+    carried: Carried,
+    shear_ratio: float,
+    n_pairs: int = 1,
+    n_turns: int = 0,
+) -> tuple[SlopeShape, tuple[RotationField, ...]]:
+    """
+    Find the fields by which a branch moves.
+
+    Parameters
+    ----------
+    beam
+        The branch.
+    drag_area, mass
+        Per length at its points in [m] and [kg/m], (p, 5).
+    carried
+        What its children hand down; none for a branch that is taken alone.
+    shear_ratio
+        Shear modulus over Young's in [-].
+    n_pairs, n_turns
+        How many, of either kind; fewer where there are no more.
+
+    Returns
+    -------
+    tuple
+        The slope that a plain branch is drawn by, and what a unit of each coordinate does: of the
+        key rotation x, y, then of further ones.
+
+    """
+    e1, e2 = across(beam.chord)
+    moments = beam.moment_in_space(wind_loads(beam, drag_area), carried.force, carried.moment)
+    curvatures = beam.curvature_in_space(moments, shear_ratio)
+    pair = _static_pair(beam, curvatures, e1, e2)
+    if pair is None:
+        drawn = _static_shape(beam, drag_area, carried)
+        fields = [RotationField.about(drawn, e2), RotationField.about(drawn, -e1)]
+    else:
+        mean = 0.5 * (pair[0] @ e2 - pair[1] @ e1)
+        drawn = beam.slope_shape(mean * beam.second_moment)
+        fields = [RotationField(beam, each) for each in pair]
+    if n_pairs > 1 or n_turns > 0:
+        fields += _further(beam, mass, carried, shear_ratio, fields, n_pairs, n_turns)
+    return drawn, tuple(fields)
+
+
+def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
+    """
+    Force per length on the branch at rest, of winds from all sides, (p, 5, 3, 3), the wind first.
+
+    It is linear in the wind: per m/s of winds along x, y and z, in air of 1 kg/m^3 and winds along
+    the ground of 1 m/s.
+    """
+    tangent = beam.tangent
+    across = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
+    loads: Floats = (drag_area * exposure(beam)[:, None])[..., None, None] * across[:, None]
+    return loads
+
+
+def exposure(beam: BranchBeam) -> Floats:
+    """Mean over winds from all sides of the share of the wind that goes across, (m,)."""
+    level = 1.0 - beam.tangent[:, 2:] ** 2
+    share: Floats = np.sqrt(1.0 - level * _ALL_SIDES).mean(axis=1)
+    return share
+
+
+_ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
+
+
+def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -> Floats | None:
+    """
+    Curvatures, (2, p, 5, 3), that turn the chord by 1 about e2 and about -e1 as the winds do.
+
+    Of all that do, these come nearest to what the winds along x, y and z make of the branch, (p,
+    5, 3, 3) (least squares, an upward wind weighted by `_UPWARD`): where winds along the ground
+    turn the chord both ways, what they do is exact, and so is the static sway of a tree. None for
+    a branch whose chord no wind turns.
+    """
+    slopes = beam.from_base(curvatures)[0]
+    ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
+    turns = _WIND_WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=1)) / beam.chord_length
+    sides, largest, winds = np.linalg.svd(turns, full_matrices=False)
+    if not largest[-1] > 0.02 * largest[0]:
+        return None
+    mix = (winds.T / largest) @ sides.T * _WIND_WEIGHTS
+    pair: Floats = np.ascontiguousarray(np.moveaxis(mix @ curvatures, 2, 0))
+    return pair
+
+
+def _further(
+    beam: BranchBeam,
+    mass: Floats,
+    carried: Carried,
+    shear_ratio: float,
+    pair: list[RotationField],
+    n_pairs: int,
+    n_turns: int,
+) -> list[RotationField]:
+    """Ways beyond the static ones, each orthogonal in energy to those before, of unit slope."""
+    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
+    stiff = math.sqrt(2.0 * shear_ratio)
+    basis: list[Floats] = []
+
+    def rest_of(curvature: Floats) -> RotationField | None:
+        """Take what is new in a curvature into the basis, and return it."""
+        vector = (measure * _twisted(beam, curvature, stiff)).ravel()
+        whole = float(np.linalg.norm(vector))
+        for _ in range(2):
+            for other in basis:
+                vector = vector - (other @ vector) * other
+        size = float(np.linalg.norm(vector))
+        if not size > _NEGLIGIBLE * whole:
+            return None
+        basis.append(vector / size)
+        new = _twisted(beam, vector.reshape(curvature.shape) / measure, 1.0 / stiff)
+        slope, nodes, _ = beam.from_base(new)
+        return RotationField(beam, new / max(np.abs(slope).max(), np.abs(nodes).max()))
+
+    for one in pair:
+        rest_of(one.curvature)
+    found: list[RotationField] = []
+    sources: list[RotationField | None] = list(pair)
+    turning: list[RotationField | None] = [None] if len(carried.area) else []
+    for block in range(1, max(n_pairs, n_turns + 1)):
+        parts = (sources if block < n_pairs else []), (turning if block <= n_turns else [])
+        bent = [
+            [rest_of(beam.curvature_in_space(
+                inertial_moment(beam, mass, carried, one)[:, :, None], shear_ratio
+            )[:, :, 0]) for one in part]
+            for part in parts
+        ]  # fmt: skip
+        new = [[one for one in part if one is not None] for part in bent]
+        found += [*new[0], *new[1]]
+        sources, turning = [*new[0]], [*new[1]]
+    if len(carried.area) > 1:
+        apart = np.moveaxis(beam.curvature_in_space(_apart(beam, carried), shear_ratio), 2, 0)
+        vectors = [(measure * _twisted(beam, each, stiff)).ravel() for each in apart]
+        left = np.array(vectors)
+        whole = float(np.square(left).sum())
+        for _ in range(2):
+            left -= (left @ np.array(basis).T) @ np.array(basis)
+        sizes, ways = np.linalg.svd(left, full_matrices=False)[1:]
+        missed = np.cumsum(np.square(sizes[::-1]))[::-1]
+        wanted = ways[missed > _LEFT_APART * whole][: MAX_COORDINATES - len(pair) - len(found)]
+        for way in wanted:
+            curvature = _twisted(beam, way.reshape(apart[0].shape) / measure, 1.0 / stiff)
+            found += [field for field in [rest_of(curvature)] if field is not None]
+    return found
+
+
+def _apart(beam: BranchBeam, carried: Carried) -> Floats:
+    """
+    Return internal moments as what is carried swings apart, in some random cases (p, 5, k, 3).
+
+    Limbs that swing against each other bend and twist a stem between their feet, as no motion of
+    the whole crown does (random vectors find what matters: Halko, Martinsson & Tropp 2011, SIAM
+    Review 53(2), 217-288).
+    """
+    places = beam.child_point[: len(carried.area)]
+    rng = np.random.default_rng(0)
+    moved, turn = rng.choice((-1.0, 1.0), (2, len(places), _APART, 3))
+    hung = carried.mass_moment - carried.mass[:, None] * places
+    trace = np.trace(carried.mass_second, axis1=1, axis2=2)
+    square = trace - (places * (hung + carried.mass_moment)).sum(axis=1)
+    radius = np.sqrt(np.maximum(square, 1e-12) / np.maximum(carried.mass, 1e-300))
+    turn = turn / radius[:, None, None]
+    at_root = moved - cross(turn, places[:, None])
+    mass = carried.mass[:, None, None]
+    force = mass * at_root + cross(turn, carried.mass_moment[:, None])
+    spin = trace[:, None, None] * turn - np.einsum('cij,ckj->cki', carried.mass_second, turn)
+    moment = cross(carried.mass_moment[:, None], at_root) + spin
+    load = np.zeros((*beam.weight.shape, _APART, 3))
+    return beam.moment_in_space(load, force, moment)
+
+
+def _twisted(beam: BranchBeam, curvature: Floats, scale: float) -> Floats:
+    """Curvature, (p, 5, 3), with its twist scaled by a factor."""
+    along = beam.tangent[:, None, :]
+    about = (curvature * along).sum(axis=-1, keepdims=True) * along
+    out: Floats = curvature + (scale - 1.0) * about
+    return out
+
+
+def shaken_energies(
+    beam: BranchBeam,
+    mass: Floats,
+    carried: Carried,
+    shear_ratio: float,
+    fields: Sequence[RotationField],
+) -> tuple[float, float]:
+    """
+    Compute the energy of a branch whose base is shaken, and of what its fields cannot follow.
+
+    Parameters
+    ----------
+    beam, mass, carried, shear_ratio
+        As of `shape_fields`.
+    fields
+        By which the branch moves.
+
+    Returns
+    -------
+    tuple of float
+        Twice the sum of the energies of bending and twist by an acceleration of 1 m/s^2 of all
+        that it carries, along x, y and z, for a modulus of 1 Pa; and the part orthogonal to the
+        fields.
+
+    """
+    force = carried.mass[:, None, None] * np.eye(3)
+    moment = cross(carried.mass_moment[:, None], np.eye(3))
+    moments = beam.moment_in_space(mass[..., None, None] * np.eye(3), force, moment)
+    curvatures = beam.curvature_in_space(moments, shear_ratio)
+    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
+    stiff = math.sqrt(2.0 * shear_ratio)
+    kinds = [*np.moveaxis(curvatures, 2, 0), *(field.curvature for field in fields)]
+    vectors = np.array([(measure * _twisted(beam, each, stiff)).ravel() for each in kinds])
+    basis = np.linalg.qr(vectors[3:].T)[0]
+    left = vectors[:3] - vectors[:3] @ basis @ basis.T
+    return float(np.square(vectors[:3]).sum()), float(np.square(left).sum())
+
+
+def inertial_moment(
+    beam: BranchBeam, mass: Floats, carried: Carried, field: RotationField | None
+) -> Floats:
+    """
+    Return the internal moment by the inertia of a field and of all that it carries, (p, 5, 3).
+
+    Without a field all that is carried turns about the chord as one.
+    """
+    places = beam.child_point[: len(carried.area)]
+    if field is None:
+        load = np.zeros((*mass.shape, 3))
+        turn = np.broadcast_to(beam.chord, places.shape)
+        moved = np.zeros(places.shape)
+    else:
+        load = mass[..., None] * field.points
+        turn, moved = field.child_slope[: len(places)], field.children[: len(places)]
+    at_root = moved - cross(turn, places)
+    force = carried.mass[:, None] * at_root + cross(turn, carried.mass_moment)
+    trace = np.trace(carried.mass_second, axis1=1, axis2=2)[:, None]
+    spin = trace * turn - np.einsum('cij,cj->ci', carried.mass_second, turn)
+    moment = cross(carried.mass_moment, at_root) + spin
+    return beam.moment_in_space(load[:, :, None], force[:, None], moment[:, None])[:, :, 0]
+
+
+def _static_shape(beam: BranchBeam, drag_area: Floats, carried: Carried) -> SlopeShape:
+    """Bent by an even wind on the branch and on all it carries."""
+    places = beam.child_point[: len(carried.area)]
+    lever = (carried.area_moment - carried.area[:, None] * places) @ beam.chord
+    bending = beam.bending_moment(drag_area, carried.area, np.maximum(lever, 0.0))
+    return beam.slope_shape(bending)

@@ -1,0 +1,115 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of numbers that come from outside: one error, with the range, instead of a crash."""
+
+from __future__ import annotations
+
+import math
+from typing import SupportsFloat
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tree_sway.errors import ParameterError
+
+
+def within(
+    name: str,
+    value: SupportsFloat,
+    low: float,
+    high: float,
+    unit: str = '',
+    *,
+    above: bool = False,
+) -> float:
+    """
+    Return a number if it lies in a closed range; not-a-number lies in none.
+
+    ``above`` refuses the low end itself too. A `ParameterError` gives name, value, range and unit.
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not (low <= number <= high) or (above and number == low):
+        lower = f'above {low:g}, up to' if above else f'{low:g} to'
+        cure = f'use {lower} {high:g} {unit}'.rstrip()
+        raise ParameterError(f'{value!r} is out of range', where=name, cure=cure)
+    return number
+
+
+def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:
+    """
+    Return the three components of a vector, which may be infinite or not-a-number.
+
+    A `ParameterError` names what is not three numbers.
+    """
+    try:
+        if isinstance(vector, str | bytes):
+            raise ValueError
+        x, y, z = np.asarray(vector, dtype=np.float64).tolist()
+        return float(x), float(y), float(z)  # lists, of a matrix, are no floats
+    except (TypeError, ValueError, OverflowError):
+        text = ' '.join(repr(vector).split())[:80]
+        raise ParameterError(
+            f'{text} is not three numbers', where=name, cure='give x, y and z'
+        ) from None
+
+
+def array_to_fill(name: str, array: object, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """
+    Return an array if a kernel can write all of a shape into it.
+
+    A kernel knows no bounds: what is too short would be written past its end. Raises a
+    `ParameterError` for no array of float64 in the machine's own order, of that shape, whole in
+    one piece of memory, row after row, and free to be written.
+    """
+    if not isinstance(array, np.ndarray):
+        wrong = f'a {type(array).__name__}'
+    elif array.shape != shape:
+        wrong = f'an array of shape {array.shape}'
+    elif array.dtype != np.float64:
+        wrong = f'an array of {array.dtype}'
+    elif not (array.flags.c_contiguous and array.flags.aligned):
+        wrong = 'an array that is spread over memory'
+    elif not array.flags.writeable:
+        wrong = 'an array that cannot be written'
+    else:
+        return array
+    raise ParameterError(
+        f'{wrong} cannot be filled', where=name, cure=f'give np.empty({shape}) or nothing'
+    )
+
+
+def array_to_read(name: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """
+    Return numbers as a kernel reads them: float64, in one piece, and as many as it will read.
+
+    Raises a `ParameterError` for another shape, or what are no numbers.
+    """
+    try:
+        numbers = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise ParameterError('not all are numbers', where=name) from None
+    if numbers.shape != shape:
+        raise ParameterError(
+            f'an array of shape {numbers.shape}', where=name, cure=f'give one of shape {shape}'
+        )
+    return numbers
+
+
+def one_of_each(name: str, values: ArrayLike, count: int, what: str) -> NDArray[np.float64]:
+    """
+    Return a number for each thing, (count,), none of them negative.
+
+    Raises a `ParameterError` for another shape, or a number that is negative or not finite.
+    """
+    numbers = array_to_read(name, values, (count,))
+    bad = np.flatnonzero(~(np.isfinite(numbers) & (numbers >= 0.0)))
+    if len(bad):
+        raise ParameterError(
+            f'{numbers[bad[0]]} of {what} {bad[0]}',
+            where=name,
+            cure='give finite numbers, 0 or more',
+        )
+    return numbers

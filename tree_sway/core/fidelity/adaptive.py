@@ -1,0 +1,234 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A tree that takes no more coordinates than its scene needs, and changes their number unseen.
+
+The error and the cost of every number of coordinates, in the wind of the last minute and in the
+wind that blows now, are known beforehand (`estimate`); the cheapest that stays within the
+tolerance in both is taken, or, where none that can be afforded does, the most accurate of those.
+
+All coordinates swing all the time; those that are left out are not shown, and do not turn or damp
+the load of the others. So adding some needs no start: their amounts fade in.
+
+**Up at once.** A load beyond what the number was chosen for is noticed in the step in which it
+comes; one beyond all of the last minute is met by all coordinates that can be afforded, as nothing
+is known of it yet. They are shown in full within 0.4 s.
+
+**Down slowly.** Coordinates that are not needed fade within a second. They are left out only when
+the rest suffices with a third to spare, so that a wind on the border does not flicker.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.fidelity.estimate import dialled, ErrorEstimator, Estimate
+from tree_sway.core.simulator.assembly import Kept
+from tree_sway.core.simulator.settings import Settings, settings_with, USUAL
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.state.tree_state import TreeState
+from tree_sway.core.tree.grown_tree import GrownTree
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.climate import ClimateTracker, WindClimate
+from tree_sway.core.wind.limits import components_of, is_wind
+
+LEAVE_IN = 1.0
+"""How long coordinates that are left out take to fade in [s]."""
+
+ADD_IN = 0.4
+"""How long it takes in [s] until added coordinates are shown in full."""
+
+SURPRISE = 1.2
+"""Load over the largest that the number was chosen for, at which it is looked at again."""
+
+LOAD_JUMP = 2.0
+"""Load over the largest of the last minute at which all are taken that are affordable."""
+
+GUST_MEMORY = 5.0
+"""Time in [s] after which a gust counts 1/e."""
+
+SWINGS_ON = 20.0
+"""After a push a tree may swing freely for this time [s]."""
+
+REVIEW = 2.0
+"""How often the choice is looked at again in [s]."""
+
+_SPARE = 2.0 / 3.0
+
+
+class AdaptiveSimulator(SwaySimulator):
+    """
+    A tree on the fewest coordinates that its scene needs; otherwise as `SwaySimulator`.
+
+    Parameters
+    ----------
+    tree, species, settings, kept
+        As for `SwaySimulator`; the model of the settings does not matter.
+    tolerance
+        Largest error of the tips in [m], root mean square over time and tips.
+    budget
+        Largest cost of a step and a placing in [us]; 0 for none.
+    expected
+        The wind to start for; a fresh breeze of 8 m/s if None.
+
+    """
+
+    choice: Estimate
+    """What is in use, or faded in."""
+
+    def __init__(
+        self,
+        tree: Tree | GrownTree,
+        species: Species | None = None,
+        settings: Settings | None = None,
+        *,
+        tolerance: float = 0.005,
+        budget: float = 0.0,
+        expected: WindClimate | None = None,
+        kept: Kept | None = None,
+    ) -> None:
+        """Make the tree on all coordinates, and judge how many the expected wind asks for."""
+        chosen = replace(settings_with(settings, {}), model=USUAL)
+        super().__init__(tree, species, chosen, kept=kept)
+        self._estimator = ErrorEstimator(self.tree, self.bank, self.drag_law)
+        self.tolerance, self.budget = tolerance, budget
+        self.cost_scale = 1.0
+        """Cost here over the cost that is estimated: set it once it is measured."""
+        self._touched_for = 0.0
+        self._expected_wind = expected or WindClimate.steady(8.0, 0.2)
+        self._shares = np.zeros(self.bank.oscillators.shapes.shape[1])
+        self._wanted = np.zeros(1)
+        self._expect()
+
+    @property
+    def model(self) -> str:
+        """Return the name of the model."""
+        return 'auto'
+
+    @property
+    def frame_cost(self) -> float:
+        """Return what a step and a placing of the chosen number take on this machine in [us]."""
+        return self.cost_scale * self.choice.cost
+
+    def estimates(self, climate: WindClimate) -> list[Estimate]:
+        """Judge every number of coordinates in a wind, of the tree as it is tuned."""
+        return self._estimator.estimates(climate)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of what is carried between steps, and what is shown of each coordinate."""
+        return *super().memory(), self._shares, self._wanted
+
+    def set_state(self, state: TreeState) -> None:
+        """Go on from a state, and from what it shows; see `KeepsState.set_state`."""
+        super().set_state(state)
+        estimates = self.estimates(self._tracker.climate)
+        self.choice = next(e for e in estimates if e.n_coordinates >= self._wanted[0])
+        self._show()
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """Advance one step, as `SwaySimulator.step`; look at the choice again when it is time."""
+        self._check_load(wind_mean, dt)
+        is_tuned = self._tuning is not None and self._tuning.is_moving
+        status = super().step(wind_mean, dt)
+        self._tracker.add(self._wind, dt)
+        if is_tuned:
+            self._estimator.refresh()
+        self._since_review += dt
+        self._touched_for -= dt
+        if self._since_review >= REVIEW:
+            self.review()
+        self._fade(dt)
+        return status
+
+    def push(self, segment: int, force: ArrayLike, seconds: float, *, along: float = 0.5) -> None:
+        """Push as `SwaySimulator.push`, on most coordinates until the tree has swung freely."""
+        super().push(segment, force, seconds, along=along)
+        was_free, self._touched_for = self._touched_for <= 0.0, seconds + SWINGS_ON
+        if was_free:
+            self.review()
+
+    def review(self, *, at_best: bool = False) -> Estimate:
+        """Choose again once the tolerance has changed; with ``at_best`` whatever the tolerance."""
+        self._since_review, self._judged = 0.0, self._gust
+        climate = self._tracker.climate
+        both = self.estimates(climate), self.estimates(self._in_gust(climate))
+        estimates = [max(each, key=lambda e: e.error) for each in zip(*both, strict=True)]
+        if self._touched_for > 0.0:  # what a push does is not known beforehand
+            self.choice = max(self._affordable(estimates), key=lambda e: e.n_coordinates)
+        else:
+            self.choice = self._choose(estimates, self.choice, at_best=at_best)
+        return self.choice
+
+    def reset(self) -> None:
+        """Go back to rest and to the expected wind, at once on the number that it asks for."""
+        super().reset()
+        self._expect()
+
+    def _expect(self) -> None:
+        """Choose for the wind that is expected."""
+        self._tracker = ClimateTracker()
+        self._gust, self._bearing, self._since_review = 0.0, np.array([1.0, 0.0, 0.0]), 0.0
+        self._judged = float(np.linalg.norm(self._expected_wind.mean))
+        self.choice = self._choose(self.estimates(self._expected_wind))
+        self._fade(math.inf)
+
+    def _fade(self, dt: float) -> None:
+        """Bring what is shown nearer to the choice."""
+        shares, count = self._shares, self.choice.n_coordinates
+        self._wanted[0] = count
+        if not (shares[:count].min(initial=1.0) < 1.0 or shares[count:].max(initial=0.0) > 0.0):
+            return
+        shares[:count] = np.minimum(shares[:count] + dt / ADD_IN, 1.0)
+        shares[count:] = np.maximum(shares[count:] - dt / LEAVE_IN, 0.0)
+        self._show()
+
+    def _show(self) -> None:
+        shares = self._shares
+        smooth = shares * shares * (3.0 - 2.0 * shares)
+        dialled(self.bank).show(smooth, int((shares > 0.0).sum()))
+
+    def _check_load(self, wind_mean: ArrayLike, dt: float) -> None:
+        """Notice, before its step, a load beyond what the number was chosen for."""
+        x, y, z = components_of(wind_mean)
+        load = x * x + y * y + z * z
+        self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
+        if self._gust < load and is_wind(x, y, z, self._max_wind):
+            self._gust, self._bearing = load, np.array([x, y, z])
+            if load > SURPRISE * self._judged:
+                self.review(at_best=load > LOAD_JUMP * self._tracker.largest_load)
+
+    def _in_gust(self, climate: WindClimate) -> WindClimate:
+        """Forecast until the next look: the last gust lasts, as unsteady as the last minute."""
+        mean = self._bearing * (self._gust / max(float(np.linalg.norm(self._bearing)), 1e-9))
+        return replace(climate, mean=mean, speed=math.sqrt(self._gust))
+
+    def _affordable(self, estimates: list[Estimate]) -> list[Estimate]:
+        """Find the numbers within the budget; the cheapest where none is."""
+        within = [e for e in estimates if self.cost_scale * e.cost <= self.budget]
+        return (within or estimates[:1]) if self.budget > 0.0 else estimates
+
+    def _choose(
+        self, estimates: list[Estimate], current: Estimate | None = None, *, at_best: bool = False
+    ) -> Estimate:
+        affordable = self._affordable(estimates)
+        same = next((e for e in affordable if current and e.name == current.name), None)
+        wanted = None if at_best else _least(affordable, self.tolerance)
+        if wanted is None:
+            wanted = min(affordable, key=lambda e: (e.error, e.cost))
+            return same if same is not None and _SPARE * same.error < wanted.error else wanted
+        if same is not None and wanted.cost < same.cost:
+            careful = _least(affordable, _SPARE * self.tolerance)
+            return careful if careful is not None and careful.cost < same.cost else same
+        return wanted
+
+
+def _least(estimates: Sequence[Estimate], tolerance: float) -> Estimate | None:
+    """Find the cheapest within a tolerance, if there is one."""
+    return min((e for e in estimates if e.error <= tolerance), key=lambda e: e.cost, default=None)

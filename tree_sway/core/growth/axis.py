@@ -1,0 +1,94 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The line a growing shoot draws in space, given by its heading.
+
+A heading is an azimuth (from x towards y) and an elevation above the horizon, both in [rad].
+Habits of growth are plain in these terms: a weeping shoot starts above the horizon and ends below
+it, a conifer's starts low and turns up.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+
+GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
+"""Angle between successive shoots in spiral phyllotaxis in [rad]."""
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def direction_of(azimuth: float, elevation: float) -> Floats:
+    """Return the unit vector (3,) of a heading given in [rad]."""
+    across = np.cos(elevation)
+    return np.array([across * np.cos(azimuth), across * np.sin(azimuth), np.sin(elevation)])
+
+
+def heading_of(direction: Floats) -> tuple[float, float]:
+    """Azimuth and elevation in [rad] of a vector (3,)."""
+    x, y, z = direction
+    return float(np.arctan2(y, x)), float(np.arctan2(z, np.hypot(x, y)))
+
+
+def aim(axis: Floats, polar: float, azimuth: float) -> Floats:
+    """
+    Return the unit vector (3,) at an angle from an axis, both in [rad].
+
+    The azimuth about the axis is 0 level and to the right of someone who looks along it, pi/2 up.
+    """
+    x, y, z = axis
+    across = float(np.hypot(x, y))
+    right, ahead = (y / across, -x / across) if across > 1e-6 else (0.0, -1.0)
+    level = np.array([right, ahead, 0.0])
+    upward = np.array([ahead * z, -right * z, right * y - ahead * x])
+    side = np.cos(azimuth) * level + np.sin(azimuth) * upward
+    return np.asarray(np.cos(polar) * axis + np.sin(polar) * side)
+
+
+def grow_axis(
+    origin: Floats,
+    azimuth: float,
+    elevation: tuple[float, float],
+    length: float,
+    n_segments: int,
+    rng: np.random.Generator,
+    *,
+    wander: float = 0.0,
+    unevenness: float = 0.15,
+    floor: float = -np.inf,
+) -> Floats:
+    """
+    Draw the nodes (n_segments + 1, 3) [m] of a shoot whose elevation turns evenly.
+
+    Parameters
+    ----------
+    origin, length, n_segments
+        First node, (3,), and length along the nodes, both in [m], and how many segments.
+    azimuth, elevation
+        Heading of the first segment, and elevation of the first and the last one, in [rad].
+    rng
+        Source of what is drawn.
+    wander
+        Standard deviation of the change of heading per segment in [rad].
+    unevenness
+        Largest relative deviation of a segment's length from the mean.
+    floor
+        The shoot ends before it would sink below this height in [m]; it keeps one segment.
+
+    """
+    steps = 1.0 + unevenness * rng.uniform(-1.0, 1.0, n_segments)
+    steps *= length / steps.sum()
+    drift = np.cumsum(wander * rng.standard_normal((n_segments, 2)), axis=0)
+    elevations = np.linspace(elevation[0], elevation[1], n_segments) + drift[:, 0]
+    # A given turn of azimuth bends a steep shoot less; undo that, but bounded towards the
+    # vertical.
+    azimuths = azimuth + drift[:, 1] / np.maximum(np.cos(elevations), 0.3)
+    level = np.cos(elevations)
+    headings = np.stack(
+        [level * np.cos(azimuths), level * np.sin(azimuths), np.sin(elevations)], axis=1
+    )
+    nodes = np.vstack([origin, origin + np.cumsum(steps[:, None] * headings, axis=0)])
+    sunk = np.flatnonzero(nodes[2:, 2] < floor)
+    return nodes[: sunk[0] + 2] if len(sunk) else nodes

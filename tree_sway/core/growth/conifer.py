@@ -1,0 +1,62 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A conifer that stands alone: one straight stem, branches in whorls, a crown of its species' form.
+
+Branches near the ground are the oldest and longest; those near the top are short and point
+upwards. Twigs stand left and right of each branch. The stem tapers as ``(1 - z / H)^0.7``, between
+a cone and a paraboloid, whatever its branches: its volume is 0.44 to 0.50 of the cylinder of its
+height and diameter at breast height, as yield tables have it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tree_sway.core.growth.axis import direction_of, grow_axis
+from tree_sway.core.growth.forms import conifer_form
+from tree_sway.core.growth.skeleton import Skeleton
+from tree_sway.core.growth.thickness import finished_tree
+from tree_sway.core.growth.twigs import add_twigs
+from tree_sway.core.tree.tree import Tree
+
+_UPRIGHT = (np.pi / 2.0, np.pi / 2.0)
+STEM_TAPER = 0.7
+"""Power of the distance from the top in the diameter of a conifer's stem."""
+
+
+def grow_conifer(
+    rng: np.random.Generator, height: float = 12.0, diameter: float = 0.2, species: str = 'spruce'
+) -> Tree:
+    """Grow whorls on a straight stem; arguments as of `grow_broadleaf`."""
+    form, skeleton = conifer_form(species), Skeleton()
+
+    def add_branch(at: int, azimuth: float, here: float) -> None:
+        """Add a branch at a height of the crown from 0 to 1, as long as the crown is wide."""
+        origin = skeleton.shoots[stem].nodes[at]
+        low, high = form.rise
+        first = low + (high - low) * here + rng.uniform(-0.08, 0.08)
+        heading = direction_of(azimuth, first + 0.5 * form.turn)
+        length = max(form.outline.reach(origin, heading), 0.012) * rng.uniform(0.85, 1.08)
+        segments, ends = 6 if here < 0.7 else 4 if here < 0.9 else 2, (first, first + form.turn)
+        wander = form.wander
+        axis = grow_axis(origin, azimuth, ends, length, segments, rng, wander=wander, floor=0.01)
+        branch, twig = skeleton.add(axis, stem, at), 0.01 + form.twig * length
+        if segments > 2:
+            more = {'lift': form.lift, 'outer_ratio': 0.65}
+            add_twigs(skeleton, branch, twig, 0.85, (0.0, np.pi), first_node=2, **more)
+
+    bole = form.outline.base
+    # As many segments below the crown as go with the whorls above it.
+    below = max(1, round(form.n_whorls * bole / (1.0 - bole)))
+    n_nodes, straight = below + form.n_whorls, {'wander': 0.006, 'unevenness': 0.1}
+    stem = skeleton.add(grow_axis(np.zeros(3), 0.0, _UPRIGHT, 1.0, n_nodes, rng, **straight))
+    for node in range(below, n_nodes):
+        here = (node - below) / form.n_whorls
+        whorl = form.whorl if here < 0.8 else form.whorl - 1
+        roll = rng.uniform(0.0, 2.0 * np.pi)
+        for turn in range(whorl):
+            azimuth = roll + 2.0 * np.pi * turn / whorl + rng.uniform(-0.2, 0.2)
+            add_branch(node, azimuth, here)
+    law = {'exponent': form.exponent, 'stem_taper': STEM_TAPER}
+    return finished_tree(skeleton, height, diameter, species, **law)

@@ -1,0 +1,135 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A plausible tree of any size for a user who has no scan of one.
+
+Without a measured diameter a broadleaf is 45 of its diameters high, as first-order axes of scanned
+trees (allometry of 4,824 branches). The diameter of a conifer goes with the height to the power
+1.5, so that trees of all sizes keep the same reserve against bending over (elastic similarity:
+McMahon 1973); at 20 m it is 60 diameters high, below the 70 that foresters hold for a stable stem
+(Wang, Titus & LeMay 1998), and never more than 90.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+import math
+from typing import get_args, Literal
+
+import numpy as np
+
+from tree_sway.core.branch.greenhill import greenhill_length
+from tree_sway.core.growth.benjamina import grow_benjamina
+from tree_sway.core.growth.broadleaf import grow_broadleaf
+from tree_sway.core.growth.conifer import grow_conifer
+from tree_sway.core.growth.forms import broadleaf_form
+from tree_sway.core.growth.goldcrest import grow_goldcrest
+from tree_sway.core.tree.species import Species, species_named
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError
+
+Habit = Literal['conifer', 'broadleaf', 'pot']
+HABITS: tuple[Habit, ...] = get_args(Habit)
+"""Habits that `grow` knows."""
+
+_POT_SLENDERNESS = 58.0
+_HEIGHTS: dict[Habit, tuple[float, float]] = {
+    'conifer': (1.0, 60.0),
+    'broadleaf': (1.0, 50.0),
+    'pot': (0.2, 4.0),
+}
+_GRAVITY = 9.81
+
+
+def grow(
+    species: str,
+    height: float,
+    diameter: float | None = None,
+    habit: Habit | None = None,
+    *,
+    rng: np.random.Generator,
+    name: str | None = None,
+) -> Tree:
+    """
+    Grow a tree of a species from its height and the thickness of its stem.
+
+    Parameters
+    ----------
+    species
+        Key of the species table, or another name of the species.
+    height
+        Height in [m].
+    diameter
+        Diameter in [m] at breast height, 1.3 m; at the base of a pot plant and of a tree below
+        2.6 m. From the height if None.
+    habit
+        ``conifer``, ``broadleaf`` or ``pot``; that of the species if None.
+    rng
+        Source of randomness; the same state gives the same tree.
+    name
+        What the tree is called; the species' key if None.
+
+    Returns
+    -------
+    Tree
+        Of exactly that height and diameter.
+
+    Raises
+    ------
+    SpeciesError
+        If no table knows the species.
+    ParameterError
+        If habit, height or diameter is out of range, or the stem would not stand.
+
+    """
+    wood = species_named(species)
+    species = wood.key
+    kind = habit if habit is not None else wood.habit
+    if kind not in HABITS:
+        raise ParameterError(
+            f"unknown habit '{kind}'", where='habit', cure=f'use one of: {", ".join(HABITS)}'
+        )
+    low, high = _HEIGHTS[kind]
+    if not low <= height <= high:
+        raise ParameterError(
+            f"height {height:g} m is out of range for the habit '{kind}'",
+            where='height',
+            cure=f'give {low:g} to {high:g} m',
+        )
+    if diameter is None:
+        diameter = height / _slenderness(kind, species, height)
+    _check_stem(wood, height, diameter)
+    if kind == 'pot':
+        generator = grow_goldcrest if species == 'goldcrest' else grow_benjamina
+    else:
+        generator = grow_conifer if kind == 'conifer' else grow_broadleaf
+    return replace(generator(rng, height, diameter, species), name=name or species)
+
+
+def _slenderness(kind: Habit, species: str, height: float) -> float:
+    if kind == 'conifer':
+        return min(60.0 * (20.0 / height) ** 0.5, 90.0)
+    return broadleaf_form(species).slenderness if kind == 'broadleaf' else _POT_SLENDERNESS
+
+
+def _check_stem(wood: Species, height: float, diameter: float) -> None:
+    thinnest, thickest = stem_range(wood, height)
+    if not thinnest <= diameter <= thickest:
+        why = 'would bend over under its own weight' if diameter < thinnest else 'is no stem'
+        raise ParameterError(
+            f'diameter {diameter:.4g} m at a height of {height:g} m {why}',
+            where='diameter',
+            cure=f'give {thinnest:.3g} to {thickest:.3g} m',
+        )
+
+
+def stem_range(wood: Species, height: float) -> tuple[float, float]:
+    """
+    Least and largest diameter [m] that `grow` takes for a height [m].
+
+    With the least a bare stem has 0.8 of Greenhill's length: the reserve for a crown.
+    """
+    # EI and the weight per length of a rod of 1 m; the length goes with the diameter to 2/3.
+    area = math.pi / 4.0
+    of_one = greenhill_length(wood.modulus * area / 16.0, wood.density * _GRAVITY * area)
+    return float((height / 0.8 / of_one) ** 1.5), height / 5.0

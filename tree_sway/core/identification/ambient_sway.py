@@ -1,0 +1,159 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Frequency and damping of a tree that sways in natural wind.
+
+The periodogram of a stationary motion scatters about its spectrum as an exponential variable does,
+each bin on its own (Whittle, 1953). The likelihood of a resonance on a smooth load and a floor,
+
+    S(f) = (f / f0)^p (a / ((1 - r^2)^2 + (2 zeta r)^2) + b),   r = f / f0,
+
+is maximised over f0, zeta, a, b, p. Unlike the half-power width it is not widened by the
+resolution of the spectrum, and p takes up the slope of the turbulence and whether displacement,
+tilt or acceleration was measured. Standard errors are those of Fisher's information (Brillinger,
+1981).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from scipy import linalg, optimize, signal
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.identification.sway_estimate import SwayEstimate
+from tree_sway.errors import FormatError
+
+_BAND = (0.6, 1.6)
+_MIN_CYCLES = 20.0
+_MAX_POINTS = 600
+_SLOPE = 5.0
+_MIN_GAIN = 8.0
+"""
+Log-likelihood that a resonance must add to a smooth spectrum: 1 in 1,000 by chi-square of its
+three parameters.
+
+"""
+
+
+@dataclass(frozen=True)
+class AmbientSway(SwayEstimate):
+    """One resonance; ``gain`` is the log-likelihood that it adds to a smooth spectrum."""
+
+    kind: ClassVar[str] = 'ambient'
+    gain: float
+
+
+def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
+    """
+    Fit the resonance of an ambient record, along the axis that moves most, near a frequency [Hz].
+
+    The motion is displacement, tilt or acceleration at even steps of dt [s], (n, c). A
+    raises a `FormatError` where there are fewer than 20 cycles, or no resonance.
+    """
+    cycles = len(motion) * dt * rough
+    if cycles < _MIN_CYCLES:
+        raise FormatError(
+            f'{cycles:.1f} cycles of {rough:.3g} Hz',
+            cure='an ambient record takes at least 20 cycles, better 500',
+        )
+    frequency, power, bins = _periodogram(motion, dt, rough)
+    start = np.log(
+        [rough, 0.05, float(np.median(power)) * 0.01, float(power.min() + 1e-3 * power.mean())]
+    )
+    best = min(
+        (_fit(frequency, power, bins, np.append(start + shift, 0.0)) for shift in _starts()),
+        key=lambda result: float(result.fun),
+    )
+    gain = _smooth_loss(frequency, power, bins) - float(best.fun)
+    found, ratio = float(np.exp(best.x[0])), float(np.exp(best.x[1]))
+    inside = frequency[0] < found < frequency[-1] and ratio < 0.4
+    if not inside or gain < _MIN_GAIN:
+        raise FormatError(
+            f'no sway stands out of the spectrum around {rough:.3g} Hz',
+            cure='record longer, in more wind, nearer to the top, or name the band the sway is in',
+        )
+    frequency_error, damping_error = _standard_errors(frequency, bins, best.x)
+    return AmbientSway(found, ratio, frequency_error, damping_error, cycles, gain)
+
+
+def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats, int]:
+    """Frequencies, power of mean 1 along the axis that moves most, and bins averaged in each."""
+    taper = signal.windows.tukey(len(motion), 0.1)
+    spectrum = np.fft.rfft(taper[:, None] * motion, axis=0)
+    frequency = np.fft.rfftfreq(len(motion), dt)
+    band = (frequency > _BAND[0] * rough) & (frequency < _BAND[1] * rough)
+    narrow = (frequency > 0.85 * rough) & (frequency < 1.15 * rough)
+    covariance = (spectrum[narrow].conj().T @ spectrum[narrow]).real
+    axis = linalg.eigh(covariance)[1][:, -1]
+    power = np.abs(spectrum[band] @ axis) ** 2
+    bins = 1 + len(power) // _MAX_POINTS
+    whole = bins * (len(power) // bins)
+    means = [values[:whole].reshape(-1, bins).mean(axis=1) for values in (frequency[band], power)]
+    return means[0], means[1] / means[1].mean(), bins
+
+
+def _starts() -> list[Floats]:
+    """Shifts of the first guess, out of side valleys where damping and floor trade places."""
+    return [
+        np.array([0.0, damping, 0.0, floor]) for damping in (-1.0, 0.5) for floor in (-2.0, 1.0)
+    ]
+
+
+def log_spectrum(x: Floats, frequency: Floats) -> tuple[Floats, Floats]:
+    """
+    Logarithm (m,) of the model's spectrum at frequencies [Hz], (m,), and its slopes (m, 5).
+
+    They are by x: log f0, log zeta, log a, log b, p.
+    """
+    centre, ratio, resonance, floor = np.exp(np.clip(x[:4], -60.0, 60.0))
+    r2 = (frequency / centre) ** 2
+    detuning = (1.0 - r2) ** 2 + 4.0 * ratio**2 * r2
+    shape = resonance / detuning + floor
+    share = resonance / detuning / shape
+    lever = 0.5 * np.log(r2)
+    slopes = np.stack(
+        [
+            share * 4.0 * r2 * (2.0 * ratio**2 - 1.0 + r2) / detuning - x[4],
+            -share * 8.0 * ratio**2 * r2 / detuning,
+            share,
+            1.0 - share,
+            lever,
+        ],
+        axis=1,
+    )
+    return np.log(shape) + x[4] * lever, slopes
+
+
+def _fit(frequency: Floats, power: Floats, bins: int, start: Floats) -> optimize.OptimizeResult:
+    def loss(x: Floats) -> tuple[float, Floats]:
+        logarithm, slopes = log_spectrum(x, frequency)
+        over = power * np.exp(-logarithm)
+        # A weak pull keeps the slope, which a narrow band hardly shows, in the range of real ones.
+        slope = bins * ((1.0 - over) @ slopes) + x[4] / _SLOPE**2 * np.eye(5)[4]
+        return bins * float((logarithm + over).sum()) + 0.5 * (x[4] / _SLOPE) ** 2, slope
+
+    limits = [tuple(np.log(frequency[[0, -1]])), (np.log(1e-3), 0.0), *3 * [(-40.0, 10.0)]]
+    return optimize.minimize(loss, start, jac=True, method='L-BFGS-B', bounds=limits)
+
+
+def _smooth_loss(frequency: Floats, power: Floats, bins: int) -> float:
+    """Loss of the best power law without a resonance."""
+    lever = np.log(frequency / frequency.mean())
+
+    def loss(x: Floats) -> float:
+        logarithm = x[0] + x[1] * lever
+        return bins * float((logarithm + power * np.exp(-logarithm)).sum())
+
+    return float(optimize.minimize(loss, np.zeros(2), method='BFGS').fun)
+
+
+def _standard_errors(frequency: Floats, bins: int, x: Floats) -> tuple[float, float]:
+    """Return standard errors of frequency [Hz] and damping ratio [-] by Fisher's information."""
+    _, slopes = log_spectrum(x, frequency)
+    prior = np.diag([0.0, 0.0, 1e-6, 1e-6, 1.0 / _SLOPE**2])
+    covariance = linalg.pinvh(bins * slopes.T @ slopes + prior)
+    errors = np.exp(x[:2]) * np.sqrt(np.diag(covariance)[:2])
+    return float(errors[0]), float(errors[1])

@@ -1,0 +1,207 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The modulus that gives a tree its measured frequency.
+
+With its weight a tree's square frequency is not proportional to the modulus, but its elastic
+stiffness is: of ``(s K1 + Kg) phi = w^2 M phi`` only the scale s is unknown, so the tree is
+reduced once. The lowest w^2 rises with s and bends down, being the least of functions linear in s,
+with the slope ``phi . K1 phi`` (phi of unit modal mass). So Newton's method comes from below; a
+bracket keeps it off the buckling load, where w is 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+import math
+
+import numpy as np
+
+from tree_sway.core.checks import within
+from tree_sway.core.reduction.modes import buckling_factor, natural_modes
+from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.season import in_season
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import nearest, ParameterError, TreeError
+
+_MODELLINGS = 4
+_TOLERANCE = 1e-9
+_MODES = 24
+"""Slowest modes among which that of a branch is looked for."""
+_STANDS = 1.001
+"""A tree is taken to stand up to this share of the weight that buckles it."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """
+    A species whose modulus and damping fit one tree.
+
+    Parameters
+    ----------
+    species
+        With the modulus, and the damping ratio if one was measured, of the tree.
+    frequency
+        Slowest sway of the tree with it in [Hz].
+    frequency_before
+        The same before; None if the tree could not stand.
+    modulus_ratio
+        Modulus over the one before in [-].
+    branch
+        Name of the branch that bends most in that sway: the stem's, in most trees.
+    sensitivity
+        Relative change of the modulus over that of the frequency in [-]: 2 without weight, less
+        with it.
+
+    """
+
+    species: Species
+    frequency: float
+    frequency_before: float | None
+    modulus_ratio: float
+    branch: str
+    sensitivity: float
+
+
+def calibrate(
+    tree: Tree | GrownTree,
+    species: Species | None,
+    frequency: float,
+    damping_ratio: float | None = None,
+    settings: Settings | None = None,
+    branch: str | None = None,
+) -> Calibration:
+    """
+    Fit modulus and damping of a tree to its slowest sway, or to the slowest of a branch.
+
+    Parameters
+    ----------
+    tree, species
+        The species of the tree before calibration; the tree's own if None.
+    frequency
+        Measured natural frequency in [Hz].
+    damping_ratio
+        Measured damping ratio in [-]; taken for the season of the settings. That of the species
+        stays if None.
+    settings
+        Season, leaves and gravity; the defaults if None.
+    branch
+        Name of the branch that the sway was measured on, such as ``stem``: the slowest sway that
+        bends it most is fitted; the slowest of all if None.
+
+    Returns
+    -------
+    Calibration
+        The species to use, and what changed.
+
+    Raises
+    ------
+    ParameterError
+        A frequency or a damping ratio out of range, or no such branch.
+    TreeError
+        A tree that would buckle before it sways so slowly, or a branch without mass.
+
+    """
+    within('frequency', frequency, 0.0, 1e3, 'Hz', above=True)
+    tree, species = tree_and_species(tree, species)
+    settings = in_season(tree, species, settings or Settings())
+    if branch is not None and branch not in tree.branch_names:
+        cure = nearest(branch, tree.branch_names) or f'the first is {tree.branch_names[0]}'
+        raise ParameterError(f"no branch '{branch}'", where=tree.name, cure=cure)
+    model = _ScaledTree(tree, species, settings, branch)
+    found = model.swaying_at((2.0 * math.pi * frequency) ** 2)
+    if found is None:
+        weakest, limit = model.weakest, model.sway(model.least)
+        raise TreeError(
+            f'{frequency:.4g} Hz is out of reach: the tree sways at {limit.frequency:.3g} Hz '
+            f'when branch '
+            f"'{weakest}' is about to buckle under its own weight",
+            where=tree.name,
+            cure='check the measured frequency, the density and the diameters',
+        )
+    roots = species.root_stiffness if settings.root_stiffness is None else settings.root_stiffness
+
+    def stiffened(scale: float) -> Species:
+        return replace(species, modulus=scale * species.modulus, root_stiffness=scale * roots)
+
+    scale, fitted = found.scale, found
+    for _ in range(_MODELLINGS):  # a stiffer branch turns less and may need fewer pieces
+        again = _ScaledTree(tree, stiffened(scale), settings, branch)
+        step = again.swaying_at((2.0 * math.pi * frequency) ** 2)
+        if step is None:
+            break
+        fitted, scale = step, scale * step.scale
+        if abs(step.scale - 1.0) <= _TOLERANCE:
+            break
+    changes: dict[str, float] = {}
+    if damping_ratio is not None:
+        within('damping ratio', damping_ratio, 0.0, 1.0)
+        changes['damping_in_leaf' if settings.in_leaf else 'damping_bare'] = damping_ratio
+    return Calibration(
+        replace(stiffened(scale), **changes, is_estimate=False),  # type: ignore[arg-type]
+        fitted.frequency,
+        model.sway(1.0).frequency if model.least < 1.0 else None,
+        scale,
+        model.branch_of(found.coordinate),
+        2.0 * fitted.square / (fitted.scale * fitted.slope),
+    )
+
+
+@dataclass(frozen=True)
+class _Sway:
+    """Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and what turns most."""
+
+    scale: float
+    square: float
+    slope: float
+    coordinate: int
+
+    @property
+    def frequency(self) -> float:
+        return math.sqrt(self.square) / (2.0 * math.pi)
+
+
+class _ScaledTree:
+    """A coupled tree whose modulus is scaled."""
+
+    def __init__(
+        self, tree: Tree, species: Species, settings: Settings, branch: str | None
+    ) -> None:
+        calibrated = CalibratedTree(tree, species, settings)
+        self.tree, self._branch = tree, branch
+        self.reduction = calibrated.coupled.reduction
+        factor, coordinate = buckling_factor(self.reduction)
+        #: Scale at which the tree just stands, and the branch that gives way first.
+        self.least = _STANDS / factor
+        self.weakest = self.branch_of(coordinate)
+
+    def branch_of(self, coordinate: int) -> str:
+        """Name of the branch that a coordinate belongs to."""
+        branch = int(np.searchsorted(self.reduction.first, coordinate, side='right')) - 1
+        return self.tree.branch_names[branch]
+
+    def sway(self, scale: float) -> _Sway:
+        """Slowest mode at a scale."""
+        scaled = replace(self.reduction, elastic=scale * self.reduction.elastic)
+        count = 1 if self._branch is None else min(_MODES, len(scaled.elastic))
+        modes = natural_modes(self.tree, scaled, count)
+        energy = modes.shapes * (self.reduction.elastic @ modes.shapes)
+        most = np.argmax(energy, axis=0).tolist()
+        mode = next((k for k, at in enumerate(most) if self.branch_of(at) == self._branch), 0)
+        square = float(modes.circular[mode]) ** 2
+        return _Sway(scale, square, float(energy[:, mode].sum()), most[mode])
+
+    def swaying_at(self, square: float) -> _Sway | None:
+        """Find the scale for a square circular frequency [1/s^2]; None if the tree buckles."""
+        low, high = self.least, math.inf
+        sway = self.sway(max(1.0, 2.0 * low))
+        while abs(sway.square / square - 1.0) > _TOLERANCE:
+            low, high = (sway.scale, high) if sway.square < square else (low, sway.scale)
+            if high - low < _TOLERANCE * low:
+                return None
+            step = sway.scale + (square - sway.square) / sway.slope
+            sway = self.sway(step if low < step < high else 0.5 * (low + high))
+        return sway

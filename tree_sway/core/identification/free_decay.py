@@ -1,0 +1,174 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Frequency and damping of a tree that was pulled and let go.
+
+A free decay is a sum of damped exponentials, the same ones in every channel. The matrix pencil
+finds them all at once, so that a second mode, the other axis or a shifted rest do not bend the
+first (Hua & Sarkar, 1990). The standard errors come from the curvature of the least-squares fit
+and from how much the answer changes as the decay goes on, for the damping of a real tree depends
+on its amplitude.
+
+Symbols: s = -zeta w + i w sqrt(1 - zeta^2) pole in [1/s], w circular frequency, zeta damping
+ratio.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft, linalg, signal
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.identification.sway_estimate import SwayEstimate
+from tree_sway.errors import FormatError
+
+_SAMPLES_PER_CYCLE = 16
+_MAX_CYCLES = 30.0
+_MAX_ORDER = 12
+_MIN_CYCLES = 3.0
+_FAINT = 0.05
+_LATER_STARTS = (0.5, 1.0, 1.5)
+
+
+@dataclass(frozen=True)
+class FreeDecay(SwayEstimate):
+    """
+    One decaying mode, fitted from a time ``start`` [s] after the record's beginning on.
+
+    ``explained`` is the share of all motion's energy within the fit that decaying modes explain;
+    ``quiet`` the largest amplitude around the frequency before and after the decay, over the
+    largest of all; ``speed`` the largest amplitude around the frequency times that, per second.
+    """
+
+    kind: ClassVar[str] = 'release'
+    start: float
+    explained: float
+    quiet: float
+    speed: float
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Dominant pole of a stretch of motion, its standard error, and the energy explained [-]."""
+
+    pole: complex
+    error: float
+    explained: float
+
+
+def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
+    """
+    Fit the decay of a pull-and-release record: the strongest mode near a frequency.
+
+    Arguments are those of `ambient_sway`. Raises a `FormatError` for fewer than three cycles, or
+    no motion that decays.
+    """
+    slow, envelope = _filtered(motion, dt, rough)
+    stride = max(1, int(1.0 / (rough * dt * _SAMPLES_PER_CYCLE)))
+    cycle = 1.0 / (rough * dt)
+    peak = int(np.argmax(envelope))
+    first = peak + round(0.5 * cycle)
+    available = (len(motion) - first) / cycle
+    if available < _MIN_CYCLES:
+        raise FormatError(
+            f'{max(available, 0.0):.1f} cycles of {rough:.3g} Hz after the largest swing',
+            cure='record 3 cycles after the release, better 10, or name the band of the sway',
+        )
+    # A window that ends where 5 % are left; how long that is takes a first look to know.
+    cycles = min(8.0, available)
+    for _ in range(3):
+        fit = _pencil(slow[first : first + round(cycles * cycle) : stride], stride * dt, rough)
+        left = 3.0 * abs(fit.pole) / (2.0 * np.pi * max(-fit.pole.real, 1e-9))
+        cycles = float(np.clip(left, _MIN_CYCLES, min(available, _MAX_CYCLES)))
+    last = first + round(cycles * cycle)
+    poles = [fit.pole]
+    for later in _LATER_STARTS:
+        begin = first + round(later * cycle)
+        if last - begin >= _MIN_CYCLES * cycle:
+            poles.append(_pencil(slow[begin:last:stride], stride * dt, rough).pole)
+    spread = np.array([[abs(pole), -pole.real / abs(pole)] for pole in poles]).std(axis=0)
+    circular = abs(fit.pole)
+    margin = round(2.5 * cycle)
+    outside = np.concatenate([envelope[: max(peak - margin, 0)], envelope[last + margin :]])
+    quiet = float(outside.max(initial=0.0) / envelope[peak])
+    share = slow[first:last].var(axis=0).sum() / motion[first:last].var(axis=0).sum()
+    return FreeDecay(
+        circular / (2.0 * np.pi),
+        -fit.pole.real / circular,
+        float(np.hypot(fit.error, spread[0]) / (2.0 * np.pi)),
+        float(np.hypot(fit.error / circular, spread[1])),
+        cycles,
+        first * dt,
+        fit.explained * min(float(share), 1.0),
+        quiet,
+        float(envelope[peak]) * rough,
+    )
+
+
+def _filtered(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats]:
+    """Motion (n, c) below three times a frequency, and the envelope (n,) of what is around it."""
+    nyquist = 0.5 / dt
+    slow = motion
+    if 3.0 * rough < 0.8 * nyquist:
+        low = signal.butter(4, 3.0 * rough / nyquist, output='sos')
+        slow = signal.sosfiltfilt(low, motion, axis=0)
+    edges = np.array([0.5, min(1.7, 0.9 * nyquist / rough)]) * rough / nyquist
+    band = signal.sosfiltfilt(signal.butter(2, edges, 'bandpass', output='sos'), motion, axis=0)
+    # The transform is periodic: zeros behind the end keep a large start out of it.
+    padded = fft.next_fast_len(len(motion) + round(10.0 / (rough * dt)))
+    analytic = signal.hilbert(band, padded, axis=0)[: len(motion)]
+    envelope: Floats = np.sqrt((np.abs(analytic) ** 2).sum(axis=1))
+    return slow, envelope
+
+
+def _pencil(motion: Floats, dt: float, rough: float) -> _Fit:
+    """Matrix pencil of all channels at once; the pole with the most energy near a frequency."""
+    n = len(motion)
+    span = n // 3
+    centred = motion - motion.mean(axis=0)
+    rows = np.vstack([linalg.hankel(x[: n - span], x[n - span - 1 :]) for x in centred.T])
+    _, weights, right = linalg.svd(rows, full_matrices=False)
+    # Singular values of noise lie around their median (Gavish & Donoho, 2014).
+    floor = max(2.858 * float(np.median(weights)), 1e-7 * float(weights[0]))
+    order = int(np.clip((weights > floor).sum(), 3, min(_MAX_ORDER, span - 1)))
+    basis = right[:order].T
+    z = linalg.eigvals(linalg.lstsq(basis[:-1], basis[1:])[0])
+    z = z[(np.abs(z) > 1e-3) & (np.abs(z) < 1.05)]
+    powers: NDArray[np.complex128] = z[None, :] ** np.arange(n)[:, None]
+    amplitudes = linalg.lstsq(powers, centred.astype(np.complex128))[0]
+    rest = centred - (powers @ amplitudes).real
+    poles = np.log(z.astype(np.complex128)) / dt
+    energy = (np.abs(powers) ** 2).sum(axis=0) * (np.abs(amplitudes) ** 2).sum(axis=1)
+    near = (poles.imag > 0.0) & (poles.real < 0.0)
+    near &= np.abs(np.log(np.abs(poles) / (2.0 * np.pi * rough) + 1e-300)) < 0.35
+    # Against what swings, not against a drift of the rest, which slow poles take up.
+    swings = poles.imag > np.pi * rough
+    near &= energy > _FAINT * energy[swings].max(initial=0.0)
+    if not near.any():
+        raise FormatError(
+            f'no motion that decays near {rough:.3g} Hz',
+            cure='check that it is a pull-and-release record, or name the band the sway is in',
+        )
+    best = int(np.argmax(np.where(near, energy, -1.0)))
+    explained = 1.0 - float((rest**2).sum() / (centred**2).sum())
+    error = _standard_error(powers[:, best], amplitudes[best], dt, rest)
+    return _Fit(complex(poles[best]), error, explained)
+
+
+def _standard_error(
+    decay: NDArray[np.complex128], amplitude: NDArray[np.complex128], dt: float, rest: Floats
+) -> float:
+    """
+    Return the standard error of a pole's real and imaginary part in [1/s].
+
+    A least-squares pole is as uncertain as the part of ``t e^(s t)`` that no amplitude of ``e^(s
+    t)`` can replace.
+    """
+    moved = dt * np.arange(len(decay)) * decay
+    moved -= decay * np.vdot(decay, moved) / np.vdot(decay, decay)
+    information = 2.0 * float((np.abs(moved) ** 2).sum()) * float((np.abs(amplitude) ** 2).sum())
+    return float(np.sqrt((rest**2).mean() / information))

@@ -1,0 +1,218 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+From a record of a swaying tree to its natural frequency and damping ratio.
+
+A record is a pull-and-release (one large swing that dies away, quiet before and after) or ambient
+(the tree in natural wind). Both are scale-free: displacement, tilt and acceleration give the same
+answer.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import signal
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.identification.ambient_sway import ambient_sway, AmbientSway
+from tree_sway.core.identification.free_decay import free_decay, FreeDecay
+from tree_sway.core.identification.spectral_peaks import Band, Spectrum
+from tree_sway.core.identification.sway_estimate import SwayEstimate
+from tree_sway.errors import FormatError, ParameterError
+
+KINDS = ('release', 'ambient')
+"""Kinds of record."""
+
+_MIN_SAMPLES = 16
+_LARGEST = 1e100
+_UNSURE = (0.03, 0.25)
+_LEAST_CLEAR = 4.0
+_EXPLAINED, _QUIET = 0.6, 0.5
+_STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
+
+
+def estimate_sway(
+    time: ArrayLike, motion: ArrayLike, kind: str | None = None, band: Band = None
+) -> SwayEstimate:
+    """
+    Find frequency and damping of the slowest sway in a record.
+
+    Parameters
+    ----------
+    time
+        Time of each sample in [s], rising, (n,).
+    motion
+        Displacement, tilt or acceleration, one column per axis, all of one unit, (n,) or (n, c).
+    kind
+        ``release`` or ``ambient``; found from the record if None.
+    band
+        Lowest and highest frequency to look at in [Hz]; all if None.
+
+    Returns
+    -------
+    SwayEstimate
+        Frequency and damping ratio with their standard errors.
+
+    Raises
+    ------
+    FormatError
+        A record that is too short, too coarse, not finite, not rising in time, or without a sway.
+    ParameterError
+        An unknown kind or an empty band.
+
+    """
+    if kind is not None and kind not in KINDS:
+        raise ParameterError(f"unknown kind '{kind}'", cure=f'use one of: {", ".join(KINDS)}')
+    if band is not None and not 0.0 < band[0] < band[1] < np.inf:
+        raise ParameterError(
+            f'band {band[0]:g} to {band[1]:g} Hz', cure='give two rising frequencies above 0'
+        )
+    even, dt, gap = _even(*_checked(time, motion))
+    if kind == 'ambient':
+        return _ambient(even, dt, gap, band)
+    refusal = FormatError('the motion does not die away from one swing')
+    try:
+        decay = _release(even, dt, gap, band)
+    except FormatError as error:
+        if kind == 'release':
+            raise
+        refusal = error
+    else:
+        if kind == 'release' or _is_release(decay):
+            _refuse_lost(decay)
+            return decay
+    try:
+        return _ambient(even, dt, gap, band)
+    except FormatError as error:
+        raise FormatError(
+            f'neither a release ({refusal.what}) nor ambient ({error.what})',
+            cure=refusal.cure or error.cure,
+        ) from None
+
+
+def _is_release(decay: FreeDecay) -> bool:
+    """Ambient motion soon swings as far again; a release has a tenth of its swing around it."""
+    return decay.explained > _EXPLAINED and decay.quiet < _QUIET
+
+
+def _refuse_lost(decay: FreeDecay) -> None:
+    """Refuse a swing that the wind's own motion soon drowns: its damping could be anything."""
+    f, z = decay.frequency, decay.damping_ratio
+    clear = np.log(1.0 / max(decay.quiet, 1e-9)) / (2.0 * np.pi * z)
+    if decay.frequency_error > _UNSURE[0] * f or decay.damping_error > _UNSURE[1] * z:
+        what = f'{f:.3g} +- {decay.frequency_error:.2g} Hz'
+        what = f'{what}, damping {z:.2g} +- {decay.damping_error:.2g}'
+    elif clear < _LEAST_CLEAR:
+        what = f'the swing drowns in other motion after {clear:.1f} cycles, at damping {z:.2g}'
+    else:
+        return
+    raise FormatError(
+        f'{what}: too much moves beside the swing',
+        cure='pull farther or on a calmer day, or give frequency and damping yourself',
+    )
+
+
+def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
+    """Arrays (n,) and (n, c) that can be worked with."""
+    t = np.asarray(time, dtype=np.float64)
+    x = np.asarray(motion, dtype=np.float64)
+    x = x[:, None] if x.ndim == 1 else x
+    if t.ndim != 1 or x.ndim != 2 or len(t) != len(x):
+        raise FormatError(
+            f'times of shape {t.shape}, motion of shape {x.shape}', cure='give (n,) and (n, c)'
+        )
+    if len(t) < _MIN_SAMPLES:
+        raise FormatError(f'{len(t)} samples', cure=f'record {_MIN_SAMPLES} at the very least')
+    for bad in np.flatnonzero(~(_is_measurable(t) & _is_measurable(x).all(axis=1)))[:1]:
+        raise FormatError(
+            'not a finite number, or one that nothing measures',
+            where=f'sample {bad}',
+            cure='remove that sample',
+        )
+    for bad in np.flatnonzero(np.diff(t) <= 0.0)[:1]:
+        raise FormatError(
+            f'time {t[bad + 1]:g} s after {t[bad]:g} s',
+            where=f'sample {bad + 1}',
+            cure='put the samples in the order of time, each time once',
+        )
+    if not (np.ptp(x, axis=0) > 1e-12 * np.abs(x).max(axis=0)).any():
+        raise FormatError('nothing moves', cure='check the sensor and the column')
+    return t, x
+
+
+def _is_measurable(values: Floats) -> NDArray[np.bool_]:
+    """Whether each value is finite, and far enough from overflow that sums of squares are too."""
+    return np.abs(values) < _LARGEST
+
+
+def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:
+    """Motion at even steps without its mean and drift, the step and the longest gap in [s]."""
+    steps = np.diff(time)
+    dt = float(np.median(steps))
+    if time[-1] - time[0] > 4.0 * len(time) * dt:
+        raise FormatError(
+            f'gaps of up to {steps.max():.3g} s between samples {dt:.3g} s apart',
+            cure='give one record without the gaps',
+        )
+    grid = np.arange(time[0], time[-1] + 0.5 * dt, dt)
+    even = np.stack([np.interp(grid, time, x) for x in motion.T], axis=1)
+    return signal.detrend(even, axis=0), dt, float(steps.max())
+
+
+def _refuse_coarse(gap: float, rough: float) -> None:
+    if gap * rough > 0.25:
+        raise FormatError(
+            f'{gap:.3g} s between samples, for a sway of {rough:.3g} Hz',
+            cure='record at least four samples per cycle, without gaps',
+        )
+
+
+def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
+    """Slowest clear decay at strong peaks of the velocity's spectrum, not hidden by a step."""
+    padded = 4 * len(motion)
+    frequency = np.fft.rfftfreq(padded, dt).astype(np.float64)
+    power = (np.abs(np.fft.rfft(motion, padded, axis=0)) ** 2).sum(axis=1) * frequency**2
+    spectrum = Spectrum(frequency, power, len(motion) * dt)
+    peaks, level = spectrum.peaks(band, width=0.06)
+    found: list[FreeDecay] = []
+    refusals: dict[int, FormatError] = {}
+    strong = level > _STRONG * level.max()
+    for number, rough in enumerate(peaks[strong]):
+        try:
+            _refuse_coarse(gap, float(rough))
+            found.append(free_decay(motion, dt, float(rough)))
+        except FormatError as refusal:
+            refusals[number] = refusal
+    # Where the strongest peak has too few cycles, a weaker one is another mode, or noise.
+    strongest = int(np.argmax(level[strong]))
+    if strongest in refusals:
+        raise refusals[strongest]
+    # Beside the sway, a step of the rest has slow parts that die away too; they move little per
+    # second.
+    fastest = max(found, key=lambda decay: decay.speed)
+    fast = [one for one in found if one.speed > _FAST * fastest.speed]
+    clearest = max(fast, key=lambda decay: decay.explained)
+    return next(filter(_is_release, fast), clearest) if fastest.quiet < _QUIET else fastest
+
+
+def _ambient(motion: Floats, dt: float, gap: float, band: Band) -> AmbientSway:
+    """Slowest resonance that is clear next to the clearest."""
+    taper = signal.windows.hann(len(motion))
+    frequency = np.fft.rfftfreq(len(motion), dt).astype(np.float64)
+    power = (np.abs(np.fft.rfft(taper[:, None] * motion, axis=0)) ** 2).sum(axis=1)
+    peaks, _ = Spectrum(frequency, power, len(motion) * dt).peaks(band, width=0.08, min_bins=8)
+    found: list[AmbientSway] = []
+    refusals: list[FormatError] = []
+    for rough in peaks:
+        try:
+            _refuse_coarse(gap, float(rough))
+            found.append(ambient_sway(motion, dt, float(rough)))
+        except FormatError as refusal:
+            refusals.append(refusal)
+    if not found and len(refusals) > 1:
+        raise FormatError('no sway stands out of the spectrum', cure=refusals[-1].cure)
+    if not found:
+        raise refusals[0]
+    clearest = max(sway.gain for sway in found)
+    return next(sway for sway in found if sway.gain > _CLEAR * clearest)

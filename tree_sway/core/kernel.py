@@ -1,0 +1,115 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The one way a hot function is compiled: cached on disk, IEEE division, types kept for the checker.
+
+Where numba is missing (`WHY_PLAIN`) functions stay as they are: those of numbers run as plain
+Python, and `motion` takes the numpy form of what runs over a tree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, cast, TypeVar
+
+import numpy as np
+
+from tree_sway.errors import MissingDependencyError
+from tree_sway.kernel_cache import KernelCache, why_no_compiler
+
+_F = TypeVar('_F', bound=Callable[..., Any])
+
+WHY_PLAIN = why_no_compiler()
+"""Why nothing is compiled, in a few words; empty where kernels are."""
+
+_LOOSE = {'contract', 'reassoc', 'nsz'}
+
+
+def kernel(function: _F) -> _F:
+    """
+    Compile a function of numbers and arrays to machine code at its first call.
+
+    Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released;
+    the code is kept on disk (`kernel_cache`). The plain function stays reachable as ``py_func``.
+    """
+    return _compiled(function)
+
+
+def fused(function: _F) -> _F:
+    """
+    Compile like `kernel`, but let a product and a sum be one instruction and reorder loops' sums.
+
+    For what is placed and summed, where the last bit does not matter. The result is still the same
+    bit for bit on one machine, for a callee becomes part of each caller: were it called, a caller
+    would run whichever copy of it was loaded first. Not for code that counts on rounding.
+    """
+    return _compiled(function, fastmath=_LOOSE, forceinline=True)
+
+
+def inlined(function: _F) -> _F:
+    """
+    Compile like `fused` and paste the body into each caller, so that a loop of calls vectorises.
+
+    For short functions of numbers in the innermost loop; callers compile longer.
+    """
+    return _compiled(function, fastmath=_LOOSE, inline='always')
+
+
+def _compiled(function: _F, **options: Any) -> _F:
+    if WHY_PLAIN:
+        function.py_func = function  # type: ignore[attr-defined]
+        return function
+    from numba import njit
+
+    dispatcher = njit(error_model='numpy', nogil=True, **options)(function)
+    if hasattr(dispatcher, '_cache'):  # not where NUMBA_DISABLE_JIT leaves the plain function
+        dispatcher._cache = KernelCache(function, repr(sorted(options)))
+    return cast(_F, dispatcher)
+
+
+def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
+    """
+    Return the machine code of a kernel for arguments such as these, to be called many times.
+
+    A call of the kernel itself looks at the type of each argument first, which for a small tree
+    takes as long as a fifth of a step. Here nobody looks: only arguments of the very same types
+    and layouts may be passed.
+    """
+    find = getattr(function, 'get_overload', None)
+    if find is None:
+        return function
+    from numba import typeof
+
+    types = tuple(typeof(argument) for argument in arguments)
+    function.compile(types)  # type: ignore[attr-defined]
+    return cast(Callable[..., Any], find(types))
+
+
+def need_compiler(what: str) -> None:
+    """Refuse what has no form but the compiled one, with a `MissingDependencyError`."""
+    if WHY_PLAIN:
+        raise MissingDependencyError(
+            f'{what} needs compiled kernels, and {WHY_PLAIN}',
+            cure='install numba 0.59 or later, or take one of the models that run on numpy: '
+            'branch, subtree, modes, coupled',
+        )
+
+
+def like(value: float, model: Any) -> Any:
+    """
+    Return a constant in the precision of a model number, to serve float32 and float64 alike.
+
+    Outside compiled code the constant is left as it is: Python numbers adapt by themselves.
+    """
+    return value
+
+
+if not WHY_PLAIN:
+    from numba.core import types
+    from numba.extending import overload
+
+    @overload(like, inline='always')
+    def _like(value, model):  # type: ignore[no-untyped-def]
+        if model == types.float32:
+            return lambda value, model: np.float32(value)
+        return lambda value, model: value

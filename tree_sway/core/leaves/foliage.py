@@ -1,0 +1,173 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Leaves of a tree: mass and area on each branch for the solver, clusters on segments for the viewer.
+
+Leaves stand on branches that carry no others, and on the thinner half of the wood by length. A
+tree has as much leaf area as its stem can supply, but no more than six times the ground it covers:
+few stands have a higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun
+would: leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction in
+a crown of outline F (Monsi & Saeki 1953).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.tree.leaf_traits import LeafTraits
+from tree_sway.core.tree.species import leaf_traits
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.convention import quaternion_of_axes
+from tree_sway.errors import ParameterError
+
+MAX_LEAF_AREA_INDEX = 6.0
+"""Leaf area over ground covered that no tree exceeds in [-]."""
+
+_GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
+
+
+@dataclass(frozen=True)
+class Foliage:
+    """What leaves add to each branch: fresh mass [kg], one-sided and drag area [m^2], (b,)."""
+
+    mass: Floats
+    area: Floats
+    drag_area: Floats
+
+
+@dataclass(frozen=True)
+class LeafClusters:
+    """
+    Leaves to be drawn, each cluster carried by one segment; they flutter where they are drawn.
+
+    Parameters
+    ----------
+    segment
+        Segment that carries each, (m,).
+    offset
+        Centre in the segment's frame in [m]: x along it from its root-side node, (m, 3).
+    orientation
+        Quaternion w x y z in the segment's frame, (m, 4): x away from the twig, z across the leaf.
+    size
+        Diameter in [m], (m,).
+    frequency, phase
+        Of the flutter in [Hz] and [rad], (m,).
+
+    """
+
+    segment: Ints
+    offset: Floats
+    orientation: Floats
+    size: Floats
+    frequency: Floats
+    phase: Floats
+
+
+def leafy_length(tree: Tree) -> Floats:
+    """Length of each segment that bears leaves in [m], (n,): its own on outer or thin wood."""
+    carries_none = tree.subtree_end == np.arange(1, tree.n_branches + 1)
+    carries_none[0] = False
+    thin_first = np.argsort(tree.base_diameter, kind='stable')
+    reached = np.cumsum(tree.length[thin_first])
+    middle = int(np.searchsorted(reached, 0.5 * reached[-1]))
+    limit = tree.base_diameter[thin_first[middle]] * (1.0 + 1e-9)
+    is_leafy = carries_none[tree.branch_of_segment] | (tree.base_diameter <= limit)
+    return np.where(is_leafy, tree.length, 0.0)
+
+
+def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
+    """Mass and area of the leaves on each branch, if any; traits of its species if None."""
+    leaf = traits if traits is not None else leaf_traits(tree.species)
+    points = np.vstack([tree.start, tree.end])
+    wide, deep, _ = np.ptp(points, axis=0)
+    leafy = leafy_length(tree)
+    bearing = tree.end[leafy > 0.0]
+    high = max(float(np.ptp(bearing[:, 2])), leaf.size)
+    # A pole without branches covers the ground that its leaves do.
+    ground = 0.25 * np.pi * max(wide, leaf.size) * max(deep, leaf.size)
+    section = 0.25 * np.pi * float(tree.base_diameter[0]) ** 2
+    total = min(leaf.area_per_section * section, MAX_LEAF_AREA_INDEX * ground)
+    outline = 0.25 * np.pi * np.sqrt(max(wide, leaf.size) * max(deep, leaf.size)) * high
+    facing = outline * -np.expm1(-0.5 * total / outline)
+    share = np.add.reduceat(leafy, tree.branch_first[:-1]) / leafy.sum()
+    return Foliage(leaf.fresh_mass * total * share, total * share, facing * share)
+
+
+def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:
+    """Area of wood on each branch that needles clad, which stand all round it, in [m^2], (b,)."""
+    if not traits.are_needles:
+        return np.zeros(tree.n_branches)
+    area = 0.5 * (tree.base_diameter + tree.tip_diameter) * leafy_length(tree)
+    return np.add.reduceat(area, tree.branch_first[:-1])
+
+
+def leaf_clusters(
+    tree: Tree, rng: np.random.Generator, *, count: int = 1500, traits: LeafTraits | None = None
+) -> LeafClusters:
+    """
+    Place a number of clusters of leaves on the outer wood of a tree at rest, evenly by its length.
+
+    Together they show the tree's leaf area, with traits of its species if None. Raises a
+    `ParameterError` for a count that is not positive.
+    """
+    if count < 1:
+        raise ParameterError(f'{count} leaf clusters', where='count', cure='ask for 1 or more')
+    leaf = traits if traits is not None else leaf_traits(tree.species)
+    leafy = leafy_length(tree)
+    ends = np.cumsum(leafy)
+    place = (np.arange(count) + rng.uniform(0.1, 0.9, count)) / count * ends[-1]
+    segment = np.minimum(np.searchsorted(ends, place, side='right'), tree.n_segments - 1)
+    along = tree.length[segment] - np.clip(ends[segment] - place, 0.0, tree.length[segment])
+    # Leaves overlap: clusters as wide as their share of the leaf area, but never smaller than a
+    # leaf.
+    area = float(foliage_of(tree, traits=leaf).area.sum()) / count
+    size = max(np.sqrt(4.0 * area / np.pi), leaf.size) * rng.uniform(0.8, 1.2, count)
+    turn = _GOLDEN_ANGLE * np.arange(count) + rng.uniform(-0.3, 0.3, count)
+    away = np.stack([np.full(count, 0.5), np.cos(turn), np.sin(turn)], axis=1)
+    away /= np.linalg.norm(away, axis=1)[:, None]
+    offset = 0.5 * size[:, None] * away
+    offset[:, 0] += along
+    orientation = _facing_up(away, tree.rest_frame[segment])
+    return LeafClusters(
+        segment=segment.astype(np.int64),
+        offset=offset,
+        orientation=orientation,
+        size=size,
+        frequency=leaf.flutter_frequency * rng.uniform(0.8, 1.25, count),
+        phase=rng.uniform(0.0, 2.0 * np.pi, count),
+    )
+
+
+def joined_clusters(clusters: Sequence[LeafClusters], n_segments: Sequence[int]) -> LeafClusters:
+    """Join the leaves of trees, given their numbers of segments, into one record."""
+    first = np.concatenate([[0], np.cumsum(n_segments)[:-1]])
+    carriers = [each.segment + at for each, at in zip(clusters, first, strict=True)]
+    columns = {
+        field.name: np.concatenate([getattr(each, field.name) for each in clusters])
+        for field in fields(LeafClusters)
+    }
+    return LeafClusters(**{**columns, 'segment': np.concatenate(carriers)})
+
+
+def no_clusters() -> LeafClusters:
+    """Return no leaves at all."""
+    none = np.zeros(0)
+    return LeafClusters(
+        none.astype(np.int64), none.reshape(0, 3), none.reshape(0, 4), none, none, none
+    )
+
+
+def _facing_up(away: Floats, rest: Floats) -> Floats:
+    """Orientations w x y z whose x runs away from the twig and whose z looks up most."""
+    w, x, y, z = rest.T
+    up = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], 1)
+    z = up - np.einsum('ij,ij->i', up, away)[:, None] * away
+    size = np.linalg.norm(z, axis=1)
+    # A leaf that points straight up may look any way across.
+    z[size < 1e-3] = np.cross(away[size < 1e-3], [1.0, 0.0, 0.0])
+    z /= np.linalg.norm(z, axis=1)[:, None]
+    return np.array([quaternion_of_axes(*axes) for axes in zip(away, z, strict=True)])

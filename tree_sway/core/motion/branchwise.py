@@ -1,0 +1,55 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What oscillators that meet the wind branch by branch share."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.errors import ParameterError
+
+
+class Tunable(NamedTuple):
+    """
+    Arrays that a tuning writes, one number per oscillator, and what they are made of.
+
+    ``weight`` is the part of the stiffness that gravity makes, below 0 where it softens;
+    ``inertia`` is 1 of modes; ``others`` go with a power of the stiffness of the wood; ``loss`` is
+    the damping ratio of each over that of the tree.
+    """
+
+    stiffness: Floats
+    damping: Floats
+    inertia: Floats | float
+    weight: Floats
+    others: tuple[tuple[Floats, float], ...] = ()
+    loss: Floats | float = 1.0
+
+
+class Branchwise:
+    """Oscillators on the loads of all branches: nothing is tabled, so no step is outside."""
+
+    n_outside = 0
+    work: Records
+
+    def stepping(self, *_: Any) -> None:
+        """Return no compiled call: a step takes the limbs' winds as well."""
+
+    def placing(self, *_: Any) -> None:
+        """Return no compiled call: rotations are found first."""
+
+    def push(self, moments: Floats) -> int:
+        """Refuse: branches that are solved each by itself carry no force to each other."""
+        raise ParameterError(
+            "a push on model 'branch'", cure='use a number of coordinates, auto or full'
+        )
+
+    def step_outside(self) -> int:
+        """Return that no load was clamped: there is no such step."""
+        return 0
+
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+        forces: Floats = self.work['force']
+        return forces

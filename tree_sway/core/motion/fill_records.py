@@ -1,0 +1,429 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The one place where records are filled: what stepping and placing know of a tree.
+
+`Places` says how a tree is joined and drawn; whoever has one can place it, as a receiver of the
+stream. `branch_records` adds what the wind does, `copy_twigs` which branches copy; `head_records`
+and `load_records` lay the same out in lanes.
+"""
+
+from __future__ import annotations
+
+from heapq import heappop, heappush
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats, Ints, Record, Records
+from tree_sway.core.branch.beam import cross, cross_matrix
+from tree_sway.core.branch.model import BranchModel
+from tree_sway.core.branch.shapes import across, exposure, MAX_COORDINATES
+from tree_sway.core.motion.records import (
+    branch_layout,
+    head_layout,
+    LANES,
+    load_layout,
+    segment_layout,
+    zeros_in_lines,
+)
+from tree_sway.core.reduction.matrices import Reduction
+from tree_sway.core.rotation import rotated
+from tree_sway.core.tree.tree import Tree
+
+
+class Places(NamedTuple):
+    """
+    How branches are joined and drawn: all that placing knows of a tree, before it is laid out.
+
+    Of branches (b,) and segments (n,) in the order of the tree; k is the most coordinates that a
+    branch has.
+    """
+
+    first: Ints
+    """First segment of each branch, and one past the last of all, (b + 1,)."""
+    parent: Ints
+    base_segment: Ints
+    coordinate: Ints
+    n_coordinates: Ints
+    frame: Floats
+    """Chord and the two axes across it, (b, 3, 3)."""
+    skew: Floats
+    tip_skew: Floats
+    offset: Floats
+    """Base from its base segment's start, in that one's frame, (b, 3)."""
+    base_turn: Floats
+    """Rotation of the base per unit of the parent's coordinates, (b, k, 3)."""
+    chord: Floats
+    rest: Floats
+    slope: Floats
+    tip_slope: Floats
+    turn: Floats
+    """Rotation vector of each segment per unit of its branch's coordinates, (n, k, 3)."""
+
+
+def segment_records(places: Places) -> Records:
+    """Fill what placing needs of each segment: `segment_layout` records, in blocks of `lanes`."""
+    block, lane, n_records = lanes(places.first, places.parent, places.n_coordinates)
+    is_plain = places.turn.shape[1] == 2
+    records = zeros_in_lines(n_records, segment_layout(2) if is_plain else segment_layout())
+    records['rest'][:, 0] = 1.0
+    size = np.diff(places.first)
+    rows = np.arange(len(places.slope)) + np.repeat(block - places.first[:-1], size)
+    own = np.repeat(lane, size)
+    records['chord'][rows, :, own] = places.chord
+    records['rest'][rows, :, own] = places.rest
+    records['slope'][rows, own], records['tip_slope'][rows, own] = places.slope, places.tip_slope
+    np.maximum.at(records['n_lanes'], rows, own + 1)
+    if not is_plain:
+        records['turn'][rows, : places.turn.shape[1], :, own] = places.turn
+    return records
+
+
+def fill_places(places: Places, records: Records) -> None:
+    """Fill what placing needs of each branch, in records of `branch_layout`, (b,)."""
+    records['block'], records['lane'], _ = lanes(places.first, places.parent, places.n_coordinates)
+    records['parent'], records['base_segment'] = places.parent, places.base_segment
+    records['first'], records['end'] = places.first[:-1], places.first[1:]
+    records['coordinate'], records['n_coordinates'] = places.coordinate, places.n_coordinates
+    records['frame'], records['offset'] = places.frame, places.offset
+    records['skew'], records['tip_skew'] = places.skew, places.tip_skew
+    k = min(places.base_turn.shape[1], records['twist'].shape[1])
+    records['twist'][:, :k, 3:] = places.base_turn[:, :k]
+    begin = places.first[:-1]
+    steepest = np.maximum.reduceat(np.square(places.turn).sum(axis=2), begin)
+    tips = np.maximum.reduceat(np.square(places.tip_slope), begin)
+    records['steepest'][:, : steepest.shape[1]] = steepest
+    records['steepest'][:, 0] = np.maximum(records['steepest'][:, 0], tips)
+
+
+def turns_of_segments(branch: np.void, segments: Records) -> Floats:
+    """Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate."""
+    first, count = int(branch['block']), int(branch['n_coordinates'])
+    rows = slice(first, first + int(branch['end'] - branch['first']))
+    if branch['load_mode'].shape[0] > 2:
+        turns: Floats = segments['turn'][rows, :count, :, branch['lane']]
+        return turns
+    slope, (_, e1, e2) = segments['slope'][rows, branch['lane']], branch['frame']
+    return np.multiply.outer(slope, np.stack([e2, -e1]))
+
+
+def head_records(branches: Records, segments: Records) -> Records:
+    """
+    Lay out what placing needs to know of `BRANCH` records, whose coordinates are set.
+
+    Records of `head_layout`, one per block of `lanes` and one to work in.
+    """
+    first, block = np.unique(branches['block'], return_inverse=True)
+    lane, parent = branches['lane'], branches['parent']
+    heads = zeros_in_lines(len(first) + 1, head_layout(branches.dtype['load_mode'].shape[0]))
+    heads['block'] = [*first, len(segments)]
+    heads['n_records'][:-1] = np.diff(heads['block'])
+    heads['n_lanes'][:-1] = segments['n_lanes'][first]
+    np.maximum.at(heads['n_bearing'], block[parent[1:]], lane[parent[1:]] + 1)
+    np.maximum.at(heads['n_rows'], block, branches['n_coordinates'])
+    heads['branch'][block, lane] = np.arange(len(branches))
+    heads['is_joined'][:-1] = np.logical_and.reduceat(_joined(segments), first)
+    np.maximum.at(heads['n_parent_rows'], block, branches['n_coordinates'][parent])
+    for name in ('parent', 'coordinate', 'base_segment', 'first'):
+        heads[name][block, lane] = branches[name]
+    for name in ('frame', 'skew', 'tip_skew', 'offset'):
+        heads[name][block, ..., lane] = branches[name]
+    heads['is_at_axes'] = (np.abs(heads['offset'][:, 1:]) <= _AS_ONE * heads['offset'][:, :1]).all(
+        axis=(1, 2)
+    )
+    heads['steepest'][block, lane] = branches['steepest'][:, 0]
+    heads['base_turn'][block, ..., lane] = branches['twist'][..., 3:]
+    return heads
+
+
+_rotated = rotated.py_func  # type: ignore[attr-defined]  # whole arrays at once
+_AS_ONE = 1e-12
+"""Share of a chord by which a segment may miss it and still reach from its start to its end."""
+
+
+def _joined(segments: Records) -> NDArray[np.bool_]:
+    """Return chords in each segment's own frame, and for which of them it is the x axis."""
+    w, x, y, z = np.moveaxis(segments['rest'], 1, 0)
+    reach = _rotated(w, -x, -y, -z, *np.moveaxis(segments['chord'], 1, 0))
+    segments['reach'] = np.stack(reach, axis=1)
+    return (np.hypot(reach[1], reach[2]) <= _AS_ONE * reach[0]).all(axis=1)
+
+
+def lanes(first: Ints, branch_parent: Ints, fields: Ints | None = None) -> tuple[Ints, Ints, int]:
+    """
+    Give each branch a lane of a block: parents first, long branches together, few lanes empty.
+
+    Those of many ``fields`` (b,), if they are given, are together as well.
+
+    Returns
+    -------
+    tuple
+        First record (b,) and lane (b,) of each branch; how many records there are.
+
+    """
+    size = np.diff(first)
+    children: list[list[int]] = [[] for _ in size]
+    carried = np.ones(len(size), dtype=np.int64)
+    for branch in range(len(size) - 1, 0, -1):
+        children[branch_parent[branch]].insert(0, branch)
+        carried[branch_parent[branch]] += carried[branch]
+    block, lane = np.zeros((2, len(size)), dtype=np.int64)
+    # Sixteen branches take as long to place as the one with most fields.
+    rich = (-fields if fields is not None else 0 * size).tolist()
+    begin, ready = 0, [(rich[0], -int(size[0]), -int(carried[0]), 0)]
+    while ready:
+        together = [heappop(ready)[-1] for _ in range(min(LANES, len(ready)))]
+        # Records have segments of the first lanes alone.
+        together.sort(key=lambda branch: -int(size[branch]))
+        block[together], lane[together] = begin, np.arange(len(together))
+        begin += int(size[together[0]])
+        for branch in together:
+            for child in children[branch]:
+                heappush(ready, (rich[child], -int(size[child]), -int(carried[child]), child))
+    return block, lane, begin
+
+
+def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Places:
+    """Describe how the branches of a tree are joined and drawn, as they are modelled."""
+    first, size = tree.branch_first[:-1], np.diff(tree.branch_first)
+    on = tree.segment_parent[first]
+    following = tree.end.copy()
+    within = np.ones(tree.n_segments, dtype=bool)
+    within[tree.branch_first[1:] - 1] = False
+    following[within] = tree.start[1:][within[:-1]]
+    w, x, y, z = tree.rest_frame[on].T
+    offset = np.stack(_rotated(w, -x, -y, -z, *(tree.start[first] - tree.start[on]).T), axis=1)
+    slope, tip_slope = _slopes(tree, models)
+    share, skews = tree.length / np.repeat(np.add.reduceat(tree.length, first), size), []
+    for each in (slope, tip_slope):
+        off = each - np.repeat(np.add.reduceat(share * each, first), size)
+        # The third cumulant over 6: how far the chord angle lags, per angle cubed.
+        skews.append(np.add.reduceat(share * off**3, first) / 6.0)
+    counts = np.array([len(model.fields) for model in models])
+    is_plain = (counts == 2).all()
+    turn = np.zeros((tree.n_segments, 2 if is_plain else MAX_COORDINATES, 3))
+    for branch, model in enumerate(models):
+        turn[tree.segments_of(branch), : counts[branch]] = _drawn_turns(model).swapaxes(0, 1)
+    frame = np.array([(m.beam.chord, *across(m.beam.chord)) for m in models])
+    return Places(
+        tree.branch_first, tree.branch_parent, on, reduction.first[:-1], counts, frame,
+        skews[0], skews[1],
+        np.where(on[:, None] >= 0, offset, 0.0), reduction.twist[:, :, 3:],
+        following - tree.start, tree.rest_frame, slope, tip_slope, turn,
+    )  # fmt: skip
+
+
+def branch_records(
+    tree: Tree,
+    models: list[BranchModel],
+    reduction: Reduction,
+    places: Places,
+    speed_profile: Floats,
+) -> Records:
+    """
+    All that stepping and placing know of the branches: records of `branch_layout`, (b,).
+
+    The profile is the wind speed at each segment over that at the anemometer, (n,).
+    """
+    layout = branch_layout(2) if places.turn.shape[1] == 2 else branch_layout()
+    records = np.zeros(tree.n_branches, dtype=layout)
+    for branch, model in enumerate(models):
+        record: Record = records[branch]
+        for i, field in enumerate(model.fields):
+            record['tip_mode'][i] = field.nodes[-1]
+        _fill_load(model, speed_profile[tree.segments_of(branch)], record)
+    fill_places(places, records)
+    records['source'] = np.arange(tree.n_branches)
+    records['twist'] = reduction.twist[:, : records['twist'].shape[1]]
+    records['tip'] = tree.end[tree.branch_first[1:] - 1] - tree.start[0]
+    base = tree.start[tree.branch_first[:-1]] - tree.start[0]
+    arm = base - base[np.maximum(tree.branch_parent, 0)]
+    square = np.square(arm).sum(axis=1)
+    records['base'], records['arm'] = base, arm
+    records['per_arm'] = np.divide(0.5, square, out=np.zeros_like(square), where=square > 0.0)
+    return records
+
+
+_STRAIGHT = 0.03
+"""Share of the wind along a branch below which this is not distinguished from none."""
+
+
+def _fill_load(model: BranchModel, speed_profile: Floats, record: Record) -> None:
+    """Fill what the wind load reads; wind speed at its segments over that at the anemometer."""
+    beam = model.beam
+    weight = model.drag_area * beam.weight
+    total = weight.sum()
+    share = weight / total
+    record['centre'] = np.einsum('sg,sgk->k', share, beam.point)
+    record['coupling'] = cross_matrix(record['centre'])
+    speed = float((share * speed_profile[beam.segment, None]).sum())
+    record['speed'] = speed
+    record['area'] = total / speed**2 if speed > 0.0 else 0.0
+    along = np.einsum('sg,si,sj->ij', share, beam.tangent, beam.tangent)
+    across = np.eye(3) - along
+    record['projector'] = across[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    exposed = exposure(beam)
+    exposed /= float(share.sum(axis=1) @ exposed)
+    amounts, axes = np.linalg.eigh(across)
+    kept = amounts > _STRAIGHT * amounts[-1]
+    into_push = axes[:, kept] / amounts[kept] @ axes[:, kept].T
+    n = len(model.fields)
+    fields = np.stack([one.points for one in model.fields])
+    own = exposed[:, None] * (share[..., None] * fields).sum(axis=2)
+    own -= (own * beam.tangent).sum(axis=-1, keepdims=True) * beam.tangent
+    mean = np.zeros_like(record['load_mode'])
+    mean[:n] = own.sum(axis=1)
+    record['load_mode'][:n] = mean[:n] @ into_push
+    along_it = (fields[:2] * beam.tangent[:, None, :]).sum(axis=-1)
+    moved = (np.square(fields[:2]).sum(axis=-1) - np.square(along_it)).sum(axis=0)
+    # What moves most does most work, and it is turned most.
+    work = share * np.sqrt(np.maximum(moved, 0.0))
+    work /= work.sum() if work.sum() > 0.0 else 1.0
+    slopes = np.stack([one.slope for one in model.fields])
+    record['load_rotation'][:n] = work.ravel() @ slopes.reshape(n, -1, 3)
+    if np.abs(beam.tangent @ beam.tangent[0] - 1.0).max() > 1e-9:
+        _fit_load(model, share, record)
+    _fill_flow(record, mean, float((share * moved).sum()), float((share * _cubes(moved)).sum()))
+
+
+def _cubes(squares: Floats) -> Floats:
+    """Cubes of displacements from the sum of their squares, as if both axes were alike."""
+    cubes: Floats = 2.0 * np.maximum(0.5 * squares, 0.0) ** 1.5
+    return cubes
+
+
+def _fit_load(model: BranchModel, share: Floats, record: Record) -> None:
+    """Fit projector, push and couple of a crooked branch to the drag on it (least squares)."""
+    tangent = model.beam.tangent
+    slanting = _SlantingWinds(model.beam.chord)
+    outer = (np.eye(3) - tangent[:, :, None] * tangent[:, None, :]).reshape(-1, 9)
+    drag = slanting.squares(outer[:, [0, 4, 8, 1, 2, 5]]) ** 1.5 @ share.sum(axis=1)
+    record['projector'] = slanting.nearest(drag ** (2.0 / 3.0))
+    projector = record['projector'][[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
+    across = slanting.winds @ projector
+    force = np.sqrt(np.maximum((slanting.winds * across).sum(axis=1), 0.0))[:, None] * across
+    fit = np.linalg.pinv(force, rcond=_STRAIGHT)
+    pieces = slanting.winds[:, None] - (slanting.winds @ tangent.T)[..., None] * tangent
+    pieces *= np.linalg.norm(pieces, axis=-1, keepdims=True)
+    point = (share[..., None] * model.beam.point).sum(axis=1)
+    moment = cross(point, pieces).sum(axis=1)
+    record['coupling'] += (fit @ (moment - force @ record['coupling'].T)).T
+    k = len(model.fields)
+    moved = np.stack([(share[..., None] * one.points).sum(axis=1) for one in model.fields])
+    pushed = np.einsum('dsk,csk->dc', pieces, moved)
+    record['load_mode'][:k] += (fit @ (pushed - force @ record['load_mode'][:k].T)).T
+
+
+def _fill_flow(record: Record, mean: Floats, square: float, cube: float) -> None:
+    """
+    Scale the displacement across the branch to that at which drag damps as its mean square does.
+
+    Both axes of the first shape count as one, so that it does not matter how they are laid.
+
+    In wind this damps as the pieces do. In still air they do so by the mean cube, which needs a
+    speed of mean cube over mean square: what the flow lacks of that is the spread.
+    """
+    across = float(np.square(mean[:2]).sum())
+    record['damping_mode'] = mean
+    record['damping_mode'][:2] *= square / across if across > 0.0 else 1.0
+    still = (cube / square) ** 2 if square > 0.0 else 0.0
+    record['spread'] = max(still - 0.5 * float(np.square(record['damping_mode'][:2]).sum()), 0.0)
+    record['lever'] = math.sqrt(0.5 * across)
+
+
+def copy_twigs(records: Records, source: Ints) -> None:
+    """
+    Let twigs copy others: each turns about the axes of its source, so that it moves the same one.
+
+    The source is itself where a branch is solved, (b,).
+    """
+    records['source'] = source
+    records['frame'] = records['frame'][source]
+
+
+class _SlantingWinds:
+    """
+    Winds from all sides, along the ground and, as branches bend, aslant.
+
+    The first comes from the side that a direction (3,) points to, so that a tree that is turned as
+    a whole has the same load from the side that is turned with it.
+    """
+
+    def __init__(self, direction: Floats) -> None:
+        """Lay 16 bearings on each of three rises."""
+        x, y, _ = direction
+        points = math.hypot(x, y) > 1e-6 * float(np.linalg.norm(direction))
+        bearing = (math.atan2(y, x) if points else 0.0) + np.arange(16) * np.pi / 8.0
+        rise = np.radians([-10.0, 0.0, 10.0])[:, None]
+        level, up = np.cos(rise), np.broadcast_to(np.sin(rise), (3, 16))
+        winds = np.stack([level * np.cos(bearing), level * np.sin(bearing), up], axis=2)
+        self.winds = winds.reshape(48, 3)
+        x, y, z = self.winds.T
+        weights = [x * x, y * y, z * z, 2.0 * x * y, 2.0 * x * z, 2.0 * y * z]
+        self._weights = np.stack(weights, axis=1)
+
+    def squares(self, projectors: Floats) -> Floats:
+        """Return ``u . P u`` of projectors (k, 6) in each wind u, (48, k)."""
+        squares: Floats = np.maximum(self._weights @ projectors.T, 0.0)
+        return squares
+
+    def nearest(self, squares: Floats) -> Floats:
+        """Return the projector (6,) whose squares come nearest to these, (48,)."""
+        projector: Floats = np.linalg.lstsq(self._weights, squares, rcond=None)[0]
+        return projector
+
+
+def _drawn_turns(model: BranchModel) -> Floats:
+    """
+    Rotation vector of each segment per unit of each coordinate, as it is drawn, (k, m, 3).
+
+    A plain branch turns by one slope about the axes across its chord.
+    """
+    if len(model.fields) == 2:
+        e1, e2 = across(model.beam.chord)
+        return np.multiply.outer(model.shape.segment_slope, [e2, -e1]).transpose(1, 0, 2)
+    return np.stack([model.beam.over_segments(one.slope) for one in model.fields])
+
+
+def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
+    """
+    Slope of each segment as its branch is drawn, and under a load at the tip, both (n,).
+
+    The latter is the mean over the segment of 1.5 (2 u - u^2), u the arc length over the length.
+    """
+    first, size = tree.branch_first[:-1], np.diff(tree.branch_first)
+    whole = np.repeat(np.add.reduceat(tree.length, first), size)
+    slope = np.concatenate([model.shape.segment_slope for model in models])
+    mean = np.repeat(np.add.reduceat(slope * tree.length, first), size) / whole
+    past = np.cumsum(tree.length)
+    end = (past - np.repeat(past[first] - tree.length[first], size)) / whole
+    start = end - tree.length / whole
+    steepness = end + start - (end * end + end * start + start * start) / 3.0
+    return slope, 1.5 * mean * steepness
+
+
+def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:
+    """
+    Lay out what the wind load knows of `BRANCH` records, (b,), sixteen at a time, (ceil(b / 16),).
+
+    At rest, with no force yet; of `load_fields` with as many rows as the branches have, or of a
+    layout with further fields, which are left zeros.
+    """
+    if layout is None:
+        layout = load_layout(branches.dtype['load_mode'].shape[0])
+    records = zeros_in_lines(-(-len(branches) // LANES), layout)
+    block, lane = np.divmod(np.arange(len(branches)), LANES)
+    for name in ('speed', 'area', 'spread', 'projector', 'centre'):
+        records[name][block, ..., lane] = branches[name]
+    for name in ('damping_mode', 'load_rotation', 'load_mode'):
+        rows = records.dtype[name].shape[0]
+        records[name][block, ..., lane] = branches[name][:, :rows]
+    records['along'][block, :, lane] = branches['lever'][:, None] * branches['frame'][:, 0]
+    at_base = cross(branches['base'][:, None], np.eye(3)).swapaxes(1, 2)
+    records['coupling'][block, ..., lane] = branches['coupling'] - at_base
+    records['is_solved'][block, lane] = branches['source'] == np.arange(len(branches))
+    np.maximum.at(records['n_rows'], block, branches['n_coordinates'])
+    return records

@@ -1,0 +1,218 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+What compilers do not make vectors of by themselves.
+
+A branch's pose lies in one row, sixteen branches are computed in lanes: number by number, carrying
+them over takes longer than computing them. And the shapes of a tree of many branches are its
+largest table: each is read once, kept in single precision and summed in double.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import WHY_PLAIN
+from tree_sway.core.motion.records import zeros_in_lines
+
+TOGETHER = 64
+"""Coordinates whose shapes lie together and are summed at once."""
+
+
+def put_four(
+    lanes: Any, row: int, lane: int, array: Any, a: int, b: int, c: int, d: int, first: int
+) -> None:
+    """
+    Write four rows of four lanes, from a row and lane on, to rows a to d from an element on.
+
+    All lie in one piece.
+    """
+    for to, j in ((a, lane), (b, lane + 1), (c, lane + 2), (d, lane + 3)):
+        array[to, first : first + 4] = lanes[row : row + 4, j]
+
+
+def take_four(
+    array: Any, a: int, b: int, c: int, d: int, first: int, lanes: Any, row: int, lane: int
+) -> None:
+    """Read what `put_four` writes."""
+    for of, j in ((a, lane), (b, lane + 1), (c, lane + 2), (d, lane + 3)):
+        lanes[row : row + 4, j] = array[of, first : first + 4]
+
+
+def write_past_caches(of: Any, into: Any) -> None:
+    """
+    Copy an array (n,) to memory that is not read soon, without reading it first.
+
+    What is written to memory beyond the caches is else fetched from there before. `settle` makes
+    it seen by other threads.
+    """
+    into[:] = of
+
+
+def settle() -> None:
+    """Wait until all that was written is seen by other threads."""
+
+
+def shapes_together(shapes: Floats) -> Any:
+    """Lay shapes (k, n) out for `add_shapes`: (ceil(n / 64), k, 64), in single precision."""
+    k, n = shapes.shape
+    blocks = -(-n // TOGETHER)
+    laid: Any = zeros_in_lines(blocks, np.dtype([('shapes', 'f4', (k, TOGETHER))]))['shapes']
+    whole = np.zeros((k, blocks * TOGETHER))
+    whole[:, :n] = shapes
+    laid[:] = whole.reshape(k, blocks, TOGETHER).swapaxes(0, 1)
+    return laid
+
+
+def add_shapes(shapes: Any, block: int, amounts: Any, into: Any) -> None:
+    """Write a block's coordinates: the sum of shapes of `shapes_together` times amounts (k,)."""
+    into[block * TOGETHER : (block + 1) * TOGETHER] = amounts @ shapes[block].astype(np.float64)
+
+
+if not WHY_PLAIN:
+    from numba.core import cgutils, types
+    from numba.extending import intrinsic, overload
+
+    ir = cgutils.ir
+    _VECTOR = ir.VectorType(ir.DoubleType(), 4)
+
+    def _element(context: Any, builder: Any, kind: Any, array: Any, *index: Any) -> Any:
+        array = context.make_array(kind)(context, builder, array)
+        return cgutils.get_item_pointer(context, builder, kind, array, index)
+
+    def _place(context: Any, builder: Any, kind: Any, array: Any, *index: Any) -> Any:
+        """Where four numbers begin."""
+        element = _element(context, builder, kind, array, *index)
+        return builder.bitcast(element, _VECTOR.as_pointer())
+
+    def _turned(builder: Any, rows: list[Any]) -> tuple[Any, ...]:
+        """Four vectors of the first, second, third and fourth numbers of four."""
+
+        def mixed(one: Any, other: Any, which: list[int]) -> Any:
+            picked = ir.Constant(ir.VectorType(ir.IntType(32), 4), which)
+            return builder.shuffle_vector(one, other, picked)
+
+        a, b, c, d = rows
+        low, high = [0, 4, 2, 6], [1, 5, 3, 7]
+        ab, cd, ba, dc = mixed(a, b, low), mixed(c, d, low), mixed(a, b, high), mixed(c, d, high)
+        low, high = [0, 1, 4, 5], [2, 3, 6, 7]
+        return mixed(ab, cd, low), mixed(ba, dc, low), mixed(ab, cd, high), mixed(ba, dc, high)
+
+    def _carried(is_put: bool) -> Any:
+        def carry(typing, lanes, row, lane, array, a, b, c, d, first):  # type: ignore[no-untyped-def]  # noqa: E501
+            def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+                kinds = signature.args
+                lanes, row, lane, array, *rows, first = values
+                of = [
+                    _place(
+                        context, builder, kinds[0], lanes,
+                        builder.add(row, row.type(k)), lane,
+                    )
+                    for k in range(4)
+                ]  # fmt: skip
+                to = [_place(context, builder, kinds[3], array, each, first) for each in rows]
+                of, to = (of, to) if is_put else (to, of)
+                read = [builder.load(where, align=8) for where in of]
+                for value, where in zip(_turned(builder, read), to, strict=True):
+                    builder.store(value, where, align=8)
+                return context.get_dummy_value()
+
+            whole = types.intp
+            given = (lanes, whole, whole, array, whole, whole, whole, whole, whole)
+            return types.none(*given), generate
+
+        return intrinsic(carry)
+
+    _put, _take = _carried(True), _carried(False)
+
+    @overload(put_four, inline='always')
+    def _put_four(lanes, row, lane, array, a, b, c, d, first):  # type: ignore[no-untyped-def]
+        return lambda lanes, row, lane, array, a, b, c, d, first: _put(
+            lanes, row, lane, array, a, b, c, d, first
+        )
+
+    @overload(take_four, inline='always')
+    def _take_four(array, a, b, c, d, first, lanes, row, lane):  # type: ignore[no-untyped-def]
+        return lambda array, a, b, c, d, first, lanes, row, lane: _take(
+            lanes, row, lane, array, a, b, c, d, first
+        )
+
+    _LINE = ir.VectorType(ir.DoubleType(), 8)
+
+    @intrinsic
+    def _write_line(typing, into, at, of, row):  # type: ignore[no-untyped-def]
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            kinds, line = signature.args, _LINE.as_pointer()
+            to = builder.bitcast(_element(context, builder, kinds[0], *values[:2]), line)
+            read = builder.bitcast(_element(context, builder, kinds[2], *values[2:]), line)
+            written = builder.store(builder.load(read, align=8), to, align=64)
+            note = builder.module.add_metadata([ir.IntType(32)(1)])
+            written.set_metadata('nontemporal', note)
+            return context.get_dummy_value()
+
+        return types.none(into, types.intp, of, types.intp), generate
+
+    _SINGLES = ir.VectorType(ir.FloatType(), 8)
+
+    @intrinsic
+    def _add_shapes(typing, shapes, block, amounts, into):  # type: ignore[no-untyped-def]
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            kinds, (table, row, shares, to) = signature.args, values
+            none = ir.Constant(_LINE, None)
+            sums = [cgutils.alloca_once_value(builder, none) for _ in range(TOGETHER // 8)]
+            count = context.make_array(kinds[2])(context, builder, shares).nitems
+            with cgutils.for_range(builder, count) as loop:
+                share = builder.load(_element(context, builder, kinds[2], shares, loop.index))
+                one = builder.insert_element(none, share, ir.IntType(32)(0))
+                every = ir.Constant(ir.VectorType(ir.IntType(32), 8), None)
+                shared = builder.shuffle_vector(one, none, every)
+                at = _element(context, builder, kinds[0], table, row, loop.index, row.type(0))
+                at = builder.bitcast(at, _SINGLES.as_pointer())
+                for k, total in enumerate(sums):
+                    read = builder.load(builder.gep(at, [row.type(k)]), align=32)
+                    part = builder.fmul(builder.fpext(read, _LINE), shared, flags=['contract'])
+                    whole = builder.fadd(builder.load(total), part, flags=['contract'])
+                    builder.store(whole, total)
+            at = builder.mul(row, row.type(TOGETHER))
+            for k, total in enumerate(sums):
+                first = builder.add(at, row.type(8 * k))
+                where = _element(context, builder, kinds[3], to, first)
+                written = builder.bitcast(where, _LINE.as_pointer())
+                builder.store(builder.load(total), written, align=8)
+            return context.get_dummy_value()
+
+        return types.none(shapes, types.intp, amounts, into), generate
+
+    @overload(add_shapes, inline='always')
+    def _sum_of_shapes(shapes, block, amounts, into):  # type: ignore[no-untyped-def]
+        return lambda shapes, block, amounts, into: _add_shapes(shapes, block, amounts, into)
+
+    @intrinsic
+    def _fence(typing):  # type: ignore[no-untyped-def]
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            builder.fence('seq_cst')
+            return context.get_dummy_value()
+
+        return types.none(), generate
+
+    @overload(settle, inline='always')
+    def _settle():  # type: ignore[no-untyped-def]
+        return lambda: _fence()
+
+    @overload(write_past_caches)
+    def _write_past_caches(of, into):  # type: ignore[no-untyped-def]
+        def write(of, into):  # type: ignore[no-untyped-def]
+            n, address = len(of), into.ctypes.data
+            first = min((64 - address % 64) % 64 // 8, n) if address % 8 == 0 else n
+            for i in range(first):
+                into[i] = of[i]
+            last = first + (n - first) // 8 * 8
+            for i in range(first, last, 8):
+                _write_line(into, i, of, i)
+            for i in range(last, n):
+                into[i] = of[i]
+
+        return write

@@ -1,0 +1,284 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Natural modes of the coupled tree as oscillators, on the loads of all branches.
+
+The model `full` steps all modes, a number of coordinates that many. The load is found once per
+step, at the state half a step on, and held over the step.
+
+Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments
+on the key rotations, w circular frequencies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, partial
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.branch.beam import cross_matrix
+from tree_sway.core.kernel import entry_of, fused
+from tree_sway.core.motion.branchwise import Branchwise, Tunable
+from tree_sway.core.motion.fill_records import load_records
+from tree_sway.core.motion.records import LANES, WORK
+from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, wind_forces
+from tree_sway.core.oscillators.propagator import fill_propagator
+from tree_sway.core.oscillators.two_axis import LOAD_MAX
+from tree_sway.core.reduction.matrices import Reduction
+from tree_sway.core.reduction.modes import Modes
+
+
+class ModalBank(Branchwise):
+    """
+    Oscillators of natural modes of a tree, its slowest or all, of one damping ratio.
+
+    ``made_of`` are the arrays of `modal_arrays`.
+    """
+
+    def __init__(
+        self,
+        branches: Records,
+        made_of: Mapping[str, Floats],
+        damping_ratio: float,
+    ) -> None:
+        """Make room for the coefficients and the state."""
+        self._shapes = made_of['shapes']
+        m, n = self._shapes.shape
+        self.branches, self.shapes = branches, self._shapes.T
+        self.stiffness = made_of['circular'] ** 2
+        self.loss = made_of['loss']
+        """Damping ratio of each mode over that of the tree, (m,)."""
+        self.damping = 2.0 * damping_ratio * self.loss * made_of['circular']
+        self.limit = LOAD_MAX * made_of['diagonal']
+        self.weight = made_of['weight']
+        """Stiffness by gravity of each mode in [1/s^2], (m,); below 0 where weight softens it."""
+        self._momentum = made_of['momentum'].T
+        self._participation = made_of['participation']
+        self.work = np.zeros(len(branches), dtype=WORK)
+        self._loads = load_records(branches)
+        self.modal = np.zeros((5, m))
+        self.state = np.zeros((3, n))
+        self.whole, self.half = np.zeros((2, m, 8))
+
+    @property
+    def mean_square_motion(self) -> Floats:
+        """Mean square motion of what the wind meets, per unit of each mode, (m,)."""
+        area = self.branches['area']
+        mean: Floats = 2.0 * area @ self._participation / max(float(area.sum()), 1e-300)
+        return mean
+
+    @property
+    def loads(self) -> Records:
+        """Return the records of `load_fields`."""
+        return self._loads
+
+    def set_pace(self, dt: float) -> None:
+        """Refill how the modes go on in a time step [s]."""
+        one = np.ones(len(self.stiffness))
+        fill_propagator(one, self.damping, self.stiffness, dt, self.whole)
+        fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+        self.set_pace(dt)
+        block, lane = np.divmod(np.arange(len(self.branches)), LANES)
+        velocity = self.half[:, 6] + self.half[:, 7]
+        compliance = np.einsum('bm,m->b', self._participation, velocity)  # not by threads
+        self._loads['compliance'][block, lane] = compliance
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """
+        Advance one step under a mean wind [m/s], with `drag.pressure` in [kg/m^3].
+
+        Returns how many loads were held at their limit, -1 if the motion is not finite.
+        """
+        if not len(self.stiffness):
+            return 0
+        return int(self._compiled(wx, wy, wz, per_speed_squared))
+
+    def push(self, moments: Floats) -> int:
+        """Add what moments on the key rotations [N m] did over a step; how many were clamped."""
+        force, clamped = self.felt(moments)
+        add_force(list(self.modal[:3]), self.whole.T, force)
+        return clamped
+
+    def felt(self, moments: Floats) -> tuple[Floats, int]:
+        """Force on each mode, (m,), by moments on the key rotations; how many were clamped."""
+        clamped = np.clip(moments, -self.limit, self.limit)
+        return self._shapes @ clamped, int((clamped != moments).sum())
+
+    @cached_property
+    def _compiled(self) -> Callable[..., int]:
+        arrays = (
+            self.branches, self.work, self._loads, self.modal, self.state, self._shapes,
+            self.limit, self.whole, self.half,
+        )  # fmt: skip
+        return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
+
+    @cached_property
+    def _compiled_expand(self) -> Callable[[], None]:
+        arrays = self._shapes, self.modal, self.state
+        return partial(entry_of(_expand, *arrays), *arrays)
+
+    @property
+    def tunable(self) -> Tunable:
+        """Return what changes with stiffness, damping and gravity."""
+        others = ((self.limit, 1.0),)
+        return Tunable(self.stiffness, self.damping, 1.0, self.weight, others, self.loss)
+
+    @property
+    def air_damping(self) -> Floats:
+        """Damping of each mode by the air per drag and speed, at least, (m,)."""
+        damping: Floats = 2.0 * (self.branches['area'] * self.branches['speed'])
+        return damping @ self._participation
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of what is carried from one step to the next."""
+        return self.modal[:3], self._loads['drag_impulse']
+
+    def take(self, eta: Floats, rate: Floats, force: Floats) -> None:
+        """Go on from modes, rates and forces (m,)."""
+        self.modal[0], self.modal[1], self.modal[2] = eta, rate, force
+        self._loads['drag_impulse'] = 0.0
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+        self._compiled_expand()
+        rotations: Floats = self.state[1]
+        return rotations
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+        return self.rotations().copy(), self.shapes @ self.modal[1]
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
+        self.reset()
+        self.modal[0], self.modal[1] = self._momentum @ x, self._momentum @ v
+
+    def reset(self) -> None:
+        """Go back to rest."""
+        self.modal[:] = 0.0
+        self.state[:] = 0.0
+        self.work[:] = np.zeros((), dtype=WORK)
+        self._loads['drag_impulse'] = 0.0
+
+
+def add_force(state: Sequence[Floats], whole: Floats, force: Floats) -> None:
+    """Add what a force held over a step, (m,), does to displacement, rate and force, (3, m)."""
+    eta, rate, held = state
+    eta += (whole[2] + whole[3]) * force
+    rate += (whole[6] + whole[7]) * force
+    held += force
+
+
+def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[str, Floats]:
+    """Find what a `ModalBank` is made of, all of it arrays that can be kept."""
+    # One mode after another, so that a loop over coordinates is one of vectors.
+    shapes = np.ascontiguousarray(modes.shapes.T)
+    return {
+        'circular': modes.circular,
+        'shapes': shapes,
+        'diagonal': np.asarray(reduction.stiffness.diagonal()),
+        'weight': np.einsum('im,im->m', shapes.T, reduction.gravity @ shapes.T),
+        'momentum': reduction.mass @ modes.shapes,
+        'participation': _participation(branches, modes.shapes),
+    }
+
+
+def _participation(branches: Records, shapes: Floats) -> Floats:
+    """Mean squared motion of each load centre in each mode, over three directions, (b, m)."""
+    m = shapes.shape[1]
+    motion = np.zeros((len(branches), 6, m))
+    out = np.zeros((len(branches), m))
+    for b, branch in enumerate(branches):
+        own = slice(branch['coordinate'], branch['coordinate'] + branch['n_coordinates'])
+        if b > 0:
+            parent = branches[branch['parent']]
+            k = parent['n_coordinates']
+            moved = shapes[parent['coordinate'] : parent['coordinate'] + k]
+            motion[b] = motion[branch['parent']] + branch['twist'][:k].T @ moved
+        at = motion[b, :3] - cross_matrix(branch['centre']) @ motion[b, 3:]
+        at += branch['damping_mode'][: branch['n_coordinates']].T @ shapes[own]
+        out[b] = np.square(at).sum(axis=0) / 2.0
+    return out
+
+
+@fused
+def _expand(shapes: Floats, modal: Floats, state: Floats) -> None:
+    """Modes to key rotations."""
+    eta, x = modal[0], state[1]
+    for i in range(len(x)):
+        x[i] = 0.0
+    for k in range(len(eta)):
+        for i in range(len(x)):
+            x[i] += shapes[k, i] * eta[k]
+
+
+@fused
+def _to_middle(modal: Floats, state: Floats, shapes: Floats, half: Floats) -> None:
+    """Key rotations and rates half a step on, under the last step's load."""
+    eta, rate, force = modal[0], modal[1], modal[2]
+    middle_eta, middle_rate, x, v = modal[3], modal[4], state[1], state[2]
+    for k in range(len(eta)):
+        h = half[k]
+        middle_eta[k] = h[0] * eta[k] + h[1] * rate[k] + (h[2] + h[3]) * force[k]
+        middle_rate[k] = h[4] * eta[k] + h[5] * rate[k] + (h[6] + h[7]) * force[k]
+    for i in range(len(x)):
+        x[i], v[i] = 0.0, 0.0
+    for k in range(len(eta)):
+        for i in range(len(x)):
+            x[i] += shapes[k, i] * middle_eta[k]
+            v[i] += shapes[k, i] * middle_rate[k]
+
+
+@fused
+def wind_moments(
+    branches: Records, work: Records, loads: Records, x: Floats, v: Floats, moment: Floats,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> None:  # fmt: skip
+    """
+    Find the moments of a wind on the key rotations of a tree that bends and moves.
+
+    They are written as by `bent_loads`; key rotations are in [rad], their rates in [rad/s], (N,).
+    """
+    outward_pass(branches, work, x, v)
+    for b in range(len(branches)):
+        here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
+        for c in range(branches[b].n_coordinates):
+            here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
+        for k in range(6):
+            here.velocity[k, j] = work[b].velocity[k]
+        for k in range(3):
+            here.base[k, j] = work[b].rotation[k]
+    wind_forces(branches, work, loads, wx, wy, wz, per_speed_squared)
+    bent_loads(branches, work, loads, moment)
+
+
+@fused
+def _advance(
+    branches: Records, work: Records, loads: Records, modal: Floats, state: Floats, shapes: Floats,
+    limit: Floats, whole: Floats, half: Floats,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> int:  # fmt: skip
+    _to_middle(modal, state, shapes, half)
+    eta, rate, force = modal[0], modal[1], modal[2]
+    moment, x, v = state[0], state[1], state[2]
+    wind_moments(branches, work, loads, x, v, moment, wx, wy, wz, per_speed_squared)
+    over, total = 0, 0.0
+    for i in range(len(moment)):
+        if not abs(moment[i]) <= limit[i]:
+            moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
+            over += 1
+    for k in range(len(eta)):
+        pushed = 0.0
+        for i in range(len(moment)):
+            pushed += shapes[k, i] * moment[i]
+        force[k] = pushed
+        c, old = whole[k], eta[k]
+        eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * pushed
+        rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * pushed
+        total += 0.0 * eta[k] + 0.0 * rate[k]
+    return over if total == 0.0 else -1

@@ -1,0 +1,138 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Banks of oscillators in plain numpy, for machines without a compiler: some 100 times slower.
+
+Each keeps the state of its compiled counterpart, in the same arrays, so that a state kept by one
+is taken by the other; they agree to rounding. They are the oracle of the kernels as well.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.motion.modal import ModalBank
+from tree_sway.core.motion.plain.numpy_passes import into_lanes, NumpyPasses, of_lanes
+from tree_sway.core.motion.plain.numpy_rotation import two_axis_moment
+from tree_sway.core.motion.uncoupled import UncoupledBank
+
+
+class NumpyUncoupledBank(UncoupledBank):
+    """`UncoupledBank` in numpy."""
+
+    def __init__(self, *arguments: Any) -> None:
+        """Lay out as `UncoupledBank`, and sort by levels."""
+        super().__init__(*arguments)
+        self._passes = NumpyPasses(self.branches)
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+        super().set_step(dt)
+        n = len(self.branches)
+        names = ('whole', 'half', 'guard', 'compliance')
+        self._whole, self._half, self._guard, self._compliance = (
+            of_lanes(self._banks[name], n) for name in names
+        )
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Advance one step, as `UncoupledBank.advance`."""
+        passes, n = self._passes, len(self.branches)
+        x, v = self.x.reshape(-1, 2), self.v.reshape(-1, 2)
+        load, impulse = (
+            of_lanes(self._banks['load'], n),
+            of_lanes(self._banks['drag_impulse'], n).copy(),
+        )
+        none = np.zeros(n)
+        moment = two_axis_moment(x, v, load, none, np.inf)
+        h = self._half[:, :, None]
+        middle_x = h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment
+        middle_v = h[:, 3] * x + h[:, 4] * v + h[:, 5] * moment
+        base = np.zeros((n, 9))
+        wind = np.array([wx, wy, wz]) + of_lanes(self._banks['gust'], n)
+        force = passes.wind_forces(
+            base, middle_x, middle_v, wind, per_speed_squared, self._compliance, impulse
+        )
+        load = passes.own_loads(force)
+        self.work['force'] = force
+        into_lanes(impulse, self._banks['drag_impulse'])
+        into_lanes(load, self._banks['load'])
+        return self._step(x, v, load)
+
+    def _step(self, x: Floats, v: Floats, load: Floats) -> int:
+        """Step every oscillator, predictor and corrector; returns how many loads were held."""
+        gyro, load_limit, moment_limit = self._guard.T
+        with np.errstate(all='ignore'):
+            size = np.sqrt(np.einsum('bk,bk->b', load, load))
+            held = ~(size <= load_limit)
+            load = load.copy()
+            load[held] *= np.where(np.isfinite(size[held]), load_limit[held] / size[held], 0.0)[
+                :, None
+            ]
+        load[~np.isfinite(load).all(axis=1)] = 0.0
+        c = self._whole[:, :, None]
+        now = two_axis_moment(x, v, load, gyro, moment_limit)
+        ahead_x = c[:, 0] * x + c[:, 1] * v + c[:, 2] * now
+        ahead_v = c[:, 4] * x + c[:, 5] * v + c[:, 6] * now
+        then = two_axis_moment(
+            ahead_x + c[:, 3] * now, ahead_v + c[:, 7] * now, load, gyro, moment_limit
+        )
+        source = self.branches['source']
+        x[:] = (ahead_x + c[:, 3] * then)[source]
+        v[:] = (ahead_v + c[:, 7] * then)[source]
+        if not (np.isfinite(x).all() and np.isfinite(v).all()):
+            return -1
+        return int(held[source == np.arange(len(source))].sum())
+
+
+class NumpyModalBank(ModalBank):
+    """`ModalBank` in numpy."""
+
+    def __init__(self, *arguments: Any) -> None:
+        """Lay out as `ModalBank`, and sort by levels."""
+        super().__init__(*arguments)
+        self._passes = NumpyPasses(self.branches)
+        self._shares = np.ones(len(self.stiffness))
+
+    def show(self, shares: Floats, count: int) -> None:
+        """Show coordinates by shares from 0 to 1, (m,)."""
+        self._shares = shares.copy()
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Advance one step, as `ModalBank.advance`."""
+        passes, n = self._passes, len(self.branches)
+        eta, rate, force = self.modal[:3]
+        moment = self.state[0]
+        h, c = self.half.T, self.whole.T
+        middle_eta = h[0] * eta + h[1] * rate + (h[2] + h[3]) * force
+        middle_rate = h[4] * eta + h[5] * rate + (h[6] + h[7]) * force
+        x = passes.per_branch(_summed(middle_eta, self._shapes))
+        v = passes.per_branch(_summed(middle_rate, self._shapes))
+        impulse = of_lanes(self._loads['drag_impulse'], n).copy()
+        base = passes.outward(x, v)
+        wind = np.array([wx, wy, wz]) + of_lanes(self._loads['gust'], n)
+        compliance = of_lanes(self._loads['compliance'], n)
+        on_branches = passes.wind_forces(base, x, v, wind, per_speed_squared, compliance, impulse)
+        passes.bent_loads(base, x, on_branches, moment)
+        self.work['force'] = on_branches
+        into_lanes(impulse, self._loads['drag_impulse'])
+        over = ~(np.abs(moment) <= self.limit)
+        moment[over] = np.where(moment[over] > 0.0, self.limit[over], -self.limit[over])
+        force[:] = np.einsum('mi,i->m', self._shapes, moment)
+        new_eta = c[0] * eta + c[1] * rate + (c[2] + c[3]) * force
+        rate[:] = c[4] * eta + c[5] * rate + (c[6] + c[7]) * force
+        eta[:] = new_eta
+        return int(over.sum()) if np.isfinite(self.modal[:2]).all() else -1
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+        x: Floats = self.state[1]
+        x[:] = _summed(self._shares * self.modal[0], self._shapes)
+        return x
+
+
+def _summed(amounts: Floats, shapes: Floats) -> Floats:
+    """Sum of shapes (m, N) by amounts (m,), (N,), in one order whatever the number of threads."""
+    return np.asarray(np.einsum('m,mi->i', amounts, shapes))

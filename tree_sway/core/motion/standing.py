@@ -1,0 +1,144 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Kernels of a stand: many trees on few tables, solved in one call and placed kind by kind.
+
+A tree of a stand is its kind turned about the vertical, scaled, and moved to where it stands. A
+tree scaled by k bends by the same angles in the same wind, and swings k times slower: its inertia
+goes with the fifth power of its size, its stiffness and the wind's moment with the third. So it is
+its kind, stepped by 1/k of the time. (Gravity and the profile of the wind are those of the kind,
+but that the speed is that at its own height.)
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.kernel import fused, inlined
+from tree_sway.core.motion.drag import pressure
+from tree_sway.core.motion.lanes import settle, write_past_caches
+from tree_sway.core.motion.placing import place_standing_at
+from tree_sway.core.motion.wind_basis import expand, step_instance
+
+STANDING = np.dtype(
+    [
+        ('kind', 'i8'),  # its row among the tables
+        ('pace', 'i8'),  # its row among the paces
+        ('is_still', 'i8'),  # whether it is not solved
+        ('is_held', 'i8'),  # whether its last wind was held at the limit of its table
+        ('scale', 'f8'),  # its height over that of its kind
+        ('speed', 'f8'),  # wind at its height over that at its kind's
+        ('cosine', 'f8'),  # of half the angle that it is turned by
+        ('sine', 'f8'),
+        ('at', 'f8', (3,)),  # its root node [m]
+    ]
+)
+"""How a tree of a stand stands."""
+
+_CACHED = 1 << 21
+"""Numbers in a pose block up to which it is written to the caches: 16 MB, half of a large one."""
+
+_pressure = inlined(pressure)
+
+
+@fused
+def step_standing(
+    tables: Records,
+    paces: Records,
+    standing: Records,
+    instances: Records,
+    drag_laws: Floats,
+    winds: Floats,
+) -> tuple[int, int]:
+    """
+    Step every tree that is not still, each with its mean wind over the step in [m/s], (t, 3).
+
+    Records are of `table_layout` (k,), `pace_layout` (p,), `STANDING` and `instance_layout` (t,);
+    C and N of each kind (k, 2).
+
+    Returns
+    -------
+    tuple
+        Trees whose wind was held at the limit of their table, and trees whose motion was not
+        finite and that go on from rest.
+
+    """
+    held, restarted = 0, 0
+    for t in range(len(standing)):
+        here = standing[t]
+        if here.is_still:
+            continue
+        table, instance = tables[here.kind], instances[t]
+        c = here.cosine * here.cosine - here.sine * here.sine
+        s = 2.0 * here.cosine * here.sine
+        x = here.speed * (c * winds[t, 0] + s * winds[t, 1])
+        y = here.speed * (c * winds[t, 1] - s * winds[t, 0])
+        z = here.speed * winds[t, 2]
+        speed = math.sqrt(x * x + y * y + z * z)
+        is_held = False
+        law = drag_laws[here.kind]
+        load = _pressure(speed, law[0], law[1], law[2])
+        if load * speed * speed > table.most_pressure:
+            is_held = True
+            share = math.sqrt(table.most_pressure / load) / speed
+            x, y, z = share * x, share * y, share * z
+        here.is_held = is_held
+        held += is_held
+        step_instance(table, paces[here.pace], instance, True, x, y, z, load)
+        total = 0.0
+        for i in range(len(instance.eta)):
+            total += 0.0 * instance.eta[i] + 0.0 * instance.rate[i]
+        if total != 0.0:
+            restarted += 1
+            for i in range(len(instance.eta)):
+                instance.eta[i] = instance.rate[i] = instance.force[i] = 0.0
+                instance.middle[i] = instance.middle_rate[i] = 0.0
+    return held, restarted
+
+
+@fused
+def place_standing(
+    standing: Records, instances: Records, which: Ints, shapes: Floats,
+    branches: Records, segments: Records, heads: Records, bases: Floats, x: Floats, poses: Floats,
+    out: Floats,
+) -> None:  # fmt: skip
+    """
+    Place trees of one kind.
+
+    Each is placed in memory that stays in the cache, then written out in one run: writing branch
+    by branch to memory that does not takes longer than both.
+
+    Parameters
+    ----------
+    standing, instances
+        As of `step_standing`.
+    which
+        Trees and their first rows in the pose block, (w, 2).
+    shapes
+        Of the kind, as of `wind_basis.expand`.
+    branches, segments, heads, bases
+        Of the kind, as of `placing.place`.
+    x, poses
+        To work in, (N,) and (m, 7).
+    out
+        Pose block of the stand, (n, 7), rows of these trees written.
+
+    """
+    block, whole = poses.reshape(-1), out.reshape(-1)
+    for row in range(len(which)):
+        t, first = which[row, 0], which[row, 1]
+        here = standing[t]
+        expand(instances[t], shapes, x)
+        place_standing_at(
+            branches, segments, heads, bases, x, here.at[0], here.at[1], here.at[2],
+            here.cosine, here.sine, here.scale, poses,
+        )  # fmt: skip
+        into = whole[7 * first : 7 * first + len(block)]
+        if len(whole) > _CACHED:
+            write_past_caches(block, into)
+        else:
+            into[:] = block
+    settle()

@@ -1,0 +1,99 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+How a tree gives way to steady winds: the loads on it, and where it comes to rest in them.
+
+A step of wind meets every branch, and what the slow modes of a tree cannot do is lost unless the
+coordinates can. So the answers to winds of all directions and speeds are found once; what is
+missing of them makes further coordinates (`reduction.modes.with_answers`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.kernel import entry_of, WHY_PLAIN
+from tree_sway.core.motion.fill_records import load_records
+from tree_sway.core.motion.modal import wind_moments
+from tree_sway.core.motion.plain.numpy_passes import NumpyPasses
+from tree_sway.core.motion.records import WORK
+
+STORM = 40.0
+"""Wind in [m/s] up to which a tree's answers are known."""
+
+_SPEEDS = (10.0, 20.0, STORM)
+_AZIMUTHS = np.arange(8) * np.pi / 4.0
+_TURNS, _FARTHEST = 6, 1.0
+
+
+class WindMoments:
+    """Moments (N,) on the coordinates of a tree that bends and moves, of even winds."""
+
+    def __init__(self, branches: Records, *, plain: bool = False) -> None:
+        """Make room to work in."""
+        self.branches, self._plain = branches, plain or bool(WHY_PLAIN)
+        self.n = int(branches['n_coordinates'].sum())
+
+    @cached_property
+    def _passes(self) -> NumpyPasses:
+        return NumpyPasses(self.branches)
+
+    @cached_property
+    def _compiled(self) -> Callable[..., Any]:
+        arrays = self.branches, np.zeros(len(self.branches), WORK), load_records(self.branches)
+        rows = np.zeros(self.n), np.zeros(self.n), np.zeros(self.n)
+        return partial(entry_of(wind_moments, *arrays, *rows, 0.0, 0.0, 0.0, 0.0), *arrays)
+
+    def __call__(self, x: Floats, v: Floats, wind: Floats) -> Floats:
+        """Moments by a wind (3,) of 1 kg/m^3 on a tree at x that moves at v, both (N,)."""
+        moments, (wx, wy, wz) = np.empty(self.n), wind.tolist()
+        if not self._plain:
+            self._compiled(x, v, moments, wx, wy, wz, 1.0)
+            return moments
+        passes, n = self._passes, len(self.branches)
+        angles, rates = passes.per_branch(x), passes.per_branch(v)
+        base = passes.outward(angles, rates)
+        force = passes.wind_forces(base, angles, rates, wind, 1.0, np.zeros(n), np.zeros((n, 3)))
+        passes.bent_loads(base, angles, force, moments)
+        return moments
+
+
+def static_answers(
+    moments: WindMoments, solve: Callable[[Floats], Floats], pressure: Callable[[float], float]
+) -> Floats:
+    """
+    Find where winds hold a tree: key rotations [rad], (N, k).
+
+    Parameters
+    ----------
+    moments
+        Loads of the tree.
+    solve
+        Key rotations under moments [N m], (N,): the inverse of the stiffness.
+    pressure
+        Dynamic pressure [kg/m/s^2] of a wind in [m/s].
+
+    """
+    still = np.zeros(moments.n)
+    found = []
+    for azimuth in _AZIMUTHS:
+        ahead = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+        upright = moments(still, still, ahead)
+        found.append(solve(upright))
+        for speed in _SPEEDS:
+            push, x = pressure(speed), still
+            for turn in range(_TURNS):
+                x = x + (solve(push * moments(x, still, ahead)) - x) / (turn + 2.0) ** 0.5
+                x *= min(1.0, _FARTHEST / max(float(np.abs(x).max()), 1e-12))
+            found.append(x / push)
+    for rise in (-np.pi / 2.0, -np.pi / 4.0, np.pi / 4.0, np.pi / 2.0):
+        for azimuth in _AZIMUTHS[::2] if abs(rise) < 1.5 else _AZIMUTHS[:1]:
+            level = np.cos(rise)
+            wind = np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(rise)])
+            found.append(solve(moments(still, still, wind)))
+    return np.array(found).T

@@ -1,0 +1,168 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The model `branch`, the paper's: every branch an oscillator of its own, on two axes.
+
+A branch meets its own wind with its own inertia, as if its base were at rest.
+
+The load is found once per step, at the state half a step on (exponential midpoint rule), and held
+over the step; what depends on the branch's own angle is corrected once within the step
+(`two_axis.step_branch`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property, partial
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Record, Records
+from tree_sway.core.kernel import entry_of, fused
+from tree_sway.core.motion.branchwise import Branchwise, Tunable
+from tree_sway.core.motion.fill_records import load_records
+from tree_sway.core.motion.records import LANES, OSCILLATORS, WORK
+from tree_sway.core.motion.tree_passes import own_loads, wind_forces
+from tree_sway.core.oscillators.propagator import fill_propagator
+from tree_sway.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force
+
+
+class UncoupledBank(Branchwise):
+    """Oscillators of all branches, in [kg m^2], [N m s/rad] and [N m/rad], (b,)."""
+
+    shapes = np.zeros((0, 0))
+
+    def __init__(
+        self,
+        branches: Records,
+        inertia: Floats,
+        damping: Floats,
+        stiffness: Floats,
+        weight: Floats,
+    ) -> None:
+        """Make room for the coefficients and the state."""
+        n = len(branches)
+        self.branches = branches
+        self.inertia, self.damping, self.stiffness = inertia, damping, stiffness
+        self.work = np.zeros(n, dtype=WORK)
+        self.state = np.zeros((2, 2 * n))
+        self.x, self.v = self.state
+        self._weight = weight
+        self._banks = load_records(branches, OSCILLATORS)
+
+    @property
+    def loads(self) -> Records:
+        """Return the records of `load_fields`, and what the oscillators add."""
+        return self._banks
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+        n = len(self.branches)
+        whole, half, guard = np.zeros((n, 8)), np.zeros((n, 8)), np.zeros((n, 3))
+        fill_propagator(self.inertia, self.damping, self.stiffness, dt, whole)
+        fill_propagator(self.inertia, self.damping, self.stiffness, 0.5 * dt, half)
+        fill_guards(self.inertia, self.stiffness, dt, LOAD_MAX, guard)
+        held = half[:, [0, 1, 2, 4, 5, 6]]
+        held[:, [2, 5]] += half[:, [3, 7]]
+        block, lane = np.divmod(np.arange(n), LANES)
+        flow = np.square(self.branches['damping_mode'][:, :2]).sum(axis=(1, 2)) / 2.0
+        for name, rows in (('whole', whole), ('half', held), ('guard', guard)):
+            self._banks[name][block, :, lane] = rows
+        self._banks['compliance'][block, lane] = flow * held[:, 5]
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """
+        Advance one step under a mean wind [m/s], with `drag.pressure` in [kg/m^3].
+
+        Returns how many loads were held at their limit, -1 if the motion is not finite.
+        """
+        return int(self._compiled(wx, wy, wz, per_speed_squared))
+
+    @cached_property
+    def _compiled(self) -> Callable[..., int]:
+        arrays = self.branches, self.work, self._banks, self.state
+        return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
+
+    @property
+    def tunable(self) -> Tunable:
+        """Return what changes with stiffness, damping and gravity."""
+        return Tunable(self.stiffness, self.damping, self.inertia, self._weight)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of what is carried from one step to the next."""
+        return self.x, self.v, self._banks['drag_impulse'], self._banks['load']
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (2 b,)."""
+        return self.x
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (2 b,)."""
+        return self.x.copy(), self.v.copy()
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (2 b,)."""
+        self.reset()
+        self.x[:], self.v[:] = x, v
+
+    def reset(self) -> None:
+        """Go back to rest."""
+        self.state[:] = 0.0
+        self.work[:] = np.zeros((), dtype=WORK)
+        self._banks['drag_impulse'] = self._banks['load'] = 0.0
+
+
+@fused
+def _advance(
+    branches: Records, work: Records, banks: Records, state: Floats,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> int:  # fmt: skip
+    x, v = state[0], state[1]
+    n = len(branches)
+    for b in range(n):
+        here, j = banks[b // LANES], b % LANES
+        for k in range(2):
+            here.now_x[k, j], here.now_v[k, j] = x[2 * b + k], v[2 * b + k]
+    for block in range(len(banks)):
+        _to_middle(banks[block])
+    wind_forces(branches, work, banks, wx, wy, wz, per_speed_squared)
+    own_loads(banks)
+    held, total = 0, 0.0
+    for block in range(len(banks)):
+        held += _step(banks[block])
+    for b in range(n):
+        here, j = banks[b // LANES], b % LANES
+        if not here.is_solved[j]:
+            here, j = banks[branches[b].source // LANES], branches[b].source % LANES
+        for k in range(2):
+            x[2 * b + k], v[2 * b + k] = here.now_x[k, j], here.now_v[k, j]
+            total += 0.0 * x[2 * b + k] + 0.0 * v[2 * b + k]
+    return held if total == 0.0 else -1
+
+
+@fused
+def _to_middle(bank: Record) -> None:
+    """State of sixteen branches half a step on, under the last step's load."""
+    x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
+    middle_x, middle_v = bank.x, bank.v
+    for j in range(LANES):
+        mx, my = true_force(x[0, j], x[1, j], load[0, j], load[1, j], load[2, j])
+        middle_x[0, j] = h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx
+        middle_x[1, j] = h[0, j] * x[1, j] + h[1, j] * v[1, j] + h[2, j] * my
+        middle_v[0, j] = h[3, j] * x[0, j] + h[4, j] * v[0, j] + h[5, j] * mx
+        middle_v[1, j] = h[3, j] * x[1, j] + h[4, j] * v[1, j] + h[5, j] * my
+
+
+@fused
+def _step(bank: Record) -> int:
+    """Step sixteen branches; return how many loads were held."""
+    x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard
+    is_solved, held = bank.is_solved, 0
+    for j in range(LANES):
+        x[0, j], x[1, j], v[0, j], v[1, j], over = step_branch(
+            x[0, j], x[1, j], v[0, j], v[1, j], load[0, j], load[1, j], load[2, j],
+            c[0, j], c[1, j], c[2, j], c[3, j], c[4, j], c[5, j], c[6, j], c[7, j],
+            g[0, j], g[1, j], g[2, j],
+        )  # fmt: skip
+        held += over * is_solved[j]
+    return held

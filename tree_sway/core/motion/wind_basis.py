@@ -1,0 +1,355 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Model `wind_basis`: a tree as a few oscillators, driven by a table of all even winds.
+
+What a step costs does not depend on the tree's size. The coordinates are natural modes and what
+these lack of the tree's answers to wind (`reduction.basis`); each has its inertia, so that nothing
+follows a wind at once. The load is that of the state half a step on. It comes from a table
+(`wind_basis_table`) and not from the branches. A wind or a lean beyond the table is held
+at its limit, and counted as ``outside``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property, partial
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Record, Records
+from tree_sway.core.kernel import entry_of, fused, inlined
+from tree_sway.core.motion.branchwise import Tunable
+from tree_sway.core.motion.drag import DragLaw, pressure
+from tree_sway.core.motion.harmonics import COUNT
+from tree_sway.core.motion.lanes import add_shapes, shapes_together, TOGETHER
+from tree_sway.core.motion.modal import add_force, ModalBank
+from tree_sway.core.motion.placing import place
+from tree_sway.core.motion.wind_basis_force import pace_layout, table_layout, wind_force
+from tree_sway.core.motion.wind_basis_table import WindBasisTable
+
+
+def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
+    """State of one tree on a table, and scratch."""
+    m = table_layout(n_modes, n_harmonics)['stiffness'].shape[0]
+    return np.dtype(
+        [
+            ('outside', 'i8'),  # whether the last wind was outside of the table
+            ('eta', 'f8', (m,)),
+            ('rate', 'f8', (m,)),
+            ('force', 'f8', (m,)),
+            ('wind', 'f8', (3,)),  # [m/s]
+            ('pressure', 'f8'),  # drag per area and speed squared [kg/m^3]
+            ('middle', 'f8', (m,)),
+            ('middle_rate', 'f8', (m,)),
+            ('wanted', 'f8', (m,)),
+            ('diagonal', 'f8', (m,)),
+            ('scratch', 'f4', (4, m)),
+            ('values', 'f8', (n_harmonics,)),
+            ('left_out', 'i8'),  # coordinates, the last ones, that are not shown and not felt
+            ('faded', 'f8', (m,)),  # share of each that is not shown
+        ]
+    )
+
+
+_pressure = inlined(pressure)
+
+CARRIED = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside')
+"""Fields of an instance that a state holds."""
+
+
+class WindBasisBank:
+    """
+    Oscillators of natural modes in even winds: a table of what the wind does to them.
+
+    ``modal`` are the same modes on the loads of all branches.
+    """
+
+    loads: Records | None = None
+
+    def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
+        """Stand at rest."""
+        self.modal, self.table = modal, table
+        self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
+        # Rounded where they are read most, and so everywhere.
+        self.all_shapes = modal.shapes.T.astype(np.float32).astype(np.float64)
+        self.lay_out(modal.shapes.shape[1])
+        self._filled_x = self.room_for_rotations()
+        self._x = self._filled_x[: len(modal.shapes)]
+        self.n_outside = 0
+        """Steps whose wind was held at the limit of the table."""
+
+    def lay_out(self, n_modes: int) -> None:
+        """Lay the table out for a number of coordinates, that of the largest tree of a stand."""
+        for compiled in ('_step', '_expand'):
+            self.__dict__.pop(compiled, None)
+        table_record, made = self.table.record, len(self.modal.shapes.T)
+        count = COUNT[int(table_record['degree'][0])]
+        self.record = np.zeros(1, dtype=table_layout(n_modes, count))
+        for name in table_record.dtype.names or ():
+            values = table_record[name]
+            self.record[name][tuple(map(slice, values.shape))] = values
+        self.pace = np.zeros(1, dtype=pace_layout(n_modes))
+        self.instance = np.zeros(1, dtype=instance_layout(n_modes, count))
+        filled = np.zeros((self.record['stiffness'].shape[1] - made, len(self.modal.shapes)))
+        self.laid_shapes = shapes_together(np.vstack([self.all_shapes, filled]))
+
+    @property
+    def air_damping(self) -> Floats:
+        """Damping of each coordinate by the air per drag and speed, at least, (m,)."""
+        return self.modal.air_damping
+
+    def show(self, shares: Floats, count: int) -> None:
+        """Show coordinates by shares from 0 to 1, (m,), and let the first of them respond."""
+        self.instance['faded'][0, : len(shares)] = 1.0 - shares
+        self.instance['left_out'] = len(shares) - count
+
+    def room_for_rotations(self) -> Floats:
+        """Zeros for `expand` to write key rotations to, (N,) and some more."""
+        return np.zeros(len(self.laid_shapes) * TOGETHER)
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+        self.modal.set_step(dt)
+        fill_pace(self.pace[0], self.modal)
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Advance one step, as `ModalBank.advance`."""
+        return self.step_outside() if self._step(wx, wy, wz, per_speed_squared) else 0
+
+    def step_outside(self) -> int:
+        """Count a step that was held at the limit of the table; -1 if the motion is not finite."""
+        self.n_outside += 1
+        return 1 if np.isfinite(self.instance['eta']).all() else -1
+
+    def push(self, moments: Floats) -> int:
+        """Add what moments on the key rotations [N m] did over a step; how many were clamped."""
+        m = self.modal.shapes.shape[1]
+        force, clamped = self.modal.felt(moments)
+        instance, pace = self.instance[0], self.pace[0]
+        # The step was implicit in the damping of each coordinate.
+        force = force / (1.0 - instance['diagonal'][:m] * pace['half'][5, :m])
+        state = [instance[name][:m] for name in ('eta', 'rate', 'force')]
+        add_force(state, pace['whole'][:, :m], force)
+        return clamped
+
+    @cached_property
+    def _step(self) -> Callable[..., int]:
+        arrays = self.record, self.pace, self.instance
+        return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
+
+    def stepping(
+        self, wind: Floats, max_wind: float, law: DragLaw
+    ) -> Callable[[float, float, float], int]:
+        """Return a step as one compiled call: `step_in_wind` of a wind's components in [m/s]."""
+        arrays = self.record, self.pace, self.instance, np.array([max_wind, *law]), wind
+        return partial(entry_of(step_in_wind, *arrays, 0.0, 0.0, 0.0), *arrays)
+
+    def placing(
+        self, segments: Records, heads: Records, bases: Floats
+    ) -> Callable[[Floats, Floats], None]:
+        """Return the placing of the state, a compiled call of a root node and a pose block."""
+        arrays = (
+            self.instance, self.laid_shapes, self._filled_x, self.branches, segments, heads, bases,
+        )  # fmt: skip
+        return partial(entry_of(place_one, *arrays, np.zeros(3), np.zeros((1, 7))), *arrays)
+
+    @cached_property
+    def _expand(self) -> Callable[[], None]:
+        arrays = self.instance, self.laid_shapes, self._filled_x
+        return partial(entry_of(expand_one, *arrays), *arrays)
+
+    @property
+    def tunable(self) -> Tunable:
+        """Return what changes with stiffness, damping and gravity."""
+        return self.modal.tunable
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of what is carried from one step to the next."""
+        return tuple(self.instance[name] for name in CARRIED)
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+        self._expand()
+        return self._x
+
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch [N], (b, 3); a pass over all branches."""
+        step_branches(self.instance[0], self.modal)
+        return self.modal.forces()
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+        m = self.modal.shapes.shape[1]
+        return self.rotations().copy(), self.modal.shapes @ self.instance[0]['rate'][:m]
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
+        self.reset()
+        self.modal.take_over(x, v)
+        m = self.modal.shapes.shape[1]
+        self.instance['eta'][0, :m], self.instance['rate'][0, :m] = self.modal.modal[:2]
+
+    def reset(self) -> None:
+        """Go back to rest."""
+        for array in self.memory():
+            array[...] = 0.0
+        self.modal.reset()
+
+
+def fill_pace(pace: np.void, modal: ModalBank) -> None:
+    """Take the coefficients of a time step over into a record of `pace_layout`."""
+    m = modal.shapes.shape[1]
+    pace['whole'], pace['half'] = 0.0, 0.0
+    pace['whole'][:, :m] = modal.whole.T
+    half = modal.half
+    pace['half'][:, :m] = np.stack(
+        [half[:, 0], half[:, 1], half[:, 2] + half[:, 3],
+         half[:, 4], half[:, 5], half[:, 6] + half[:, 7]]
+    )  # fmt: skip
+
+
+def step_branches(instance: Record, modal: ModalBank) -> int:
+    """Step the modes from where an instance is, in its wind, on the loads of all branches."""
+    m = modal.shapes.shape[1]
+    eta, rate, force = (instance[name][:m] for name in ('eta', 'rate', 'force'))
+    modal.take(eta, rate, force)
+    wx, wy, wz = instance['wind'].tolist()
+    return modal.advance(wx, wy, wz, float(instance['pressure']))
+
+
+@fused
+def expand(instance: Record, shapes: Floats, x: Floats) -> None:
+    """Key rotations (N,) of an instance, by shapes as of `shapes_together`."""
+    eta, faded, shown = instance.eta, instance.faded, instance.wanted
+    for k in range(len(eta)):
+        shown[k] = (1.0 - faded[k]) * eta[k]
+    shown = shown[: len(eta) - instance.left_out]
+    for block in range(len(shapes)):
+        add_shapes(shapes, block, shown, x)
+
+
+@fused
+def place_one(
+    instances: Records, shapes: Floats, x: Floats,
+    branches: Records, segments: Records, heads: Records, bases: Floats,
+    origin: Floats, out: Floats,
+) -> None:  # fmt: skip
+    """Do what `expand` does for the first instance, then what `place` does."""
+    expand(instances[0], shapes, x)
+    place(branches, segments, heads, bases, x, origin, out)
+
+
+@fused
+def expand_one(instances: Records, shapes: Floats, x: Floats) -> None:
+    """Do what `expand` does, for the first instance."""
+    expand(instances[0], shapes, x)
+
+
+@fused
+def step_instance(
+    table: Record, pace: Record, instance: Record, is_held: bool,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> int:  # fmt: skip
+    """
+    Step one tree on its table.
+
+    Parameters
+    ----------
+    table, pace, instance
+        Records of `table_layout`, `pace_layout` and `instance_layout`.
+    is_held
+        Whether the table is followed beyond what it was made for.
+    wx, wy, wz
+        Mean wind over the step in [m/s].
+    per_speed_squared
+        `drag.pressure` in [kg/m^3].
+
+    Returns
+    -------
+    int
+        1 where the wind or the lean was beyond the table, and was held at its limit.
+
+    """
+    speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+    x, y, z = 1.0, 0.0, 0.0
+    if speed > 0.0:
+        x, y, z = wx / speed, wy / speed, wz / speed
+    push = per_speed_squared * speed * speed
+    instance.outside = 0 if is_held or push <= table.most_pressure else 1
+    push = min(push, table.most_pressure)
+    eta, rate, force, half, whole = (
+        instance.eta, instance.rate, instance.force, pace.half, pace.whole,
+    )  # fmt: skip
+    middle, middle_rate, wanted = instance.middle, instance.middle_rate, instance.wanted
+    for i in range(len(eta)):
+        q, v, f = eta[i], rate[i], force[i]
+        middle[i] = half[0, i] * q + half[1, i] * v + half[2, i] * f
+        middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
+    diagonal = instance.diagonal
+    wind_force(
+        table, x, y, z, push, per_speed_squared, middle, middle_rate, instance.values,
+        instance.scratch, wanted, diagonal, table.n_modes - instance.left_out,
+    )  # fmt: skip
+    instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
+    instance.pressure = per_speed_squared
+    energy = 0.0
+    for i in range(len(eta)):
+        # Implicit in the mode's own damping: stable for any wind and step.
+        own = diagonal[i] * half[5, i]
+        f = (wanted[i] - own * force[i]) / (1.0 - own)
+        q, v = eta[i], rate[i]
+        eta[i] = whole[0, i] * q + whole[1, i] * v + (whole[2, i] + whole[3, i]) * f
+        rate[i] = whole[4, i] * q + whole[5, i] * v + (whole[6, i] + whole[7, i]) * f
+        force[i] = f
+        energy += table.stiffness[i] * eta[i] * eta[i]
+    if not energy <= table.most_energy:
+        # Further over than any wind holds it: it is let no further.
+        share = math.sqrt(table.most_energy / energy)
+        for i in range(len(eta)):
+            eta[i], rate[i] = share * eta[i], share * rate[i]
+        instance.outside = 0 if is_held else 1
+    outside: int = instance.outside
+    return outside
+
+
+@fused
+def _advance(
+    tables: Records, paces: Records, instances: Records,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> int:  # fmt: skip
+    return step_instance(tables[0], paces[0], instances[0], False, wx, wy, wz, per_speed_squared)
+
+
+@fused
+def step_in_wind(
+    tables: Records, paces: Records, instances: Records, limits: Floats, kept: Floats,
+    x: float, y: float, z: float,
+) -> int:  # fmt: skip
+    """
+    Take a wind and step the first record of each array.
+
+    Parameters
+    ----------
+    tables, paces, instances
+        As of `step_instance`.
+    limits
+        Speed above which a wind is refused in [m/s], then C, N and C0 of a `DragLaw`, (4,).
+    kept
+        The wind of the last step in [m/s], (3,); written unless the new one is refused.
+    x, y, z
+        The wind in [m/s].
+
+    Returns
+    -------
+    int
+        1 if the wind was refused, and 2 more where it was held at the limit of the table.
+
+    """
+    refused = 1
+    if math.sqrt(x * x + y * y + z * z) <= limits[0]:
+        refused, kept[0], kept[1], kept[2] = 0, x, y, z
+    x, y, z = kept[0], kept[1], kept[2]
+    load = _pressure(math.sqrt(x * x + y * y + z * z), limits[1], limits[2], limits[3])
+    return refused + 2 * step_instance(tables[0], paces[0], instances[0], False, x, y, z, load)

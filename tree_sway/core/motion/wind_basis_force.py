@@ -1,0 +1,195 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Modal forces of an even wind, out of the table of a tree."""
+
+from __future__ import annotations
+
+from functools import cache
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Record, Singles
+from tree_sway.core.kernel import fused, inlined
+from tree_sway.core.motion.harmonics import fill_harmonics
+
+N_AZIMUTHS, N_LEVELS = 24, 5
+"""Azimuths of the wind and levels of the lean in the table."""
+
+STEEP = math.sin(math.radians(45.0))
+"""Sine of the elevation from which on a wind goes over to one straight up or down."""
+
+_MODES_TOGETHER = 8
+_LEAST_MODES = 24
+
+
+@cache
+def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
+    """
+    Table of one tree; coordinates are filled up to a multiple of eight, at least 24.
+
+    One layout serves most trees, so that the kernel is compiled once. What a step reads whole is
+    in single precision.
+    """
+    m = max(_LEAST_MODES, -(-n_modes // _MODES_TOGETHER) * _MODES_TOGETHER)
+    a, n = N_AZIMUTHS, N_LEVELS
+    return np.dtype(
+        [
+            ('n_modes', 'i8'),
+            ('degree', 'i8'),
+            ('levels', 'f8', (a, n)),  # leans of a tree held in winds, rising
+            ('most_pressure', 'f8'),  # up to which the table holds [kg/m/s^2]
+            ('most_energy', 'f8'),  # twice the strain energy up to which it holds [J]
+            ('stiffness', 'f8', (m,)),
+            (
+                'motion',
+                'f8',
+                (m,),
+            ),  # mean square of what the wind meets moves at
+            ('harmonics', 'f8', (n_harmonics, m)),
+            ('standing', 'f8', (a, n, m)),  # the coordinates of a tree held in winds
+            ('amount', 'f8', (a, m)),  # weights of the coordinates in the lean
+            ('load', 'f8', (a, n, m)),
+            # By the coordinate that moves, then the one that is loaded:
+            ('lean', 'f4', (a, m, m)),
+            ('turning', 'f4', (a, n, m, m)),
+            ('damping', 'f4', (a, n, m, m)),
+            ('steep_turning', 'f4', (2, m, m)),  # in winds straight down and up
+            ('steep_damping', 'f4', (2, m, m)),
+        ]
+    )
+
+
+@cache
+def pace_layout(n_modes: int) -> np.dtype[np.void]:
+    """How the coordinates of a table go on in a time step."""
+    m = table_layout(n_modes, 0)['stiffness'].shape[0]
+    return np.dtype(
+        [
+            ('whole', 'f8', (8, m)),  # columns of the propagator of a step
+            ('half', 'f8', (6, m)),  # of half a step under a constant load
+        ]
+    )
+
+
+@inlined
+def table_corners(
+    table: Record, x: float, y: float, eta: Floats
+) -> tuple[int, int, int, float, float]:
+    """
+    Where a wind and a lean are in a table.
+
+    Returns
+    -------
+    tuple
+        Azimuths before and after, level below, and shares of the way to the next azimuth and to
+        the next level.
+
+    """
+    turn = math.atan2(y, x) * (0.5 / math.pi) * N_AZIMUTHS
+    whole = math.floor(turn)
+    share = turn - whole
+    first = int(whole) % N_AZIMUTHS
+    second = (first + 1) % N_AZIMUTHS
+    rest = 1.0 - share
+    lean = 0.0
+    for i in range(len(eta)):
+        lean += (rest * table.amount[first, i] + share * table.amount[second, i]) * eta[i]
+    j = 0
+    below = rest * table.levels[first, 0] + share * table.levels[second, 0]
+    above = rest * table.levels[first, 1] + share * table.levels[second, 1]
+    while j < N_LEVELS - 2 and lean > above:
+        j += 1
+        below = above
+        above = rest * table.levels[first, j + 1] + share * table.levels[second, j + 1]
+    up = min(max((lean - below) / (above - below), 0.0), 1.0)
+    return first, second, j, share, up
+
+
+@fused
+def wind_force(
+    table: Record, x: float, y: float, z: float, push: float, per_speed_squared: float,
+    eta: Floats, rate: Floats, values: Floats, scratch: Singles, force: Floats, diagonal: Floats,
+    n_felt: int,
+) -> None:  # fmt: skip
+    """
+    Find the modal forces of an even wind.
+
+    Parameters
+    ----------
+    table
+        Record of `table_layout`.
+    x, y, z
+        Where the wind goes, a unit vector.
+    push, per_speed_squared
+        Dynamic pressure ``p U^2`` in [kg/m/s^2] and p in [kg/m^3].
+    eta, rate
+        Coordinates and their rates, (m,).
+    values, scratch
+        Harmonics, (h,), and room to work in, single precision (4, m), both written.
+    force, diagonal
+        Modal forces and the diagonal of their slope by the rates, (m,), both written.
+    n_felt
+        Coordinates whose motion turns and damps all; each of the others damps itself alone.
+
+    """
+    m = len(eta)
+    fill_harmonics(x, y, z, table.degree, values)
+    first, second, j, share, up = table_corners(table, x, y, eta)
+    steep = max(0.0, (abs(z) - STEEP) / (1.0 - STEEP))
+    level, slant, pole = 1.0 - steep, min(max(z, -STEEP), STEEP), 1 if z > 0.0 else 0
+    e, f = level * (1.0 - share), level * share
+    a, b, c, d = e * (1.0 - up), e * up, f * (1.0 - up), f * up
+    turned, damped, off, paced = scratch[0], scratch[1], scratch[2], scratch[3]
+    moving = push / per_speed_squared if per_speed_squared > 0.0 else 0.0
+    for i in range(m):
+        off[i] = eta[i] - (1.0 - share) * (
+            (1.0 - up) * table.standing[first, j, i] + up * table.standing[first, j + 1, i]
+        ) - share * (
+            (1.0 - up) * table.standing[second, j, i] + up * table.standing[second, j + 1, i]
+        )  # fmt: skip
+        paced[i] = rate[i]
+        moving += table.motion[i] * rate[i] * rate[i]
+        force[i] = (
+            a * table.load[first, j, i] + b * table.load[first, j + 1, i]
+            + c * table.load[second, j, i] + d * table.load[second, j + 1, i]
+        )  # fmt: skip
+        turned[i] = damped[i] = 0.0
+    drag = per_speed_squared * math.sqrt(moving)
+    for k in range(len(values)):
+        for i in range(m):
+            force[i] += values[k] * table.harmonics[k, i]
+    a4, b4, c4, d4 = np.float32(a), np.float32(b), np.float32(c), np.float32(d)
+    e4, f4 = np.float32(e * slant), np.float32(f * slant)
+    for k in range(n_felt):
+        moved, pace, slow = off[k], paced[k], np.float32(eta[k])
+        am, bm, cm, dm = a4 * moved, b4 * moved, c4 * moved, d4 * moved
+        av, bv, cv, dv = a4 * pace, b4 * pace, c4 * pace, d4 * pace
+        em, fm = e4 * slow, f4 * slow
+        for i in range(m):
+            turned[i] += (
+                am * table.turning[first, j, k, i] + bm * table.turning[first, j + 1, k, i]
+                + cm * table.turning[second, j, k, i] + dm * table.turning[second, j + 1, k, i]
+                + em * table.lean[first, k, i] + fm * table.lean[second, k, i]
+            )  # fmt: skip
+            damped[i] += (
+                av * table.damping[first, j, k, i] + bv * table.damping[first, j + 1, k, i]
+                + cv * table.damping[second, j, k, i] + dv * table.damping[second, j + 1, k, i]
+            )  # fmt: skip
+    for i in range(m):
+        diagonal[i] = drag * (
+            a * table.damping[first, j, i, i] + b * table.damping[first, j + 1, i, i]
+            + c * table.damping[second, j, i, i] + d * table.damping[second, j + 1, i, i]
+        )  # fmt: skip
+    if steep > 0.0:
+        s4 = np.float32(steep)
+        for k in range(n_felt):
+            moved, pace = s4 * np.float32(eta[k]), s4 * paced[k]
+            for i in range(m):
+                turned[i] += moved * table.steep_turning[pole, k, i]
+                damped[i] += pace * table.steep_damping[pole, k, i]
+            diagonal[k] += drag * steep * table.steep_damping[pole, k, k]
+    for i in range(m):
+        force[i] = push * (force[i] + turned[i]) + drag * damped[i]
+    for i in range(n_felt, m):
+        force[i] += diagonal[i] * rate[i]

@@ -1,0 +1,275 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Natural modes of the coupled tree, and the refusal of a tree that cannot stand.
+
+Few modes of a big tree come from Lanczos iteration on ``M y = mu K y``, mu = 1 / w^2 (Lehoucq,
+Sorensen & Yang, 1998); all modes of a small one from the dense problem. A tree whose stiffness
+with its own weight is not positive buckles (Greenhill, 1881): it is refused with the name of the
+branch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.reduction.matrices import Reduction
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError, TreeError
+
+MOST_ALL_MODES = 3000
+"""
+A tree of more coordinates than this is not solved in all its modes: that takes minutes and gains
+nothing.
+
+"""
+
+_DENSE_UP_TO = 400
+
+_NEW = 1e-9
+"""Share of the squared motion of the tips that an added shape must bring."""
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Natural modes, slowest first: w [rad/s], (m,), key rotations of unit modal mass, (N, m)."""
+
+    circular: Floats
+    shapes: Floats
+
+    @property
+    def frequencies(self) -> Floats:
+        """Natural frequencies in [Hz], (m,)."""
+        frequencies: Floats = self.circular / (2.0 * np.pi)
+        return frequencies
+
+    def slowest(self, count: int) -> Modes:
+        """Leave out all but the slowest."""
+        return Modes(self.circular[:count], np.ascontiguousarray(self.shapes[:, :count]))
+
+
+@contextmanager
+def solvable(tree: Tree) -> Iterator[None]:
+    """Turn what linear algebra cannot solve, as in a broken scan, into a `TreeError`."""
+    try:
+        yield
+    except (np.linalg.LinAlgError, RuntimeError) as error:
+        raise TreeError(
+            f'cannot be solved ({error}): diameters or lengths differ by too many powers of ten',
+            where=tree.name,
+            cure='take out segments that are far too thick, thin or long',
+        ) from error
+
+
+def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) -> Modes:
+    """
+    Find the slowest modes of a tree, all if no count is given.
+
+    Raises
+    ------
+    ParameterError
+        A count below 1 or above the number of coordinates.
+    TreeError
+        A tree that buckles under its own weight, or a branch without mass.
+
+    """
+    from scipy import linalg
+    from scipy.sparse import csc_matrix
+    from scipy.sparse import linalg as sparse_linalg
+
+    n = reduction.n_coordinates
+    wanted = n if count is None else count
+    if count is None and n > MOST_ALL_MODES:
+        raise ParameterError(
+            f'all {n} modes of a tree of {tree.n_branches} branches',
+            where="model 'full'",
+            cure='give a number of coordinates: 60 are as near for most trees',
+        )
+    if not 1 <= wanted <= n:
+        raise ParameterError(
+            f'{wanted} modes of a tree that has {n}', where='modes', cure=f'ask for 1 to {n}'
+        )
+    refuse_buckling(tree, reduction)
+    if wanted == n:
+        inverse_squares, shapes = linalg.eigh(
+            reduction.mass.toarray(), reduction.stiffness.toarray(), driver='gvd'
+        )
+    elif n <= _DENSE_UP_TO or 3 * wanted > n:
+        inverse_squares, shapes = linalg.eigh(
+            reduction.mass.toarray(),
+            reduction.stiffness.toarray(),
+            subset_by_index=[n - wanted, n - 1],
+        )
+    else:
+        stiffness = csc_matrix(reduction.stiffness)
+        solve = _factors(stiffness)
+        inverse_squares, shapes = sparse_linalg.eigsh(
+            reduction.mass,
+            k=wanted,
+            M=stiffness,
+            Minv=sparse_linalg.LinearOperator((n, n), matvec=solve.solve, dtype=np.float64),
+            which='LA',
+            v0=np.ones(n),
+        )
+    # Below rounding a mode is as good as rigid.
+    inverse_squares = np.maximum(inverse_squares, 1e-16 * inverse_squares.max())
+    slowest_first = np.argsort(-inverse_squares)
+    circular = 1.0 / np.sqrt(inverse_squares[slowest_first])
+    return Modes(circular, np.ascontiguousarray(shapes[:, slowest_first] * circular))
+
+
+def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int) -> Modes:
+    """Keep a number of the modes by which turbulence moves the tips most, the slowest first."""
+    kept = np.sort(np.argsort(-_driven(modes, loads, moved), kind='stable')[:count])
+    return Modes(modes.circular[kept], np.ascontiguousarray(modes.shapes[:, kept]))
+
+
+def by_importance(modes: Modes, loads: Floats, moved: Floats) -> Modes:
+    """Sort modes by how far turbulence moves the tips by each, the farthest first."""
+    order = np.argsort(-_driven(modes, loads, moved), kind='stable')
+    return Modes(modes.circular[order], np.ascontiguousarray(modes.shapes[:, order]))
+
+
+def _driven(modes: Modes, loads: Floats, moved: Floats) -> Floats:
+    """
+    Mean square by which turbulence moves the tips in each mode, (m,), up to one factor.
+
+    At its own frequency a mode goes ``phi . q / (2 zeta w^2)`` under a load q, of moments (N,
+    any); turbulence there has a power of ``w^(-5/3)``, over a band as wide as w. Of modes that
+    loads do not reach, as branches that swing against each other, nothing is lost. ``moved`` is
+    the sum over the tips of the square of what a unit of each mode moves them, (m,).
+    """
+    driven: Floats = moved * np.square(modes.shapes.T @ loads).sum(axis=1)
+    return driven / modes.circular ** (14.0 / 3.0)
+
+
+def with_answers(
+    modes: Modes,
+    reduction: Reduction,
+    answers: Floats,
+    moved: Callable[[Floats], Floats],
+    count: int,
+) -> Modes:
+    """
+    Add to modes the shapes that they lack most of a tree's answers to winds.
+
+    Parameters
+    ----------
+    modes, reduction
+        Of the tree.
+    answers
+        Key rotations [rad], (N, k), all of one size.
+    moved
+        Motion of the tips, (any, k), by key rotations (N, k): what is lacking is seen there.
+    count
+        How many shapes there are to be at most.
+
+    Returns
+    -------
+    Modes
+        Shapes are orthogonal in mass and stiffness; the frequencies of those added are
+        Rayleigh's quotients.
+
+    """
+    from scipy import linalg
+
+    stiffness, mass = reduction.stiffness, reduction.mass
+    lacking = answers.copy()
+    for _ in range(2):
+        lacking -= modes.shapes @ (modes.shapes.T @ (mass @ lacking))
+    tips = moved(lacking)
+    squares, mixes = np.linalg.eigh(tips.T @ tips)
+    order = [i for i in np.argsort(-squares)[:count] if squares[i] > _NEW * squares[-1]]
+    if not order:
+        return modes
+    shapes = lacking @ mixes[:, order]
+    shapes /= np.sqrt(np.einsum('nl,nl->l', shapes, stiffness @ shapes))
+    inverse_squares, mixes = linalg.eigh(
+        shapes.T @ (mass @ shapes), shapes.T @ (stiffness @ shapes)
+    )
+    circular = 1.0 / np.sqrt(np.maximum(inverse_squares, 1e-12 * inverse_squares.max()))
+    whole = np.concatenate([modes.circular, circular])
+    slowest_first = np.argsort(whole, kind='stable')
+    both = np.hstack([modes.shapes, (shapes @ mixes) * circular])
+    return Modes(whole[slowest_first], np.ascontiguousarray(both[:, slowest_first]))
+
+
+def factors(reduction: Reduction) -> Any:
+    """Factorise the stiffness of a tree: what solves for static answers, by its `solve`."""
+    from scipy.sparse import csc_matrix
+
+    return _factors(csc_matrix(reduction.stiffness))
+
+
+def _factors(matrix: Any) -> Any:
+    """
+    Factorise a sparse matrix that is symmetric and positive definite.
+
+    Eliminated from the twigs to the stem, its factors have no more entries than itself.
+    """
+    from scipy.sparse import linalg as sparse_linalg
+
+    options = {'SymmetricMode': True}
+    return sparse_linalg.splu(
+        matrix, permc_spec='MMD_AT_PLUS_A', diag_pivot_thresh=0.0, options=options
+    )
+
+
+def buckling_factor(reduction: Reduction) -> tuple[float, int]:
+    """Critical over real weight, infinite without gravity; the coordinate that gives way most."""
+    from scipy import linalg
+    from scipy.sparse import csc_matrix
+    from scipy.sparse import linalg as sparse_linalg
+
+    n = reduction.n_coordinates
+    softening = -reduction.gravity
+    if softening.nnz == 0 or abs(softening).max() == 0.0:
+        return float('inf'), 0
+    if n <= _DENSE_UP_TO:
+        values, vectors = linalg.eigh(
+            softening.toarray(), reduction.elastic.toarray(), subset_by_index=[n - 1, n - 1]
+        )
+    else:
+        elastic = csc_matrix(reduction.elastic)
+        solve = _factors(elastic)
+        values, vectors = sparse_linalg.eigsh(
+            softening,
+            k=1,
+            M=elastic,
+            Minv=sparse_linalg.LinearOperator((n, n), matvec=solve.solve, dtype=np.float64),
+            which='LA',
+            v0=np.ones(n),
+        )
+    worst = int(np.argmax(np.abs(vectors[:, 0])))
+    return (1.0 / float(values[0]) if values[0] > 0.0 else float('inf')), worst
+
+
+def refuse_buckling(tree: Tree, reduction: Reduction) -> None:
+    """Refuse, by a `TreeError`, a tree that its weight buckles, or a branch without mass."""
+    diagonal = reduction.mass.diagonal()
+    for coordinate in np.flatnonzero(~(diagonal > 0.0))[:1]:
+        raise TreeError(
+            'massless: it has a length but nothing that could swing',
+            where=_branch_name(tree, reduction, int(coordinate)),
+            cure='give its segments a diameter and the wood a density above 0',
+        )
+    factor, coordinate = buckling_factor(reduction)
+    if factor <= 1.0:
+        raise TreeError(
+            f'buckles under its own weight: it could carry {100.0 * factor:.0f} % of it',
+            where=_branch_name(tree, reduction, coordinate),
+            cure=f'give a modulus {1.05 / factor:.2f} times as high or diameters '
+            f'{factor**-0.5 * 1.03:.2f} '
+            'times as thick, or leave its weight out: gravity 0, --gravity off',
+        )
+
+
+def _branch_name(tree: Tree, reduction: Reduction, coordinate: int) -> str:
+    branch = int(np.searchsorted(reduction.first, coordinate, side='right')) - 1
+    return f"branch '{tree.branch_names[branch]}'"

@@ -1,0 +1,53 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Linear algebra on one thread, so that a tree is the same bit for bit however many a machine has.
+
+OpenBLAS divides sums among its threads, so that the last bits of modes depend on their number.
+What numpy and scipy are linked with is asked through the libraries that they have loaded; where it
+is another BLAS nothing is changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+import ctypes
+from functools import cache
+
+from numpy.linalg import _umath_linalg
+
+_NAMES = ('scipy_openblas_{}64_', 'scipy_openblas_{}', 'openblas_{}64_', 'openblas_{}')
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Run what is within on one thread of each OpenBLAS; other threads of the program too."""
+    before = [(put, get()) for put, get in _switches()]
+    try:
+        for put, _ in before:
+            put(1)
+        yield
+    finally:
+        for put, count in before:
+            put(count)
+
+
+@cache
+def _switches() -> tuple[tuple[Callable[[int], object], Callable[[], int]], ...]:
+    """Functions that set and return the number of threads, of each OpenBLAS there is."""
+    from scipy.linalg import _fblas  # it takes long to load
+
+    found = []
+    for module in (_umath_linalg, _fblas):
+        try:
+            library = ctypes.CDLL(module.__file__)
+        except OSError:
+            continue
+        for name in _NAMES:
+            put = getattr(library, name.format('set_num_threads'), None)
+            get = getattr(library, name.format('get_num_threads'), None)
+            if put is not None and get is not None:
+                found.append((put, get))
+                break
+    return tuple(found)

@@ -1,0 +1,59 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""One way to every model of a tree, by its name; what only one needs is loaded for that one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tree_sway.core.simulator.assembly import Kept
+from tree_sway.core.simulator.protocol import TreeSimulator
+from tree_sway.core.simulator.settings import Settings, settings_with
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+
+
+def make_simulator(
+    tree: Tree | GrownTree,
+    species: Species | None = None,
+    settings: Settings | None = None,
+    *,
+    tolerance: float = 0.005,
+    budget: float = 0.0,
+    kept: Kept | None = None,
+    **changes: Any,
+) -> TreeSimulator:
+    """
+    Make a simulator of a tree.
+
+    Parameters
+    ----------
+    tree, species, settings
+        As for `SwaySimulator`, on any model.
+    tolerance
+        Largest error of the tips in [m] that ``auto`` may allow itself.
+    budget
+        Largest cost of a frame in [us] that ``auto`` may allow itself, which comes before the
+        tolerance; 0 for none.
+    kept
+        Where the set-ups of `SwaySimulator` are kept; nowhere if None.
+    **changes
+        Fields of the settings.
+
+    Raises
+    ------
+    ParameterError
+        An unknown model, a setting out of its range, or an argument that is something else.
+    TreeError
+        A tree that buckles under its own weight.
+
+    """
+    chosen = settings_with(settings, changes)
+    bare, wood = tree_and_species(tree, species)
+    if chosen.model == 'auto':
+        from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
+
+        return AdaptiveSimulator(bare, wood, chosen, tolerance=tolerance, budget=budget, kept=kept)
+    return SwaySimulator(bare, wood, chosen, kept=kept)

@@ -1,0 +1,200 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A tree of a scene: its name, what it is, where it is, how large and how turned."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.checks import within
+from tree_sway.core.simulator.season import is_in_leaf
+from tree_sway.core.simulator.settings import model_of, Settings
+from tree_sway.core.tree.grown_tree import tree_and_species
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError, TreeError
+
+SMALLEST, LARGEST = 0.2, 5.0
+"""Scales that a placed tree may have."""
+
+MOST_SEGMENTS = 5_000_000
+"""Segments in one record of all trees of a scene, some 1 GB."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedTree:
+    """
+    A tree of a scene. Trees given the same `Tree` and species are of one kind and share it.
+
+    Parameters
+    ----------
+    name
+        Name in the scene.
+    tree
+        The tree in a frame of its own; one with its species, as `open_tree` gives, is taken apart.
+    x, y, z
+        Place of its root node in [m].
+    scale
+        Its height over that of `tree`.
+    yaw
+        Turn about the vertical, counterclockwise seen from above, in [rad].
+    species
+        Wood, damping and drag; by the tree's own species if None.
+    model
+        Its model, as of `Settings`; the scene's if None.
+    leaf_on
+        Whether it bears leaves; as the scene, or as its species, if None.
+
+    Raises
+    ------
+    ParameterError
+        A number that is not finite, a scale out of its range, an unknown model, or no tree.
+    SpeciesError
+        A species that no table knows.
+
+    """
+
+    name: str
+    tree: Tree
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+    scale: float = 1.0
+    yaw: float = 0.0
+    species: Species = None  # type: ignore[assignment]
+    model: int | str | None = None
+    leaf_on: bool | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be placed."""
+        tree, species = tree_and_species(self.tree, self.species)
+        object.__setattr__(self, 'tree', tree)
+        object.__setattr__(self, 'species', species)
+        pose = (self.x, self.y, self.z, self.yaw)
+        if not all(map(math.isfinite, pose)):
+            what = f'a pose of {pose[:3]} m and {self.yaw} rad'
+            raise ParameterError(what, where=self.name, cure='give finite numbers')
+        within(f'{self.name}: scale', self.scale, SMALLEST, LARGEST)
+        if self.model is not None:
+            try:
+                object.__setattr__(self, 'model', model_of(self.model))
+            except ParameterError as error:
+                raise error.inside(self.name) from None
+
+    @property
+    def kind(self) -> Kind:
+        """What it shares with the trees of its kind."""
+        return Kind(self.tree, self.species, self.leaf_on)
+
+    def placed(self) -> Tree:
+        """Return the tree in the scene's frame, under its name there."""
+        tree, c, s = self.tree, math.cos(self.yaw), math.sin(self.yaw)
+        root, here = tree.start[0], np.array([self.x, self.y, self.z])
+        if (self.scale, self.yaw) == (1.0, 0.0) and (root == here).all():
+            return replace(tree, name=self.name)
+        turn = self.scale * np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+        def moved(nodes: Floats) -> Floats:
+            out: Floats = here + (nodes - root) @ turn.T
+            return out
+
+        return replace(
+            tree,
+            start=moved(tree.start),
+            end=moved(tree.end),
+            base_diameter=self.scale * tree.base_diameter,
+            tip_diameter=self.scale * tree.tip_diameter,
+            name=self.name,
+        )
+
+    def settings_where_it_stands(self, scene: Settings) -> Settings:
+        """Return its settings in a scene: its model, leaves, and the ground of the profile."""
+        raised = scene.profile.ground + self.z - float(self.tree.start[0, 2])
+        profile = replace(scene.profile, ground=raised)
+        return replace(self.kind.settings(scene), profile=profile, model=self.model or scene.model)
+
+    def bears_leaves(self, otherwise: bool | None = None) -> bool:
+        """Whether it bears leaves, ``otherwise`` where neither it nor its species decides."""
+        return is_in_leaf(self.species, otherwise if self.leaf_on is None else self.leaf_on)
+
+
+class Kind(NamedTuple):
+    """What the trees of one kind share."""
+
+    tree: Tree
+    species: Species
+    leaf_on: bool | None
+
+    def settings(self, scene: Settings) -> Settings:
+        """Return the scene's settings with the leaves of this kind."""
+        if self.leaf_on is None:
+            return scene
+        return replace(scene, in_leaf=self.leaf_on, leaf_mass=None, leaf_area=None)
+
+
+def kinds_of(trees: Sequence[PlacedTree]) -> tuple[list[Kind], Ints]:
+    """Return the kinds of trees in the order of their first, and each tree's number there."""
+    found: dict[tuple[int, int, bool | None], int] = {}
+    kinds: list[Kind] = []
+    numbers = np.empty(len(trees), dtype=np.int64)
+    for t, tree in enumerate(trees):
+        key = id(tree.tree), id(tree.species), tree.leaf_on
+        if key not in found:
+            found[key] = len(kinds)
+            kinds.append(tree.kind)
+        numbers[t] = found[key]
+    return kinds, numbers
+
+
+def joined_where_placed(trees: Sequence[PlacedTree], name: str) -> Tree:
+    """Join trees where they are; a `ParameterError` for more than `MOST_SEGMENTS`."""
+    n_segments = sum(each.tree.n_segments for each in trees)
+    if n_segments > MOST_SEGMENTS:
+        raise ParameterError(
+            f'{n_segments} segments in one record',
+            where=name,
+            cure=f'at most {MOST_SEGMENTS}: place or draw a part of the trees',
+        )
+    return joined([each.placed() for each in trees], name)
+
+
+def joined(trees: Sequence[Tree], name: str = 'scene') -> Tree:
+    """
+    Join trees in one frame to one record, to be described or drawn as one; a `TreeError` if none.
+
+    Segments are one tree after another, names ``tree/branch``. It has several roots, so it cannot
+    be solved.
+    """
+    if not trees:
+        raise TreeError('no trees', where=name, cure='give at least one')
+    segment = np.cumsum([0, *(tree.n_segments for tree in trees)]).tolist()
+    branch = np.cumsum([0, *(tree.n_branches for tree in trees)]).tolist()
+    species = {tree.species for tree in trees}
+    first = [tree.branch_first[:-1] + at for tree, at in zip(trees, segment[:-1], strict=True)]
+    end = [tree.subtree_end + at for tree, at in zip(trees, branch[:-1], strict=True)]
+    return Tree(
+        start=np.concatenate([tree.start for tree in trees]),
+        end=np.concatenate([tree.end for tree in trees]),
+        base_diameter=np.concatenate([tree.base_diameter for tree in trees]),
+        tip_diameter=np.concatenate([tree.tip_diameter for tree in trees]),
+        segment_parent=_moved_on([tree.segment_parent for tree in trees], segment),
+        branch_first=np.concatenate([*first, [segment[-1]]]),
+        branch_parent=_moved_on([tree.branch_parent for tree in trees], branch),
+        subtree_end=np.concatenate(end),
+        source_index=np.concatenate([tree.source_index for tree in trees]),
+        branch_names=tuple(f'{tree.name}/{each}' for tree in trees for each in tree.branch_names),
+        name=name,
+        species=species.pop() if len(species) == 1 else 'mixed',
+    )
+
+
+def _moved_on(columns: list[Ints], by: list[int]) -> Ints:
+    """Join indices of each tree; those of roots stay -1."""
+    moved = [np.where(c < 0, -1, c + at) for c, at in zip(columns, by[:-1], strict=True)]
+    return np.concatenate(moved)

@@ -1,0 +1,228 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A scene in a live wind: samples in through the gate, steps on a grid of time out.
+
+Steps end at whole multiples of the period since the clock's epoch, and each is solved with the
+mean wind over that very period. A sample is handed on when the steps reach its time, not when it
+arrives: as long as it arrives before, runs over the same samples take the same steps, whatever the
+network did. What is overdue is held and then dies down (`WindAverage`).
+
+Periods that are late are solved one by one, so that lateness leaves no trace in the motion; only
+where a step costs more than half a period may they be joined to one long step, which the exact
+propagator takes without harm. A clock that jumps forward is no long wind: what is farther away
+than `LONGEST_JUMP` is skipped and counted. Whoever calls has the clock: times are whole
+nanoseconds of one clock, given by the caller.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.scene.demand import adaptive_among
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.wind.averaging import WindAverage
+from tree_sway.core.wind.gate import GateCounts
+from tree_sway.core.wind.intake import GoodWind, WindIntake
+
+LONGEST_JUMP = 500_000_000
+"""Most time that one `Run.advance` solves [ns]; what was before it is skipped."""
+
+_BACK = 5_000_000_000
+"""Step back of the clock in [ns] after which everything begins again."""
+
+_BLOCK = 10_000_000_000_000
+"""Times are counted in seconds from a multiple of this [ns]: few digits, the same in every run."""
+
+_QUEUE = 4096
+_WARM_FRAMES = 20
+_NEWEST = 0.02  # weight of the newest step in the running mean of its cost
+
+
+class Run:
+    """
+    Steps a scene through a live wind; used from one thread, but for `offer` and `request`.
+
+    Parameters
+    ----------
+    simulator
+        Of a tree or a scene.
+    rate
+        Steps per second in [Hz].
+    intake
+        What samples pass; a `WindGate` as the wind node has it if None.
+    make_wind
+        Makes an empty `WindAverage`; called again whenever the clock was set back.
+    stepped
+        Called after each step with its end [ns] and its mean wind [m/s], (3,).
+    timer
+        A clock in [s] to find what a step costs; None to never join steps.
+
+    """
+
+    def __init__(
+        self,
+        simulator: Simulator,
+        rate: float = 60.0,
+        *,
+        intake: WindIntake | None = None,
+        make_wind: Callable[[], WindAverage] = WindAverage,
+        stepped: Callable[[int, Floats], object] = lambda end, wind: None,
+        timer: Callable[[], float] | None = None,
+    ) -> None:
+        self.simulator, self.period = simulator, round(1e9 / rate)
+        self.intake = WindIntake() if intake is None else intake
+        self.is_paused = False
+        self.clamped = 0
+        """Jumps forward that were cut to `LONGEST_JUMP`."""
+        self.wind_state = 'none'
+        """What the wind is: none, live, holding, decaying or stale, as `WindAverage.state`."""
+        self._make_wind, self._stepped, self._timer = make_wind, stepped, timer
+        self._wind = make_wind()
+        self._samples: deque[GoodWind] = deque(maxlen=_QUEUE)
+        self._requests: deque[Callable[[], object]] = deque(maxlen=_QUEUE)
+        self._index: int | None = None
+        self._origin, self._felt, self._cost = 0, 0.0, 0.0
+
+    @property
+    def time(self) -> int | None:
+        """End of the last step in [ns]; None before the first."""
+        return None if self._index is None else self._index * self.period
+
+    @property
+    def counts(self) -> GateCounts:
+        """Return what samples were accepted and refused, by reason."""
+        return self.intake.counts
+
+    def warm_up(self) -> float:
+        """Have kernels ready; return what a frame of the trees on ``auto`` takes in [us]."""
+        adaptive, spent = adaptive_among(self.simulator.simulators), []
+        wind, dt = np.array([1.0, 0.0, 0.0]), self.period * 1e-9
+        for _ in range(_WARM_FRAMES):
+            self.simulator.step(wind, dt)
+            self.simulator.place()
+            if self._timer is not None:
+                begin = self._timer()
+                for each in adaptive:
+                    each.step(wind, dt)
+                    each.place()
+                spent.append(self._timer() - begin)
+        self.simulator.reset()
+        return 1e6 * min(spent, default=0.0)
+
+    def offer(
+        self,
+        stamp: int,
+        components: tuple[float, float, float],
+        arrival: int | None = None,
+        **how: Any,
+    ) -> GoodWind | None:
+        """Take a sample as `WindIntake.offer`; returns the good one, or None if it is refused."""
+        good = self.intake.offer(stamp, components, arrival, **how)
+        if good is not None:
+            self._samples.append(good)
+        return good
+
+    def request(self, action: Callable[[], object]) -> None:
+        """Have something done before the next step, in its thread."""
+        self._requests.append(action)
+
+    def restart(self, time: int) -> None:
+        """Begin at a time [ns]: forget the wind and the motion."""
+        self._begin(time)
+        self._wind = self._make_wind()
+        self._samples.clear()
+        self.intake.gate.reset()
+        self.simulator.reset()
+
+    def advance(
+        self, to: int, *, delay: float = 0.0, most: int | None = None, may_join: bool = True
+    ) -> int:
+        """
+        Take every step that ends by a time.
+
+        Parameters
+        ----------
+        to
+            The time in [ns].
+        delay
+            How much later the wind is felt, in [s].
+        most
+            Periods that are solved at most, the last ones; as `LONGEST_JUMP` says if None.
+        may_join
+            Whether dear steps may be joined to a long one.
+
+        Returns
+        -------
+        int
+            Periods that were solved.
+
+        """
+        while self._requests:
+            self._requests.popleft()()
+        if self._index is None:
+            self._begin(to)
+        elif to < self._index * self.period - _BACK:
+            self.restart(to)
+        index, limit = to // self.period, most or max(1, LONGEST_JUMP // self.period)
+        passed = index - (self._index or 0)
+        if passed <= 0:
+            return 0
+        self.clamped += passed > limit
+        periods, self._index = min(passed, limit), index
+        n_steps = 1 if may_join and self._cost > 0.5e-9 * self.period else periods
+        length = self.period * periods // n_steps  # whole numbers: the same dt at any lateness
+        dt = length * 1e-9
+        for later in range(n_steps - 1, -1, -1):
+            self._step(index * self.period - later * length, dt, delay)
+        # Asked for here, in the thread that changes it: reports come from another.
+        self.wind_state = self._wind.state(self._felt)
+        return periods
+
+    def memory(self) -> tuple[int, int, list[float], list[tuple[int, list[float]]]]:
+        """Time, origin and wind between steps, and the samples to come, for `recall`."""
+        waiting = [(sample.time, sample.velocity.tolist()) for sample in self._samples]
+        return self.time or 0, self._origin, self._wind.memory(), waiting
+
+    def recall(
+        self, time: int, origin: int, wind: list[float], waiting: list[tuple[int, list[float]]]
+    ) -> None:
+        """
+        Go on from the `memory` of another run; newer samples of its own are kept.
+
+        A `ParameterError` for what no run has; this one stays as it was then.
+        """
+        fresh = self._make_wind()
+        fresh.recall(wind)
+        last = waiting[-1][0] if waiting else time
+        own = [sample for sample in self._samples if sample.time > last]
+        theirs = [GoodWind(stamp, np.array(velocity)) for stamp, velocity in waiting]
+        self._samples = deque([*theirs, *own], maxlen=_QUEUE)
+        self._wind, self._index, self._origin = fresh, time // self.period, origin
+
+    def _begin(self, time: int) -> None:
+        self._index = time // self.period - 1
+        self._origin = time // _BLOCK * _BLOCK
+
+    def _step(self, end: int, dt: float, delay: float) -> None:
+        self._felt = self._seconds(end) - delay
+        samples = self._samples
+        while samples and self._seconds(samples[0].time) <= self._felt:
+            time, velocity = samples.popleft()
+            self._wind.add(self._seconds(time), velocity)
+        wind = self._wind.mean(self._felt - dt, self._felt)
+        if self.is_paused:
+            return
+        begin = self._timer() if self._timer is not None else 0.0
+        self.simulator.step(wind, dt)
+        if self._timer is not None:
+            self._cost += _NEWEST * (self._timer() - begin - self._cost)
+        self._stepped(end, wind)
+
+    def _seconds(self, time: int) -> float:
+        return (time - self._origin) * 1e-9

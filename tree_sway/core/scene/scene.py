@@ -1,0 +1,259 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A scene: one tree, a forest or a stand of thousands, as a file gave it or as it was made."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+import math
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Ints
+from tree_sway.core.leaves.foliage import (
+    foliage_of,
+    joined_clusters,
+    leaf_clusters,
+    LeafClusters,
+    no_clusters,
+)
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.placed_tree import joined_where_placed, Kind, kinds_of, PlacedTree
+from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.simulator.assembly import Kept
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.simulator.settings import Settings, settings_with
+from tree_sway.core.tree.plausibility import oddities, refuse_nonsense
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError, TreeError, TreeSwayError
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """
+    Trees in one wind.
+
+    Parameters
+    ----------
+    trees
+        The trees, each with a name of its own.
+    name
+        Name of the scene.
+    source
+        Where it came from: a path, or the name of a built-in tree.
+    notes
+        What the importer changed or left out, one sentence each.
+    anemometer
+        Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the
+        wind reaches first if None.
+    convection_ratio
+        Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
+        everywhere.
+
+    Raises
+    ------
+    ParameterError
+        Two trees of one name, or something that is no `PlacedTree`.
+    TreeError
+        No trees.
+
+    Examples
+    --------
+    >>> row = [PlacedTree(f"oak {i}", oak, x=8.0 * i, scale=0.8 + 0.01 * i) for i in range(40)]
+    >>> simulator = Scene(row).simulator(model="wind_basis")
+    >>> simulator.step((8.0, 0.0, 0.0), 1 / 60)
+    0
+
+    """
+
+    trees: Sequence[PlacedTree]
+    name: str = 'scene'
+    source: str = ''
+    notes: tuple[str, ...] = ()
+    anemometer: tuple[float, float, float] | None = None
+    convection_ratio: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is no scene."""
+        object.__setattr__(self, 'trees', tuple(self.trees))
+        if not self.trees:
+            raise TreeError('no trees', where=self.name, cure='give at least one')
+        for number, each in enumerate(self.trees):
+            if not isinstance(each, PlacedTree):
+                raise ParameterError(
+                    f'a {type(each).__name__}, where a PlacedTree is asked for',
+                    where=f'trees[{number}]',
+                    cure='give PlacedTree(name, tree, x, y) each',
+                )
+        name, count = Counter(each.name for each in self.trees).most_common(1)[0]
+        if count > 1:
+            raise ParameterError(
+                f"{count} trees called '{name}'", where=self.name, cure='give each its own name'
+            )
+
+    @cached_property
+    def tree(self) -> Tree:
+        """
+        All trees as one record where they are, named ``tree/branch``; one tree as it is.
+
+        A `ParameterError` for more than `MOST_SEGMENTS`.
+        """
+        if self.is_one_tree:
+            return self.trees[0].placed()
+        return joined_where_placed(self.trees, self.name)
+
+    @property
+    def is_one_tree(self) -> bool:
+        """Whether the scene has one tree alone."""
+        return len(self.trees) == 1
+
+    @property
+    def species(self) -> Species | None:
+        """Species of all trees; None where they differ."""
+        found = {id(kind.species): kind.species for kind in self.kinds}
+        return next(iter(found.values())) if len(found) == 1 else None
+
+    @cached_property
+    def _sorted(self) -> tuple[list[Kind], Ints]:
+        return kinds_of(self.trees)
+
+    @property
+    def kinds(self) -> list[Kind]:
+        """The kinds of trees, in the order of their first."""
+        return self._sorted[0]
+
+    @property
+    def kind_numbers(self) -> Ints:
+        """Number of each tree's kind, (t,)."""
+        return self._sorted[1]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is odd about the trees, one sentence per kind each."""
+        found = []
+        for label, kind in self._labelled():
+            found += [f'{label}{oddity}' for oddity in oddities(kind.tree, kind.species)]
+        return tuple(found)
+
+    def checked(self) -> Scene:
+        """Return the same scene if every tree's numbers can be those of one, else raise."""
+        for label, kind in self._labelled():
+            try:
+                refuse_nonsense(kind.tree, kind.species)
+            except TreeSwayError as error:
+                raise error.inside(f'{self.source}: {label}'.removesuffix(': ')) from None
+        return self
+
+    def of_species(self, species: Species) -> Scene:
+        """Return the same scene, all of one wood."""
+        kinds = [replace(kind.tree, species=species.key) for kind in self.kinds]
+        trees = [
+            replace(each, tree=kinds[number], species=species)
+            for each, number in zip(self.trees, self.kind_numbers.tolist(), strict=True)
+        ]
+        return replace(self, trees=trees)
+
+    def moved(self, x: float = 0.0, y: float = 0.0, z: float = 0.0, yaw: float = 0.0) -> Scene:
+        """
+        Return the same scene with its origin somewhere else in [m], turned about it by yaw [rad].
+
+        The turn is about the vertical, counterclockwise seen from above.
+        """
+        if (x, y, z, yaw) == (0.0, 0.0, 0.0, 0.0):
+            return self
+        c, s = math.cos(yaw), math.sin(yaw)
+
+        def there(px: float, py: float, pz: float) -> tuple[float, float, float]:
+            return x + c * px - s * py, y + s * px + c * py, z + pz
+
+        trees = []
+        for each in self.trees:
+            px, py, pz = there(each.x, each.y, each.z)
+            trees.append(replace(each, x=px, y=py, z=pz, yaw=each.yaw + yaw))
+        anemometer = None if self.anemometer is None else there(*self.anemometer)
+        return replace(self, trees=trees, anemometer=anemometer)
+
+    def simulator(
+        self,
+        settings: Settings | None = None,
+        *,
+        tolerance: float = 0.005,
+        kept: Kept | None = None,
+        progress: Callable[[int], object] = lambda done: None,
+        **changes: Any,
+    ) -> Simulator:
+        """
+        Make the simulator of the scene: that of its tree, or a `SceneSimulator` of several.
+
+        Parameters
+        ----------
+        settings, **changes
+            How trees are modelled, but for what a tree has of its own.
+        tolerance, kept
+            As for `make_simulator`, for each tree.
+        progress
+            Called with the number of kinds and trees that are ready.
+
+        Raises
+        ------
+        TreeSwayError
+            As `make_simulator`; of several trees it names the one.
+
+        """
+        chosen = settings_with(settings, changes)
+        if not self.is_one_tree:
+            return SceneSimulator(
+                self.trees,
+                chosen,
+                name=self.name,
+                anemometer=self.anemometer,
+                convection_ratio=self.convection_ratio,
+                tolerance=tolerance,
+                kept=kept,
+                progress=progress,
+            )
+        one = self.trees[0]
+        where = one.settings_where_it_stands(chosen)
+        return make_simulator(one.placed(), one.species, where, tolerance=tolerance, kept=kept)
+
+    def leaves(self, in_leaf: bool | None, count: int) -> LeafClusters | None:
+        """
+        Place clusters of leaves, on each tree by its leaf area; None without leaves.
+
+        ``in_leaf`` is whether trees bear leaves of which the scene does not say, None to leave it
+        to their species.
+        """
+        kinds = [float(foliage_of(k.tree, traits=k.species.leaves).area.sum()) for k in self.kinds]
+        area = np.array(kinds)[self.kind_numbers]
+        area *= [each.scale**2 * each.bears_leaves(in_leaf) for each in self.trees]
+        if not area.any() or count < 1:
+            return None
+        counts = np.ceil(count * area / area.sum() - 1e-9).astype(np.int64).tolist()
+        clusters = [
+            leaf_clusters(
+                each.placed(),
+                np.random.default_rng(number),
+                count=own,
+                traits=each.species.leaves,
+            )
+            if own
+            else no_clusters()
+            for number, (each, own) in enumerate(zip(self.trees, counts, strict=True))
+        ]
+        return joined_clusters(clusters, [each.tree.n_segments for each in self.trees])
+
+    def _labelled(self) -> list[tuple[str, Kind]]:
+        """Each kind, and how a message about it begins: with the name of its first tree."""
+        if self.is_one_tree:
+            return [('', self.kinds[0])]
+        _, first, counts = np.unique(self.kind_numbers, return_index=True, return_counts=True)
+        labels = [
+            f'{self.trees[t].name}{f" and {n - 1} more" if n > 1 else ""}: '
+            for t, n in zip(first.tolist(), counts.tolist(), strict=True)
+        ]
+        return list(zip(labels, self.kinds, strict=True))

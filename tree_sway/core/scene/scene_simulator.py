@@ -1,0 +1,429 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The simulator of a scene of several trees in one wind.
+
+Trees on a number of coordinates share the table and the rest geometry of their kind: each is a
+state, a pose, a scale and the delay with which gusts reach it. All of them are solved in one call,
+and placed only where asked for. Trees on other models are solved one after another, each by a
+simulator that is set up where the tree is, so that no wind need be turned into its frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cached_property
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.checks import array_to_fill
+from tree_sway.core.kernel import WHY_PLAIN
+from tree_sway.core.motion.harmonics import COUNT
+from tree_sway.core.motion.records import zeros_in_lines
+from tree_sway.core.motion.standing import place_standing, STANDING, step_standing
+from tree_sway.core.motion.wind_basis import (
+    fill_pace,
+    instance_layout,
+    WindBasisBank,
+)
+from tree_sway.core.motion.wind_basis_force import pace_layout
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.placed_tree import joined_where_placed, Kind, kinds_of, PlacedTree
+from tree_sway.core.simulator.assembly import Kept
+from tree_sway.core.simulator.live_tuning import Tuning
+from tree_sway.core.simulator.protocol import TreeSimulator
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.simulator.simulator import (
+    Counts,
+    LOAD_HELD,
+    OK,
+    refuse_time_step,
+    RESTARTED,
+    SwaySimulator,
+    WIND_REFUSED,
+)
+from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.gust_travel import GustHistory
+from tree_sway.core.wind.limits import take_wind
+from tree_sway.errors import nearest, ParameterError, TreeSwayError
+
+_NO_TABLES: Records = np.zeros(0, dtype=STANDING)
+_FINEST_SCALE = 0.01
+_CROWN = 0.7
+
+
+class SceneSimulator:
+    """
+    Trees that sway in one wind; used like a `SwaySimulator`. `Scene.simulator` makes it.
+
+    Parameters
+    ----------
+    trees
+        The trees, each with a name of its own.
+    settings
+        How trees are modelled, but for what a tree has of its own.
+    name, anemometer, convection_ratio
+        As of `Scene`.
+    tolerance, kept, progress
+        As of `Scene.simulator`.
+
+    Raises
+    ------
+    TreeSwayError
+        What is wrong with a tree, under its name.
+
+    """
+
+    def __init__(
+        self,
+        trees: Sequence[PlacedTree],
+        settings: Settings,
+        *,
+        name: str = 'scene',
+        anemometer: ArrayLike | None = None,
+        convection_ratio: float = 1.0,
+        tolerance: float = 0.005,
+        kept: Kept | None = None,
+        progress: Callable[[int], object] = lambda done: None,
+    ) -> None:
+        """Make a table for every kind that needs one, and a simulator for every other tree."""
+        self.trees, self.settings, self.name = tuple(trees), settings, name
+        self.names = tuple(each.name for each in trees)
+        models = [settings.model if each.model is None else each.model for each in trees]
+        self._kinds, self._kind_numbers = kinds_of(trees)
+        kind = self._kind_numbers
+        counts = np.array([each if isinstance(each, int) else -1 for each in models])
+        # Without a compiler there is no table: each tree is stepped on its branches.
+        is_own = np.ones(len(models), dtype=bool) if WHY_PLAIN else counts < 0
+        used = np.unique(kind[~is_own]).tolist()
+        self._models: list[SwaySimulator] = []
+        for k in used:
+            those = np.flatnonzero((kind == k) & ~is_own)
+            most = int(counts[those].max()) or 1
+            name = trees[those[0]].name
+            self._models.append(_model_of(name, self._kinds[k], settings, most, kept))
+            progress(len(self._models))
+        self._banks: list[WindBasisBank] = [_oscillators(model) for model in self._models]
+        self._standing = np.zeros(len(models), dtype=STANDING)
+        self._standing['kind'] = np.where(is_own, -1, np.searchsorted(used, kind))
+        self._standing['is_still'] = is_own | (counts == 0)
+        self._fill_standing()
+        self._make_tables()
+        self._numbers, self._is_shared = counts, ~is_own
+        self._show()
+        self.own: dict[int, TreeSimulator] = {}
+        """Simulators of the trees that share no table, by their numbers."""
+        for t in np.flatnonzero(is_own).tolist():
+            self.own[t] = _own_simulator(trees[t], settings, tolerance, kept)
+            progress(len(self._models) + len(self.own))
+        sizes = np.array([each.tree.n_segments for each in self._kinds])
+        self._ends = np.concatenate([[0], np.cumsum(sizes[kind])])
+        self.gusts = GustHistory(
+            self._standing['at'], anemometer, convection_ratio=convection_ratio
+        )
+        self._counts = Counts()
+        self._wind, self._dt = np.zeros(3), math.nan
+
+    @property
+    def model(self) -> str:
+        """Models in use."""
+        shared = np.unique(self._numbers[self._is_shared]).astype(str).tolist()
+        return ', '.join([*shared, *dict.fromkeys(sim.model for sim in self.own.values())])
+
+    @property
+    def counts(self) -> Counts:
+        """Return what was refused at the anemometer, and clamped or restarted in any tree."""
+        own, counts = [sim.counts for sim in self.own.values()], self._counts
+        return replace(
+            counts,
+            held=counts.held + sum(each.held for each in own),
+            restarted=counts.restarted + sum(each.restarted for each in own),
+        )
+
+    @property
+    def simulators(self) -> tuple[TreeSimulator, ...]:
+        """Return the simulators of the trees that share no table."""
+        return tuple(self.own.values())
+
+    @property
+    def n_segments(self) -> int:
+        """Segments of all trees, rows of the pose block."""
+        return int(self._ends[-1])
+
+    @property
+    def n_solved(self) -> int:
+        """Branches that are solved, of kinds once for each tree."""
+        shared = sum(m.n_solved * n for m, n in self._moving())
+        return shared + sum(sim.n_solved for sim in self.own.values())
+
+    @property
+    def n_copied(self) -> int:
+        """Branches that copy the motion of another."""
+        shared = sum(m.n_copied * n for m, n in self._moving())
+        return shared + sum(sim.n_copied for sim in self.own.values())
+
+    def _moving(self) -> list[tuple[SwaySimulator, int]]:
+        """Return each table's model, and how many trees sway on it."""
+        moving = self._standing['kind'][self._standing['is_still'] == 0]
+        counts = np.bincount(moving, minlength=len(self._models)).tolist()
+        return list(zip(self._models, counts, strict=True))
+
+    @property
+    def wind(self) -> Floats:
+        """Wind at the anemometer in the last step in [m/s], (3,)."""
+        return self._wind
+
+    @cached_property
+    def tree(self) -> Tree:
+        """All trees in one record, to be described or drawn."""
+        return joined_where_placed(self.trees, self.name)
+
+    def segments_of(self, name: str) -> slice:
+        """Return the rows of a tree in the pose block; a `ParameterError` for another name."""
+        if name not in self.names:
+            raise ParameterError(
+                f"no tree is called '{name}'",
+                where=self.name,
+                cure=f'{nearest(name, self.names)} use one of: {", ".join(self.names[:20])}',
+            )
+        number = self.names.index(name)
+        return slice(int(self._ends[number]), int(self._ends[number + 1]))
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """
+        Advance one step.
+
+        Parameters
+        ----------
+        wind_mean
+            Mean of the wind over the step at the anemometer, the way the air goes, in [m/s], (3,).
+        dt
+            Length of the step in [s].
+
+        Returns
+        -------
+        int
+            As `SwaySimulator.step`, of all trees together.
+
+        Raises
+        ------
+        ParameterError
+            A step that is not above 0 or not finite.
+
+        """
+        refuse_time_step(dt)
+        status = OK
+        # The history must not remember what no tree would take.
+        if not take_wind(self._wind, wind_mean, self.settings.max_wind):
+            status = WIND_REFUSED
+            self._counts.refused += 1
+        has_glided = [model.glide(dt) for model in self._models]
+        if dt != self._dt or any(has_glided):
+            self._set_step(dt)
+        felt = self.gusts.push(self._wind, dt)
+        held = restarted = 0
+        if self._models:
+            held, restarted = step_standing(
+                self._tables, self._paces, self._standing, self._instances, self._laws, felt
+            )
+        for number, simulator in self.own.items():
+            status |= simulator.step(felt[number].tolist(), dt)
+        self._counts.steps += 1
+        self._counts.held += held
+        self._counts.restarted += restarted
+        return status | (LOAD_HELD if held else OK) | (RESTARTED if restarted else OK)
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what any tree could not take, as `SwaySimulator.check_tuning`."""
+        trees = (*self._models, *self.own.values())
+        return [each.check_tuning(**changes) for each in trees][-1]
+
+    def tune(self, **changes: float) -> None:
+        """Change every tree while it sways, as `SwaySimulator.tune`; all or none."""
+        self.check_tuning(**changes)
+        for each in (*self._models, *self.own.values()):
+            each.tune(**changes)
+
+    def place(self, out: Floats | None = None, which: ArrayLike | None = None) -> Floats:
+        """
+        Place every segment of every tree, or of some trees.
+
+        Parameters
+        ----------
+        out
+            Where to write, (n, 7) float64, to be fast; a new array if None.
+        which
+            Numbers of the trees to place; all if None. Rows of the others stay as they are.
+
+        Returns
+        -------
+        Floats
+            Pose block of all trees, one after another; see `SwaySimulator.place`.
+
+        Raises
+        ------
+        ParameterError
+            An array that cannot hold the poses, or a tree that is not there.
+
+        """
+        shape = (self.n_segments, 7)
+        poses = np.zeros(shape) if out is None else array_to_fill('out', out, shape)
+        n = len(self.names)
+        trees = np.arange(n) if which is None else np.unique(np.asarray(which, dtype=np.int64))
+        if len(trees) and not 0 <= trees[0] <= trees[-1] < n:
+            raise ParameterError(
+                f'tree {trees[-1]} of a scene of {n}', where='which', cure=f'give 0 to {n - 1}'
+            )
+        shared = trees[self._is_shared[trees]]
+        rows = np.stack([shared, self._ends[shared]], axis=1)
+        kinds = self._standing['kind'][shared]
+        for kind in range(len(self._models)):
+            self._place_kind(kind, np.ascontiguousarray(rows[kinds == kind]), poses)
+        for number in trees[~self._is_shared[trees]].tolist():
+            self.own[number].place(poses[self._ends[number] : self._ends[number + 1]])
+        return poses
+
+    def _make_tables(self) -> None:
+        """Lay the tables of the kinds side by side, and make the state of every tree on them."""
+        banks = self._banks
+        n_modes = max((bank.shapes.shape[1] for bank in banks), default=1)
+        for bank in banks:
+            bank.lay_out(n_modes)
+        layout = instance_layout(n_modes, COUNT[self.settings.degree])
+        self._instances = np.zeros(len(self.names) if banks else 0, dtype=layout)
+        self._paces = np.zeros(0, dtype=pace_layout(n_modes))
+        self._tables = np.concatenate([bank.record for bank in banks]) if banks else _NO_TABLES
+        self._laws = np.array([model.drag_law for model in self._models])
+        self._scratch = []
+        """What each kind is placed in."""
+        for model, bank in zip(self._models, banks, strict=True):
+            heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
+            heads[:] = model.bank.heads
+            block, bases = np.zeros((model.tree.n_segments, 7)), np.zeros_like(model.bank.bases)
+            self._scratch.append((heads, bases, bank.room_for_rotations(), block))
+
+    def _show(self) -> None:
+        """Leave out of each tree what it has fewer coordinates than the table of its kind."""
+        for kind, bank in enumerate(self._banks):
+            those = np.flatnonzero(self._is_shared & (self._standing['kind'] == kind))
+            left_out = np.maximum(bank.shapes.shape[1] - self._numbers[those], 0)
+            m = self._instances['faded'].shape[1]
+            last = np.arange(m) >= self._numbers[those, None]
+            self._instances['left_out'][those] = left_out
+            self._instances['faded'][those] = last
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Names of the trees whose load was at the edge of their table in the last step."""
+        return tuple(self.names[t] for t in np.flatnonzero(self._standing['is_held']))
+
+    @property
+    def shared(self) -> list[tuple[SwaySimulator, WindBasisBank, Ints]]:
+        """Each model in a frame of its own, its table, and the trees that share it."""
+        kinds = np.where(self._is_shared, self._standing['kind'], -1)
+        pairs = enumerate(zip(self._models, self._banks, strict=True))
+        return [(model, bank, np.flatnonzero(kinds == k)) for k, (model, bank) in pairs]
+
+    def shares(self, numbers: Ints) -> Floats:
+        """How much trees of one kind bend in each shape, (t, m)."""
+        n_modes = self._banks[self._standing['kind'][numbers[0]]].shapes.shape[1]
+        shown = (1.0 - self._instances['faded'][numbers]) * self._instances['eta'][numbers]
+        shares: Floats = shown[:, :n_modes]
+        return shares
+
+    def _place_kind(self, kind: int, rows: Ints, out: Floats) -> None:
+        """Place trees of one table: their numbers and first rows in a pose block, (w, 2)."""
+        records, bank = self._models[kind].bank, self._banks[kind]
+        heads, bases, x, block = self._scratch[kind]
+        place_standing(
+            self._standing, self._instances, rows, bank.laid_shapes, records.branches,
+            records.segments, heads, bases, x, block, out,
+        )  # fmt: skip
+
+    @cached_property
+    def _highest(self) -> tuple[int, Tree]:
+        """Number of the tree whose tip is the highest, and the tree where it is."""
+        heights = np.array([each.tree.height for each in self._kinds])[self._kind_numbers]
+        number = int(np.argmax(self._standing['at'][:, 2] + self._standing['scale'] * heights))
+        return number, self.trees[number].placed()
+
+    @property
+    def tip_displacement(self) -> Floats:
+        """Displacement of the highest tip of all from rest in [m], (3,)."""
+        number, tree = self._highest
+        if number in self.own:
+            return self.own[number].tip_displacement
+        top, poses = int(np.argmax(tree.end[:, 2])), np.empty((tree.n_segments, 7))
+        self._place_kind(int(self._standing['kind'][number]), np.array([[number, 0]]), poses)
+        tip: Floats = ends_of_poses(poses, tree.length)[1][top] - tree.end[top]
+        return tip
+
+    def reset(self) -> None:
+        """Bring every tree to rest and forget the wind; the counts stay."""
+        self._instances[:] = np.zeros((), dtype=self._instances.dtype)
+        self._show()
+        for simulator in self.own.values():
+            simulator.reset()
+        self.gusts.reset()
+        self._wind[:] = 0.0
+
+    def _fill_standing(self) -> None:
+        """Write where and how large the trees are, and how much stronger their wind is."""
+        rows, trees, profile = self._standing, self.trees, self.settings.profile
+        rows['at'] = [(each.x, each.y, each.z) for each in trees]
+        scale = rows['scale'] = np.array([each.scale for each in trees])
+        half = 0.5 * np.array([each.yaw for each in trees])
+        rows['cosine'], rows['sine'] = np.cos(half), np.sin(half)
+        heights = np.array([each.tree.height for each in self._kinds])[self._kind_numbers]
+        crown = profile.ground + _CROWN * heights * np.array([np.ones(len(trees)), scale])
+        own, scaled = profile.over_anemometer(crown)
+        rows['speed'] = np.where(own > 0.0, scaled / np.where(own > 0.0, own, 1.0), 1.0)
+
+    def _set_step(self, dt: float) -> None:
+        """Fill a pace for every kind and scale that there is, to a hundredth."""
+        rows = np.flatnonzero(self._is_shared)
+        scale = np.round(np.log(self._standing['scale'][rows]) / _FINEST_SCALE).astype(np.int64)
+        pairs = np.stack([self._standing['kind'][rows], scale], axis=1)
+        found, number = np.unique(pairs, axis=0, return_inverse=True)
+        self._paces = np.zeros(len(found), dtype=self._paces.dtype)
+        for pace, (kind, step) in zip(self._paces, found.tolist(), strict=True):
+            modal = self._banks[kind].modal
+            modal.set_pace(dt / math.exp(step * _FINEST_SCALE))
+            fill_pace(pace, modal)
+        self._standing['pace'][rows] = number.ravel()
+        self._dt = dt
+
+
+def _oscillators(model: SwaySimulator) -> WindBasisBank:
+    oscillators = model.bank.oscillators
+    assert isinstance(oscillators, WindBasisBank)
+    return oscillators
+
+
+def _model_of(
+    name: str, kind: Kind, scene: Settings, count: int, kept: Kept | None
+) -> SwaySimulator:
+    """Make the model that trees of a kind share; what is wrong with it names the first of them."""
+    settings = replace(kind.settings(scene), model=count)
+    try:
+        return SwaySimulator(kind.tree, kind.species, settings, kept=kept)
+    except TreeSwayError as error:
+        raise error.inside(name) from error
+
+
+def _own_simulator(
+    tree: PlacedTree, scene: Settings, tolerance: float, kept: Kept | None
+) -> TreeSimulator:
+    """Make the simulator of a tree where it is; what is wrong with it names the tree."""
+    settings = tree.settings_where_it_stands(scene)
+    try:
+        return make_simulator(
+            tree.placed(), tree.species, settings, tolerance=tolerance, kept=kept
+        )
+    except TreeSwayError as error:
+        raise error.inside(tree.name) from error

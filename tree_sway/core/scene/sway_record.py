@@ -1,0 +1,87 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What a tree did in a wind, as arrays over time: tips, the moment and the strain at its base."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+
+_SIDES = ('east', 'north')
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SwayRecord:
+    """
+    The sway of one tree; every array has one row per step.
+
+    Parameters
+    ----------
+    tree
+        Name of the tree.
+    model
+        Model at the end.
+    time
+        End of each step in [s], (t,).
+    wind
+        Mean wind over each step in [m/s], (t, 3).
+    branches
+        Branches whose tips are recorded, (k,).
+    branch_names
+        Their names.
+    tips
+        Displacement of each of these tips from rest in [m], east, north, up, (t, k, 3).
+    base_moment
+        Bending moment that the wood carries at the base of the stem, beyond that at rest, in
+        [N m], (t, 3): the moment on the stem about the x, y and z axis.
+    base_strain
+        Strain of the outermost fibre at the base of the stem, beyond that at rest, on its east
+        and on its north side [-], (t, 2); positive where the fibre is drawn out.
+
+    """
+
+    tree: str
+    model: str
+    time: Floats
+    wind: Floats
+    branches: Ints
+    branch_names: tuple[str, ...]
+    tips: Floats
+    base_moment: Floats
+    base_strain: Floats
+
+    def columns(self) -> dict[str, Floats]:
+        """
+        Return every column, (t,), under its name with its unit, such as ``time [s]``.
+
+        ``pandas.DataFrame(record.columns())`` is the record as a data frame.
+        """
+        vectors = [('wind', 'm/s', self.wind), ('moment', 'N m', self.base_moment)]
+        tips = np.moveaxis(self.tips, 1, 0)
+        vectors += [
+            (f'{name} tip', 'm', tip) for name, tip in zip(self.branch_names, tips, strict=True)
+        ]
+        found = {'time [s]': self.time}
+        for name, unit, rows in vectors:
+            found |= {f'{name}_{axis} [{unit}]': rows[:, i] for i, axis in enumerate('xyz')}
+        found |= {f'strain_{s} [-]': self.base_strain[:, i] for i, s in enumerate(_SIDES)}
+        return found
+
+    def to_csv(self) -> str:
+        """Return the record as comma-separated values under one line of names and units."""
+        columns = self.columns()
+        head = ','.join(f'"{name}"' if ',' in name else name for name in columns)
+        table = np.stack([*columns.values()], axis=1)
+        rows = (','.join(f'{value:.9g}' for value in row) for row in table)
+        return '\n'.join((head, *rows, ''))
+
+    def __repr__(self) -> str:
+        """Name tree, model, length and the largest motion of the first tip on one line."""
+        largest = float(np.linalg.norm(self.tips[:, 0], axis=1).max())
+        return (
+            f'SwayRecord of {self.tree}, model {self.model}: {len(self.time)} steps, '
+            f'{self.time[-1]:.4g} s, tip of {self.branch_names[0]} up to {largest:.3g} m'
+        )

@@ -1,0 +1,130 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A tree ready to be stepped and placed: its oscillators and its records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Protocol, TYPE_CHECKING
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.kernel import entry_of, WHY_PLAIN
+from tree_sway.core.motion.branchwise import Tunable
+from tree_sway.core.motion.drag import DragLaw
+from tree_sway.core.motion.placing import place
+
+if TYPE_CHECKING:
+    from tree_sway.core.motion.plain.numpy_placing import NumpyPlacing
+
+
+class Oscillators(Protocol):
+    """What every model offers: key rotations that a wind moves."""
+
+    n_outside: int
+    """Steps outside of its table, if it has one."""
+    branches: Records
+    work: Records
+    shapes: Floats
+    """Of its coordinates, (N, m)."""
+
+    @property
+    def loads(self) -> Records | None:
+        """Return the records of `load_fields`; None where only an even wind is known."""
+
+    @property
+    def tunable(self) -> Tunable:
+        """Return what changes with stiffness, damping and gravity."""
+
+    def set_step(self, dt: float) -> None:
+        """Refill what depends on the time step [s]."""
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Advance one step under a mean wind [m/s]; returns how many loads were clamped."""
+
+    def stepping(
+        self, wind: Floats, max_wind: float, law: DragLaw
+    ) -> Callable[[float, float, float], int] | None:
+        """Return a step as one compiled call of a wind's components [m/s], if there is one."""
+
+    def push(self, moments: Floats) -> int:
+        """Add what moments on the key rotations [N m] did over a step; how many were clamped."""
+
+    def step_outside(self) -> int:
+        """Make the step that such a call could not make; returns as `advance`."""
+
+    def placing(
+        self, segments: Records, heads: Records, bases: Floats
+    ) -> Callable[[Floats, Floats], None] | None:
+        """Return the placing of the state as one compiled call, if there is one."""
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of what is carried from one step to the next."""
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,)."""
+
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch in [N], (b, 3)."""
+
+    def reset(self) -> None:
+        """Go back to rest."""
+
+
+@dataclass(frozen=True)
+class Bank:
+    """
+    A tree ready to be stepped and placed: oscillators, and records of branches, segments, heads.
+
+    ``mass`` is of wood and leaves in [kg]; ``plain`` says that nothing is compiled.
+    """
+
+    oscillators: Oscillators
+    branches: Records
+    segments: Records
+    heads: Records
+    n_solved: int
+    mass: float
+    plain: bool = bool(WHY_PLAIN)
+
+    @cached_property
+    def bases(self) -> Floats:
+        """Return what `place` writes of bases, (b, 8)."""
+        return np.zeros((len(self.branches), 8))
+
+    @cached_property
+    def _plain_placing(self) -> NumpyPlacing:
+        from tree_sway.core.motion.plain.numpy_placing import NumpyPlacing
+
+        return NumpyPlacing(self.branches, self.segments)
+
+    @cached_property
+    def place(self) -> Callable[[Floats, Floats, Floats], None]:
+        """
+        Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7).
+
+        Nothing is checked: arrays must be of float64, in one piece and of these shapes.
+        """
+        if self.plain:
+            return self._plain_placing.place
+        arrays = (self.branches, self.segments, self.heads, self.bases)
+        given = np.zeros(1), np.zeros(3), np.zeros((1, 7))
+        return partial(entry_of(place, *arrays, *given), *arrays)
+
+    @cached_property
+    def place_now(self) -> Callable[[Floats, Floats], None]:
+        """Place every segment as the oscillators are, from a root node (3,) on, as `place`."""
+        oscillators = self.oscillators
+        in_one_call = oscillators.placing(self.segments, self.heads, self.bases)
+        if in_one_call is not None:
+            return in_one_call
+        return lambda origin, out: self.place(oscillators.rotations(), origin, out)

@@ -1,0 +1,72 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Gusts that reach the limbs of a tree one after another, handed to the model in use.
+
+`segments` and the models that step branches give each limb its own wind. `wind_basis` knows even
+winds alone and takes the mean of the limbs' winds, weighted by their loads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
+from tree_sway.core.motion.plain.numpy_passes import into_lanes
+from tree_sway.core.motion.tree_passes import set_gusts
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind, push_wind
+
+
+def delays_of(tree: Tree, leaf_area: Floats | None) -> CrownDelays:
+    """Deal delays to the branches of a tree, whose leaves catch as much as areas (b,) of wood."""
+    first = tree.branch_first[:-1]
+    area = tree.length * 0.5 * (tree.base_diameter + tree.tip_diameter)
+    middle = 0.5 * (tree.start + tree.end) * area[:, None]
+    wood = np.add.reduceat(area, first)
+    centre = np.add.reduceat(middle, first, axis=0) / np.maximum(wood, 1e-12)[:, None]
+    return crown_delays(
+        tree.branch_parent, centre, wood if leaf_area is None else wood + leaf_area
+    )
+
+
+class CrownGusts:
+    """The wind of a crown and the loads it goes to; None for a model of even winds alone."""
+
+    def __init__(self, delays: CrownDelays, coherence: float, loads: Records | None) -> None:
+        """Start without wind."""
+        self.wind, self._delays = CrownWind(delays.spread, coherence), delays
+        self._loads = loads
+        self._compiled: Callable[[float, float, float, float], None] | None = None
+        if loads is not None:
+            into_lanes(delays.of_branch, loads['delay'])
+            if not WHY_PLAIN:
+                parts = loads, self.wind.record
+                self._compiled = partial(entry_of(_hand_out, *parts, 0.0, 0.0, 0.0, 0.0), *parts)
+
+    def felt(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
+        """
+        Hand the mean wind [m/s] of a step of dt [s] to the limbs; the wind to step with.
+
+        That is what was given, or the mean of the limbs' where the model knows even winds alone.
+        """
+        if self._compiled is not None:
+            self._compiled(x, y, z, dt)
+            return x, y, z
+        apart = self.wind.push(x, y, z, dt)
+        if self._loads is not None:
+            into_lanes(apart[self._delays.of_branch], self._loads['gust'])
+            return x, y, z
+        ax, ay, az = (self._delays.share @ apart).tolist()
+        return x + ax, y + ay, z + az
+
+
+@kernel
+def _hand_out(loads: Records, crowns: Records, x: float, y: float, z: float, dt: float) -> None:
+    """Push the wind and give every branch that of its delay."""
+    push_wind(crowns, x, y, z, dt)
+    set_gusts(loads, crowns[0]['apart'])

@@ -1,0 +1,180 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""How a tree is modelled: every setting of a simulator, in one place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+import math
+from typing import Any
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import within
+from tree_sway.core.state.tree_state import digest_of
+from tree_sway.core.wind.height_profile import WindProfile
+from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.errors import nearest, ParameterError
+
+USUAL = 60
+"""Coordinates that are stepped where no number is asked for."""
+
+MODELS = ('auto', 'branch', 'full')
+"""Models that have a name; the others are numbers of coordinates."""
+
+MOST = 1000
+"""Coordinates that may be asked for."""
+
+STIFFNESS_RULES = ('beam', 'volume_rule')
+"""Ways to set the stiffness of a branch."""
+
+
+@dataclass(frozen=True, eq=False)
+class Settings:
+    """
+    How a tree is modelled; what it is made of is its species.
+
+    Parameters
+    ----------
+    model
+        How many coordinates the tree has in the wind, or all if there are fewer; 0 stands still.
+        Or ``branch``, the paper's, each branch by itself; ``full``, all coordinates and the load
+        of every branch; or ``auto``, which takes as many coordinates as the scene needs.
+    degree
+        Of the harmonics of the wind's direction: 1, 3 or 5.
+    stiffness
+        ``beam``, or ``volume_rule`` (the paper's, for the model ``branch``).
+    volume_stiffness, volume_damping
+        The two constants of the volume rule in [N m/rad/m^3] and [N m s/rad/m^3].
+    damping_ratio
+        In [-]; that of the species if None.
+    in_leaf
+        Whether the tree bears leaves; None leaves it to the species, of which evergreens do.
+    gravity
+        In [m/s^2]; 0 leaves weight out.
+    profile
+        Wind over height.
+    crown_coherence
+        Share of a gust in [-] that reaches the whole crown at once; the rest reaches each limb
+        after a delay of its own (`crown_wind`). 1 is one wind for the whole crown.
+    twig_tolerance
+        How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
+    enrich
+        Branches that get further shapes and twists, on all models but ``branch``: ``none``, the
+        ``stem``, those ``needed`` (`TreeBeams.enriched`), all ``carriers`` of others, or ``all``.
+    root_stiffness
+        Stiffness of the roots against tilting in [N m/rad], infinite if they are rigid; the tree's
+        own if None.
+    leaf_mass, leaf_area
+        Leaves of each branch in [kg] and [m^2], (b,); those of the species in leaf if both are
+        None.
+    max_wind
+        Wind speed in [m/s] above which a sample is refused.
+
+    """
+
+    model: int | str = USUAL
+    degree: int = 5
+    stiffness: str = 'beam'
+    volume_stiffness: float = 2.0e5
+    volume_damping: float = 2.0e3
+    damping_ratio: float | None = None
+    in_leaf: bool | None = None
+    gravity: float = 9.81
+    profile: WindProfile = field(default_factory=WindProfile)
+    crown_coherence: float = 1.0
+    twig_tolerance: float = 0.05
+    enrich: str = 'needed'
+    root_stiffness: float | None = None
+    leaf_mass: Floats | None = None
+    leaf_area: Floats | None = None
+    max_wind: float = FASTEST_WIND
+
+    def __post_init__(self) -> None:
+        """Refuse what is out of range."""
+        object.__setattr__(self, 'model', model_of(self.model))
+        _one_of('stiffness', self.stiffness, STIFFNESS_RULES)
+        _one_of('enrich', self.enrich, ('none', 'stem', 'needed', 'carriers', 'all'))
+        if self.stiffness == 'volume_rule' and self.model != 'branch':
+            raise ParameterError(
+                f"the volume rule on model '{self.model}'",
+                where='stiffness',
+                cure="use it on model 'branch', or stiffness 'beam'",
+            )
+        if self.in_leaf is False and (self.leaf_mass is not None or self.leaf_area is not None):
+            raise ParameterError(
+                'leaves on a bare tree', where='in_leaf', cure='leave in_leaf out, or the leaves'
+            )
+        if self.damping_ratio is not None and not 0.0 <= self.damping_ratio < 1.0e3:
+            raise ParameterError(f'damping ratio {self.damping_ratio}', cure='give 0 or more')
+        if self.root_stiffness is not None and not self.root_stiffness > 0.0:
+            raise ParameterError(
+                f'{self.root_stiffness} N m/rad',
+                where='root_stiffness',
+                cure='give a stiffness above 0, infinite for rigid roots',
+            )
+        if self.degree not in (1, 3, 5):
+            raise ParameterError(f'degree {self.degree}', where='degree', cure='use 1, 3 or 5')
+        within('crown_coherence', self.crown_coherence, 0.0, 1.0)
+        within('max_wind', self.max_wind, 0.0, FASTEST_WIND, 'm/s', above=True)
+        for name in ('volume_stiffness', 'volume_damping'):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ParameterError(f'{name} {value}', cure='give a finite number above 0')
+        if not (math.isfinite(self.gravity) and self.gravity >= 0.0):
+            raise ParameterError(f'gravity {self.gravity} m/s^2', cure='give 0 or more')
+
+    def __eq__(self, other: object) -> bool:
+        """Compare every field, arrays by their numbers."""
+        return isinstance(other, Settings) and digest_of(self) == digest_of(other)
+
+    def __hash__(self) -> int:
+        """Hash what `__eq__` compares."""
+        return hash(digest_of(self))
+
+
+def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Settings:
+    """
+    Return settings, the defaults if None, with some fields changed.
+
+    A `ParameterError` names what is not settings, an unknown field, or a value out of its range.
+    """
+    if not isinstance(settings, Settings | None):
+        raise ParameterError(
+            f'a {type(settings).__name__}, where Settings are asked for',
+            where='settings',
+            cure='give Settings(...), or its fields as keywords',
+        )
+    known = Settings.__dataclass_fields__
+    for name in changes:
+        if name not in known:
+            cure = nearest(name, known) or f'there are: {", ".join(known)}'
+            raise ParameterError(f"unknown setting '{name}'", cure=cure)
+    return replace(settings or Settings(), **changes)
+
+
+def model_of(given: object) -> int | str:
+    """
+    Return a model as `Settings` keeps it: one of `MODELS` or a number, which may be given as text.
+
+    A `ParameterError` names what there is.
+    """
+    if isinstance(given, str) and given in MODELS:
+        return given
+    number = int(given) if isinstance(given, str) and given.isdecimal() else given
+    if isinstance(number, float) and number.is_integer():
+        number = int(number)  # files of numbers have no whole ones
+    if isinstance(number, int) and not isinstance(number, bool) and 0 <= number <= MOST:
+        return number
+    near = nearest(str(given), MODELS)
+    raise ParameterError(
+        f"unknown model '{given}'",
+        where='model',
+        cure=f'{near + ", or " if near else ""}use one of: {", ".join(MODELS)}, or a number of '
+        f'coordinates from 0 to {MOST}',
+    )
+
+
+def _one_of(what: str, value: str, known: tuple[str, ...]) -> None:
+    if value not in known:
+        raise ParameterError(f"unknown {what} '{value}'", cure=f'use one of: {", ".join(known)}')

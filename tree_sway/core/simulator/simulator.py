@@ -1,0 +1,438 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The tree in the wind: owns the order of work, and no clock."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+import math
+from typing import Any, TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.checks import array_to_fill, array_to_read
+from tree_sway.core.kernel import entry_of, fused
+from tree_sway.core.motion.drag import pressure
+from tree_sway.core.simulator.assembly import CalibratedTree, Kept
+from tree_sway.core.simulator.bank import Bank
+from tree_sway.core.simulator.season import in_season
+from tree_sway.core.simulator.settings import Settings, settings_with
+from tree_sway.core.state.tree_state import digest_of, KeepsState
+from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.limits import components_of, is_wind
+from tree_sway.errors import ParameterError
+
+if TYPE_CHECKING:
+    from tree_sway.core.simulator.crown_gusts import CrownGusts
+    from tree_sway.core.simulator.live_tuning import LiveTuning, Tuning
+    from tree_sway.core.simulator.touch import Touch
+    from tree_sway.core.wind.gust_travel import GustHistory
+
+OK, WIND_REFUSED, LOAD_HELD, RESTARTED = 0, 1, 2, 4
+"""What `SwaySimulator.step` returns, as bits."""
+
+
+@dataclass
+class Counts:
+    """
+    What became of the steps since the start.
+
+    ``refused``: the wind was not finite or faster than the limit, and the one before was kept;
+    ``held``: loads at the limit of the model; ``restarted``: the motion was not finite, and the
+    tree went on from rest; ``refused_pushes``: calls of `SwaySimulator.push` that were refused.
+    """
+
+    steps: int = 0
+    refused: int = 0
+    held: int = 0
+    restarted: int = 0
+    refused_pushes: int = 0
+
+
+class SwaySimulator(KeepsState):
+    """
+    A tree that sways.
+
+    Parameters
+    ----------
+    tree
+        The tree, alone or with its species.
+    species
+        Its wood, damping and drag; the tree's own if None.
+    settings
+        How it is modelled, on any model but ``auto``; `make_simulator` makes that too.
+    calibrated
+        The same tree, species and settings calibrated before, to share the work among models.
+    kept
+        Where set-ups are kept and found again; nowhere if None.
+    **changes
+        Fields of the settings, as keywords: ``SwaySimulator(tree, model="branch")``.
+
+    Raises
+    ------
+    ParameterError
+        A setting out of its range.
+    SpeciesError
+        A species that no table knows.
+    TreeError
+        A tree that buckles under its own weight.
+
+    Examples
+    --------
+    >>> sim = SwaySimulator(tree, model="branch")
+    >>> for wind in record:
+    ...     sim.step(wind, 1 / 60)
+    ...     poses = sim.place()
+
+    """
+
+    gusts: GustHistory | None = None
+    """No gusts travel within a tree."""
+
+    def __init__(
+        self,
+        tree: Tree | GrownTree,
+        species: Species | None = None,
+        settings: Settings | None = None,
+        *,
+        calibrated: CalibratedTree | None = None,
+        kept: Kept | None = None,
+        **changes: Any,
+    ) -> None:
+        """Calibrate the tree; nothing is left to do at the first step but to compile."""
+        self.tree, self.species = tree, species = tree_and_species(tree, species)
+        self.settings = in_season(tree, self.species, settings_with(settings, changes))
+        self.counts = Counts()
+        if calibrated is None:
+            calibrated = CalibratedTree(tree, self.species, self.settings, kept=kept)
+        self.bank: Bank = calibrated.bank(self.settings.model)
+        self.drag_law = calibrated.drag_law
+        self._pressure = entry_of(_pressure, 0.0, 0.0, 0.0, 0.0)
+        self._advance = self.bank.oscillators.advance
+        self._in_one_call: Callable[[float, float, float], int] | None = None
+        self._max_wind = self.settings.max_wind
+        self._gusts: CrownGusts | None = None
+        if self.settings.crown_coherence < 1.0:
+            from tree_sway.core.simulator import crown_gusts
+
+            self._gusts = crown_gusts.CrownGusts(
+                calibrated.crown_delays(self.settings.model),
+                self.settings.crown_coherence,
+                self.bank.oscillators.loads,
+            )
+        self._calibrated = calibrated
+        self._tuning: LiveTuning | None = None
+        self._touch: Touch | None = None
+        self._dt = math.nan
+        self._wind = np.zeros(3)
+        self._expected = (int(self.bank.branches['n_coordinates'].sum()),)
+        self._poses = np.zeros((tree.n_segments, 7))
+        self._filled = self._poses
+        self._origin = tree.start[0].copy()
+        self._highest = int(np.argmax(tree.end[:, 2]))
+        self._rest_tip = tree.end[self._highest].copy()
+
+    @property
+    def model(self) -> str:
+        """Model in use: its name, or its number of coordinates."""
+        return str(self.settings.model)
+
+    @property
+    def simulators(self) -> tuple[SwaySimulator, ...]:
+        """Return the simulator of each tree: this one."""
+        return (self,)
+
+    @property
+    def n_solved(self) -> int:
+        """Branches that are solved; the others copy."""
+        return self.bank.n_solved
+
+    @property
+    def n_copied(self) -> int:
+        """Branches that copy the motion of another."""
+        return self.tree.n_branches - self.bank.n_solved
+
+    @property
+    def wind(self) -> Floats:
+        """Wind of the last step in [m/s], (3,)."""
+        return self._wind.copy()
+
+    @property
+    def mass(self) -> float:
+        """Mass of wood and leaves in [kg]."""
+        return self.bank.mass
+
+    def frequencies(self, count: int = 10) -> Floats:
+        """
+        Lowest natural frequencies of the tree in [Hz], without air, (count,) or fewer.
+
+        On the model ``branch`` those of its branches, each by itself.
+        """
+        if self.settings.model == 'branch':
+            tunable = self.bank.oscillators.tunable
+            circular = np.sort(np.sqrt(tunable.stiffness / tunable.inertia))[:count]
+            return np.asarray(circular / (2.0 * np.pi))
+        return self._calibrated.natural_frequencies(count)
+
+    @property
+    def joints(self) -> Records:
+        """Return the records of `BRANCH` that give the key rotations their meaning, (b,)."""
+        return self.bank.branches
+
+    def digest(self) -> str:
+        """Digest of tree, species, settings and what was tuned since."""
+        tuned = () if self._tuning is None else self._tuning.changes
+        return digest_of(self.tree, self.species, self.settings, *tuned)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of what is carried between steps, the wind of the last step first."""
+        crown = () if self._gusts is None else self._gusts.wind.memory()
+        return self._wind, *self.bank.oscillators.memory(), *crown
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,), in the order of `joints`; the same array each time."""
+        return self.bank.oscillators.rotations()
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
+        out = self._to_fill(out)
+        read = array_to_read('rotations', rotations, self._expected)
+        self.bank.place(read, self._origin, out)
+        return out
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """
+        Advance one step.
+
+        Parameters
+        ----------
+        wind_mean
+            Mean of the wind over the step at the anemometer's height, the way the air goes, in
+            [m/s], (3,).
+        dt
+            Length of the step in [s].
+
+        Returns
+        -------
+        int
+            0, or the sum of `WIND_REFUSED` (not finite or too fast: the wind before is kept),
+            `LOAD_HELD` (a load beyond what the model follows was held at its limit) and
+            `RESTARTED` (the motion was not finite: the tree goes on from rest).
+
+        Raises
+        ------
+        ParameterError
+            A step that is not above 0 or not finite.
+
+        """
+        counts = self.counts
+        x, y, z = components_of(wind_mean)
+        if dt != self._dt or self.glide(dt):
+            self._set_step(dt)
+        counts.steps += 1
+        call = self._in_one_call
+        if call is not None:
+            outcome = call(x, y, z)
+            if outcome == 0 and self._touch is None:
+                return OK
+            counts.refused += outcome & 1
+            held = self.bank.oscillators.step_outside() if outcome & 2 else 0
+            return (WIND_REFUSED if outcome & 1 else OK) | self._count(held) | self._touched(dt)
+        status = OK
+        if is_wind(x, y, z, self._max_wind):
+            self._wind[:] = x, y, z
+        else:
+            status = WIND_REFUSED
+            counts.refused += 1
+        wx, wy, wz = self._wind.tolist()
+        load = self._pressure(math.hypot(wx, wy, wz), *self.drag_law)
+        if self._gusts is not None:
+            wx, wy, wz = self._gusts.felt(wx, wy, wz, dt)
+        return status | self._count(self._advance(wx, wy, wz, load)) | self._touched(dt)
+
+    def push(self, segment: int, force: ArrayLike, seconds: float, *, along: float = 0.5) -> None:
+        """
+        Push or pull at a segment while the tree goes on swaying.
+
+        The force moves with the tree and keeps its direction. A new one on the same segment takes
+        the place of the one before, so that who drags a branch says so again and again; after the
+        last one the tree swings freely. A state knows nothing of pushes, nor does a relay.
+
+        Parameters
+        ----------
+        segment
+            Number of the segment.
+        force
+            Force in [N], (3,).
+        seconds
+            How long it acts from the next step on in [s].
+        along
+            Where on the segment, as a share of its length from the root side.
+
+        Raises
+        ------
+        ParameterError
+            A segment that the tree lacks, a force that is not finite, a time that is not above 0,
+            or the model ``branch``; `Counts.refused_pushes` counts it, and nothing changes.
+
+        """
+        from tree_sway.core.simulator.touch import Touch
+
+        try:
+            touch = self._touch or Touch(self.tree, self.bank)
+            touch.add(segment, force, seconds, along)
+        except ParameterError:
+            self.counts.refused_pushes += 1
+            raise
+        self._touch = touch
+
+    @property
+    def push_load(self) -> Floats:
+        """Force [N] and moment about the root node [N m] of the last step's pushes, (6,)."""
+        return np.zeros(6) if self._touch is None else self._touch.load.copy()
+
+    def _touched(self, dt: float) -> int:
+        """Let the pushes act over the step that was made; returns what `step` says of it."""
+        touch = self._touch
+        if touch is None:
+            return OK
+        if not touch.is_active:
+            self._touch = None
+            return OK
+        return self._count(touch.step(self.place(self._poses), self._origin, dt))
+
+    def _count(self, held: int) -> int:
+        """Take what an advance returned; returns what `step` reports of it."""
+        if held > 0:
+            self.counts.held += held
+            return LOAD_HELD
+        if held < 0:
+            self.bank.oscillators.reset()
+            self.counts.restarted += 1
+            return RESTARTED
+        return OK
+
+    def place(self, out: Floats | None = None) -> Floats:
+        """
+        Place every segment.
+
+        Parameters
+        ----------
+        out
+            Where to write, (n, 7) float64, to be fast; a new array if None.
+
+        Returns
+        -------
+        Floats
+            Pose block: x y z of each segment's root-side node in [m], quaternion x y z w, x axis
+            along the segment.
+
+        Raises
+        ------
+        ParameterError
+            An array that cannot hold the poses.
+
+        """
+        out = self._to_fill(out)
+        self.bank.place_now(self._origin, out)
+        return out
+
+    def _to_fill(self, out: Floats | None) -> Floats:
+        if out is None:
+            return np.empty(self._poses.shape)
+        if out is not self._filled:
+            self._filled = array_to_fill('out', out, self._poses.shape)
+        return out
+
+    @property
+    def tip_displacement(self) -> Floats:
+        """Displacement of the highest tip from rest in [m], (3,)."""
+        x, y, z, qx, qy, qz, qw = self.place(self._poses)[self._highest]
+        length = self.tree.length[self._highest]
+        along = np.array(
+            [1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qz * qw), 2 * (qx * qz - qy * qw)]
+        )
+        displacement: Floats = np.array([x, y, z]) + length * along - self._rest_tip
+        return displacement
+
+    @property
+    def base_moment(self) -> Floats:
+        """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
+        couple, force = self.bank.branches['coupling'], self.bank.oscillators.forces()
+        moment: Floats = np.einsum('bij,bj->i', couple, force)
+        return moment
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s] in the model in use, both (N,)."""
+        return self.bank.oscillators.motion()
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Go on from key rotations and rates, (N,), instead of from rest."""
+        self.bank.oscillators.take_over(x, v)
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Refuse what `tune` would refuse; returns all values as they would be."""
+        from tree_sway.core.simulator.live_tuning import LiveTuning
+
+        if self._tuning is None:
+            tunable, ratio = self.bank.oscillators.tunable, self._calibrated.damping_ratio
+            self._tuning = LiveTuning(tunable, self.settings, ratio)
+        goal = self._tuning.goal.changed(**changes)
+        self._tuning.check(goal)
+        return goal
+
+    def tune(self, **changes: float) -> None:
+        """
+        Change the tree while it sways; poses go over to the change within half a second.
+
+        Parameters
+        ----------
+        **changes
+            ``damping_ratio``, ``stiffness_factor``, ``gravity``, ``volume_stiffness`` or
+            ``volume_damping``, as of `Tuning`. What is not named stays.
+
+        Raises
+        ------
+        ParameterError
+            A value that is out of range or that this tree cannot take; nothing changes.
+
+        """
+        goal = self.check_tuning(**changes)
+        if self._tuning is not None:
+            self._tuning.go_to(goal)
+
+    def glide(self, dt: float) -> bool:
+        """Go on towards what `tune` asked for; returns whether the coefficients have changed."""
+        return self._tuning is not None and self._tuning.step(dt)
+
+    def reset(self) -> None:
+        """Go back to rest, with no wind; the counts stay."""
+        self.bank.oscillators.reset()
+        if self._gusts is not None:
+            self._gusts.wind.reset()
+        self._touch = None
+        self._wind[:] = 0.0
+
+    def _set_step(self, dt: float) -> None:
+        refuse_time_step(dt)
+        self.bank.oscillators.set_step(dt)
+        self._dt = dt
+        if self._in_one_call is None and self._gusts is None:
+            stepping = self.bank.oscillators.stepping
+            self._in_one_call = stepping(self._wind, self._max_wind, self.drag_law)
+
+
+_pressure = fused(pressure)
+
+
+def refuse_time_step(dt: float) -> None:
+    """Refuse a time step [s] that is not finite and above 0."""
+    if not (math.isfinite(dt) and dt > 0.0):
+        raise ParameterError(
+            f'time step of {dt} s', where='step', cure='give a finite one above 0'
+        )

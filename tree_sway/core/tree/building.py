@@ -1,0 +1,242 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+From segments in any order to a `Tree`: check, infer what is missing, group, order depth-first.
+
+The input is the paper's: start point, end point and thickness of each segment (Kanda & Ohya, 3.1).
+Parents may be given; if not, a segment sits on the one whose end node is where it starts. Branches
+may be given; if not, the thickest child that goes on from a segment's end continues its branch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.tree.parents_first import chain_starts, checked_order, first_of_each
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import TreeError
+
+MAX_COORDINATE = 1e8
+"""No map has coordinates beyond this [m]; a file with wrong columns soon does."""
+
+
+def tree_from_segments(
+    start: ArrayLike,
+    end: ArrayLike,
+    diameter: ArrayLike,
+    *,
+    parent: ArrayLike | None = None,
+    branch: ArrayLike | None = None,
+    branch_names: Sequence[str] | None = None,
+    name: str = 'tree',
+    species: str = 'broadleaf',
+    labels: Sequence[str] | None = None,
+) -> Tree:
+    """
+    Build a tree from its segments.
+
+    Parameters
+    ----------
+    start, end
+        Root-side and tip-side node of each segment in [m], (n, 3).
+    diameter
+        Diameter of each segment in [m], (n,), or at its start and end, (n, 2).
+    parent
+        Segment that each one sits on, -1 for the root, (n,); inferred from the nodes if None.
+    branch
+        Branch key of each segment, any integers, (n,); inferred if None. Segments of one branch
+        must be one chain.
+    branch_names
+        Names by sorted branch key; ``stem``, ``b1`` ... in depth-first order if None.
+    name, species
+        What the tree is called, and the key of its wood.
+    labels
+        How errors call each segment, for example ``line 12``; its number if None.
+
+    Returns
+    -------
+    Tree
+        With segments and branches in depth-first order.
+
+    Raises
+    ------
+    TreeError
+        Wrong shapes, numbers that are not finite, a segment of no length or no thickness, a
+        parent that does not exist, a cycle, more than one root, a branch that is not a chain.
+
+    """
+    starts, ends, diameters = (np.array(each, dtype=np.float64) for each in (start, end, diameter))
+    if diameters.ndim == 1:
+        diameters = np.stack([diameters, diameters], axis=1)
+    n = len(starts)
+    called = labels if labels is not None else [f'segment {index}' for index in range(n)]
+    _check_geometry(starts, ends, diameters, called)
+    if parent is None:
+        parents = _parents_by_nodes(starts, ends)
+    else:
+        parents = _integers(parent, n, 'parent')
+    depth_order = checked_order(parents, called)
+    for second in np.flatnonzero(parents == -1)[1:2]:
+        first = int(np.argmax(parents == -1))
+        raise TreeError(
+            f'{np.count_nonzero(parents == -1)} roots: a forest of trees that are not connected, '
+            'or orphans',
+            where=called[second],
+            cure=f'give it a parent, as only {called[first]} may stand on the ground, or make '
+            'each tree its own',
+        )
+    if branch is None:
+        continuations = _heirs(starts, ends, diameters, parents, depth_order)
+        keys = chain_starts(parents, continuations)
+    else:
+        keys = _integers(branch, n, 'branch')
+    chains = _chains(keys, parents, depth_order, called)
+    ordered = _depth_first(chains, parents)
+    if branch_names is None:
+        names = ['stem', *(f'b{number}' for number in range(1, len(chains)))]
+    elif len(branch_names) != len(chains):
+        raise TreeError(f'{len(branch_names)} branch names for {len(chains)} branches')
+    else:
+        names = [branch_names[number] for number in ordered]
+
+    order = np.concatenate([chains[number] for number in ordered])
+    position = np.empty(n, dtype=np.int64)
+    position[order] = np.arange(n)
+    segment_parent = np.where(parents[order] < 0, -1, position[parents[order]])
+    counts = [len(chains[number]) for number in ordered]
+    branch_first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    owner = np.repeat(np.arange(len(ordered)), counts)
+    base_parent = segment_parent[branch_first[:-1]]
+    branch_parent = np.where(base_parent < 0, -1, owner[base_parent]).astype(np.int64)
+    return Tree(
+        start=starts[order],
+        end=ends[order],
+        base_diameter=diameters[order, 0],
+        tip_diameter=diameters[order, 1],
+        segment_parent=segment_parent.astype(np.int64),
+        branch_first=branch_first,
+        branch_parent=branch_parent,
+        subtree_end=_subtree_end(branch_parent),
+        source_index=order.astype(np.int64),
+        branch_names=tuple(names),
+        name=name,
+        species=species,
+    )
+
+
+def _check_geometry(
+    starts: Floats, ends: Floats, diameters: Floats, labels: Sequence[str]
+) -> None:
+    n = len(starts)
+    if n == 0:
+        raise TreeError('a tree of no segments', cure='give at least one segment')
+    if starts.shape != (n, 3) or ends.shape != (n, 3) or diameters.shape != (n, 2):
+        raise TreeError(
+            f'start {starts.shape}, end {ends.shape} and diameter {diameters.shape} do not match',
+            cure='give (n, 3), (n, 3) and (n,) or (n, 2)',
+        )
+    check_numbers(np.hstack([starts, ends, diameters]), labels)
+    length = np.linalg.norm(ends - starts, axis=1)
+    for index in np.flatnonzero(length < 1e-9)[:1]:
+        raise TreeError(
+            f'zero length (start and end are both {starts[index].tolist()})',
+            where=labels[index],
+            cure='remove the segment or move its end',
+        )
+    for index in np.flatnonzero((diameters <= 0.0).any(axis=1))[:1]:
+        raise TreeError(
+            f'diameter {diameters[index].tolist()} m is not positive',
+            where=labels[index],
+            cure='give a diameter above 0; a pointed tip may be .0001',
+        )
+
+
+def check_numbers(rows: Floats, labels: Sequence[str]) -> None:
+    """Raise a `TreeError` for the first row (n, k) with what is not finite or no metres."""
+    for index in np.flatnonzero(~(np.abs(rows) <= MAX_COORDINATE).all(axis=1))[:1]:
+        what = 'too large for metres' if np.isfinite(rows[index]).all() else 'that is not finite'
+        raise TreeError(
+            f'a number {what}: {rows[index].tolist()}',
+            where=labels[index],
+            cure='check that the columns are what they should be, in metres',
+        )
+
+
+def _integers(values: ArrayLike, n: int, what: str) -> Ints:
+    array = np.asarray(values)
+    if array.shape != (n,) or not np.issubdtype(array.dtype, np.integer):
+        raise TreeError(f'{what} must be {n} integers, not {array.shape} of {array.dtype}')
+    return array.astype(np.int64)
+
+
+def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
+    """Sit each segment on the one whose end is nearest to its start, within 1e-4 of the size."""
+    from scipy.spatial import cKDTree  # it takes long to load, and most files name parents
+
+    extent = float(np.ptp(np.vstack([starts, ends]), axis=0).max())
+    # Two are asked for, as the end nearest to the start of a very short root is its own.
+    distance, index = cKDTree(ends).query(starts, k=2, distance_upper_bound=1e-4 * extent)
+    distance[index == np.arange(len(starts))[:, None]] = np.inf
+    nearest = np.argmin(distance, axis=1)[:, None]
+    found = np.isfinite(np.take_along_axis(distance, nearest, axis=1))
+    parents = np.where(found, np.take_along_axis(index, nearest, axis=1), -1)[:, 0]
+    return parents.astype(np.int64)
+
+
+def _heirs(
+    starts: Floats, ends: Floats, diameters: Floats, parents: Ints, depth_order: Ints
+) -> Ints:
+    """Return who goes on from each segment's end: the thickest, the straightest on a tie, (n,)."""
+    rank = np.empty(len(parents), dtype=np.int64)
+    rank[depth_order] = np.arange(len(parents))
+    axis = ends - starts
+    length = np.linalg.norm(axis, axis=1)
+    gap = np.linalg.norm(starts - ends[parents], axis=1)
+    may = np.flatnonzero((parents >= 0) & (gap <= 0.5 * length[parents]))
+    direction = axis[may] / length[may, None]
+    above = axis[parents[may]] / length[parents[may], None]
+    straight = np.array([one @ other for one, other in zip(direction, above, strict=True)])
+    return first_of_each(parents, may, -diameters[may, 0], -straight, rank[may])
+
+
+def _chains(keys: Ints, parents: Ints, depth_order: Ints, labels: Sequence[str]) -> list[Ints]:
+    """Segments of each branch from base to tip, in the order of keys."""
+    by_key = depth_order[np.argsort(keys[depth_order], kind='stable')]
+    has_predecessor = keys[by_key[1:]] == keys[by_key[:-1]]
+    broken = by_key[1:][has_predecessor & (parents[by_key[1:]] != by_key[:-1])]
+    for segment in depth_order[np.isin(depth_order, broken)][:1]:
+        raise TreeError(
+            f'branch {keys[segment]} is not one chain: the segment before is not its parent',
+            where=labels[segment],
+            cure='give the side shoot a branch of its own',
+        )
+    return np.split(by_key, np.flatnonzero(~has_predecessor) + 1)
+
+
+def _depth_first(chains: Sequence[Ints], parents: Ints) -> list[int]:
+    """Numbers of branches in depth-first order; siblings from base to tip of their parent."""
+    place, owner = np.empty(len(parents), dtype=np.int64), np.empty(len(parents), dtype=np.int64)
+    for number, chain in enumerate(chains):
+        place[chain], owner[chain] = np.arange(len(chain)), number
+    first = np.array([chain[0] for chain in chains])
+    children: dict[int, list[int]] = {}
+    for number in np.lexsort((first, place[parents[first]]))[::-1].tolist():
+        base = parents[first[number]]
+        children.setdefault(-1 if base < 0 else int(owner[base]), []).append(number)
+    ordered, stack = list[int](), children[-1]
+    while stack:
+        ordered.append(stack.pop())
+        stack.extend(children.get(ordered[-1], ()))
+    return ordered
+
+
+def _subtree_end(branch_parent: Ints) -> Ints:
+    end = np.arange(1, len(branch_parent) + 1, dtype=np.int64)
+    for branch in range(len(branch_parent) - 1, 0, -1):
+        its_parent = branch_parent[branch]
+        end[its_parent] = max(end[its_parent], end[branch])
+    return end

@@ -1,0 +1,68 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A tree with the species it is made of: what may stand where a tree is asked for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+import math
+from typing import Protocol, runtime_checkable
+
+from tree_sway.core.tree.species import Species, species_named, typical_root_stiffness
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError
+
+
+@runtime_checkable
+class GrownTree(Protocol):
+    """A tree with the species it is made of, as `open_tree` gives."""
+
+    @property
+    def tree(self) -> Tree:
+        """Return the segments."""
+
+    @property
+    def species(self) -> Species:
+        """Return the wood."""
+
+
+def tree_and_species(
+    tree: Tree | GrownTree, species: Species | None = None
+) -> tuple[Tree, Species]:
+    """
+    Return a tree and its species: the one that is given, else its own, else the table's.
+
+    Raises
+    ------
+    ParameterError
+        If one of the two is something else.
+    SpeciesError
+        A species that no table knows.
+
+    """
+    if not isinstance(tree, Tree):
+        if isinstance(tree, GrownTree):
+            return tree_and_species(tree.tree, tree.species if species is None else species)
+        raise ParameterError(
+            f'a {type(tree).__name__}, where a tree is asked for',
+            where='tree',
+            cure='give what open_tree, grow or tree_from_segments returns',
+        )
+    if species is None:
+        return tree, species_named(tree.species)
+    if not isinstance(species, Species):
+        raise ParameterError(
+            f'a {type(species).__name__}, where a Species is asked for',
+            where='species',
+            cure="leave it out or give species_named('oak'); settings go in as settings=...",
+        )
+    return tree, species
+
+
+def rooted(tree: Tree, species: Species) -> Species:
+    """Return the species with the roots of a grown tree's size, unless it has its own or a pot."""
+    if species.habit == 'pot' or math.isfinite(species.root_stiffness):
+        return species
+    stem = species.density * float(tree.volume[tree.segments_of(0)].sum())
+    # Three figures are more than is known of any soil.
+    return replace(species, root_stiffness=float(f'{typical_root_stiffness(stem):.3g}'))

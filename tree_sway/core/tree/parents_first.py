@@ -1,0 +1,69 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The order in which parents come before what they carry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.errors import TreeError
+
+
+def parents_first(parents: Iterable[int]) -> list[int]:
+    """
+    Order the numbers of a tree from its roots (negative parents) on, generation by generation.
+
+    Those that follow from no root, as they go in a circle, are left out.
+    """
+    children: dict[int, list[int]] = {}
+    for number, parent in enumerate(parents):
+        children.setdefault(max(parent, -1), []).append(number)
+    order = list(children.get(-1, ()))
+    for number in order:
+        order.extend(children.get(number, ()))
+    return order
+
+
+def checked_order(parents: ArrayLike, labels: Sequence[str]) -> Ints:
+    """
+    Order numbers as `parents_first`, all of them; labels are what an error calls each.
+
+    A `TreeError` reports a parent that does not exist, or a cycle.
+    """
+    above, n = np.asarray(parents, dtype=np.int64), len(labels)
+    for index in np.flatnonzero((above < -1) | (above >= n))[:1]:
+        raise TreeError(
+            f'orphan: its parent {above[index]} does not exist',
+            where=labels[index],
+            cure=f'name a parent from 0 to {n - 1}, or -1 for the root',
+        )
+    order = np.array(parents_first(above.tolist()), dtype=np.int64)
+    for lost in np.setdiff1d(np.arange(n), order)[:1]:
+        raise TreeError(
+            'cyclic: following its parents never reaches a root',
+            where=labels[lost],
+            cure='break the cycle; the root has no parent, or -1',
+        )
+    return order
+
+
+def first_of_each(parents: Ints, candidates: Ints, *ranks: Floats | Ints) -> Ints:
+    """Return the candidate of least rank on each parent, -1 where none is, (n,)."""
+    by_rank = candidates[np.lexsort((*ranks[::-1], parents[candidates]))]
+    found = np.full(len(parents), -1, dtype=np.int64)
+    above, first = np.unique(parents[by_rank], return_index=True)
+    found[above] = by_rank[first]
+    return found
+
+
+def chain_starts(parents: Ints, continuations: Ints) -> Ints:
+    """Return the first of the chain that each is in, along continuations, (n,)."""
+    number = np.arange(len(parents))
+    start = np.where((parents >= 0) & (continuations[parents] == number), parents, number)
+    while not np.array_equal(start[start], start):
+        start = start[start]
+    return start.astype(np.int64)

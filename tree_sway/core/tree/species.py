@@ -1,0 +1,91 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Species by name: the key of the table, or what else foresters, botanists and lists call it."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from tree_sway.core.tree.leaf_traits import BROAD_LEAVES, LeafTraits
+from tree_sway.core.tree.species_table import NAMES, SPECIES
+from tree_sway.core.tree.wood import Species
+from tree_sway.errors import nearest, SpeciesError
+
+__all__ = ['Species']
+
+_KEYS = {key.replace('_', ' '): key for key in SPECIES}
+_KEYS |= {name: key for key, names in NAMES.items() for name in names.split(', ')}
+_WORDS = [name for name in _KEYS if len(name) > 3]
+_CONIFEROUS = re.compile(r'conifer|nadel|cypress|cedar|yew|hemlock|redwood|(fir|pine|spruce)\b')
+
+
+def species_named(name: str) -> Species:
+    """
+    Look a species up by its key, or by a name or a genus of it, whatever the case.
+
+    Raises
+    ------
+    SpeciesError
+        If no species has that name; the error lists those that exist.
+
+    """
+    if not isinstance(name, str):
+        what = f'a {type(name).__name__}, where the name of a species is asked for'
+        raise SpeciesError(what, cure="give it as 'oak'")
+    if name in SPECIES:
+        return SPECIES[name]
+    words = re.findall(r'\w+', name.lower().replace('_', ' '))
+    for known in (' '.join(words), ' '.join(words[:2]), *words[:1]):
+        if known in _KEYS:
+            return SPECIES[_KEYS[known]]
+    cure = f'{nearest(name.lower(), _WORDS)} use one of: {", ".join(sorted(SPECIES))}'.lstrip()
+    raise SpeciesError(f"unknown species '{name}'", cure=cure)
+
+
+def species_like(name: str) -> tuple[Species, str]:
+    """
+    Look a species up; one that no table has is a conifer or a broadleaf of no known species.
+
+    Returns
+    -------
+    Species, str
+        The species, and what was assumed; empty if nothing was.
+
+    """
+    try:
+        return species_named(name), ''
+    except SpeciesError:
+        group = SPECIES['conifer' if _CONIFEROUS.search(name.lower()) else 'broadleaf']
+        guess = nearest(name.lower(), _WORDS)
+        return group, f"'{name[:40]}' is not in the table: taken as {group.title}; {guess}".rstrip(
+            '; '
+        )
+
+
+def species_keys() -> tuple[str, ...]:
+    """Keys of every species in the table."""
+    return tuple(SPECIES)
+
+
+def bark_color(key: str) -> tuple[float, float, float]:
+    """Colour of a species' bark; that of an average tree if the table does not have it."""
+    return SPECIES[key].bark if key in SPECIES else Species.bark
+
+
+def typical_root_stiffness(stem_mass: float) -> float:
+    """
+    Stiffness against tilting in [N m/rad] of the roots of a tree with a stem of a mass [kg].
+
+    Conifers go over at a moment in proportion to the mass of their stem (winching tests on near
+    2,000 trees: Nicoll et al. 2006), of 77 to 146 N m per kg in four species (Byrne 2005), of
+    which 120 is taken. They tilt by a quarter of a degree at 40 % of that (280 trees: Detter, Rust
+    & Krisans 2023, Forests 14, 533). Soils differ by a factor of two. That broadleaves are like
+    conifers is assumed.
+    """
+    return 0.4 * 120.0 * stem_mass / math.radians(0.25)
+
+
+def leaf_traits(key: str) -> LeafTraits:
+    """Leaves of a species; those of an average broadleaf if the table does not have it."""
+    return SPECIES[key].leaves if key in SPECIES else BROAD_LEAVES

@@ -1,0 +1,159 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The tree: read-only arrays of segments, grouped in branches, in depth-first order.
+
+Order is the data structure here. Segments of a branch are contiguous; branches are in
+depth-first order, so that a branch comes after its parent and everything it carries is one
+contiguous slice. Sums over subtrees are then one backward pass and joining from the root is one
+forward pass.
+
+Symbols: n segments, b branches. SI units; z points up, the frame is ENU (REP-103).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.tree.rest_frame import quaternions_from_x
+
+_Number = TypeVar('_Number', np.float64, np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """
+    A tree of straight segments; build it with `tree_from_segments`, which checks and orders.
+
+    Parameters
+    ----------
+    start, end
+        Root-side and tip-side node of each segment in [m], (n, 3).
+    base_diameter, tip_diameter
+        Diameter at the start and at the end of each segment in [m], (n,).
+    segment_parent
+        The segment each one sits on, -1 for the root, (n,).
+    branch_first
+        First segment of each branch, and n at the end, (b + 1,).
+    branch_parent
+        The branch each one sits on, -1 for the stem, (b,).
+    subtree_end
+        One past the last branch that each branch carries, (b,): branch i carries itself and
+        ``i + 1 .. subtree_end[i] - 1``.
+    source_index
+        Position of each segment in the input it was built from, (n,).
+    branch_names
+        One name per branch.
+    name, species
+        What the tree is called, and the key of its wood in the species table.
+
+    """
+
+    start: Floats
+    end: Floats
+    base_diameter: Floats
+    tip_diameter: Floats
+    segment_parent: Ints
+    branch_first: Ints
+    branch_parent: Ints
+    subtree_end: Ints
+    source_index: Ints
+    branch_names: tuple[str, ...]
+    name: str = 'tree'
+    species: str = 'broadleaf'
+
+    def __post_init__(self) -> None:
+        """Keep every array read-only; one that others may write is copied."""
+        for name, value in list(vars(self).items()):
+            if isinstance(value, np.ndarray) and value.flags.writeable:
+                object.__setattr__(self, name, _read_only(value.copy()))
+
+    @property
+    def n_segments(self) -> int:
+        """Return the number of segments."""
+        return len(self.start)
+
+    @property
+    def n_branches(self) -> int:
+        """Return the number of branches."""
+        return len(self.branch_parent)
+
+    @cached_property
+    def length(self) -> Floats:
+        """Length of each segment in [m], (n,)."""
+        return _read_only(np.linalg.norm(self.end - self.start, axis=1))
+
+    @cached_property
+    def direction(self) -> Floats:
+        """Return the unit vector along each segment at rest, (n, 3)."""
+        return _read_only((self.end - self.start) / self.length[:, None])
+
+    @cached_property
+    def rest_frame(self) -> Floats:
+        """Frame of each segment at rest as a quaternion w x y z (`quaternions_from_x`), (n, 4)."""
+        return _read_only(quaternions_from_x(self.direction))
+
+    @cached_property
+    def place_on_parent(self) -> Floats:
+        """
+        Where each segment sits along its parent: 0 its start, 1 its end, and the root's, (n,).
+
+        It is the foot of the perpendicular from the start of the segment onto the parent, within
+        its ends.
+        """
+        parent = self.segment_parent
+        chord = self.end[parent] - self.start[parent]
+        along = np.einsum('ij,ij->i', self.start - self.start[parent], chord)
+        place = np.clip(along / self.length[parent] ** 2, 0.0, 1.0)
+        return _read_only(np.where(parent < 0, 1.0, place))
+
+    @cached_property
+    def branch_of_segment(self) -> Ints:
+        """Branch of each segment, (n,)."""
+        counts = np.diff(self.branch_first)
+        return _read_only(np.repeat(np.arange(self.n_branches, dtype=np.int64), counts))
+
+    @cached_property
+    def branch_length(self) -> Floats:
+        """Length of each branch along its segments in [m], (b,)."""
+        return _read_only(np.add.reduceat(self.length, self.branch_first[:-1]))
+
+    @property
+    def rest_poses(self) -> Floats:
+        """Poses at rest, bit for bit as the solver's: x y z, quaternion x y z w, (n, 7)."""
+        return np.hstack([self.start, self.rest_frame[:, [1, 2, 3, 0]]])
+
+    @cached_property
+    def volume(self) -> Floats:
+        """Volume of each segment, a conical frustum, in [m^3], (n,)."""
+        d0, d1 = self.base_diameter, self.tip_diameter
+        return _read_only(np.pi / 12.0 * self.length * (d0 * d0 + d0 * d1 + d1 * d1))
+
+    @property
+    def height(self) -> float:
+        """Highest node above the root node in [m]."""
+        return float(max(self.end[:, 2].max(), self.start[:, 2].max()) - self.start[0, 2])
+
+    @property
+    def segment_names(self) -> tuple[str, ...]:
+        """Name of each segment: its branch's name and its place in it, as ``stem/3``."""
+        return tuple(
+            f'{name}/{i}'
+            for branch, name in enumerate(self.branch_names)
+            for i in range(int(self.branch_first[branch + 1] - self.branch_first[branch]))
+        )
+
+    def segments_of(self, branch: int) -> slice:
+        """Slice of the segments of a branch."""
+        return slice(int(self.branch_first[branch]), int(self.branch_first[branch + 1]))
+
+
+def _read_only(array: NDArray[_Number]) -> NDArray[_Number]:
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,77 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What a tree is made of: wood, damping, drag and leaves of a species."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+import math
+
+from tree_sway.core.tree.leaf_traits import BROAD_LEAVES, LeafTraits
+
+
+@dataclass(frozen=True)
+class Species:
+    """
+    Wood, damping, drag, leaves and habit of a species.
+
+    Parameters
+    ----------
+    key, title
+        Name in the table and name for people.
+    modulus
+        Young's modulus of green wood in [Pa].
+    density
+        Density of green wood in [kg/m^3].
+    damping_bare, damping_in_leaf
+        Damping ratio without and with leaves in [-]; air drag on moving branches comes on top.
+    drag_coefficient
+        C of the drag law Cd = C U^-N in leaf, U in [m/s].
+    drag_exponent
+        N of the drag law in [-]: how much the crown streamlines.
+    bare_drag_coefficient
+        Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, 0.82 to
+        1.2.
+    shear_ratio
+        Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood
+        is nearer to 1/14 (Forest Products Laboratory, Wood Handbook, 2010), which softens the
+        twist of stems alone.
+    root_stiffness
+        Stiffness of the roots against tilting of the stem in [N m/rad]; infinite where they do not
+        give way. Belongs to one tree; `typical_root_stiffness` gives that of a size.
+    leaves
+        Its leaves; evergreen ones are there unless a simulator is set otherwise.
+    bark
+        Colour of its bark in pictures, red, green and blue from 0 to 1.
+    habit
+        How `grow` shapes it: ``conifer``, ``broadleaf`` or ``pot``.
+    is_estimate
+        True where modulus or density is a guess to be calibrated.
+
+    """
+
+    key: str
+    title: str
+    modulus: float
+    density: float
+    damping_bare: float = 0.04
+    damping_in_leaf: float = 0.10
+    drag_coefficient: float = 1.2
+    drag_exponent: float = 0.0
+    bare_drag_coefficient: float = 1.2
+    shear_ratio: float = 1.0 / 14.0
+    root_stiffness: float = math.inf
+    leaves: LeafTraits = BROAD_LEAVES
+    bark: tuple[float, float, float] = (0.36, 0.28, 0.22)
+    habit: str = 'broadleaf'
+    is_estimate: bool = False
+
+    def damping(self, in_leaf: bool) -> float:
+        """Return the damping ratio with or without leaves in [-]."""
+        return self.damping_in_leaf if in_leaf else self.damping_bare
+
+    def drag_law(self, in_leaf: bool) -> tuple[float, float]:
+        """Return C and N of ``Cd = C U^-N``; bare branches do not streamline."""
+        if in_leaf:
+            return self.drag_coefficient, self.drag_exponent
+        return self.bare_drag_coefficient, 0.0

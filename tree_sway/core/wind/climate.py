@@ -1,0 +1,168 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The wind of the last while as a choice of model needs it: how its load swings, and how fast.
+
+A load goes with ``|U| U``, up and down too. Of a wind that is only described its mean and
+covariance are known, spread over frequencies as von Karman's longitudinal spectrum of the wind's
+integral time (von Karman, 1948). A wind that was measured has a spectrum of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.wind.simulated.spectra import von_karman_spectrum
+
+
+@dataclass(frozen=True)
+class WindClimate:
+    """
+    Statistics of ``|U| U``.
+
+    Parameters
+    ----------
+    mean
+        In [m^2/s^2], (3,).
+    covariance
+        In [m^4/s^4], (3, 3).
+    speed
+        Mean speed in [m/s].
+    integral_time
+        How long a gust lasts in [s], of a wind that is only described.
+    record, rate
+        ``|U| U`` as it was measured in [m^2/s^2], (n, 3), and how often in [Hz]; None if it was
+        not.
+
+    """
+
+    mean: Floats
+    covariance: Floats
+    speed: float
+    integral_time: float = 5.0
+    record: Floats | None = None
+    rate: float = 1.0
+
+    @staticmethod
+    def steady(
+        mean_speed: float, intensity: float, bearing: float = 0.0, integral_time: float = 5.0
+    ) -> WindClimate:
+        """
+        Take a wind that is only described: a mean [m/s] towards a bearing from x to y in [rad].
+
+        The intensity is that along the wind; across it 0.8 of that is taken, upwards 0.5 (IEC
+        61400-1). A gust lasts for the integral time [s].
+        """
+        along = np.array([math.cos(bearing), math.sin(bearing), 0.0])
+        across = np.array([-along[1], along[0], 0.0])
+        square, sigma = mean_speed**2, intensity * mean_speed
+        covariance = (2.0 * mean_speed * sigma) ** 2 * np.outer(along, along)
+        covariance += (0.8 * mean_speed * sigma) ** 2 * np.outer(across, across)
+        covariance[2, 2] += (0.5 * mean_speed * sigma) ** 2
+        return WindClimate(
+            square * (1.0 + intensity**2) * along, covariance, mean_speed, integral_time
+        )
+
+    @staticmethod
+    def of_samples(velocity: Floats, rate: float) -> WindClimate:
+        """Take a wind that is known in [m/s], (n, 3), at a rate in [Hz]."""
+        speed = np.linalg.norm(velocity, axis=1)
+        return _of_loads(speed[:, None] * velocity, float(speed.mean()), rate)
+
+    def power(self, frequencies: Floats) -> Floats:
+        """
+        Mean square of the load's swings [m^4/s^4], (f, 3, 3), at frequencies [Hz] from 0, (f,).
+
+        A record is taken alone, with calm before and after it, so that what sets in with it is
+        counted too: what a linear model answers to this power is no less than the mean square of
+        its motion from rest in that time (Parseval's theorem).
+        """
+        if self.record is None:
+            spans = np.gradient(frequencies)
+            spans[[0, -1]] *= 0.5
+            density = von_karman_spectrum(frequencies, 1.0, 1.0, self.integral_time)
+            return np.multiply.outer(density * spans, self.covariance)
+        n = len(self.record)
+        lines = np.fft.rfft(self.record, 2 * n, axis=0)
+        lines[1:-1] *= math.sqrt(2.0)
+        squares = np.einsum('fi,fj->ijf', lines.conj(), lines).real / (2 * n * n)
+        below, share = _between(np.arange(n + 1) * self.rate / (2 * n), frequencies)
+        power = np.empty((len(frequencies), 3, 3))
+        for i, j in np.ndindex(3, 3):
+            power[:, i, j] = np.bincount(below, (1.0 - share) * squares[i, j], len(power))
+            power[:, i, j] += np.bincount(below + 1, share * squares[i, j], len(power))
+        mean = self.record.mean(axis=0)
+        power[0] -= np.outer(mean, mean)
+        return power
+
+
+class ClimateTracker:
+    """The wind as it comes, in cells of even length, remembered for ``memory`` [s]."""
+
+    def __init__(self, memory: float = 60.0) -> None:
+        """Start with no wind."""
+        self._memory = memory
+        self._cells = np.zeros((round(memory * _RATE), 4))
+        self._count = 0
+        self._x = self._y = self._z = self._way = self._open = 0.0
+
+    def add(self, wind: Floats, dt: float) -> None:
+        """Take in the wind [m/s] of a step of dt [s]; plain numbers, as it is done every step."""
+        u, v, w = wind.tolist()
+        speed, left = math.sqrt(u * u + v * v + w * w), min(dt, self._memory)
+        while left > 0.0:
+            part = min(left, 1.0 / _RATE - self._open)
+            self._x += part * speed * u
+            self._y += part * speed * v
+            self._z += part * speed * w
+            self._way += part * speed
+            self._open += part
+            left -= part
+            if self._open > (1.0 - 1e-9) / _RATE:
+                self._cells[self._count % len(self._cells)] = self._cell
+                self._count += 1
+                self._x = self._y = self._z = self._way = self._open = 0.0
+
+    @property
+    def climate(self) -> WindClimate:
+        """Return what is remembered."""
+        cells = np.roll(self._cells, -self._count, axis=0)[max(-self._count, -len(self._cells)) :]
+        cells = cells if self._count else cells[:0]
+        if self._open > 0.0 or not len(cells):
+            cells = np.vstack([cells, self._cell])
+        return _of_loads(cells[:, :3], float(cells[:, 3].mean()), _RATE)
+
+    @property
+    def largest_load(self) -> float:
+        """Largest ``|U| U`` of a cell that is remembered in [m^2/s^2]."""
+        return float(np.linalg.norm(self._cells[:, :3], axis=1).max())
+
+    @property
+    def _cell(self) -> tuple[float, float, float, float]:
+        """Means of the cell that is open."""
+        time = max(self._open, 1e-12)
+        return self._x / time, self._y / time, self._z / time, self._way / time
+
+
+_RATE = 20.0
+"""Cells per second in [Hz]."""
+
+
+def _of_loads(loads: Floats, speed: float, rate: float) -> WindClimate:
+    mean = loads.mean(axis=0)
+    around = loads - mean
+    return WindClimate(
+        mean, around.T @ around / len(loads), speed, record=np.ascontiguousarray(loads), rate=rate
+    )
+
+
+def _between(lines: Floats, frequencies: Floats) -> tuple[Ints, Floats]:
+    """Which frequency is next below each line, (k,), and how far it is towards the one above."""
+    below = np.searchsorted(frequencies, lines, side='right') - 1
+    below = np.minimum(below, len(frequencies) - 2)
+    low, high = frequencies[below], frequencies[below + 1]
+    return below, np.minimum((lines - low) / (high - low), 1.0)

@@ -1,0 +1,234 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Gusts travel: a tree feels the wind of the anemometer as long ago as it takes from there.
+
+Turbulence is carried along by the mean wind and changes little on the way (Taylor 1938), so a tree
+at x feels ``U(t - x . w / Uc)``: w is the direction of the mean wind and Uc the speed at which
+gusts travel, the mean speed itself over open ground and up to 1.8 of it over a closed canopy
+(Raupach, Finnigan & Brunet 1996). Waves that run through a stand follow from that alone.
+
+The wind is kept as its run, the displacement of the air since the start, at the end of every step:
+the mean over any span is then the difference of two runs over the span. As the mean wind turns or
+freshens, delays follow so slowly that for every tree time goes on.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import three_numbers, within
+from tree_sway.core.kernel import kernel
+from tree_sway.errors import ParameterError
+
+SLOWEST_GUST = 0.5
+"""
+Mean speed in [m/s] below which no gusts are taken to travel: delays then die down with the wind.
+
+"""
+
+LARGEST_STRETCH = 0.5
+"""Most that the delay of a tree changes per second, in [s/s]."""
+
+
+class GustHistory:
+    """
+    The wind of the last minute, and what of it each place feels now.
+
+    Parameters
+    ----------
+    places
+        Where wind is felt in [m], (t, 3); heights do not matter.
+    anemometer
+        Where it is measured in [m], (3,), best upwind of all: a tree cannot feel what has not been
+        measured, so one upwind of the anemometer feels the wind at once, which is reported in
+        `n_ahead`. If None, at the place that the mean wind reaches first, whichever way it blows.
+    convection_ratio
+        Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
+        everywhere.
+    averaging_time
+        Time constant of the mean wind in [s].
+    memory
+        Longest delay in [s].
+    capacity
+        Times kept. Steps shorter than a part of ``memory`` are joined, so that the history is that
+        long whatever the rate: the default keeps every step of 60 s at up to 500 steps per second.
+
+    Raises
+    ------
+    ParameterError
+        If a place is not finite or a value is out of its range.
+
+    """
+
+    def __init__(
+        self,
+        places: ArrayLike,
+        anemometer: ArrayLike | None = None,
+        *,
+        convection_ratio: float = 1.0,
+        averaging_time: float = 60.0,
+        memory: float = 60.0,
+        capacity: int = 1 << 15,
+    ) -> None:
+        """Allocate the history; nothing is allocated later."""
+        points = np.array(places, dtype=np.float64).reshape(-1, 3)
+        if not np.isfinite(points).all():
+            raise ParameterError('a place that is not finite', where='places', cure='give metres')
+        self._from_first = anemometer is None
+        origin = np.zeros(3) if anemometer is None else three_numbers('anemometer', anemometer)
+        self._along = points[:, :2] - np.array(origin)[:2]
+        self._ratio = within('convection_ratio', convection_ratio, 0.1, math.inf)
+        self._averaging = within('averaging_time', averaging_time, 0.0, 3600.0, 's', above=True)
+        self._memory = within('memory', memory, 0.0, 600.0, 's')
+        self._run = np.zeros((int(within('capacity', capacity, 8, 1e6)), 4))
+        # Two times that follow each other are together longer than this, so that all are longer
+        # than the memory and the steps at its ends.
+        self._finest = 2.0 * self._memory / (len(self._run) - 4)
+        self._at = np.zeros(2, dtype=np.int64)
+        self._mean = np.zeros(3)
+        self._wanted, self._delay = np.zeros((2, len(points)))
+        self._felt = np.zeros((len(points), 3))
+
+    @property
+    def delay(self) -> Floats:
+        """Age of the wind that each place feels in [s], (t,)."""
+        return self._delay
+
+    @property
+    def n_ahead(self) -> int:
+        """Places that stand upwind of the anemometer, by more than the wind travels in 0.1 s."""
+        return int((self._wanted < -0.1).sum())
+
+    @property
+    def n_forgotten(self) -> int:
+        """Places too far downwind for the length of the history: they feel its oldest wind."""
+        return int((self._wanted > self._memory).sum())
+
+    @property
+    def mean(self) -> Floats:
+        """Mean wind that delays follow in [m/s], (2,)."""
+        return self._mean[:2]
+
+    def push(self, wind_mean: ArrayLike, dt: float) -> Floats:
+        """
+        Take the mean wind (3,) of a step of dt [s] at the anemometer in [m/s]; find each place's.
+
+        It is (t, 3), the same array each time. Raises a `ParameterError` for a number that is not
+        finite, or a step that is not above 0.
+        """
+        x, y, z = three_numbers('wind', wind_mean)
+        if not (math.isfinite(x + y + z) and math.isfinite(dt) and dt > 0.0):
+            raise ParameterError(
+                f'wind ({x}, {y}, {z}) m/s over {dt} s', cure='give finite numbers'
+            )
+        remember(self._run, self._at, self._finest, x, y, z, dt)
+        follow_mean(self._mean, x, y, dt, self._averaging)
+        _feel(
+            self._run, self._at, self._along, self._from_first, self._mean, self._ratio,
+            self._memory,
+            x, y, z, dt, self._wanted, self._delay, self._felt,
+        )  # fmt: skip
+        return self._felt
+
+    def reset(self) -> None:
+        """Forget the wind."""
+        self._at[:] = 0
+        self._mean[:] = 0.0
+        self._wanted[:] = self._delay[:] = 0.0
+        self._felt[:] = 0.0
+
+
+@kernel
+def remember(
+    run: Floats, at: NDArray[np.int64], finest: float, x: float, y: float, z: float, dt: float
+) -> None:
+    """Write time and run of the wind at the end of the step; the ring begins with its start."""
+    size = len(run)
+    if at[1] == 0:
+        run[0] = 0.0
+        at[0], at[1] = 0, 1
+    last = run[at[0]]
+    if at[1] > 2 and last[0] + dt - run[(at[0] - 1) % size, 0] <= finest:
+        last[0] += dt
+        last[1] += x * dt
+        last[2] += y * dt
+        last[3] += z * dt
+        return
+    head = at[0] + 1
+    if head == size:
+        # Counted from zero again, lest the numbers grow with the days.
+        for k in range(4):
+            origin = last[k]
+            for i in range(size):
+                run[i, k] -= origin
+        head = 0
+    last = run[at[0]]
+    t, rx, ry, rz = last[0] + dt, last[1] + x * dt, last[2] + y * dt, last[3] + z * dt
+    run[head, 0], run[head, 1], run[head, 2], run[head, 3] = t, rx, ry, rz
+    at[0], at[1] = head, min(at[1] + 1, size)
+
+
+@kernel
+def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -> None:
+    """Take a plain mean while there is little wind, then a running one; its span is beside it."""
+    mean[2] = min(mean[2] + dt, max(averaging, dt))
+    weight = dt / mean[2]
+    mean[0] += weight * (x - mean[0])
+    mean[1] += weight * (y - mean[1])
+
+
+@kernel
+def _feel(
+    run: Floats, at: NDArray[np.int64], along: Floats, from_first: bool, mean: Floats,
+    ratio: float,
+    memory: float, x: float, y: float, z: float, dt: float, wanted: Floats, delay: Floats,
+    felt: Floats,
+) -> None:  # fmt: skip
+    """Let delays follow the mean wind; average the history over each place's own step."""
+    now = run[at[0], 0]
+    speed = max(math.hypot(mean[0], mean[1]), SLOWEST_GUST)
+    first = math.inf if from_first else 0.0
+    for i in range(len(along)):
+        wanted[i] = (along[i, 0] * mean[0] + along[i, 1] * mean[1]) / (ratio * speed * speed)
+        if from_first:
+            first = min(first, wanted[i])
+    for i in range(len(along)):
+        wanted[i] -= first
+        before = delay[i]
+        most = LARGEST_STRETCH * dt
+        goal = min(max(wanted[i], 0.0), memory)
+        if at[1] == 2:
+            # The first step: nothing to be gentle with.
+            before = delay[i] = goal
+        else:
+            delay[i] = min(max(goal, before - most), before + most)
+        if before == 0.0 and delay[i] == 0.0:
+            felt[i, 0], felt[i, 1], felt[i, 2] = x, y, z
+            continue
+        begin, end = now - dt - before, now - delay[i]
+        bx, by, bz = run_until(run, at, begin)
+        ex, ey, ez = run_until(run, at, end)
+        span = end - begin
+        felt[i, 0], felt[i, 1], felt[i, 2] = (ex - bx) / span, (ey - by) / span, (ez - bz) / span
+
+
+@kernel
+def run_until(run: Floats, at: NDArray[np.int64], time: float) -> tuple[float, float, float]:
+    """Run of the wind at a time; before the history begins it blew as in its first step."""
+    size, count = len(run), at[1]
+    oldest = at[0] - count + 1
+    low, high = 0, count - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if run[(oldest + middle) % size, 0] <= time:
+            low = middle
+        else:
+            high = middle
+    a, b = run[(oldest + low) % size], run[(oldest + high) % size]
+    u = (time - a[0]) / (b[0] - a[0])
+    return a[1] + u * (b[1] - a[1]), a[2] + u * (b[2] - a[2]), a[3] + u * (b[3] - a[3])

@@ -1,0 +1,86 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Wind over height: what an anemometer at one height says of the wind at another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.errors import ParameterError
+
+PROFILES = ('none', 'power', 'log')
+"""Kinds of profile."""
+
+
+@dataclass(frozen=True)
+class WindProfile:
+    """
+    Mean wind speed by height.
+
+    Parameters
+    ----------
+    kind
+        ``none`` (the same at every height), ``power`` (U ~ z^p) or ``log`` (U ~ ln(z / z0)).
+    anemometer_height
+        Height of the anemometer over the ground in [m].
+    exponent
+        p of the power law in [-]; 0.14 over open ground, 0.25 and more between trees (Davenport,
+        1960).
+    roughness
+        z0 of the log law in [m]; 0.03 over grass, 0.5 and more between trees.
+    ground
+        Height of the ground in the tree's frame in [m].
+
+    """
+
+    kind: str = 'none'
+    anemometer_height: float = 10.0
+    exponent: float = 0.14
+    roughness: float = 0.03
+    ground: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what has no wind."""
+        if self.kind not in PROFILES:
+            raise ParameterError(
+                f"unknown wind profile '{self.kind}'", cure=f'use one of: {", ".join(PROFILES)}'
+            )
+        if not self.anemometer_height > 0.0:
+            raise ParameterError(
+                f'anemometer height {self.anemometer_height} m', cure='give one above 0'
+            )
+        if self.kind == 'log' and not 0.0 < self.roughness < self.anemometer_height:
+            raise ParameterError(
+                f'roughness length {self.roughness} m with an anemometer at '
+                f'{self.anemometer_height} m',
+                cure='give one above 0 and below the anemometer',
+            )
+
+    def over_anemometer(self, z: Floats) -> Floats:
+        """
+        Wind speed over that at the anemometer.
+
+        Parameters
+        ----------
+        z
+            Heights in the tree's frame in [m], any shape.
+
+        Returns
+        -------
+        Floats
+            Of the same shape, in [-]; 0 at the ground and below but for kind ``none``.
+
+        """
+        height = np.maximum(np.asarray(z, dtype=np.float64) - self.ground, 0.0)
+        if self.kind == 'none':
+            return np.ones_like(height)
+        if self.kind == 'power':
+            power: Floats = (height / self.anemometer_height) ** self.exponent
+            return power
+        above = np.maximum(height / self.roughness, 1.0)
+        logarithm: Floats = np.log(above) / math.log(self.anemometer_height / self.roughness)
+        return logarithm

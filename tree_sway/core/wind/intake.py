@@ -1,0 +1,75 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The one way in for samples of wind: units and sign, then the gate, then the force plane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.wind.convention import WindConvention
+from tree_sway.core.wind.gate import GateCounts, WindGate
+from tree_sway.core.wind.limits import FASTEST_WIND
+
+
+class GoodWind(NamedTuple):
+    """
+    A good sample: its time [ns], after that before, and the velocity to which it blows.
+
+    That is ENU in [m/s], on the force plane, (3,).
+    """
+
+    time: int
+    velocity: Floats
+
+
+@dataclass
+class WindIntake:
+    """
+    Reads samples as a source sends them and keeps the good ones.
+
+    The convention says what the numbers of the source mean, and may be replaced between samples;
+    None where they are velocities on the force plane already. The gate judges them before that
+    projection.
+    """
+
+    convention: WindConvention | None = None
+    gate: WindGate = field(default_factory=WindGate)
+
+    @staticmethod
+    def of_velocities() -> WindIntake:
+        """Return the intake of what was judged before: it keeps times in order, numbers finite."""
+        return WindIntake(gate=WindGate(max_speed=FASTEST_WIND, max_rate=1e4))
+
+    @property
+    def counts(self) -> GateCounts:
+        """Return what was accepted and refused, by reason."""
+        return self.gate.counts
+
+    def offer(
+        self,
+        stamp: int,
+        components: tuple[float, float, float],
+        arrival: int | None = None,
+        *,
+        lead: int = 0,
+        rotation: Floats | None = None,
+    ) -> GoodWind | None:
+        """
+        Take a sample, (3,), in the source's axes, unit and sign; None if refused, and counted.
+
+        Times are as for `WindGate.offer`; the rotation (3, 3) is from the source's frame into the
+        trees'.
+        """
+        reads = self.convention
+        velocity = np.array(components) if reads is None else reads.velocity(*components)
+        if rotation is not None and np.abs(velocity).max() <= FASTEST_WIND:  # else it is refused
+            velocity = rotation @ velocity
+        verdict = self.gate.offer(stamp, velocity, arrival, lead=lead)
+        if not verdict.accepted:
+            return None
+        good = np.array(verdict.wind)
+        return GoodWind(verdict.time, good if reads is None else reads.project(good))

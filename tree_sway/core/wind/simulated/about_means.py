@@ -1,0 +1,83 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The wind within means over a minute or an hour: turbulence drawn about them.
+
+A station reports means over an interval and the largest gust in it, a mean over 3 s (WMO Guide to
+Instruments, 5.8). The turbulence that is drawn is scaled so that its own largest 3 s of intervals
+are, in the mean, as far above the mean as the gusts that were reported; without gusts its
+deviation is that of IEC 61400-1. It keeps the means: what it would add to one is taken off.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.wind.simulated.turbulence import Turbulence
+
+RATE = 10.0
+"""Largest rate of the wind in [Hz]."""
+LEAST_INTERVAL = 20.0
+"""Samples this far apart [s] are means; closer ones are the wind itself."""
+_MOST, _LEAST_RATE = 4_000_000, 2.0
+_GUST = 3.0
+
+
+def can_be_filled(duration: float) -> bool:
+    """Whether a record of a duration [s] has room for turbulence."""
+    return duration * _LEAST_RATE <= _MOST
+
+
+def turbulence_about_means(
+    time: Floats, mean: Floats, gust: Floats | None, rng: np.random.Generator
+) -> tuple[Floats, Floats]:
+    """
+    Draw turbulence about means of the wind.
+
+    Parameters
+    ----------
+    time, mean
+        Time of each mean [s], increasing, (n,), and where the wind blows to, east, north, up
+        [m/s], (n, 3), n at least 2.
+    gust
+        Largest speed in each interval [m/s], (n,), NaN where none is reported; or None.
+    rng
+        Source of the turbulence.
+
+    Returns
+    -------
+    tuple
+        Times [s], (m,), and velocities [m/s], (m, 3).
+
+    """
+    duration = float(time[-1] - time[0])
+    rate = min(RATE, _MOST / duration)
+    fine = time[0] + np.arange(math.floor(duration * rate) + 1) / rate
+    level = np.hypot(mean[:, 0], mean[:, 1])
+    deviation = 0.14 * (0.75 * level + 5.6) * np.minimum(level, 1.0)
+    between = np.stack([np.interp(fine, time, column) for column in mean.T], axis=1)
+    typical = min(max(float(level.mean()), 1.0), 40.0)
+    whole = max(len(fine), math.ceil(600.0 * rate))
+    drawn = Turbulence(typical, intensity=1.0 / typical).record(whole, rate, rng)[: len(fine)]
+    # Means of what was drawn over the interval about each sample, so that those reported stay.
+    nearest = np.searchsorted(0.5 * (time[1:] + time[:-1]), fine)
+    count = np.maximum(np.bincount(nearest, minlength=len(time)), 1)
+    for column in drawn.T:
+        about = np.bincount(nearest, weights=column, minlength=len(time)) / count
+        column -= np.interp(fine, time, about)
+    if gust is not None:
+        within = max(round(_GUST * rate), 1)
+        smooth = np.convolve(drawn[:, 0], np.full(within, 1.0 / within), 'same')
+        largest = np.maximum.reduceat(smooth, np.unique(nearest, return_index=True)[1])
+        above = np.maximum(gust - level, 0.0) / max(float(largest.mean()), 0.5)
+        deviation = np.where(np.isfinite(gust), above, deviation)
+    drawn *= np.interp(fine, time, deviation)[:, None]
+    heading = np.arctan2(between[:, 1], between[:, 0])
+    cosine, sine = np.cos(heading), np.sin(heading)
+    between[:, 0] += cosine * drawn[:, 0] - sine * drawn[:, 1]
+    between[:, 1] += sine * drawn[:, 0] + cosine * drawn[:, 1]
+    between[:, 2] += drawn[:, 2]
+    return fine, between

@@ -1,0 +1,171 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A gust, step or turn of the wind as data: what happens, when, and how often.
+
+Speeds add along the wind in [m/s]; angles turn it about the vertical in [rad], counter-clockwise
+seen from above (REP-103). Gusts pass; steps and turns last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tree_sway.core.checks import within
+from tree_sway.errors import ParameterError
+
+Floats = NDArray[np.float64]
+
+_LARGEST_SPEED, _LARGEST_ANGLE, _LONGEST = 100.0, 1e3, 1e6
+
+
+class _Shape(NamedTuple):
+    """Share of the amplitude at a share x of the duration; whether it turns the wind, lasts."""
+
+    share: Callable[[Floats], Floats]
+    is_turn: bool = False
+    lasts: bool = False
+
+
+_SHAPES = {
+    # A 1-cos gust, at its peak halfway: IEC 61400-1:2005, 6.3.2.
+    'one_minus_cos': _Shape(lambda x: 0.5 * (1.0 - np.cos(2.0 * np.pi * x))),
+    # A dip, a peak of 0.74, a dip: 6.3.2.2, where the amplitude is 3.3 s / (1 + 0.1 D / Lambda1).
+    'extreme_operating_gust': _Shape(
+        lambda x: -0.37 * np.sin(3.0 * np.pi * x) * (1.0 - np.cos(2.0 * np.pi * x))
+    ),
+    'step': _Shape(lambda x: x, lasts=True),
+    # 6.3.2.4, where the angle is 4 atan(s / (U (1 + 0.1 D / Lambda1))).
+    'direction_change': _Shape(lambda x: 0.5 * (1.0 - np.cos(np.pi * x)), True, True),
+    'turn': _Shape(lambda x: x, True, True),
+}
+EVENT_KINDS = tuple(_SHAPES)
+
+
+def gust(
+    kind: str, time: ArrayLike, amplitude: float, duration: float, start: float = 0.0
+) -> Floats:
+    """
+    Return the speed that a gust adds in [m/s], or the angle that a turn turns by in [rad].
+
+    Parameters
+    ----------
+    kind
+        One of `EVENT_KINDS`.
+    time
+        Times in [s], any shape.
+    amplitude
+        Speed in [m/s], negative for a lull, or angle in [rad]; more than 2 pi goes round.
+    duration
+        Duration in [s]; of a step the time over which it rises, linearly, which may be 0.
+    start
+        Time it begins in [s].
+
+    Returns
+    -------
+    Floats
+        The shape of `time`.
+
+    Raises
+    ------
+    ParameterError
+        If the kind is unknown or a value is out of its range.
+
+    """
+    if kind not in _SHAPES:
+        raise ParameterError(
+            f"unknown event '{kind}'",
+            where='gust event',
+            cure=f'use one of: {", ".join(EVENT_KINDS)}',
+        )
+    shape = _SHAPES[kind]
+    largest, unit = (_LARGEST_ANGLE, 'rad') if shape.is_turn else (_LARGEST_SPEED, 'm/s')
+    name = 'angle' if shape.is_turn else 'amplitude'
+    size = within(name, amplitude, -largest, largest, unit)
+    span = within('duration', duration, 0.0, _LONGEST, 's', above=kind != 'step')
+    begin = within('start', start, -_LONGEST, _LONGEST, 's')
+    elapsed = np.asarray(time, dtype=np.float64) - begin
+    if span == 0.0:
+        return np.where(elapsed >= 0.0, size, 0.0)
+    return np.asarray(size * shape.share(np.clip(elapsed / span, 0.0, 1.0)))
+
+
+@dataclass(frozen=True)
+class GustEvent:
+    """
+    One event of the wind.
+
+    Parameters
+    ----------
+    kind
+        ``one_minus_cos``, ``extreme_operating_gust``, ``step`` (speeds), ``direction_change`` or
+        ``turn`` (angles).
+    amplitude, duration, start
+        As of `gust`.
+    every
+        Time after which it happens again in [s], at least `duration`; 0 for once. What lasts
+        (step, direction change, turn) goes back every second time.
+
+    Raises
+    ------
+    ParameterError
+        If the kind is unknown or a value is out of its range.
+
+    """
+
+    kind: str
+    amplitude: float
+    duration: float
+    start: float = 0.0
+    every: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what the shape itself refuses, and repeats that overlap."""
+        gust(self.kind, 0.0, self.amplitude, self.duration, self.start)
+        if self.every != 0.0:
+            within('every', self.every, self.duration, 1e6, 's', above=self.duration == 0.0)
+
+    @property
+    def is_turn(self) -> bool:
+        """Whether it turns the wind, rather than adds to its speed."""
+        return _SHAPES[self.kind].is_turn
+
+    def at(self, time: ArrayLike) -> Floats:
+        """Return the speed to add in [m/s], or the angle to turn by in [rad], at times in [s]."""
+        elapsed = np.asarray(time, dtype=np.float64) - self.start
+        if self.every == 0.0:
+            return gust(self.kind, elapsed, self.amplitude, self.duration)
+        cycle = np.maximum(np.floor(elapsed / self.every), 0.0)
+        value = gust(self.kind, elapsed - cycle * self.every, self.amplitude, self.duration)
+        if _SHAPES[self.kind].lasts:
+            value = np.where(cycle % 2 == 1, self.amplitude - value, value)
+        return value
+
+
+def with_events(
+    time: ArrayLike, base: ArrayLike, events: Iterable[GustEvent], bearing_to: float
+) -> Floats:
+    """
+    Add events to a wind: the speeds along the mean wind, then the turns of the whole.
+
+    The wind blows to ENU in [m/s] at times in [s], (n, 3) or (3,); its mean to a bearing clockwise
+    from north in [rad].
+    """
+    wind = np.array(base, dtype=np.float64)
+    angle = np.zeros(wind.shape[:-1])
+    for event in events:
+        if event.is_turn:
+            angle = angle + event.at(time)
+        else:
+            speed = event.at(time)
+            wind[..., 0] += speed * np.sin(bearing_to)
+            wind[..., 1] += speed * np.cos(bearing_to)
+    east, north = wind[..., 0].copy(), wind[..., 1].copy()
+    wind[..., 0] = np.cos(angle) * east - np.sin(angle) * north
+    wind[..., 1] = np.sin(angle) * east + np.cos(angle) * north
+    return wind

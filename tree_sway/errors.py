@@ -1,0 +1,88 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+What can go wrong, as types: every error names what, where and the cure.
+
+The command line and the nodes turn a `TreeSwayError` into one line and exit code 2. An error
+carries the offending values as attributes, so that a program can act on them without reading the
+text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+class TreeSwayError(Exception):
+    """
+    Root of every error that this package raises on purpose.
+
+    Parameters
+    ----------
+    what
+        What is wrong, with the offending value.
+    where
+        The file, line, segment, branch or parameter it was found at; may be empty.
+    cure
+        What to do about it; may be empty.
+
+    """
+
+    def __init__(self, what: str, *, where: str = '', cure: str = '') -> None:
+        """Join the three parts into one line."""
+        self.what = shown(what)
+        self.where = shown(where)
+        self.cure = shown(cure, 1000)
+        place = f'{self.where}: ' if where else ''
+        advice = f'; {self.cure}' if cure else ''
+        super().__init__(f'{place}{self.what}{advice}')
+
+    def at(self, where: str) -> TreeSwayError:
+        """Return the same error with another place."""
+        return type(self)(self.what, where=where, cure=self.cure)
+
+    def inside(self, whole: str) -> TreeSwayError:
+        """Return the same error with its place as a part of a larger one."""
+        return self.at(f'{whole}: {self.where}' if self.where else whole)
+
+
+class TreeError(TreeSwayError):
+    """A tree that cannot be: cyclic, orphaned, zero length, not finite, buckling."""
+
+
+class FormatError(TreeSwayError):
+    """A file that does not hold what its format promises."""
+
+
+class ParameterError(TreeSwayError):
+    """A parameter out of its range or of a wrong kind."""
+
+
+class SpeciesError(TreeSwayError):
+    """A species that no table knows."""
+
+
+class StateError(TreeSwayError):
+    """A state that is of another tree, model or version, or none at all."""
+
+
+class MissingDependencyError(TreeSwayError):
+    """An optional part, such as ROS itself, that is asked for and not there."""
+
+
+class TransportError(TreeSwayError):
+    """A port, domain or middleware that cannot be used."""
+
+
+def shown(text: str, most: int = 400) -> str:
+    """Return a text fit for a line: no control characters of a file, and cut in its middle."""
+    if len(text) > most:
+        text = f'{text[: most - 60]} ... {text[-55:]}'
+    return ''.join(c if c.isprintable() else ' ' if c.isspace() else ascii(c)[1:-1] for c in text)
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Ask whether the nearest of some names is meant; an empty text where none is near."""
+    from difflib import get_close_matches
+
+    return ''.join(f"did you mean '{each}'?" for each in get_close_matches(name, [*known], n=1))

@@ -1,0 +1,82 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A glTF 2.0 document as it is put together: JSON, and the bytes that its accessors name."""
+
+from __future__ import annotations
+
+import base64
+import json
+import struct
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_COMPONENTS = {'uint8': 5121, 'uint16': 5123, 'uint32': 5125, 'float32': 5126}
+_SHAPES = {(): 'SCALAR', (3,): 'VEC3', (4,): 'VEC4', (4, 4): 'MAT4'}
+ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
+
+
+class GltfDocument:
+    """A document that grows by objects and arrays; ``generator`` names what made it."""
+
+    def __init__(self, generator: str) -> None:
+        """Begin with nothing in it."""
+        self._json: dict[str, Any] = {'asset': {'version': '2.0', 'generator': generator}}
+        self._bytes = bytearray()
+
+    def add(self, kind: str, **properties: Any) -> int:
+        """Add an object to a list such as ``nodes``, without what is None; return its number."""
+        objects: list[dict[str, Any]] = self._json.setdefault(kind, [])
+        objects.append({name: value for name, value in properties.items() if value is not None})
+        return len(objects) - 1
+
+    def set(self, **properties: Any) -> None:  # noqa: A003
+        """Set properties of the document itself."""
+        self._json.update(properties)
+
+    def add_array(
+        self, array: NDArray[Any], *, target: int | None = None, bounds: bool = False
+    ) -> int:
+        """
+        Add an array of uint8, uint16, uint32 or float32 as an accessor and return its number.
+
+        It is (n,), (n, 3), (n, 4), or matrices by columns (n, 4, 4); for `ARRAY_BUFFER` (vertices)
+        or `ELEMENT_ARRAY_BUFFER` (indices). Bounds are written for positions and times.
+        """
+        view = self.add(
+            'bufferViews',
+            buffer=0,
+            byteOffset=len(self._bytes),
+            byteLength=array.nbytes,
+            target=target,
+        )
+        self._bytes += np.ascontiguousarray(array).astype(array.dtype.newbyteorder('<')).tobytes()
+        self._bytes += b'\0' * (-len(self._bytes) % 4)
+        columns = array.reshape(len(array), -1)
+        return self.add(
+            'accessors',
+            bufferView=view,
+            componentType=_COMPONENTS[array.dtype.name],
+            normalized=True if array.dtype == np.uint8 else None,
+            count=len(array),
+            type=_SHAPES[array.shape[1:]],
+            min=columns.min(axis=0).tolist() if bounds else None,
+            max=columns.max(axis=0).tolist() if bounds else None,
+        )
+
+    def glb(self) -> bytes:
+        """Return the document in the binary form."""
+        buffers = [{'byteLength': len(self._bytes)}]
+        text = json.dumps({**self._json, 'buffers': buffers}, separators=(',', ':')).encode()
+        text += b' ' * (-len(text) % 4)
+        size = 12 + 8 + len(text) + 8 + len(self._bytes)
+        head = struct.pack('<4sII', b'glTF', 2, size) + struct.pack('<I4s', len(text), b'JSON')
+        return head + text + struct.pack('<I4s', len(self._bytes), b'BIN\0') + bytes(self._bytes)
+
+    def gltf(self) -> bytes:
+        """Return the document as JSON with its bytes in base64."""
+        data = base64.b64encode(self._bytes).decode('ascii')
+        uri = f'data:application/octet-stream;base64,{data}'
+        buffers = [{'byteLength': len(self._bytes), 'uri': uri}]
+        return json.dumps({**self._json, 'buffers': buffers}).encode()

@@ -1,0 +1,57 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Columns to a table: CSV, JSON, or Parquet where pyarrow is there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+import csv
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+from tree_sway.errors import FormatError, MissingDependencyError
+from tree_sway.files.whole_file import whole_file, write_text_whole
+
+TABLE_SUFFIXES = ('.csv', '.parquet', '.json')
+
+
+def refuse_no_table(path: Path) -> None:
+    """Raise a `FormatError` for a suffix of no table, so that nothing is computed in vain."""
+    if path.suffix not in TABLE_SUFFIXES:
+        cure = f'end it with one of: {", ".join(TABLE_SUFFIXES)}'
+        raise FormatError(f"'{path.suffix}' is no table", where=str(path), cure=cure)
+
+
+def write_columns(columns: Mapping[str, Sequence[Any]], path: Path) -> None:
+    """
+    Write columns of one length by their names, whole or not at all.
+
+    Raises
+    ------
+    FormatError
+        A suffix that is not one of `TABLE_SUFFIXES`, or a file that cannot be written.
+    MissingDependencyError
+        Parquet is asked for and pyarrow is not there.
+
+    """
+    refuse_no_table(path)
+    if path.suffix == '.csv':
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator='\n')
+        writer.writerow(columns)
+        writer.writerows(zip(*columns.values(), strict=True))
+        write_text_whole(path, text.getvalue())
+    elif path.suffix == '.json':
+        write_text_whole(path, json.dumps({name: [*each] for name, each in columns.items()}))
+    else:
+        try:
+            import pyarrow
+            from pyarrow import parquet
+        except ImportError:
+            raise MissingDependencyError(
+                'Parquet needs pyarrow', cure='pip install pyarrow, or end the name with .csv'
+            ) from None
+        with whole_file(path) as partial:
+            parquet.write_table(pyarrow.table(dict(columns)), partial)

@@ -1,0 +1,116 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A format of files: a name, a sniffer and a reader; and which format a file is of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+import re
+from typing import Any, TypeVar
+
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.text_file import read_head
+
+
+@dataclass(frozen=True)
+class FileFormat:
+    """
+    A format of files.
+
+    ``name`` is also the value of the option ``format``; suffixes are in lower case. ``recognise``
+    decides by the beginning of a file, as text with all else replaced; arguments of ``read`` after
+    the path are the format's own options.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    recognise: Callable[[str], bool]
+    read: Callable[..., Any]
+
+    @property
+    def own_options(self) -> tuple[str, ...]:
+        """Options of the reader itself."""
+        return tuple(name for name in self.read.__annotations__ if name not in ('path', 'return'))
+
+    def refuse_others(self, options: Iterable[str], known: Sequence[str]) -> None:
+        """Raise a `ParameterError` for the first option that is not among those known."""
+        for option in options:
+            if option not in known:
+                raise ParameterError(
+                    f"format {self.name} has no option '{option}'",
+                    cure=f'it has: {", ".join(known)}',
+                )
+
+
+Format = TypeVar('Format', bound=FileFormat)
+
+
+def contains(pattern: str) -> Callable[[str], bool]:
+    """Recognise a format by a regular expression, found anywhere in the beginning of a file."""
+    compiled = re.compile(pattern, re.MULTILINE)
+    return lambda head: compiled.search(head) is not None
+
+
+def has_columns(*names: str) -> Callable[[str], bool]:
+    """Recognise a table by the columns in its first line that is no comment."""
+
+    def recognise(head: str) -> bool:
+        for line in head.splitlines():
+            if line.strip() and not line.startswith('#'):
+                cells = {cell.strip(' "').lower() for cell in re.split('[,;\t]', line)}
+                return all(name.lower() in cells for name in names)
+        return False
+
+    return recognise
+
+
+def format_of(
+    path: Path,
+    name: str | None,
+    formats: Sequence[Format],
+    kind: str,
+    *,
+    folder: str = '',
+    head: str | None = None,
+) -> Format:
+    """
+    Return the format of a file: the one that is named; else its content decides, then its suffix.
+
+    Of several that recognise the content the first is taken; ``kind`` (what the files hold) is for
+    the errors, ``folder`` the name of the format that is a folder, if there is one, ``head`` the
+    beginning of the file where it was read before.
+
+    Raises
+    ------
+    FormatError
+        If the file is of none, or its numbers have decimal commas.
+    ParameterError
+        If no format has that name.
+
+    """
+    names = ', '.join(each.name for each in formats)
+    wanted = name or (folder if folder and path.is_dir() else None)
+    if wanted is not None:
+        for known in formats:
+            if known.name == wanted:
+                return known
+        raise ParameterError(f"unknown {kind} format '{wanted}'", cure=f'use {names}')
+    head = read_head(path) if head is None else head
+    with_points = re.sub(r'(?<=\d),(?=\d)', '.', head)
+    for known in formats:
+        if known.recognise(head):
+            return known
+    if any(known.recognise(with_points) for known in formats):
+        raise FormatError(
+            'numbers with a decimal comma', where=str(path), cure='export it with decimal points'
+        )
+    for known in formats:
+        if path.suffix.lower() in known.suffixes:
+            return known
+    raise FormatError(
+        f'a file of no known {kind} format',
+        where=str(path),
+        cure=f'give one of {names}, or say its format',
+    )

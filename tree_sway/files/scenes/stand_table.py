@@ -1,0 +1,240 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A stand from an inventory: a table of places, species and heights, and maybe of stem diameters.
+
+Columns are found by what inventories call them: ``x``, ``y`` (or easting, northing, or latitude
+and longitude in degrees), ``species``, ``height``; ``dbh`` at breast height or ``girth``, in cm
+where no unit is named and they are not fractions of a metre. Further ones may be ``name``, ``z``,
+``yaw`` [rad] and ``model``; a tree without a name is called after its row, one without a yaw is
+turned at random. Trees are scaled from few that are grown: those of one species whose heights are
+within a factor of three, and height over diameter within one of 1.3, share one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.growth.grow import grow, stem_range
+from tree_sway.core.scene.placed_tree import LARGEST, PlacedTree, SMALLEST
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.tree.grown_tree import GrownTree, rooted
+from tree_sway.core.tree.species import Species, species_like
+from tree_sway.errors import FormatError, ParameterError, TreeSwayError
+from tree_sway.files.scenes.tree_names import refuse_same_names
+from tree_sway.files.table_file import Column, parse_table, TextTable
+from tree_sway.files.text_file import read_lines
+from tree_sway.files.trees.imported_tree import TreeFile
+
+_LENGTHS = {'m': 1.0, 'cm': 0.01, 'mm': 0.001, 'ft': 0.3048, 'feet': 0.3048, 'in': 0.0254}
+_X, _Y = ('x', 'easting', 'east', 'utm_x', 'rechtswert'), ('y', 'northing', 'north', 'utm_y',
+                                                          'hochwert')  # fmt: skip
+_LATITUDE, _LONGITUDE = ('latitude', 'lat'), ('longitude', 'lon', 'lng', 'long')
+_SPECIES = ('species', 'scientific_name', 'species_name', 'taxon', 'baumart', 'spp', 'art')
+_HEIGHT = ('height', 'tree_height', 'total_height', 'ht', 'h', 'hoehe', 'höhe', 'baumhoehe')
+_DBH = ('dbh', 'diameter', 'bhd', 'diameter_at_breast_height', 'stem_diameter', 'd')
+_GIRTH = ('girth', 'circumference', 'gbh', 'stammumfang', 'umfang')
+_NAME = ('name', 'tree_id', 'treeid', 'tree', 'id', 'baumnummer', 'number', 'no')
+_EARTH = 6.371e6
+_FAR = 1e5
+_HEIGHTS, _SLENDERNESSES = 3.0, 1.3
+
+
+def is_stand_table(head: str) -> bool:
+    """Whether the beginning of a file is a table with the columns of a stand."""
+    try:
+        table = parse_table(head.splitlines()[:20], '')
+    except FormatError:
+        return False
+    here = _find(table, _X, _Y) or _find(table, _LATITUDE, _LONGITUDE)
+    return here is not None and _find(table, _SPECIES, _HEIGHT) is not None
+
+
+def read_stand_table(
+    path: Path, kinds: Mapping[str, GrownTree] | None = None, *, seed: int = 0, **fields: Any
+) -> Scene:
+    """
+    Read a stand from a table; where ``kinds`` has no tree for a species, its trees are grown.
+
+    The seed is that of the trees that are grown, and of how trees are turned; further arguments
+    are those of `Scene`. A species of no table is one of its group, as of `species_like`.
+
+    Raises
+    ------
+    FormatError
+        No tree, a missing column, a cell that is no finite number, a height that no tree has, two
+        trees of one name; with the line.
+
+    """
+    table = parse_table(read_lines(path), str(path))
+    stand = _Inventory(table)
+    given, made = dict(kinds or {}), dict[tuple[str, float, float], GrownTree]()
+    rng = np.random.default_rng(seed)
+    yaw = stand.optional('yaw', rng.uniform(0.0, 2.0 * np.pi, len(stand.height)))
+    z = stand.optional('z', np.zeros(len(yaw)))
+    models: Sequence[str | None] = stand.texts(('model',)) or [None] * len(yaw)
+    names = stand.texts(_NAME) or [f'tree{row + 1}' for row in range(len(yaw))]
+    refuse_same_names(names, table.where)
+    wood = {each: species_like(each) for each in dict.fromkeys(stand.species) if each not in given}
+    stand.note(*(note for _, note in wood.values() if note))
+    keys = [wood[each][0].key if each in wood else each for each in stand.species]
+    sizes, slender = stand.classes(keys)
+    trees = []
+    for row, key in enumerate(keys):
+        try:
+            height, own = float(stand.height[row]), (key, float(sizes[row]), float(slender[row]))
+            if not height > 0.0:
+                raise FormatError(f'a height of {height:g} m', cure='above 0')
+            kind = given.get(stand.species[row]) or made.get(own)
+            if kind is None:
+                kind = made[own] = _grown(wood[stand.species[row]][0], own, seed, stand)
+            scale = height / kind.tree.height
+            if not SMALLEST <= scale <= LARGEST:
+                raise ParameterError(
+                    f"{height:g} m is {scale:.3g} times the height of the tree of '{key}'",
+                    cure=f'give {SMALLEST:g} to {LARGEST:g} times',
+                )
+            at = float(stand.x[row]), float(stand.y[row]), float(z[row])
+            how: dict[str, Any] = {
+                'yaw': float(yaw[row]),
+                'species': kind.species,
+                'model': models[row],
+            }
+            trees.append(PlacedTree(names[row], kind.tree, *at, scale, **how))
+        except TreeSwayError as error:
+            raise error.at(table.where(row)) from None
+    unused = [each for i, each in enumerate(table.columns) if i not in stand.used]
+    if unused:
+        stand.note(f'columns that are not used: {", ".join(unused[:20])}')
+    notes = tuple(stand.notes)
+    return Scene(trees, **{'name': path.stem, 'source': str(path), 'notes': notes, **fields})
+
+
+class _Inventory:
+    """Columns of the table in SI units, those that were used, and what was assumed."""
+
+    def __init__(self, table: TextTable) -> None:
+        self._table = table
+        self.used, self.notes = set[int](), list[str]()
+        place = _find(table, _X, _Y)
+        self.x, self.y = self._degrees() if place is None else self._values(*place)
+        # As x and y of a map have too many digits for single precision, in pictures as well.
+        if max(np.abs(self.x).max(), np.abs(self.y).max()) > _FAR:
+            east, north = float(np.floor(self.x.min())), float(np.floor(self.y.min()))
+            self.x, self.y = self.x - east, self.y - north
+            self.note(f'moved by {-east:.0f}, {-north:.0f} m to be near the origin')
+        self.species = self.texts(_SPECIES) or table.cells(table.index_of('species'), ())
+        height = table.find(_HEIGHT, _LENGTHS) or Column(table.index_of('height'), 1.0)
+        (self.height,) = self._values(height)
+        self.diameter = self._diameter()
+
+    def note(self, *notes: str) -> None:
+        """Remember what was assumed."""
+        self.notes += notes
+
+    def texts(self, names: tuple[str, ...]) -> list[str]:
+        """Texts of a column; an empty list if it is missing, an error for empty cells."""
+        column = self._table.find(names, {})
+        if column is None:
+            return []
+        self.used.add(column.index)
+        texts = self._table.cells(column.index, range(len(self._table.texts)))
+        for row, text in enumerate(texts):
+            if not text:
+                where = self._table.where(row)
+                raise FormatError(f'no {names[0]}', where=where, cure='fill the cell')
+        return texts
+
+    def optional(self, name: str, otherwise: Floats) -> Floats:
+        """Numbers of a column, or others where the column is missing."""
+        found = self._table.find([name], _LENGTHS)
+        return otherwise if found is None else self._values(found)[0]
+
+    def _values(self, *columns: Column) -> list[Floats]:
+        self.used.update(column.index for column in columns)
+        values = self._table.strict([self._table.columns[column.index] for column in columns])
+        return list((values * [column.factor for column in columns]).T)
+
+    def _degrees(self) -> list[Floats]:
+        """East and north of the first tree [m], from degrees on a sphere."""
+        found = _find(self._table, _LATITUDE, _LONGITUDE)
+        if found is None:
+            return list(self._table.strict(['x', 'y']).T)
+        north, east = (np.radians(each) for each in self._values(*found))
+        self.note('east and north are counted from the first tree')
+        return [_EARTH * math.cos(north[0]) * (east - east[0]), _EARTH * (north - north[0])]
+
+    def _diameter(self) -> Floats | None:
+        """Diameters at breast height [m]; None if the table has none."""
+        for names, over in ((_DBH, 1.0), (_GIRTH, math.pi)):
+            found = self._table.find(names, _LENGTHS)
+            if found is None:
+                continue
+            (values,) = self._values(found)
+            heading, unit = self._table.headings[found.index]
+            if not unit and heading in names:
+                is_cm = float(np.median(values)) / over > 3.0
+                values = values * (0.01 if is_cm else 1.0)
+                self.note(f'{heading} is taken as {"cm" if is_cm else "m"}')
+            return values / over
+        return None
+
+    def classes(self, keys: list[str]) -> tuple[Floats, Floats]:
+        """Height that each tree is scaled from, and its height over diameter, 0 if not known."""
+        sizes, slender = np.array(self.height), np.zeros(len(keys))
+        named = np.array(keys)
+        for key in dict.fromkeys(keys):
+            own = np.flatnonzero((named == key) & (self.height > 0.0))
+            ratio = None
+            if self.diameter is not None and (self.diameter[own] > 0.0).all():
+                ratio = self.height[own] / self.diameter[own]
+            groups = _steps(self.height[own], _HEIGHTS)
+            if ratio is not None:
+                groups = 1000 * groups + _steps(ratio, _SLENDERNESSES)
+            for group in np.unique(groups):
+                of_one = own[groups == group]
+                sizes[of_one] = _middle(self.height[of_one])
+                if ratio is not None:
+                    slender[of_one] = _middle(ratio[groups == group])
+        return sizes, slender
+
+
+def _find(table: TextTable, *names: tuple[str, ...]) -> list[Column] | None:
+    """Columns by their names; None if one is missing."""
+    found = [table.find(each, _LENGTHS) for each in names]
+    return None if None in found else [each for each in found if each is not None]
+
+
+def _steps(values: Floats, factor: float) -> Floats:
+    """Class of each value, within a factor of others of it."""
+    if len(values) == 0:
+        return values
+    return np.round(np.log(values / np.median(values)) / math.log(factor))
+
+
+def _middle(values: Floats) -> float:
+    return float(np.exp(np.log(values).mean()))
+
+
+def _grown(
+    species: Species, size: tuple[str, float, float], seed: int, stand: _Inventory
+) -> GrownTree:
+    """Grow the tree of a class; a stem that no such tree has is made thinner or thicker."""
+    key, height, slenderness = size
+    diameter = None
+    if slenderness:
+        low, high = stem_range(species, height)
+        diameter = min(max(height / slenderness, low), high)
+        if not low <= height / slenderness <= high:
+            stand.note(
+                f'{key} of {height:.3g} m with stems of {height / slenderness:.3g} m: grown with '
+                f'{diameter:.3g} m, as others would not stand'
+            )
+    tree = grow(key, height, diameter, rng=np.random.default_rng(seed))
+    return TreeFile(tree, rooted(tree, species), key)

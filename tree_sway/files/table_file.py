@@ -1,0 +1,258 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Tables in text: one mapper from columns to arrays for every format of the family.
+
+Comma, semicolon or tab between cells, white space where a format has no header; a unit may stand
+behind a column's name in brackets, or in a row of its own. Cells are read when they are asked for,
+a block at a time, as a day of wind has millions of rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+import csv
+from dataclasses import dataclass
+from functools import cached_property, partial
+import re
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.errors import FormatError, TreeError
+from tree_sway.files.text_file import finite, why_no_number
+from tree_sway.files.time_stamps import seconds_of_stamps
+
+_MAX_COLUMNS = 10_000
+_POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
+_UNIT = re.compile(r'\[(.*)\]|\((.*)\)|')
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """Place of a column in a table, and the factor from its unit to SI."""
+
+    index: int
+    factor: float
+
+
+@dataclass(frozen=True)
+class TextTable:
+    """
+    A table whose columns have names: number and text of each line, and what splits it into cells.
+
+    ``header_line`` and ``unit_line`` say where names and units stand; ``units`` are those of the
+    columns, if they have a row of their own.
+    """
+
+    columns: tuple[str, ...]
+    numbers: Sequence[int]
+    texts: Sequence[str]
+    split: Callable[[str], Sequence[str]]
+    source: str
+    header_line: int = 1
+    unit_line: int = 1
+    units: tuple[str, ...] = ()
+
+    def where(self, row: int | None = None) -> str:
+        """File and line of a row, or of the header."""
+        return f'{self.source}:{self.header_line if row is None else self.numbers[row]}'
+
+    def index_of(self, name: str) -> int:
+        """Position of a column, whatever the case of its name; a `FormatError` if it lacks."""
+        for index, column in enumerate(self.columns):
+            if column.lower() == name.lower():
+                return index
+        raise FormatError(
+            f"no column '{name}' among {', '.join(self.columns[:20])}",
+            where=self.where(),
+            cure='export it with its header line, unchanged',
+        )
+
+    @cached_property
+    def headings(self) -> list[tuple[str, str]]:
+        """Name in lower case, with _ for spaces, and unit of each column."""
+        return [self._heading(index, name) for index, name in enumerate(self.columns)]
+
+    def _heading(self, index: int, column: str) -> tuple[str, str]:
+        begin = min((i for c in '[(' if (i := column.find(c)) > 0), default=len(column))
+        inside = _UNIT.fullmatch(column[begin:].strip())
+        if inside is None:
+            return column.strip().lower(), ''
+        unit = inside[1] or inside[2] or (self.units[index] if index < len(self.units) else '')
+        return column[:begin].strip().lower().replace(' ', '_'), unit.strip()
+
+    def factor(self, unit: str, units: Mapping[str, float], default: float) -> float:
+        """Factor of a unit by its name; a `FormatError` if it is not one of these units."""
+        if not unit:
+            return default
+        if unit.lower() not in units:
+            raise FormatError(
+                f"unknown unit '{unit[:20]}'",
+                where=f'{self.source}:{self.unit_line}',
+                cure=f'use {", ".join(units)}',
+            )
+        return units[unit.lower()]
+
+    def find(
+        self, names: Sequence[str], units: Mapping[str, float], default: float = 1.0
+    ) -> Column | None:
+        """Return the first column of one of these names, with a unit behind it or not, or None."""
+        for name in names:
+            for index, (heading, unit) in enumerate(self.headings):
+                suffix = heading.removeprefix(f'{name}_')
+                if heading == name:
+                    return Column(index, self.factor(unit, units, default) if units else 1.0)
+                if suffix != heading and suffix in units:  # not another quantity, as u_std
+                    return Column(index, units[suffix])
+        return None
+
+    def values(self, indices: Iterable[int]) -> Floats:
+        """Numbers in some columns, NaN where a cell holds none, (n, k)."""
+        columns = list(indices)
+        result = np.full((len(self.texts), len(columns)), np.nan)
+        for row, text in enumerate(self.texts):
+            cells = self.split(text)
+            for place, index in enumerate(columns):
+                value = finite(cells[index]) if index < len(cells) else None
+                result[row, place] = np.nan if value is None else value
+        return result
+
+    def strict(self, names: Sequence[str]) -> Floats:
+        """
+        Numbers in the columns of these names, (n, k).
+
+        Raises a `FormatError` for the first row that is short or holds no finite number.
+        """
+        indices = [self.index_of(name) for name in names]
+        values = self.values(indices)
+        for row, column in np.argwhere(np.isnan(values))[:1]:
+            raise FormatError(
+                self.why_none(row, [indices[column]]),
+                where=self.where(row),
+                cure='mend the cell or remove the row',
+            )
+        return values
+
+    def why_none(self, row: int, indices: Iterable[int]) -> str:
+        """Say which cell of a row is missing or holds no number."""
+        cells = self.split(self.texts[row])
+        for index in indices:
+            if index >= len(cells):
+                return f"{len(cells)} cells, none for '{self.columns[index]}'"
+            if finite(cells[index]) is None:
+                return f'{self.columns[index]} is {why_no_number(cells[index])}'
+        return 'not a row of numbers'
+
+    def whole(self, values: Floats, name: str) -> Ints:
+        """Return a column of whole numbers; a `FormatError` for fractions or out of reach."""
+        for row in np.flatnonzero((values != np.round(values)) | (np.abs(values) > 2**53))[:1]:
+            raise FormatError(
+                f'{name} is {values[row]:g}, not a whole number', where=self.where(row)
+            )
+        return values.astype(np.int64)
+
+    def cells(self, index: int, rows: Iterable[int]) -> list[str]:
+        """Texts of a column in some rows; empty where a row is short."""
+        split = (self.split(self.texts[row]) for row in rows)
+        return [row[index] if index < len(row) else '' for row in split]
+
+    def seconds(self, stamps: list[str], factor: float) -> tuple[Floats, float | None]:
+        """Seconds of times, and what they count from if they are dates; NaN where one is not."""
+        numbers = [finite(stamp) for stamp in stamps]
+        if any(number is not None for number in numbers):
+            times = [np.nan if number is None else number * factor for number in numbers]
+            return np.array(times), None
+        return seconds_of_stamps(stamps)
+
+    def family(
+        self, number: str, parent: str, none: Sequence[int], what: str
+    ) -> tuple[list[str], Ints]:
+        """
+        Return what an error calls each row (``what`` and number), and its parent's row, or -1.
+
+        ``none`` are the parent numbers that mean no parent. A number that occurs twice is a
+        `FormatError`, a parent that is not there a `TreeError`.
+        """
+        values = self.strict([number, parent])
+        numbers = self.whole(values[:, 0], number).tolist()
+        labels = [f'{self.where(row)}: {what} {each}' for row, each in enumerate(numbers)]
+        position: dict[int, int] = {}
+        for row, each in enumerate(numbers):
+            if each in position:
+                raise FormatError(f'number {each} stands twice', where=labels[row])
+            position[each] = row
+        parents = np.full(len(numbers), -1, dtype=np.int64)
+        for row, each in enumerate(self.whole(values[:, 1], parent).tolist()):
+            if each in position:
+                parents[row] = position[each]
+            elif each not in none:
+                raise TreeError(
+                    f'orphan: its parent {each} is not in the file',
+                    where=labels[row],
+                    cure=f'name one that is, or {none[0]} for the root',
+                )
+        return labels, parents
+
+
+def split_row(line: str, separator: str) -> Sequence[str]:
+    """Cells of one line, stripped; quoted cells may hold the separator but no line end."""
+    if '"' not in line:
+        return list(map(str.strip, line.split(separator)))
+    if line.count('"') == 2 and line[0] == '"' and line.count(f'"{separator}') == 1:
+        first, _, rest = line[1:].partition('"')  # a quoted date, as loggers write it
+        return [first.strip(), *map(str.strip, rest[1:].split(separator))]
+    try:
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+    except csv.Error:
+        return []
+
+
+def filled_lines(lines: Sequence[str], comment: str = '#') -> tuple[list[int], list[str]]:
+    """Numbers and texts of the lines that are neither blank nor a comment."""
+    kept = [
+        number
+        for number, line in enumerate(lines, start=1)
+        if line.strip() and not line.lstrip().startswith(comment)
+    ]
+    return kept, [lines[number - 1] for number in kept]
+
+
+def parse_table(lines: Sequence[str], source: str) -> TextTable:
+    """
+    Parse a table whose first line that is neither blank nor a comment is the header.
+
+    Raises a `FormatError` for no header, no row, or most rows with more cells than the header.
+    """
+    numbers, texts = filled_lines(lines)
+    if len(texts) < 2:
+        raise FormatError('no header and rows', where=source, cure='give a header and rows')
+    separator = max(('\t', ';', ','), key=texts[0].count)
+    first = '\n'.join(texts[1:50])
+    if separator != ',' and re.search(r'\d,\d', first) and not _POINT.search(first):
+        texts[1:] = [text.replace(',', '.') for text in texts[1:]]  # decimal commas
+    split = partial(split_row, separator=separator)
+    columns = tuple(split(texts[0]))
+    if len(columns) > _MAX_COLUMNS:
+        raise FormatError(f'a header of {len(columns)} columns', where=f'{source}:{numbers[0]}')
+    table = TextTable(columns, numbers[1:], texts[1:], split, source)
+    long = [row for row, text in enumerate(table.texts) if any(split(text)[len(columns) :])]
+    if 2 * len(long) > len(table.texts):
+        raise FormatError(
+            f'more cells than the {len(columns)} columns of the header, as in most rows',
+            where=table.where(long[0]),
+            cure='if its numbers have decimal commas, export it with decimal points; '
+            'else name every column in the header',
+        )
+    return table
+
+
+def parse_columns(
+    lines: Sequence[str],
+    source: str,
+    columns: Sequence[str],
+    split: Callable[[str], Sequence[str]] = str.split,
+) -> TextTable:
+    """Parse a table without a header, of columns that its format says."""
+    numbers, texts = filled_lines(lines)
+    return TextTable(tuple(columns), numbers, texts, split, source)

@@ -1,0 +1,123 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Text of a file, or one error that says why not.
+
+Every importer reads through here, so that a missing file, a folder, a binary file or a huge one
+gives the same short answer for each format.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+import re
+
+from tree_sway.errors import FormatError
+
+MAX_BYTES = 256 * 1024 * 1024
+"""Larger files are refused, so that no input takes the memory of the machine [bytes]."""
+MAX_LINES = 4_000_000
+"""Files of more lines are refused: two days at 20 Hz are 3.5 million."""
+
+# Each digit can be matched in one way only, so that no text takes longer than its length.
+_NUMBER = re.compile(r'[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?', re.ASCII)
+_DECIMAL_COMMA = re.compile(r'[-+]?\d*,\d+([eE][-+]?\d+)?', re.ASCII)
+
+
+def path_of(name: str | Path) -> Path:
+    """
+    Return a path as a person names it: ``~`` is the home folder.
+
+    Raises a `FormatError` for a user that does not exist, or what can be no path.
+    """
+    text = str(name)
+    try:
+        path = Path(text).expanduser()
+        os.stat(path)
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        return path
+    except RuntimeError:
+        raise FormatError(
+            f"no user '{text.split('/')[0]}'", where=text[:80], cure='write the folder in full'
+        ) from None
+    except (OSError, ValueError) as error:  # such as a name that is too long, or holds a zero byte
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise FormatError(f'not a path: {reason}', where=ascii(text[:80])) from None
+    return path
+
+
+def read_bytes(path: Path, at_most: int = -1) -> bytes:
+    """
+    Read a file, or a number of bytes from its beginning.
+
+    Raises a `FormatError` that says that it is missing, not a file, not readable or larger than
+    `MAX_BYTES`.
+    """
+    try:
+        is_there = path.exists()
+    except (OSError, ValueError):  # a name that is too long, or holds a zero byte
+        is_there = False
+    if not is_there:
+        raise FormatError('no such file', where=str(path), cure='check the path')
+    if not path.is_file():
+        raise FormatError('not a file', where=str(path), cure='name a file')
+    if at_most < 0 and path.stat().st_size > MAX_BYTES:
+        raise FormatError(
+            f'larger than {MAX_BYTES >> 20} MiB', where=str(path), cure='cut it into smaller files'
+        )
+    try:
+        with path.open('rb') as stream:
+            return stream.read(at_most)
+    except OSError as error:
+        raise FormatError(f'cannot be read: {error.strerror}', where=str(path)) from error
+
+
+def read_head(path: Path) -> str:
+    """Read the beginning of a file, enough for its format; what is not text is replaced."""
+    return read_bytes(path, at_most=4096).removeprefix(b'\xef\xbb\xbf').decode('utf-8', 'replace')
+
+
+def read_text(path: Path) -> str:
+    """Read a text file in UTF-8, with or without a byte order mark; else a `FormatError`."""
+    try:
+        return read_bytes(path).decode('utf-8-sig')
+    except UnicodeDecodeError as error:
+        raise FormatError(
+            f'not UTF-8 text: byte {error.start} is {error.object[error.start]:#04x}',
+            where=str(path),
+            cure='save it as UTF-8',
+        ) from None
+
+
+def read_lines(path: Path) -> list[str]:
+    """Read a text file as lines, ended by LF, CRLF or CR, without their ends."""
+    text = read_text(path)
+    if max(text.count('\n'), text.count('\r')) > MAX_LINES:
+        raise FormatError(
+            f'more than {MAX_LINES} lines', where=str(path), cure='cut it into smaller files'
+        )
+    return text.replace('\r\n', '\n').replace('\r', '\n').split('\n')
+
+
+def finite(text: str) -> float | None:
+    """Read a plain decimal number; None if it is anything else, such as empty, NaN or infinite."""
+    cell = text.strip()
+    if _NUMBER.fullmatch(cell) is None:
+        return None
+    value = float(cell)
+    return value if math.isfinite(value) else None
+
+
+def reason_of(error: Exception) -> str:
+    """Kind and text of an error of a library, on one line of at most 200 characters."""
+    return f'{type(error).__name__}: {" ".join(str(error).split())}'[:200]
+
+
+def why_no_number(text: str) -> str:
+    """Say what keeps a cell from being a finite number, with the cell."""
+    cell = text.strip()
+    if _DECIMAL_COMMA.fullmatch(cell):
+        return f"'{cell[:40]}', with a decimal comma: export it with decimal points"
+    return f"'{cell[:40]}', not a finite number"

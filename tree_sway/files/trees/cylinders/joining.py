@@ -1,0 +1,83 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Who grows on whom among cylinders: order, loose branches, and which chain is a branch."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Ints
+from tree_sway.core.tree.parents_first import chain_starts, first_of_each
+from tree_sway.errors import TreeError
+from tree_sway.files.trees.assembly import nearest_axis
+from tree_sway.files.trees.cylinders.cylinders import Cylinders
+
+_MAX_LOOSE = 1000
+_MAX_LOOSE_VOLUME = 0.2
+"""A loose part of more than this of the stem's volume is a tree of its own."""
+
+
+class JoinedBranches(NamedTuple):
+    """Parents after loose branches were joined, how many, and how far off the axis at most [m]."""
+
+    parent: Ints
+    loose: int
+    distance: float
+
+
+def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | None:
+    """
+    Set branches that have no parent on the nearest cylinder of the stem; None if there are none.
+
+    A `TreeError` reports a loose part so large that it is a tree of its own. The order has parents
+    first.
+    """
+    parent = cylinders.parent
+    roots = np.flatnonzero(parent == -1)
+    if len(roots) <= 1:
+        return None
+    root_of = np.empty(len(parent), dtype=np.int64)
+    for index in order:
+        root_of[index] = index if parent[index] < 0 else root_of[parent[index]]
+    length = np.linalg.norm(cylinders.end - cylinders.start, axis=1)
+    volume = np.bincount(root_of, weights=length * cylinders.diameter.mean(axis=1) ** 2)
+    stem = int(roots[np.argmax(volume[roots])])
+    loose = roots[roots != stem]
+    largest = int(loose[np.argmax(volume[loose])])
+    if len(loose) > _MAX_LOOSE or volume[largest] > _MAX_LOOSE_VOLUME * volume[stem]:
+        raise TreeError(
+            f'{len(roots)} roots: a forest of trees that are not connected',
+            where=cylinders.labels[largest],
+            cure='give each tree a file of its own, or this cylinder a parent',
+        )
+    on_stem = np.flatnonzero(root_of == stem)
+    joined, farthest = parent.copy(), 0.0
+    for index in loose:
+        nearest, distance = nearest_axis(
+            cylinders.start[on_stem], cylinders.end[on_stem], cylinders.start[index]
+        )
+        joined[index] = on_stem[nearest]
+        farthest = max(farthest, distance)
+    return JoinedBranches(joined, len(loose), farthest)
+
+
+def continuations(cylinders: Cylinders) -> Ints:
+    """
+    Which child goes on with each cylinder's branch, -1 where none does, (n,).
+
+    Where the file does not say, the thickest child. Where it names several, the thickest of them.
+    """
+    may = cylinders.parent >= 0
+    if cylinders.continues is not None:
+        may &= cylinders.continues
+    child = np.flatnonzero(may)
+    return first_of_each(cylinders.parent, child, -cylinders.diameter[child, 0], child)
+
+
+def branch_keys(cylinders: Cylinders) -> Ints | None:
+    """Branch of each cylinder, (n,); None if the file does not say what goes on with what."""
+    if cylinders.continues is None:
+        return None
+    return chain_starts(cylinders.parent, continuations(cylinders))

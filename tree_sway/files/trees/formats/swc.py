@@ -1,0 +1,61 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+SWC, the skeleton format of neuroscience, which tree reconstructions use too.
+
+A node in each line: number, type, x, y, z, radius, parent, -1 at a root. Each root is a tree of
+its own. SWC has no unit: ``unit`` says how many metres one is.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from tree_sway.core.tree.parents_first import checked_order
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.table_file import filled_lines, parse_columns
+from tree_sway.files.text_file import finite, read_lines
+from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.skeleton import Skeleton
+from tree_sway.files.trees.tree_format import TreeFormat
+
+_COLUMNS = ('number', 'type', 'x', 'y', 'z', 'radius', 'parent')
+
+
+def _is_swc(head: str) -> bool:
+    """Whether the beginning of a file is that of an SWC file."""
+    _, lines = filled_lines(head.splitlines())
+    cells = lines[0].split() if lines else []
+    return len(cells) == 7 and None not in map(finite, cells)
+
+
+def _read(path: Path, unit: float = 1.0) -> tuple[Cylinders, ...]:
+    """Trees of an SWC file, whose unit is given in [m]."""
+    if not 0.0 < unit < 1e6:
+        raise ParameterError(f'unit is {unit:g} m', cure='give more than 0')
+    table = parse_columns(read_lines(path), str(path), _COLUMNS)
+    if not table.texts:
+        raise FormatError('no nodes', where=str(path), cure='give a node in each line')
+    nodes = unit * table.strict(_COLUMNS)[:, 2:6]
+    labels, parent = table.family('number', 'parent', [-1], 'node')
+    order = checked_order(parent, labels)
+    members: dict[int, list[int]] = {}
+    root, place = np.arange(len(parent)), np.full(len(parent), -1)
+    for index in order.tolist():
+        root[index] = root[parent[index]] if parent[index] >= 0 else index
+        rows = members.setdefault(int(root[index]), [])
+        place[index] = len(rows)
+        rows.append(index)
+    trees = []
+    for rows in members.values():
+        above = np.where(parent[rows] >= 0, place[parent[rows]], -1)
+        skeleton = Skeleton(
+            nodes[rows, :3], 2.0 * nodes[rows, 3], above, [labels[i] for i in rows]
+        )
+        trees.append(skeleton.cylinders(str(path), cones=True))
+    return tuple(trees)
+
+
+FORMAT = TreeFormat('swc', ('.swc',), _is_swc, _read)

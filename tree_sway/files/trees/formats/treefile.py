@@ -1,0 +1,89 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+RayCloudTools' tree file (Lowe & Stepanas 2021): a tree in each line, node after node.
+
+After comments a header, such as ``height,crown_radius, x,y,z,radius,parent_id,section_id``:
+attributes of the tree, if any, then the fields of a node. The first node of a line is the root,
+parent -1, and has no volume; each other one is a cylinder from its parent's point to its own, of
+its own radius.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from tree_sway.errors import FormatError, ParameterError, TreeError
+from tree_sway.files.file_format import contains
+from tree_sway.files.table_file import filled_lines, split_row, TextTable
+from tree_sway.files.text_file import read_lines
+from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.skeleton import Skeleton
+from tree_sway.files.trees.tree_format import TreeFormat
+
+_FIELDS = ('x', 'y', 'z', 'radius', 'parent_id')
+
+
+def _read(path: Path, tree: int = 0) -> tuple[Cylinders, ...]:
+    """Trees of a file, or the one of a number from 1 on."""
+    numbers, lines = filled_lines(read_lines(path))
+    if not lines:
+        raise FormatError('no header', where=str(path), cure=f'a header names {",".join(_FIELDS)}')
+    of_tree, found, fields = lines[0].partition('x,y,z,radius')
+    columns = [name.strip() for name in (found + fields).split(',') if name.strip()]
+    for name in _FIELDS:
+        if name not in columns:
+            trunks = ': trunks without branches' if name == 'parent_id' else ''
+            raise FormatError(
+                f'no field {name}{trunks}',
+                where=f'{path}:{numbers[0]}',
+                cure='extract the trees with rayextract trees',
+            )
+    if len(lines) < 2:
+        raise FormatError('no trees', where=str(path))
+    if not 0 <= tree < len(lines):
+        raise ParameterError(
+            f'tree {tree} of {len(lines) - 1}',
+            where=str(path),
+            cure=f'give 1 to {len(lines) - 1}, or 0 for all',
+        )
+    n_of_tree = sum(bool(name.strip()) for name in of_tree.split(','))
+    trees = []
+    for index, (number, line) in enumerate(zip(numbers[1:], lines[1:], strict=True), start=1):
+        cells = [cell for cell in split_row(line, ',') if cell][n_of_tree:]
+        skeleton = _skeleton(cells, columns, f'{path}:{number}')
+        cylinders = skeleton.cylinders(f'{path}:{number}', cones=False)
+        cylinders.name = f'{path.stem}{index}' if len(lines) > 2 else path.stem
+        trees.append(cylinders)
+    return (trees[int(tree) - 1],) if tree else tuple(trees)
+
+
+def _skeleton(cells: list[str], columns: list[str], where: str) -> Skeleton:
+    """Nodes of a line, as the rows of a table."""
+    size = len(columns)
+    if not cells or len(cells) % size:
+        raise FormatError(
+            f'{len(cells)} values are not whole nodes of {size}',
+            where=where,
+            cure=f'a node has {",".join(columns)}',
+        )
+    nodes = [','.join(cells[begin : begin + size]) for begin in range(0, len(cells), size)]
+    table = TextTable(
+        tuple(columns), range(len(nodes)), nodes, lambda node: node.split(','), f'{where}: node'
+    )
+    values = table.strict(_FIELDS)
+    parent, labels = table.whole(values[:, 4], 'parent_id'), []
+    for row, above in enumerate(parent.tolist()):
+        labels.append(f'{where}: node {row}')
+        if (above < 0) != (row == 0) or above >= len(nodes):
+            raise TreeError(
+                f'parent_id is {above}',
+                where=labels[row],
+                cure='the first node has -1, every other the number of a node of its line',
+            )
+    return Skeleton(values[:, :3], 2.0 * values[:, 3], np.maximum(parent, -1), labels)
+
+
+FORMAT = TreeFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read)

@@ -1,0 +1,190 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+TreeQSM's cylinder models (Raumonen et al. 2013; manual of 2.4), as MATLAB files and as text.
+
+A row has radius, length, start (3), axis (3), parent and extension; what follows depends on the
+version. Cylinders are numbered from 1, parent 0 at the root; PyTLidar writes the same columns
+numbered from 0, parent -1 at the root. A cylinder that is the extension of its parent goes on with
+the branch; any other starts one, on its parent's axis or skin and not at its end.
+
+MATLAB: structs with a field ``cylinder``; version 2.0 saves loose variables, older ones a matrix
+``CylData`` of a row per cylinder. A file may hold several models, as variables or as an array of
+structs; each is a tree. Text: without a header, or with that of 2.4 and PyTLidar, which names
+start and axis once, though each has three columns; tabs, spaces, commas or semicolons between the
+cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats
+from tree_sway.errors import FormatError
+from tree_sway.files.table_file import parse_columns
+from tree_sway.files.text_file import finite, read_lines, why_no_number
+from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.mat_file import looks_like_mat, numbers, read_mat
+from tree_sway.files.trees.tree_format import TreeFormat
+
+_FIELDS = {
+    'radius': ('Rad', 1), 'length': ('Len', 1), 'start': ('Sta', 3), 'axis': ('Axe', 3),
+    'parent': ('CPar', 1), 'extension': ('CExt', 1),
+}  # fmt: skip
+"""Fields of ``cylinder`` in the order of the columns: name as a loose variable, and width."""
+_COLUMNS = 10
+_LEAST_COLUMNS = 13
+"""Fewer columns do not distinguish a matrix of cylinders from other tables."""
+_MANY = 15
+"""Rows from the beginning of a text that are judged."""
+
+
+def _are_cylinders(table: NDArray[np.generic]) -> bool:
+    """Whether a matrix is a table of cylinders: seven of ten of its rows must fit."""
+    if len(table) == 0 or not _LEAST_COLUMNS <= table.shape[1] <= 2 * _LEAST_COLUMNS:
+        return False
+    used = table[:, :_COLUMNS].astype(np.float64)
+    numbers = used[:, 8:]
+    fits = np.isfinite(used).all(axis=1) & (used[:, 0] > 0.0) & (used[:, 1] >= 0.0)
+    fits &= (used[:, 5:8] != 0.0).any(axis=1) & (np.abs(used[:, 5:8]) <= 100.0).all(axis=1)
+    fits &= (numbers == np.round(numbers)).all(axis=1) & (numbers >= -1.0).all(axis=1)
+    return bool(np.mean(fits) >= 0.7) and bool((numbers > 0.0).any() or len(table) == 1)
+
+
+def _is_text(head: str) -> bool:
+    """Whether a file is a TreeQSM text, judged by many rows of its beginning."""
+    lines = [line for line in head.splitlines() if line.strip()]
+    if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
+        return True
+    rows = [[finite(cell) for cell in _cells(line)] for line in lines[:_MANY]]
+    # The first line may be a header of some kind, the last one of many cut in the middle.
+    whole = [row for row in rows if None not in row]
+    width = max(map(len, whole), default=0)
+    table = np.array([row for row in whole if len(row) == width], dtype=np.float64)
+    return width > 0 and len(table) >= 0.7 * (len(rows) - 1) and _are_cylinders(table)
+
+
+def _read_mat(path: Path) -> tuple[Cylinders, ...]:
+    """Every cylinder model of a MATLAB file."""
+    source, trees = str(path), list[Cylinders]()
+    for name, model in _models(read_mat(path)):
+        is_matrix = isinstance(model, np.ndarray)
+        table = (
+            model[:, :_COLUMNS].astype(np.float64) if is_matrix else _table(name, model, source)
+        )
+        labels = [f'{source}: {name} cylinder {i + 1}' for i in range(len(table))]
+        trees.append(_cylinders(table, labels, source))
+        trees[-1].name = name
+    if not trees:
+        raise FormatError(
+            "no struct with a field 'cylinder' and no matrix of cylinders",
+            where=source,
+            cure='save the QSM struct of TreeQSM',
+        )
+    return tuple(trees)
+
+
+def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
+    """Read the cylinders of a TreeQSM text."""
+    lines = read_lines(path)
+    first = next((i for i, line in enumerate(lines) if line.strip()), 0)
+    if lines and all(finite(cell) is None for cell in _cells(lines[first])):
+        lines[first] = ''
+    table = parse_columns(lines, str(path), [''] * _COLUMNS, _cells)
+    values = table.values(range(_COLUMNS))
+    for row in np.flatnonzero(np.isnan(values).any(axis=1))[:1]:
+        bad = next(
+            (f': {why_no_number(c)}' for c in _cells(table.texts[row]) if finite(c) is None), ''
+        )
+        raise FormatError(
+            f'{np.isfinite(values[row]).sum()} good numbers of {_COLUMNS}{bad}',
+            where=table.where(row),
+            cure='a row is radius, length, start, axis, parent, extension ...',
+        )
+    labels = [f'{table.where(row)}: cylinder {row + 1}' for row in range(len(values))]
+    return (_cylinders(values, labels, str(path)),)
+
+
+def _cells(line: str) -> list[str]:
+    """Cells of a row; commas separate only where neither semicolons nor white space do."""
+    cells = line.replace(';', ' ').split()
+    return cells if len(cells) >= _COLUMNS else line.replace(',', ' ').split()
+
+
+def _models(variables: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Name and columns of each cylinder model: by field name, or as a matrix."""
+    for name, value in variables.items():
+        structs = _structs(value)
+        several = len(structs) > 1
+        for number, struct in enumerate(structs, start=1):
+            inside = next(iter(_structs(struct.get('cylinder', struct))), {})
+            if 'radius' in inside:
+                yield (f'{name}{number}' if several else name), inside
+    if 'Rad' in variables:
+        yield 'QSM', variables
+    for name, value in variables.items():
+        if isinstance(value, np.ndarray) and value.dtype.kind == 'f' and value.ndim == 2:
+            if _are_cylinders(value):
+                yield name, value
+
+
+def _structs(value: Any) -> list[dict[str, Any]]:
+    if isinstance(value, dict) and all(name.isdigit() for name in value):
+        return [each for each in value.values() if isinstance(each, dict)]
+    return [value] if isinstance(value, dict) else []
+
+
+def _table(name: str, fields: dict[str, Any], source: str) -> Floats:
+    """Columns of the table of cylinders from fields of their names."""
+    columns = []
+    for field, (loose, width) in _FIELDS.items():
+        found = next((key for key in (field, loose) if key in fields), None)
+        if found is None:
+            raise FormatError(f"{name} has no numbers '{field}'", where=source)
+        try:
+            column = numbers(fields[found], found)
+        except FormatError as error:
+            raise error.at(f'{source}: {name}') from None
+        if column.size % width:
+            raise FormatError(f'{name}.{found} has {column.size} values', where=source)
+        columns.append(column.reshape(-1, width))
+    if len({len(column) for column in columns}) > 1:
+        raise FormatError('columns of different lengths', where=source, cure='export it again')
+    return np.hstack(columns)
+
+
+def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
+    """Cylinders from the columns, (n, 10), with what an error calls each row."""
+    if len(table) == 0:
+        raise FormatError('no cylinders', where=source)
+    reach, starts, axes, relatives = table[:, 1], table[:, 2:5], table[:, 5:8], table[:, 8:10]
+    is_whole = (relatives == np.round(relatives)) & (np.abs(relatives) <= 2**53)
+    for row, column in np.argwhere(~is_whole)[:1]:
+        raise FormatError(
+            f'parent or extension is {relatives[row, column]:g}, not a whole number',
+            where=labels[row],
+        )
+    first = 1 + int(relatives[:, 0].min())
+    if first not in (0, 1):
+        raise FormatError(
+            f'the least parent is {first - 1}', where=source, cure='the root has parent 0, or -1'
+        )
+    above, after = relatives.T.astype(np.int64) - first
+    norm = np.linalg.norm(axes, axis=1)
+    for row in np.flatnonzero((norm == 0.0) & (reach > 0.0))[:1]:
+        raise FormatError('an axis of no direction', where=labels[row])
+    ends = starts + (reach / np.where(norm > 0.0, norm, 1.0))[:, None] * axes
+    valid = (after >= 0) & (after < len(table))
+    continues = np.zeros(len(table), dtype=np.bool_)
+    child = after[valid]
+    continues[child[above[child] == np.flatnonzero(valid)]] = True
+    return Cylinders(starts, ends, 2.0 * table[:, [0, 0]], above, continues, labels)
+
+
+MAT = TreeFormat('treeqsm-mat', ('.mat',), looks_like_mat, _read_mat)
+TEXT = TreeFormat('treeqsm-text', ('.cyl',), _is_text, read_treeqsm_text)

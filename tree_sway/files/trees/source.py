@@ -1,0 +1,125 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A tree or a forest by name or by path: what the command line and the nodes call TREE."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
+from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.errors import FormatError, nearest, ParameterError
+from tree_sway.files.scenes.forest_yaml import read_forest
+from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table
+from tree_sway.files.scenes.stand_yaml import read_stand_yaml
+from tree_sway.files.text_file import path_of, read_head
+from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.files.trees.tree_file import read_tree, read_trees
+from tree_sway.files.yaml_document import begins_with_key
+
+
+def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFile:
+    """
+    Open a built-in tree or a tree file.
+
+    Parameters
+    ----------
+    name_or_path
+        One of `BUILTIN_TREES`, or the path of a file; a file of the name of a built-in tree is
+        meant by ``./name``.
+    seed
+        Seed of a built-in tree.
+    **options
+        Options of the file's reader; see `read_tree`.
+
+    Raises
+    ------
+    FormatError
+        Neither a built-in tree nor a file, or the file of a forest.
+    TreeSwayError
+        What reading the file may raise.
+
+    """
+    text = str(name_or_path)
+    if text in BUILTIN_TREES:
+        if options:
+            raise ParameterError(
+                f"option '{next(iter(options))}' for a built-in tree",
+                cure='leave it out: it has no file',
+            )
+        tree = builtin_tree(text, seed)
+        return TreeFile(tree, species_named(tree.species), text)
+    path = path_of(text)
+    if not path.exists():
+        guess = nearest(text, BUILTIN_TREES)
+        if text in species_keys():
+            guess = f'it is a species: tree-sway grow --species {text} --height 10 -o {text}.yaml;'
+        cure = f'{guess} give a file, or one of {", ".join(BUILTIN_TREES)}'.lstrip()
+        raise FormatError(f"no tree '{text}'", cure=cure)
+    head = read_head(path) if path.is_file() else None
+    if head is not None and begins_with_key(path, head, 'trees'):
+        raise FormatError(
+            'a forest, where one tree is asked for', where=text, cure='name one of its trees'
+        )
+    return read_tree(path, head=head, **options).checked()
+
+
+def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> Scene:
+    """
+    Open a built-in tree, a tree file, a forest or a stand.
+
+    Parameters
+    ----------
+    name_or_path
+        As of `open_tree`, or a YAML file with a list of trees, or a file of a format that holds
+        several, or a stand: a table with x, y, species and height, or a YAML file that names one.
+    seed, **options
+        As of `open_tree`; a forest has none.
+
+    Raises
+    ------
+    ParameterError
+        Options for a forest or a built-in tree.
+    TreeSwayError
+        As `open_tree` and `read_forest`.
+
+    """
+    path = path_of(name_or_path)
+    if str(name_or_path) in BUILTIN_TREES or not path.is_file():
+        return scene_of_files([open_tree(name_or_path, seed, **options)])
+    head, readers = read_head(path), dict[str, Callable[[], Scene]]()
+    readers['trees'] = lambda: read_forest(path, open_tree)
+    readers['stand'] = lambda: read_stand_yaml(path, open_tree)
+    read = next((readers[key] for key in readers if begins_with_key(path, head, key)), None)
+    if read is None and is_stand_table(head):
+        read = partial(read_stand_table, path, seed=seed)
+    if read is None:
+        files = [each.checked() for each in read_trees(path, head=head, **options)]
+        return scene_of_files(files, path.stem)
+    if options:
+        raise ParameterError(
+            f"option '{next(iter(options))}' for a forest",
+            where=str(path),
+            cure='convert its trees first, and name the new files in the forest',
+        )
+    return read()
+
+
+def scene_of_files(files: Sequence[TreeFile], name: str = '') -> Scene:
+    """Return the trees of one file as a scene: several where they are there, the first at 0."""
+    one, trees = files[0], []
+    for each in files:
+        moved = np.subtract(each.origin, one.origin)
+        x, y, z = (moved + each.tree.start[0]).tolist()
+        trees.append(PlacedTree(each.tree.name, each.tree, x, y, z, species=each.species))
+    if len(files) == 1:
+        return Scene(trees, one.tree.name, one.source, one.notes)
+    notes = [f'{each.tree.name}: {note}' for each in files for note in each.notes]
+    return Scene(trees, name, one.source, tuple(notes))

@@ -1,0 +1,169 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Branches of a YAML tree, named by hand, to segments: who grows on whom, and where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.tree.parents_first import checked_order
+from tree_sway.errors import FormatError, nearest, TreeError
+from tree_sway.files.trees.assembly import nearest_axis
+from tree_sway.files.yaml_document import YamlDocument
+
+Values = dict[str, Any]
+
+
+@dataclass(slots=True)
+class _Placed:
+    """Geometry of a branch in the tree's frame, and its first row in the table."""
+
+    start: Floats
+    end: Floats
+    diameter: Floats
+    first: int
+
+
+def branch_segments(document: YamlDocument) -> Values:
+    """
+    Join the named branches of a tree to segments, as the arguments of `tree_from_segments`.
+
+    Raises
+    ------
+    FormatError
+        A name that stands twice, both or none of nodes and segments, a place that is not there.
+    TreeError
+        A parent that is not there, a cycle, not exactly one stem, a branch in the air.
+
+    """
+    branches = document.values['branches']
+    where = [
+        f"{document.where('branches', i)}: branch '{b['name']}'" for i, b in enumerate(branches)
+    ]
+    index = _indices(branches, where)
+    parents = _parents(branches, index, where)
+    placed: dict[int, _Placed] = {}
+    parent, owner, labels = list[int](), list[int](), list[str]()
+    for number in checked_order(parents, where).tolist():
+        branch, its_parent = branches[number], placed.get(parents[number])
+        start, end, diameter = _own_points(branch, where[number])
+        sits_on, origin = -1, np.zeros(3)
+        if its_parent is not None:
+            sits_on, origin = _attachment(branch, its_parent, start[0], where[number])
+        first = len(parent)
+        placed[number] = _Placed(start + origin, end + origin, diameter, first)
+        base = its_parent.first + sits_on if its_parent is not None else -1
+        parent += [base, *range(first, first + len(start) - 1)]
+        owner += [number] * len(start)
+        # A segment between two nodes is called by the line of the second.
+        key, ahead = ('nodes', 1) if 'nodes' in branch else ('segments', 0)
+        labels += [
+            f'{document.where("branches", number, key, i + ahead)}: '
+            f"segment {i} of branch '{branch['name']}'"
+            for i in range(len(start))
+        ]
+    return {
+        **{each: np.concatenate([getattr(rows, each) for rows in placed.values()])
+           for each in ('start', 'end', 'diameter')},
+        'parent': parent,
+        'branch': owner,
+        'branch_names': [branch['name'] for branch in branches],
+        'labels': labels,
+    }  # fmt: skip
+
+
+def _indices(branches: list[Values], where: list[str]) -> dict[str, int]:
+    index: dict[str, int] = {}
+    for number, branch in enumerate(branches):
+        if branch['name'] in index:
+            first = where[index[branch['name']]].rsplit(': ', 1)[0]
+            raise FormatError(
+                f'a second branch of that name, the first is at {first}',
+                where=where[number],
+                cure='give each branch a name of its own',
+            )
+        index[branch['name']] = number
+    return index
+
+
+def _parents(branches: list[Values], index: dict[str, int], where: list[str]) -> list[int]:
+    parents = []
+    for number, branch in enumerate(branches):
+        name = branch.get('parent')
+        if name is not None and name not in index:
+            cure = nearest(name, index) or 'name a branch of this file'
+            raise TreeError(f"orphan: no branch '{name}'", where=where[number], cure=cure)
+        parents.append(-1 if name is None else index[name])
+    stems = [number for number, its_parent in enumerate(parents) if its_parent < 0]
+    if len(stems) > 1:
+        raise TreeError(
+            'a second branch without a parent',
+            where=where[stems[1]],
+            cure=f"give it a parent, as '{branches[stems[0]]['name']}' is the stem",
+        )
+    return parents
+
+
+def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
+    if ('nodes' in branch) == ('segments' in branch):
+        raise FormatError(
+            'both nodes and segments' if 'nodes' in branch else 'neither nodes nor segments',
+            where=where,
+            cure='give one of the two',
+        )
+    if 'nodes' in branch:
+        nodes = np.array(branch['nodes'], dtype=np.float64)
+        return nodes[:-1, :3], nodes[1:, :3], np.stack([nodes[:-1, 3], nodes[1:, 3]], axis=1)
+    links = branch['segments']
+    start = np.array([link['start'] for link in links], dtype=np.float64)
+    end = np.array([link['end'] for link in links], dtype=np.float64)
+    return start, end, np.array([diameter_pair(link['diameter']) for link in links])
+
+
+def diameter_pair(diameter: float | list[float]) -> list[float]:
+    """Diameter at start and end in [m] from one number or a pair."""
+    return list(diameter) if isinstance(diameter, list) else [diameter, diameter]
+
+
+def _attachment(branch: Values, on: _Placed, first_node: Floats, where: str) -> tuple[int, Floats]:
+    """Return the parent's segment, and the point that the branch's own points are offsets from."""
+    axis = on.end - on.start
+    length = np.linalg.norm(axis, axis=1)
+    place = branch.get('at')
+    if place is not None and 'segment' in branch:
+        raise FormatError('both at and segment', where=where, cure='give one of the two')
+    if isinstance(place, (int, float)):
+        reach = np.cumsum(length)
+        along = place * reach[-1]
+        segment = int(min(np.searchsorted(reach, along), len(length) - 1))
+        fraction = 1.0 - (reach[segment] - along) / max(length[segment], 1e-12)
+        return segment, on.start[segment] + fraction * axis[segment]
+    if place is not None or 'segment' in branch:
+        segment = place['segment'] if place is not None else branch['segment']
+        if segment >= len(length):
+            raise FormatError(
+                f"no segment {segment} on its parent '{branch['parent']}'",
+                where=where,
+                cure=f'name a segment from 0 to {len(length) - 1}',
+            )
+        if place is None:
+            return segment, np.zeros(3)
+        return segment, on.start[segment] + place.get('fraction', 1.0) * axis[segment]
+    return _nearest(branch, on, first_node, where), np.zeros(3)
+
+
+def _nearest(branch: Values, on: _Placed, point: Floats, where: str) -> int:
+    """Segment of the parent nearest to a point, which must touch the parent or nearly so."""
+    segment, distance = nearest_axis(on.start, on.end, point)
+    size = float(np.linalg.norm(on.end - on.start))
+    if distance > on.diameter[segment].max() + 0.01 * size:
+        raise TreeError(
+            f"starts {distance:.3g} m off its parent '{branch['parent']}'",
+            where=where,
+            cure="move its first node onto the parent, or say where with 'at' or 'segment'",
+        )
+    return segment

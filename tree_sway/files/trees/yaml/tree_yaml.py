@@ -1,0 +1,110 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The YAML form of a tree, which a person can write by hand.
+
+Either ``branches``, each with a name, the parent's name and its nodes (x, y, z, diameter), or
+plain ``segments`` with start, end and diameter. ``species`` names the wood; ``wood`` replaces its
+values by measured ones. Keys, kinds and ranges are those of ``tree_schema.json`` beside this
+file::
+
+    name: seedling
+    species: oak
+    branches:
+      - name: stem
+        nodes: [[0, 0, 0, 0.02], [0, 0, 0.4, 0.015], [0, 0, 0.8, 0.005]]
+      - name: twig
+        parent: stem
+        at: 0.5                               # half way up the stem; nodes are offsets from there
+        nodes: [[0, 0, 0, 0.006], [0.2, 0, 0.1, 0.002]]
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from tree_sway.core.tree.species import Species, species_named
+from tree_sway.errors import FormatError, SpeciesError, TreeError
+from tree_sway.files.text_file import read_text
+from tree_sway.files.trees.assembly import built_tree
+from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.files.trees.yaml.branches import branch_segments, diameter_pair
+from tree_sway.files.yaml_document import read_yaml, tree_schema, YamlDocument
+
+
+def read_yaml_tree(path: Path) -> TreeFile:
+    """
+    Read a tree from a YAML file.
+
+    Raises
+    ------
+    FormatError
+        Not YAML, or not what the schema says; names file, line and key.
+    TreeError
+        A tree that cannot be: cyclic, orphaned, zero length; names file, line and segment.
+    SpeciesError
+        A species that the table does not know.
+
+    """
+    return parse_yaml_tree(read_text(path), str(path), default_name=path.stem)
+
+
+def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree') -> TreeFile:
+    """Read a tree from YAML text; see `read_yaml_tree`."""
+    document = read_yaml(text, source, tree_schema())
+    values, species = document.values, species_of(document)
+    if ('branches' in values) == ('segments' in values):
+        found = 'both branches and segments' if 'branches' in values else 'no branches or segments'
+        raise FormatError(found, where=document.where(), cure='give one of the two')
+    segments = (branch_segments if 'branches' in values else _plain_segments)(document)
+    name = values.get('name', default_name)
+    tree = built_tree(source, **segments, name=name, species=species.key)
+    return TreeFile(tree, species, source)
+
+
+def species_of(document: YamlDocument) -> Species:
+    """Return the table's species that a document names, with its wood in place of the table's."""
+    values = document.values
+    key = values.get('species', 'broadleaf')
+    try:
+        species = species_named(key)
+    except SpeciesError as error:
+        raise error.at(document.where('species')) from None
+    wood = dict(values.get('wood', {}))
+    if 'damping_ratio' in wood:
+        ratio = wood.pop('damping_ratio')
+        for state in ('damping_bare', 'damping_in_leaf'):
+            if state in wood:
+                raise FormatError(
+                    f'both damping_ratio and {state}',
+                    where=document.where('wood', state),
+                    cure='give damping_ratio alone, or the two states apart',
+                )
+            wood[state] = ratio
+    # A modulus from the file is a measured one, and no longer the table's guess.
+    return replace(species, **wood, is_estimate=species.is_estimate and 'modulus' not in wood)
+
+
+def _plain_segments(document: YamlDocument) -> dict[str, Any]:
+    """Segments of the document, as the arguments of `tree_from_segments`."""
+    segments = document.values['segments']
+    labels = [
+        f'{document.where("segments", number)}: segment {number}'
+        for number in range(len(segments))
+    ]
+    with_parent = ['parent' in segment for segment in segments]
+    if any(with_parent) and not all(with_parent):
+        raise TreeError(
+            'no parent, where others have one',
+            where=labels[with_parent.index(False)],
+            cure='give parent to every segment (-1 to the root) or to none',
+        )
+    return {
+        'start': [segment['start'] for segment in segments],
+        'end': [segment['end'] for segment in segments],
+        'diameter': [diameter_pair(segment['diameter']) for segment in segments],
+        'parent': [segment['parent'] for segment in segments] if any(with_parent) else None,
+        'labels': labels,
+    }

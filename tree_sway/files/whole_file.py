@@ -1,0 +1,63 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Write a file whole or not at all: the old file stays until the new one is complete."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+import os
+from pathlib import Path
+import tempfile
+
+from tree_sway.errors import FormatError
+from tree_sway.files.text_file import path_of
+
+
+@contextmanager
+def whole_file(path: str | Path) -> Iterator[Path]:
+    """
+    Give a path to write to, which takes the place of the file when the block ends well.
+
+    It is a new, empty file of the same suffix in the same folder. A link is followed; a device or
+    a pipe is written to directly. Raises a `FormatError` that says that the file cannot be
+    written, or that an `OSError` ended the block.
+    """
+    target = path_of(path).resolve()
+    partial: Path | None = None
+    try:
+        if target.exists() and not target.is_file():
+            if target.is_dir():
+                raise FormatError('a folder', where=str(path), cure='name a file to write')
+            yield target
+            return
+        # The name of a temporary file is short, so that a long name of the target still fits.
+        number, name = tempfile.mkstemp(target.suffix[:16], '.part-', target.parent)
+        os.close(number)
+        partial = Path(name)
+        yield partial
+        mode = target.stat().st_mode if target.exists() else 0o666 & ~_umask()
+        partial.chmod(mode & 0o777)
+        os.replace(partial, target)
+    except OSError as error:
+        raise FormatError(
+            f'cannot be written: {error.strerror or error}',
+            where=str(path),
+            cure='name a folder that exists and that you may write to, with room for the file',
+        ) from error
+    finally:
+        if partial is not None:
+            partial.unlink(missing_ok=True)
+
+
+def write_text_whole(path: str | Path, text: str) -> None:
+    """Write a text file in UTF-8 whole or not at all; see `whole_file`."""
+    with whole_file(path) as partial:
+        partial.write_text(text, encoding='utf-8')
+
+
+def _umask() -> int:
+    """Bits that new files are made without."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

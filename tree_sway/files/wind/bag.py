@@ -1,0 +1,103 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Wind in a ROS 2 bag, sqlite3 or mcap, read without ROS.
+
+Any of the wind's four message types: Vector3Stamped, TwistStamped, TwistWithCovarianceStamped
+(linear part) and Vector3, all of geometry_msgs. The time is the header's; a zero stamp or a
+message without a header has the time it was recorded at. Vectors point where the wind blows, east,
+north, up (REP-103); ``direction_convention`` and ``yaw`` say otherwise.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+import struct
+
+from tree_sway.core.wind.convention import WindConvention
+from tree_sway.errors import FormatError
+from tree_sway.files.recording.bag_reader import read_bag
+from tree_sway.files.wind.record import WindRecord, WindRows
+
+WIND_TYPES = tuple(
+    f'geometry_msgs/msg/{name}'
+    for name in ('Vector3Stamped', 'TwistStamped', 'TwistWithCovarianceStamped', 'Vector3')
+)
+"""Message types that can hold wind."""
+_BODY = 4  # bytes of encapsulation, from which on numbers are aligned
+
+
+def read_bag_wind(
+    path: Path, topic: str | None = None, yaw: float = 0.0, direction_convention: str = 'to'
+) -> WindRecord:
+    """
+    Read the wind of a bag: its folder, or its ``.db3`` or ``.mcap`` file.
+
+    The topic may be None if only one has one of `WIND_TYPES`. ``yaw`` is from east to the sensor's
+    x axis, counter-clockwise, in [rad]; vectors point ``to`` where the wind blows, or ``from``
+    where it comes from.
+
+    Raises
+    ------
+    FormatError
+        Not a bag, no such topic, several to choose from, or no good message.
+    MissingDependencyError
+        If it is compressed by what is not installed.
+
+    """
+    WindConvention(direction_convention)  # refused before the file is read
+    source = str(path)
+    bag = read_bag(path, WIND_TYPES)
+    chosen = _chosen(bag.types, topic, source)
+    kind, messages = bag.types[chosen], bag.messages[chosen]
+    rows = WindRows(source, row_name='message')
+    epoch, n_unstamped = -1, 0
+    for number, (recorded, data) in enumerate(messages, start=1):
+        try:
+            stamp, velocity = _sample(data, has_header=not kind.endswith('/Vector3'))
+        except struct.error:
+            rows.refuse(number, 'it is too short')
+            continue
+        n_unstamped += not stamp
+        epoch = (stamp or recorded) if epoch < 0 else epoch
+        rows.add(number, ((stamp or recorded) - epoch) * 1e-9, velocity)
+    notes = [f'topic {chosen}, {kind}']
+    if bag.damage:
+        notes.insert(0, f'damaged after {len(messages)} messages, which were read: {bag.damage}')
+    if n_unstamped:
+        notes.append(f'{n_unstamped} messages without a stamp have the time they were recorded at')
+    return rows.record(
+        epoch=epoch * 1e-9, notes=tuple(notes), yaw=yaw, direction_convention=direction_convention
+    )
+
+
+def _chosen(types: dict[str, str], topic: str | None, source: str) -> str:
+    of_wind = [name for name, kind in types.items() if kind in WIND_TYPES]
+    if topic is not None:
+        for name in (topic, f'/{topic}'):
+            if name in of_wind:
+                return name
+    elif len(of_wind) == 1:
+        return of_wind[0]
+    names = ', '.join(sorted(of_wind)) or 'none'
+    if topic is not None:
+        raise FormatError(f"no wind on topic '{topic}'", where=source, cure=f'wind is on: {names}')
+    if of_wind:
+        raise FormatError('wind on several topics', where=source, cure=f'choose a topic: {names}')
+    there = ', '.join(f'{name} ({kind})' for name, kind in [*types.items()][:10]) or 'nothing'
+    raise FormatError(
+        f'no topic of a wind type; there is {there}',
+        where=source,
+        cure=f'types: {", ".join(WIND_TYPES)}',
+    )
+
+
+def _sample(data: bytes, *, has_header: bool) -> tuple[int, tuple[float, float, float]]:
+    """Stamp [ns], 0 without one, and vector, which comes first in each of the types; of CDR."""
+    order, at, stamp = '<' if data[1:2] == b'\1' else '>', 0, 0
+    if has_header:
+        second, nanosecond, size = struct.unpack_from(f'{order}iII', data, _BODY)
+        stamp = second * 1_000_000_000 + nanosecond
+        at = -(-(12 + size) // 8) * 8
+    x, y, z = struct.unpack_from(f'{order}3d', data, _BODY + at)
+    return stamp, (x, y, z)

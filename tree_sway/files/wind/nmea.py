@@ -1,0 +1,176 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+NMEA 0183: the wind sentences of an instrument on a mast or a boat.
+
+- ``$--MWV,angle,R|T,speed,K|M|N|S,A|V``: where the wind comes from, in degrees clockwise from the
+  bow.
+  R is the apparent wind, as the instrument feels it; T is the true wind, less the motion of the
+  boat, and still counted from the bow. On a mast that stands still the two are one.
+- ``$--MWD,direction,T,direction,M,speed,N,speed,M``: true wind, clockwise from true and from
+  magnetic north.
+- ``$--MDA``: weather, the last eight fields of which are those of MWD.
+- ``$--XDR,A,angle,D,id,...,S,speed,K|M|N|S,id``: transducers, as weather stations send them; of
+  several angles and speeds the second ones, which are the means between least and largest.
+- ``$--VWR,angle,L|R,speed,N,speed,M,speed,K`` and ``$--VWT``: apparent and true wind, left or
+right
+  of the bow.
+
+The bow has to be sent_sum: option ``heading``. A mast instrument aligned to north has 0. A wrong
+checksum, a status that is not A, an empty field: the sentence is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from math import pi
+from pathlib import Path
+import re
+
+from tree_sway.core.wind.convention import velocity_of_bearing
+from tree_sway.errors import ParameterError
+from tree_sway.files.text_file import finite
+from tree_sway.files.wind.record import WindRecord
+from tree_sway.files.wind.sensor_line import line_of, read_sensor_log, SensorLine
+from tree_sway.files.wind.units import degrees_to_bearing, Velocity
+
+SENTENCES = ('MWD', 'MDA', 'MWV T', 'VWT', 'MWV R', 'VWR', 'XDR')
+"""What can be read, in the order of preference: least depends on the motion of the boat first."""
+
+_KNOT = 1852.0 / 3600.0
+_UNITS = {'N': _KNOT, 'K': 1.0 / 3.6, 'M': 1.0, 'S': 0.44704}
+_SENTENCE = re.compile(r'\$[A-Z]{2}(MWV|MWD|MDA|VWR|VWT|XDR),([^*]*)(\*.*)?', re.ASCII | re.DOTALL)
+
+
+def parse_nmea(
+    line: str, heading: float = 0.0, declination: float = 0.0, *, need_checksum: bool = False
+) -> SensorLine | None:
+    """
+    Parse a line of NMEA 0183, to the wind of a kind of `SENTENCES`; None for any other line.
+
+    A logger may have put something of its own before the sentence.
+
+    Parameters
+    ----------
+    line
+        The line, without its end.
+    heading
+        Of the bow, clockwise from true north, in [rad].
+    declination
+        Of the magnetic needle, east positive, in [rad]; for a MWD without a true direction.
+    need_checksum
+        Whether to refuse a sentence without a checksum, which is optional in the standard.
+
+    """
+    sentence = _SENTENCE.match(line, max(line.rfind('$'), 0))
+    if sentence is None:
+        return None
+    name, content, check = sentence.groups()
+    fields = content.strip().split(',')
+    if name == 'MWV':
+        reference = fields[1] if len(fields) > 1 else ''
+        if reference not in ('R', 'T'):
+            return None
+        name = f'MWV {reference}'
+    if name == 'XDR' and not {'A', 'S'} <= set(fields[::4]):
+        return None
+    sent_sum = None if check is None else check[1:].strip().upper()
+    body = line[sentence.start() + 1 : sentence.start(3)]
+    own_angle = declination if name in ('MWD', 'MDA') else heading
+    read = partial(_READERS[name[:3]], fields, own_angle)
+    return line_of(name, len(line), sent_sum, [body], read, need_checksum=need_checksum)
+
+
+def read_nmea_wind(
+    path: Path,
+    sentence: str = 'auto',
+    rate: float = 1.0,
+    heading: float = 0.0,
+    declination: float = 0.0,
+) -> WindRecord:
+    """
+    Read the wind of an NMEA 0183 log, whose sentences count as evenly spaced, ``rate`` in [Hz].
+
+    The sentence is one of `SENTENCES`, or ``auto``: the first of these with a good one; others are
+    passed over. ``heading`` and ``declination`` are those of `parse_nmea`.
+
+    Raises
+    ------
+    FormatError
+        If there is no such sentence, or no good one.
+    ParameterError
+        If an option is not what it can be.
+
+    """
+    if sentence not in (*SENTENCES, 'auto'):
+        raise ParameterError(f"sentence is '{sentence}'", cure=f'use auto, {", ".join(SENTENCES)}')
+    wanted: Sequence[str] = SENTENCES if sentence == 'auto' else (sentence,)
+    parse = partial(parse_nmea, heading=heading, declination=declination)
+    bow = f'directions count from the bow, taken to head {heading * 180.0 / pi:g} degrees'
+    kind, record = read_sensor_log(path, parse, wanted, rate)
+    return record if kind in ('MWD', 'MDA') else record.with_note(bow)
+
+
+def _mwv(fields: list[str], heading: float) -> Velocity | str:
+    if len(fields) < 5:
+        return f'{len(fields)} fields of 5'
+    if fields[4] != 'A':
+        return f"status is '{fields[4][:8]}', not A"
+    angle, speed, unit = finite(fields[0]), finite(fields[2]), _UNITS.get(fields[3])
+    bearing = None if angle is None else degrees_to_bearing(angle)
+    if bearing is None or speed is None or unit is None or speed < 0.0:
+        return f"angle '{fields[0][:8]}', speed '{fields[2][:8]}', unit '{fields[3][:8]}'"
+    return velocity_of_bearing(speed * unit, bearing + heading)
+
+
+def _mwd(fields: list[str], declination: float) -> Velocity | str:
+    if len(fields) < 8:
+        return f'{len(fields)} fields of 8'
+    true, magnetic, knots, speed = (finite(fields[i]) for i in (0, 2, 4, 6))
+    if speed is None and knots is not None:
+        speed = knots * _KNOT
+    bearing = None if true is None else degrees_to_bearing(true)
+    if bearing is None and magnetic is not None:
+        needle = degrees_to_bearing(magnetic)
+        bearing = None if needle is None else needle + declination
+    if bearing is None or speed is None or speed < 0.0:
+        return f"direction '{fields[0][:8]}', speed '{fields[6][:8]}'"
+    return velocity_of_bearing(speed, bearing)
+
+
+def _mda(fields: list[str], declination: float) -> Velocity | str:
+    return _mwd(fields[12:], declination)
+
+
+def _xdr(fields: list[str], heading: float) -> Velocity | str:
+    """Wind of transducers in groups of kind, value, unit and name."""
+    groups = [fields[i : i + 4] for i in range(0, len(fields) - 3, 4)]
+    angles = [each[1] for each in groups if each[0] == 'A' and each[2] == 'D']
+    speeds = [(each[1], each[2]) for each in groups if each[0] == 'S']
+    if not angles or not speeds:
+        return 'no angle in degrees with a speed'
+    speed, unit = speeds[len(speeds) > 2]
+    return _mwv([angles[len(angles) > 2], 'R', speed, unit, 'A'], heading)
+
+
+def _vwr(fields: list[str], heading: float) -> Velocity | str:
+    """Angle up to half a turn, left or right; the first speed that is there counts."""
+    angle, side = finite(fields[0]), fields[1] if len(fields) > 1 else ''
+    speeds = (
+        (finite(speed), _UNITS.get(unit))
+        for speed, unit in zip(fields[2::2], fields[3::2], strict=False)
+    )
+    speed = next((s * unit for s, unit in speeds if s is not None and unit is not None), None)
+    if angle is None or not 0.0 <= angle <= 180.0 or side not in ('L', 'R'):
+        return f"angle '{fields[0][:8]}', side '{side[:8]}'"
+    if speed is None or speed < 0.0:
+        return 'no speed' if speed is None else f'speed is {speed:g} m/s'
+    turn = angle * pi / 180.0
+    return velocity_of_bearing(speed, heading + (turn if side == 'R' else -turn))
+
+
+_READERS = {
+    **{'MWV': _mwv, 'MWD': _mwd, 'MDA': _mda, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr},
+}
+"""Readers of the fields of a sentence, which also take the heading, or the declination for MWD."""

@@ -1,0 +1,108 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A line that an anemometer says: its wind, or why it is refused; checksums and log files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from operator import xor
+from pathlib import Path
+
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.text_file import read_lines
+from tree_sway.files.wind.record import WindRecord, WindRows
+from tree_sway.files.wind.units import Velocity
+
+MAX_LINE = 1024
+"""Longer lines are no sensor's [characters]."""
+
+
+@dataclass(frozen=True, slots=True)
+class SensorLine:
+    """
+    What a line says: velocity [m/s] to which the wind blows, east, north, up, or why refused.
+
+    ``kind`` is the sentence or format that it is of.
+    """
+
+    kind: str
+    velocity: Velocity | None
+    refusal: str = ''
+
+
+ParseLine = Callable[[str], SensorLine | None]
+"""Parses a line; None if it is not about the wind. Never raises."""
+
+
+def checksum_of(body: str) -> str:
+    """Exclusive or of the bytes of a text, as two hexadecimal digits."""
+    return f'{reduce(xor, body.encode("utf-8", "replace"), 0):02X}'
+
+
+def line_of(
+    kind: str,
+    length: int,
+    sent_sum: str | None,
+    bodies: Sequence[str],
+    read: Callable[[], Velocity | str],
+    *,
+    need_checksum: bool,
+) -> SensorLine:
+    """
+    Return what `read` finds in a line of a length in characters, if its length and checksum fit.
+
+    `sent_sum` is the checksum in it, of one of these bodies, None without one.
+    """
+    if length > MAX_LINE:
+        found: Velocity | str = f'a line of {length} characters'
+    elif sent_sum is None and need_checksum:
+        found = 'no checksum'
+    elif sent_sum is not None and sent_sum not in map(checksum_of, bodies):
+        found = 'wrong checksum'
+    else:
+        found = read()
+    return SensorLine(kind, None, found) if isinstance(found, str) else SensorLine(kind, found)
+
+
+def read_sensor_log(
+    path: Path, parse: ParseLine, kinds: Sequence[str], rate: float, notes: Sequence[str] = ()
+) -> tuple[str, WindRecord]:
+    """
+    Read the wind of a log of an anemometer's lines, which carry no time: they are evenly spaced.
+
+    Lines that are not about the wind are passed over; one that is refused keeps its place in time.
+    Of the kinds wanted, the best one first, the first with a good line is read; its name is
+    returned before the record. ``rate`` is that of its lines in [Hz].
+
+    Raises
+    ------
+    FormatError
+        If there is no such line, or no good one.
+    ParameterError
+        If the rate is not positive.
+
+    """
+    if not rate > 0.0:
+        raise ParameterError(f'rate is {rate:g} Hz', cure='give more than 0')
+    found: dict[str, WindRows] = {}
+    for number, line in enumerate(read_lines(path), start=1):
+        said = parse(line)
+        if said is None:
+            continue
+        rows = found.setdefault(said.kind, WindRows(str(path)))
+        if said.velocity is None:
+            rows.refuse(number, said.refusal)
+        else:
+            rows.add(number, (len(rows.time) + rows.refused) / rate, said.velocity)
+    there = [kind for kind in kinds if kind in found]
+    if not there:
+        raise FormatError(
+            f'no sentence {" or ".join(kinds)}',
+            where=str(path),
+            cure="log the wind instrument's output",
+        )
+    best = next((kind for kind in there if found[kind].time), there[0])
+    spaced = f'{best} sentences have no time of their own and are taken at {rate:g} Hz'
+    return best, found[best].record(notes=(spaced, *notes))

@@ -1,0 +1,148 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The motion of a tree in a table with a header.
+
+A time column (``time``, ``t``, ``timestamp`` ...) in seconds, in another unit behind the name
+(``time [ms]``) or as ISO 8601 dates, and one to three columns of displacement, tilt, angular rate
+or acceleration: ``x``, ``y``, ``z``, ``displacement``, ``tilt_x``, ``ax``, ``roll`` ... A unit may
+follow the name: ``x [mm]``, ``tilt_x (deg)``, ``ax [g]``. Units only bring the columns to one
+scale, as frequency and damping do not depend on it. Comma, semicolon or tab between cells; lines
+with # are comments. Other columns are left alone. A row that is no number is refused with its line
+and never filled in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+import re
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.errors import FormatError
+from tree_sway.files.table_file import parse_table, TextTable
+from tree_sway.files.text_file import read_lines
+from tree_sway.files.wind.table import TIME_NAMES
+from tree_sway.files.wind.units import TIME_UNITS
+
+_QUANTITY = {
+    'displacement': re.compile(
+        r'(displacement|disp|deflection|position|pos|d|u)(_?[xyz123])?|[xyz]'
+    ),
+    'tilt': re.compile(r'(tilt|inclination|angle|rotation|r)(_?[xyz123])?|roll|pitch|yaw'),
+    'rate': re.compile(r'(gyro|rate|angular_velocity|angular_rate|omega|w|g)_?[xyz123]|gyro|rate'),
+    'acceleration': re.compile(
+        r'(lineare?_)?(acceleration|accel|acc|a|beschleunigung)(_?[xyz123])?|gf_?[xyz]'
+    ),
+    'strain': re.compile(r'(strain|dehnung|eps)(_?[xyz123])?'),
+}
+_UNITS = {
+    'displacement': {'m': 1.0, 'cm': 0.01, 'mm': 0.001},
+    'tilt': {'rad': 1.0, 'mrad': 1e-3, 'deg': pi / 180.0, 'degrees': pi / 180.0, '°': pi / 180.0},
+    'rate': {'rad/s': 1.0, 'deg/s': pi / 180.0, '°/s': pi / 180.0, 'dps': pi / 180.0},
+    'acceleration': {
+        **{'m/s^2': 1.0, 'm/s2': 1.0, 'm/s²': 1.0, 'm s-2': 1.0, 'mm/s^2': 1e-3},
+        **{'g': 9.80665, 'mg': 9.80665e-3},
+    },
+    'strain': {'1': 1.0, '-': 1.0, 'ustrain': 1e-6, 'um/m': 1e-6, 'µm/m': 1e-6, 'mm/m': 1e-3},
+}
+MAX_VALUE = 1e12
+"""Larger times and motions are no measured ones, in whichever unit."""
+
+
+@dataclass(frozen=True, eq=False)
+class SwayRecord:
+    """
+    Motion of a tree over time.
+
+    Parameters
+    ----------
+    time
+        Of each sample in [s], as in the file, (n,).
+    motion
+        One column per axis, (n, c), in [m], [rad], [rad/s] or [m/s^2].
+    quantity
+        ``displacement``, ``tilt``, ``rate`` or ``acceleration``.
+    columns
+        Names of the columns in the file.
+    source
+        The file.
+
+    """
+
+    time: Floats
+    motion: Floats
+    quantity: str
+    columns: tuple[str, ...]
+    source: str
+
+
+def read_csv_sway(path: Path) -> SwayRecord:
+    """
+    Read the motion of a tree from a table.
+
+    Raises
+    ------
+    FormatError
+        No time or no motion among the columns, an unknown unit, two quantities in one file, or a
+        cell that is no finite number.
+
+    """
+    source = str(path)
+    table = parse_table(read_lines(path), source)
+    names = [name for name, _ in table.headings]
+    clock = next((names.index(each) for each in TIME_NAMES if each in names), None)
+    motion = [(i, q) for i, (name, _) in enumerate(table.headings) if (q := _quantity(name))]
+    if clock is None or not motion:
+        raise FormatError(
+            f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}',
+            where=table.where(),
+            cure='name the columns time, x, y or time, tilt_x or time, ax, ay in the header',
+        )
+    if 'seconds_elapsed' in names:  # Sensor Logger calls the axes of any of its sensors x, y, z
+        motion = [(i, 'acceleration' if q == 'displacement' else q) for i, q in motion]
+    quantities = sorted({quantity for _, quantity in motion})
+    if len(quantities) > 1:
+        raise FormatError(
+            f'{" and ".join(quantities)} in one file',
+            where=table.where(),
+            cure='keep the columns of one quantity',
+        )
+    units = _UNITS[quantities[0]]
+    factors = [table.factor(table.headings[i][1], units, 1.0) for i, _ in motion]
+    columns = [table.columns[i] for i, _ in motion]
+    values = table.strict(columns)
+    for row, column in np.argwhere(~(np.abs(values) * factors <= MAX_VALUE))[:1]:
+        raise FormatError(
+            f'{columns[column]} is {values[row, column]:.3g}, which nothing measures',
+            where=table.where(row),
+            cure='mend the cell or remove the row',
+        )
+    times = _times(table, clock)
+    return SwayRecord(times, values * factors, quantities[0], tuple(columns), source)
+
+
+def _quantity(name: str) -> str | None:
+    return next((q for q, pattern in _QUANTITY.items() if pattern.fullmatch(name)), None)
+
+
+def _times(table: TextTable, clock: int) -> Floats:
+    """Seconds of each row, from numbers or from dates."""
+    stamps = table.cells(clock, range(len(table.texts)))
+    times, _ = table.seconds(stamps, table.factor(table.headings[clock][1], TIME_UNITS, 1.0))
+    for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
+        raise FormatError(
+            f"time is '{stamps[row][:40]}', neither seconds nor a date",
+            where=table.where(row),
+            cure='mend the cell or remove the row',
+        )
+    for row in np.flatnonzero(np.diff(times) <= 0.0)[:1]:
+        raise FormatError(
+            f'time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}',
+            where=table.where(row + 1),
+            cure='put the rows in the order of time, each time once',
+        )
+    return times

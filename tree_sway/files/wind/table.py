@@ -1,0 +1,186 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Wind in a table: CSV with a header, and the TOA5 of Campbell Scientific's loggers.
+
+Rows 20 s and more apart are means of a station or of a reanalysis: turbulence is drawn about them,
+from the column of gusts where there is one (`filled_means`). Lines before the header are passed
+over, as weather services put the place there.
+
+A time column (``time``, ``t``, ``timestamp``, ``stamp`` ...) in seconds or as ISO 8601 dates, and
+either components ``u, v`` and perhaps ``w`` (or ``x, y, z``), or ``speed`` and ``direction`` in
+degrees clockwise from north. A unit may follow the name: ``speed [km/h]``, ``u (m/s)``,
+``time_ms``, ``direction_deg``. Components point where the wind blows to, a direction says where it
+comes from, as is the use of each; ``direction_convention`` says otherwise.
+
+TOA5 has four header lines: the logger, the names, their units, how they were processed. The
+components of a sonic, ``Ux Uy Uz``, point where the wind blows, in the axes of the instrument
+(CSAT3 manual, 2.3); ``yaw`` turns them to east and north. Diagnostic words differ from instrument
+to instrument and are not read. A row that holds no number is refused.
+"""
+
+from __future__ import annotations
+
+from array import array
+from functools import partial
+from math import pi
+from pathlib import Path
+import re
+
+import numpy as np
+
+from tree_sway.core.wind.convention import WindConvention
+from tree_sway.errors import FormatError
+from tree_sway.files.table_file import Column, parse_table, split_row, TextTable
+from tree_sway.files.text_file import read_lines
+from tree_sway.files.wind.record import WindRecord, WindRows
+from tree_sway.files.wind.station_means import filled_means
+from tree_sway.files.wind.units import ANGLE_UNITS, SPEED_UNITS, TIME_UNITS
+
+TIME_NAMES = (
+    *('seconds_elapsed', 'time', 't', 'timestamp', 'stamp', 'datetime', 'date_time', 'seconds'),
+    *('secs', 'elapsed', 'valid_time', 'valid', 'zeit', 'mess_datum', 'date'),
+)
+"""What a column of times may be called."""
+_CLOCK = re.compile(rf'(?i)(^|[,;\t])\s*"?({"|".join(TIME_NAMES)})\b[^\n]*[,;\t]')
+
+_COMPONENTS = (
+    ('u', 'x', 'ux', 'ux_avg', 'east', 'vx', 'velocity_x', 'wind_u', 'wind_x', 'u10', '10u'),
+    ('v', 'y', 'uy', 'uy_avg', 'north', 'vy', 'velocity_y', 'wind_v', 'wind_y', 'v10', '10v'),
+    ('w', 'z', 'uz', 'uz_avg', 'up', 'vz', 'velocity_z', 'wind_w', 'wind_z'),
+)
+_SPEED = (
+    *('speed', 'wind_speed', 'windspeed', 'ws', 'wspd', 'wind_speed_10m', 'ff_10', 'ff', 'f'),
+    *('sknt', 'si10', 'ws_avg', 'wind'),
+)
+_DIRECTION = (
+    *('direction', 'dir', 'wind_direction', 'winddirection', 'wind_dir', 'winddir', 'wd', 'wdir'),
+    *('wind_direction_10m', 'dd_10', 'dd', 'd', 'drct', 'wd_avg'),
+)
+_GUST = (
+    *('gust', 'wind_gust', 'gusts', 'windgust', 'gust_speed', 'gustspeed', 'wpgt', 'fx_10', 'fx'),
+    *('wind_gusts_10m', 'i10fg', 'fg10', '10fg', 'ws_max', 'max_speed'),
+)
+_LOGGER = re.compile(r'(\d{4})(\d\d)(\d\d)(\d\d)(\d\d)?', re.ASCII)
+
+
+def read_csv_wind(
+    path: Path,
+    direction_convention: str | None = None,
+    yaw: float = 0.0,
+    turbulence: bool = True,
+    seed: float = 0,
+) -> WindRecord:
+    """
+    Read the wind of a table, given as components (``to``) or as a direction (``from``).
+
+    ``yaw`` is from east to the sensor's x axis, counter-clockwise, in [rad]; for a direction, from
+    north to the sensor's zero, likewise. Means get ``turbulence`` of a ``seed``. A `FormatError`
+    reports a column that is missing, a unit that is not known, or no good row.
+    """
+    WindConvention(direction_convention or 'to')  # refused before the file is read
+    lines = read_lines(path)
+    first = next((i for i, line in enumerate(lines[:40]) if _CLOCK.search(line)), 0)
+    lines[:first] = [''] * first
+    table = parse_table(lines, str(path))
+    return _wind(table, direction_convention, yaw, None, turbulence, seed)
+
+
+def read_toa5_wind(
+    path: Path,
+    columns: tuple[str, str, str] | None = None,
+    yaw: float = 0.0,
+    direction_convention: str | None = None,
+    turbulence: bool = True,
+    seed: float = 0,
+) -> WindRecord:
+    """
+    Read the wind of a TOA5 table, from ``Ux Uy Uz`` or a usual variant if no columns are named.
+
+    ``yaw`` and the convention are as of `read_csv_wind`. Raises a `FormatError` for what is not
+    TOA5, of no such columns, or no good row.
+    """
+    WindConvention(direction_convention or 'to')  # refused before the file is read
+    lines, split = read_lines(path), partial(split_row, separator=',')
+    if len(lines) < 4 or not lines[0].lstrip('"').startswith('TOA5'):
+        raise FormatError('not TOA5: its 4 header lines are missing', where=f'{path}:1')
+    kept = [number for number, line in enumerate(lines[4:], start=5) if line.strip()]
+    texts = [lines[number - 1] for number in kept]
+    names, units = tuple(split(lines[1])), tuple(split(lines[2]))
+    table = TextTable(names, kept, texts, split, str(path), 2, 3, units)
+    chosen = None if columns is None else [table.index_of(name) for name in columns]
+    return _wind(table, direction_convention, yaw, chosen, turbulence, seed)
+
+
+def _wind(
+    table: TextTable,
+    convention: str | None,
+    yaw: float,
+    chosen: list[int] | None,
+    turbulence: bool,
+    seed: float,
+) -> WindRecord:
+    """Wind of a table, from the columns chosen or those of the usual names."""
+    clock = table.find(TIME_NAMES, {**TIME_UNITS, 'ts': 1.0})
+    if chosen is None:
+        found = [table.find(names, SPEED_UNITS) for names in _COMPONENTS]
+    else:
+        found = [
+            Column(index, table.factor(table.headings[index][1], SPEED_UNITS, 1.0))
+            for index in chosen
+        ]
+    has_components = found[0] is not None and found[1] is not None
+    if not has_components:
+        found = [table.find(_SPEED, SPEED_UNITS), table.find(_DIRECTION, ANGLE_UNITS, pi / 180.0)]
+    if clock is None or None in found[:2]:
+        raise FormatError(
+            'no time with u and v, or with speed and direction, among '
+            f'{", ".join(table.columns[:20])}',
+            where=table.where(),
+            cure='name the columns so in the header, or by the option columns of TOA5',
+        )
+    columns = [column for column in found if column is not None]
+    indices = [column.index for column in columns]
+    values = table.values(indices) * [column.factor for column in columns]
+    rows = WindRows(table.source)
+    good = np.isfinite(values).all(axis=1)
+    for row in np.flatnonzero(~good).tolist():
+        rows.refuse(table.numbers[row], table.why_none(row, indices))
+    if has_components:
+        velocity = np.zeros((len(values), 3))
+        velocity[:, : values.shape[1]] = values
+    else:
+        speed, bearing = values[:, 0], values[:, 1] - yaw
+        for row in np.flatnonzero(good & (speed < 0.0)).tolist():
+            rows.refuse(table.numbers[row], f'speed is {speed[row]:g}')
+        good &= speed >= 0.0
+        for row in np.flatnonzero(good & (np.abs(values[:, 1]) > 7.0)).tolist():
+            rows.refuse(
+                table.numbers[row], f'direction is {values[row, 1] * 180.0 / pi:g} degrees'
+            )
+        good &= np.abs(values[:, 1]) <= 7.0
+        against = 1.0 if convention == 'to' else -1.0
+        velocity = against * (speed * np.array([np.sin(bearing), np.cos(bearing), 0.0 * speed])).T
+        convention, yaw = 'to', 0.0
+    kept = np.flatnonzero(good)
+    seconds, epoch = table.seconds(_stamps(table, clock, kept.tolist()), clock.factor)
+    rows.add_block(np.array(table.numbers, dtype=np.int64)[kept], velocity[kept])
+    rows.time = array('d', seconds.tolist())
+    gust = table.find(_GUST, SPEED_UNITS)
+    if gust is not None:
+        rows.gust = table.values([gust.index])[kept, 0] * gust.factor
+    record = rows.record(epoch=epoch, yaw=yaw, direction_convention=convention or 'to')
+    return filled_means(record, turbulence, seed)
+
+
+def _stamps(table: TextTable, clock: Column, rows: list[int]) -> list[str]:
+    """Return times as texts, loggers' dates as ISO 8601, with the time of another column."""
+    stamps = table.cells(clock.index, rows)
+    names = [heading for heading, _ in table.headings]
+    if names[clock.index] in ('date', 'time') and {'date', 'time'} <= set(names):
+        both = (table.cells(names.index(each), rows) for each in ('date', 'time'))
+        return [f'{date} {time}' for date, time in zip(*both, strict=True)]
+    if names[clock.index] != 'mess_datum':
+        return stamps
+    parts = (_LOGGER.fullmatch(stamp) for stamp in stamps)
+    return ['{}-{}-{}T{}:{}'.format(*each.groups('00')) if each else '' for each in parts]

@@ -1,0 +1,76 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Read a wind record from a file of any known format.
+
+The content decides before the suffix. A new format is one file with a reader, and one line here.
+"""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from tree_sway.files.file_format import contains, FileFormat, format_of
+from tree_sway.files.text_file import path_of
+from tree_sway.files.wind.bag import read_bag_wind
+from tree_sway.files.wind.metar import METAR, read_metar_wind
+from tree_sway.files.wind.nmea import read_nmea_wind
+from tree_sway.files.wind.record import WindRecord
+from tree_sway.files.wind.sonic_ascii import read_sonic_wind
+from tree_sway.files.wind.table import read_csv_wind, read_toa5_wind, TIME_NAMES
+
+WIND_FORMATS = (
+    FileFormat('toa5', ('.dat', '.toa5'), contains(r'\A"?TOA5"?,'), read_toa5_wind),
+    FileFormat('nmea', ('.nmea', '.log'), contains(r'\$[A-Z]{5},'), read_nmea_wind),
+    FileFormat(
+        'sonic',
+        (),
+        contains(r'^(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,|S2? +[\d.]+,? +D +\d)'),
+        read_sonic_wind,
+    ),
+    FileFormat(
+        'bag', ('.db3', '.mcap'), contains(r'\A(SQLite format 3\0|\ufffdMCAP0\r\n)'), read_bag_wind
+    ),
+    FileFormat('metar', ('.metar',), lambda head: METAR.search(head) is not None, read_metar_wind),
+    FileFormat(
+        'csv',
+        ('.csv', '.tsv', '.txt'),
+        contains(rf'(?i)^(?!#)([^\n]*[,;\t])?\s*"?({"|".join(TIME_NAMES)})\b[^\n]*[,;\t]'),
+        read_csv_wind,
+    ),
+)
+
+EXAMPLES = ('canopy',)
+"""Winds that come with the package: five minutes of a sonic anemometer over a canopy, 20 Hz."""
+
+
+def read_wind(path: str | Path, format: str | None = None, **options: Any) -> WindRecord:  # noqa: A002, E501
+    """
+    Read a wind record.
+
+    Parameters
+    ----------
+    path
+        The file, or the folder of a bag, or one of `EXAMPLES`.
+    format
+        Name of its format; found from content and suffix if None.
+    **options
+        What the reader of the format takes, such as ``topic`` or ``rate``.
+
+    Raises
+    ------
+    FormatError
+        A file of no known format, or one without a good row of wind.
+    ParameterError
+        An option that the reader of this format does not have, or has otherwise.
+
+    """
+    path = path_of(path)
+    if str(path) in EXAMPLES and not path.exists():
+        path = Path(str(files('tree_sway.files.wind').joinpath(f'{path}.csv')))
+    chosen = format_of(path, format, WIND_FORMATS, 'wind', folder='bag')
+    chosen.refuse_others(options, chosen.own_options)
+    record: WindRecord = chosen.read(path, **options)
+    return record

@@ -1,0 +1,246 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+YAML checked against a JSON schema, with the line of each value for the errors.
+
+PyYAML composes the nodes and jsonschema holds their values against the schema that users' editors
+read. Before that, a pass over the events refuses what could blow a small file up, or end the
+process: anchors, tags, depth. A ``oneOf`` of required keys is left to the reader, which says it
+better.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.resources import files
+import json
+from pathlib import Path
+import re
+from typing import Any
+
+import yaml
+
+from tree_sway.errors import FormatError, nearest  # noqa: I100
+from tree_sway.files.text_file import finite
+
+Schema = dict[str, Any]
+YAML_SUFFIXES = ('.yaml', '.yml', '.json')
+
+# The C parser, where PyYAML was built with it, is ten times faster.
+_LOADER: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
+_MAX_DEPTH, _MAX_NODES = 16, 600_000
+_TYPES = {yaml.MappingNode: 'object', yaml.SequenceNode: 'array', yaml.ScalarNode: 'number'}
+_KINDS = {'object': 'a mapping', 'array': 'a list', 'string': 'a text', 'number': 'a number',
+          'integer': 'a whole number', 'boolean': 'true or false'}  # fmt: skip
+_CURES = {'object': 'a mapping of keys to values', 'number': 'a finite number'}
+
+
+def packaged_schema(name: str) -> Schema:
+    """Return a JSON schema of the package by its name."""
+    resource = files('tree_sway.files.trees.yaml').joinpath(name)
+    schema: Schema = json.loads(resource.read_text(encoding='utf-8'))
+    return schema
+
+
+def begins_with_key(path: Path, head: str, key: str) -> bool:
+    """Whether a file is named as YAML and its beginning has an outermost key."""
+    pattern = rf"""^\{{?\s*["']?{key}["']?\s*:"""
+    is_yaml = path.suffix.lower() in YAML_SUFFIXES
+    return is_yaml and re.search(pattern, head, re.MULTILINE) is not None
+
+
+def tree_schema() -> Schema:
+    """Return the JSON schema of the YAML form of a tree."""
+    return packaged_schema('tree_schema.json')
+
+
+@dataclass(frozen=True)
+class YamlDocument:
+    """Checked values of a YAML text: numbers where the schema has them, texts as they stand."""
+
+    values: dict[str, Any]
+    source: str
+    root: Any
+    schema: Schema
+
+    def where(self, *path: str | int) -> str:
+        """File and line of the value at a path of keys and positions."""
+        return f'{self.source}:{_node_at(self.root, path).start_mark.line + 1}'
+
+
+def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
+    """
+    Read the one document of a YAML text.
+
+    Raises
+    ------
+    FormatError
+        Not YAML, empty, more than one document, an anchor, a tag, a key that stands twice or is no
+        text, nested too deep, or the first thing that the schema does not allow; with
+        ``source:line``.
+
+    """
+    if not text.strip():
+        raise FormatError('empty', where=source, cure='describe a tree or a forest in it')
+    try:
+        _refuse_snares(text, source)
+        root = yaml.compose(text, Loader=_LOADER)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        where = f'{source}:{mark.line + 1}' if mark is not None else source
+        raise FormatError(f'not YAML: {error.problem}', where=where, cure='mend it') from None
+    except yaml.YAMLError as error:
+        raise FormatError(f'not YAML: {str(error).splitlines()[0]}', where=source) from None
+    if root is None:
+        raise FormatError('no document', where=source, cure='describe a tree or a forest in it')
+    document = YamlDocument(_value(root, schema, schema, source), source, root, schema)
+    _check(document)
+    return document
+
+
+def _refuse_snares(text: str, source: str) -> None:
+    depth = documents = nodes = 0
+    events: Iterator[Any] = yaml.parse(text, Loader=_LOADER)
+    for event in events:
+        what = cure = ''
+        if isinstance(event, yaml.CollectionEndEvent):
+            depth -= 1
+        elif isinstance(event, yaml.DocumentStartEvent):
+            documents += 1
+            if documents > 1:
+                what, cure = 'a second document', 'keep one document in a file'
+        elif isinstance(event, yaml.NodeEvent):
+            nodes += 1
+            depth += isinstance(event, yaml.CollectionStartEvent)
+            if event.anchor is not None:
+                what, cure = 'an anchor or alias', 'write the value itself'
+            elif getattr(event, 'tag', None) is not None:
+                what, cure = f'a tag {getattr(event, "tag", None)!r}', 'write the value itself'
+            elif depth > _MAX_DEPTH:
+                what = f'nested deeper than {_MAX_DEPTH}'
+            elif nodes > _MAX_NODES:
+                what = f'more than {_MAX_NODES} keys and values'
+                cure = 'give a tree of that many segments as a table'
+        if what:
+            # A document that begins without a mark begins with what is in it, in the next line.
+            line = event.end_mark.line + 1 + (documents > 1)
+            raise FormatError(what, where=f'{source}:{line}', cure=cure)
+
+
+def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
+    """Plain value of a node; of what a schema wants as text, the text as it stands."""
+    schema = _resolved(schema, root)
+    for choice in schema.get('anyOf', ()):
+        if _resolved(choice, root)['type'] == _TYPES[type(node)]:
+            schema = _resolved(choice, root)
+    if isinstance(node, yaml.MappingNode):
+        known, values, lines = schema.get('properties', {}), dict[str, Any](), dict[str, int]()
+        for key, child in node.value:
+            line = key.start_mark.line + 1
+            if not isinstance(key, yaml.ScalarNode):
+                raise FormatError(
+                    f'{_kind_of(key)} as a key',
+                    where=f'{source}:{line}',
+                    cure='use a word as the key',
+                )
+            if key.value in values:
+                raise FormatError(
+                    f"key '{key.value}' stands twice, first in line {lines[key.value]}",
+                    where=f'{source}:{line}',
+                    cure='remove one of them',
+                )
+            values[key.value] = _value(child, known.get(key.value, {}), root, source)
+            lines[key.value] = child.start_mark.line + 1
+        return values
+    if isinstance(node, yaml.SequenceNode):
+        inside = _resolved(schema.get('items', {}), root)
+        return [_value(child, inside, root, source) for child in node.value]
+    if schema.get('type') == 'string' or node.style not in (None, '', 'plain'):
+        return node.value
+    if node.value in ('true', 'false'):
+        return node.value == 'true'
+    number = finite(node.value)
+    is_whole = number is not None and schema.get('type') == 'integer' and number.is_integer()
+    return node.value if number is None else int(number) if is_whole else number
+
+
+def _resolved(schema: Schema, root: Schema) -> Schema:
+    while '$ref' in schema:
+        schema = root['$defs'][schema['$ref'].rsplit('/', 1)[1]]
+    return schema
+
+
+def _kind_of(node: Any) -> str:
+    return 'a text' if isinstance(node, yaml.ScalarNode) else _KINDS[_TYPES[type(node)]]
+
+
+def _node_at(node: Any, path: Any) -> Any:
+    for step in path:
+        if isinstance(step, int):
+            node = node.value[step]
+        else:
+            node = next(child for key, child in node.value if key.value == step)
+    return node
+
+
+def _check(document: YamlDocument) -> None:
+    """Raise an error for the first thing in the file that the schema does not allow."""
+    from jsonschema import Draft202012Validator, validators
+
+    numbers = {'type': 'number'}
+
+    def items(validator: Any, inside: Schema, values: Any, whole: Schema) -> Any:
+        """Check items; lists of nothing but numbers, of which a tree has thousands, at once."""
+        if inside != numbers or not all(type(value) is float for value in values):
+            yield from Draft202012Validator.VALIDATORS['items'](validator, inside, values, whole)
+
+    known = {**Draft202012Validator.VALIDATORS, 'items': items, 'oneOf': lambda *_: ()}
+    validator = validators.create(Draft202012Validator.META_SCHEMA, known)(document.schema)
+    errors = [_error(document, each) for each in validator.iter_errors(document.values)]
+    if errors:
+        raise min(errors, key=lambda error: int(error.where.rsplit(':', 1)[1]))
+
+
+def _error(document: YamlDocument, error: Any) -> FormatError:
+    """Return what jsonschema found as an error of ours."""
+    if error.validator == 'anyOf':
+        inside = [each for each in error.context if each.path or each.validator != 'type']
+        if inside:
+            return _error(document, inside[0])
+    path, wanted, value = list(error.absolute_path), error.validator_value, error.instance
+    node = _node_at(document.root, path)
+    name = ''.join(f'[{step}]' if isinstance(step, int) else f'.{step}' for step in path)
+    name = name.lstrip('.') or 'the file'
+    kind = _KINDS.get(error.schema.get('type', ''), '')
+    if error.validator == 'additionalProperties':
+        known = error.schema['properties']
+        key = next(key for key in value if key not in known)
+        path.append(key)
+        what = f"unknown key '{key}' in {name}"
+        cure = nearest(key, known) or f'known are {", ".join(known)}'
+    elif error.validator == 'required':
+        key = next(key for key in wanted if key not in value)
+        what, cure = f"{name} has no '{key}'", f"add '{key}'"
+    elif error.validator == 'anyOf':
+        kinds = [_KINDS[_resolved(choice, document.schema)['type']] for choice in wanted]
+        what, cure = f'{name} is {_kind_of(node)}', f'give {" or ".join(kinds)}'
+    elif error.validator == 'type':
+        what, cure = f'{name} is {_kind_of(node)}', f'give {_CURES.get(wanted, kind)}'
+        if isinstance(node, yaml.ScalarNode) and wanted not in ('object', 'array'):
+            what = f"{name} is '{node.value[:40]}'"
+            if wanted != 'boolean':
+                what, cure = f'{what}, not {kind}', f'{cure} without quotes or unit'
+    elif error.validator in ('minItems', 'maxItems'):
+        least, most = error.schema.get('minItems', 0), error.schema.get('maxItems')
+        what = f'{name} has {len(value)} items'
+        cure = f'give {least}' if least == most else f'give at least {least}'
+    elif error.validator == 'minLength':
+        what, cure = f'{name} is empty', 'give a text'
+    else:
+        what, cure = f'{name} is {value:g}', f'give more than {wanted}'
+        if error.validator != 'exclusiveMinimum':
+            low, high = error.schema.get('minimum'), error.schema.get('maximum')
+            cure = f'from {low} to {high}' if high is not None else f'of at least {low}'
+            cure = f'give {kind} {cure}'
+    return FormatError(what, where=document.where(*path), cure=cure)

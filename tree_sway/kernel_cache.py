@@ -1,0 +1,202 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Compiled kernels on disk, keyed by all the source that goes into them.
+
+numba's own cache looks at the file of a function alone, so that after an edit the callers of a
+changed function run the old code. Here the key is a digest of a function's module and of every
+module of this package that it imports, directly or not, beside signature, processor, compiler
+version and flags. A kernel that cannot be read from disk is compiled again; one that cannot be
+written is kept in memory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+import hashlib
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+import os
+from pathlib import Path
+import pickle
+import re
+import sys
+from typing import Any
+
+from tree_sway.kernel_folder import complain, kernel_folder, read_own, write_own
+
+ROOT = Path(__file__).resolve().parent
+"""Folder of the package."""
+
+PLAIN_VARIABLE = 'TREE_SWAY_NO_NUMBA'
+"""Environment variable that leaves the compiler out, if it is set to anything but nothing or 0."""
+
+OLDEST_COMPILER = (0, 59)
+"""Versions of numba before this one do not come to an end of these kernels."""
+
+_IMPORT = re.compile(
+    r'^[ \t]*(?:from[ \t]+(\w+)\.([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n]*)'
+    r'|import[ \t]+(\w+)\.([\w.]+))',
+    re.MULTILINE,
+)
+
+
+@cache
+def why_no_compiler() -> str:
+    """Why kernels cannot be compiled here, in a few words; empty where they can."""
+    if os.environ.get(PLAIN_VARIABLE, '0') not in ('', '0'):
+        return f'{PLAIN_VARIABLE} is set'
+    reason = _what_is_wrong_with_numba()
+    if reason:
+        complain(
+            f'{reason}: trees are solved in numpy, some 100 times slower (3 ms for a frame of '
+            "1,000 segments), and the model 'segments' not at all; install numba 0.59 or later"
+        )
+    return reason
+
+
+def _what_is_wrong_with_numba() -> str:
+    try:
+        found = version('numba')
+    except PackageNotFoundError:
+        return 'numba is not installed'
+    numbers = tuple(int(part) for part in re.findall(r'\d+', found)[:2])
+    if numbers < OLDEST_COMPILER:
+        return f'numba {found} is older than {".".join(map(str, OLDEST_COMPILER))}'
+    try:
+        import_module('numba')
+    except Exception as error:  # whatever a broken installation raises
+        return f'numba {found} cannot be imported ({type(error).__name__})'
+    return ''
+
+
+class KernelCache:
+    """
+    What a numba dispatcher asks for compiled code, in place of numba's own cache.
+
+    Parameters
+    ----------
+    function
+        The plain function.
+    flags
+        Options it is compiled with; part of the key.
+
+    """
+
+    def __init__(self, function: Callable[..., Any], flags: str) -> None:
+        """Find out what the kernel is made from."""
+        numba = import_module('numba')
+        self._codec = import_module('numba.core.caching').CompileResultCacheImpl
+        self._dumps = import_module('numba.core.serialize').dumps
+        code = function.__code__
+        digest = source_digest(Path(code.co_filename))
+        self._name = f'{function.__module__.rpartition(".")[2]}.{function.__qualname__}'
+        self._key = '\0'.join(
+            [
+                *(function.__module__, function.__qualname__, str(code.co_firstlineno), digest),
+                *(flags, numba.__version__, sys.version, str(numba.config.BOUNDSCHECK)),
+            ]
+        )
+        self._enabled = bool(digest)
+
+    @property
+    def cache_path(self) -> str:
+        """Folder of the files, empty without one."""
+        return str(kernel_folder() or '')
+
+    def enable(self) -> None:
+        """Read and write from now on."""
+        self._enabled = True
+
+    def disable(self) -> None:
+        """Neither read nor write from now on."""
+        self._enabled = False
+
+    def flush(self) -> None:
+        """Forget nothing: another source has another key."""
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return compiled code for a signature, or None without any that can be used."""
+        path = self._path(sig, target_context.codegen())
+        if path is None or not path.is_file():
+            return None
+        # What numba knows to compile from takes long to load; code that is compiled asks for none
+        # of it, and whatever compiles loads it then.
+        import_module('numba.core.runtime').rtsys.initialize(target_context)
+        try:
+            payload = pickle.loads(read_own(path))
+            return self._codec.rebuild(None, target_context, payload)
+        except Exception as error:
+            complain(f'a compiled kernel cannot be read ({type(error).__name__}): {path}')
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Write compiled code, all of it or nothing."""
+        path = self._path(sig, data.codegen)
+        if path is None or not self._codec.check_cachable(None, data):
+            return
+        try:
+            write_own(path, self._dumps(self._codec.reduce(None, data)))
+        except OSError as error:
+            complain(f'compiled kernels cannot be kept: {error}')
+
+    def _path(self, sig: Any, codegen: Any) -> Path | None:
+        folder = kernel_folder() if self._enabled else None
+        if folder is None:
+            return None
+        key = f'{self._key}\0{sig}\0{codegen.magic_tuple()}'.encode()
+        name = re.sub(r'[^\w.]', '_', self._name)
+        return folder / f'{name}-{hashlib.blake2b(key, digest_size=16).hexdigest()}.kernel'
+
+
+@cache
+def source_digest(path: Path) -> str:
+    """Digest of a source and what it imports of its package and ours; empty if unreadable."""
+    try:
+        found: dict[Path, bytes] = {path: path.read_bytes()}
+    except OSError:
+        return ''
+    waiting = [path]
+    while waiting:
+        for other in _imported(waiting.pop()):
+            if other not in found:
+                found[other] = other.read_bytes()
+                waiting.append(other)
+    digest = hashlib.blake2b(found.pop(path), digest_size=16)
+    for other in sorted(found):
+        digest.update('/'.join(_place(other)).encode() + b'\0' + found[other])
+    return digest.hexdigest()
+
+
+@cache
+def _imported(path: Path) -> tuple[Path, ...]:
+    """Files of this package, and of the one a file belongs to, that it imports."""
+    files: list[Path] = []
+    packages = {top.name: top for top in (ROOT, _package(path))}
+    for found in _IMPORT.findall(path.read_text(encoding='utf-8')):
+        package, module, names = found[0] or found[3], found[1] or found[4], found[2]
+        if package not in packages:
+            continue
+        base = packages[package].joinpath(*module.split('.'))
+        if base.with_suffix('.py').is_file():
+            files.append(base.with_suffix('.py'))
+        else:
+            inner = (base / f'{name}.py' for name in re.findall(r'\w+', names))
+            files += [file for file in inner if file.is_file()]
+    return tuple(files)
+
+
+@cache
+def _package(path: Path) -> Path:
+    """Folder of the package that a file belongs to."""
+    top = path.parent
+    while (top.parent / '__init__.py').is_file():
+        top = top.parent
+    return top
+
+
+def _place(path: Path) -> tuple[str, ...]:
+    """Return where a file is, from its package on."""
+    top = _package(path)
+    return (top.name, *path.relative_to(top).parts)

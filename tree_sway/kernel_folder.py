@@ -1,0 +1,131 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The folder of compiled kernels, which nobody but its user may write.
+
+A kernel is a pickle: whoever can put one there runs code as whoever reads it. So the folder and
+all above it belong to the user or to root, others may write into none of them (/tmp may be one of
+them, where nobody removes what is another's), and files are opened without following links.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from functools import cache
+import os
+from pathlib import Path
+import stat
+import tempfile
+import time
+import warnings
+
+FOLDER_VARIABLE = 'TREE_SWAY_CACHE'
+"""Environment variable that names another folder for compiled kernels."""
+
+UNUSED = 30 * 86_400.0
+"""A kernel that nobody has read for this long is removed [s]."""
+
+_PART_LEFT = 3600.0
+"""A file that is written for this long has lost its writer [s]."""
+
+_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
+
+
+@cache
+def kernel_folder() -> Path | None:
+    """Folder for compiled kernels: the one asked for, the user's, a temporary one; or None."""
+    asked = os.environ.get(FOLDER_VARIABLE) or os.environ.get('NUMBA_CACHE_DIR')
+    home = os.environ.get('XDG_CACHE_HOME') or os.path.expanduser('~/.cache')
+    own = f'tree_sway-{os.getuid()}' if hasattr(os, 'getuid') else 'tree_sway'
+    places = [Path(asked)] if asked else []
+    places.append(Path(home) / 'tree_sway')
+    with suppress(FileNotFoundError):  # no folder is writable
+        places.append(Path(tempfile.gettempdir()) / own)
+    for place in places:
+        place = place.resolve()  # no link is followed from here on
+        try:
+            for folder in (*reversed(place.parents), place):
+                if not folder.is_dir():
+                    folder.mkdir(mode=0o700, exist_ok=True)
+            if unsafe := why_unsafe(place):
+                complain(f'compiled kernels are not kept in {place}: {unsafe}')
+                continue
+            with tempfile.TemporaryFile(dir=place) as probe:
+                probe.write(b'\0' * 4096)
+        except OSError:
+            continue
+        _clean(place)
+        return place
+    complain('no folder for compiled kernels can be written; they are compiled in every process')
+    return None
+
+
+def why_unsafe(place: Path) -> str:
+    """Why others could put a file into a folder, and the cure; empty where they cannot."""
+    if not hasattr(os, 'getuid'):
+        return ''
+    for folder in (place, *place.parents):
+        found = folder.lstat()
+        if found.st_uid not in (os.getuid(), 0) or (folder == place and not _is_mine(found)):
+            return f'{folder} belongs to another user; set {FOLDER_VARIABLE} to a folder of yours'
+        is_shared = found.st_mode & stat.S_ISVTX and folder != place
+        if found.st_mode & _BY_OTHERS and not is_shared:
+            return f'others may write into {folder}; chmod go-w {folder}'
+    return ''
+
+
+def read_own(path: Path) -> bytes:
+    """
+    Read a file of this user that others cannot write, without following a link.
+
+    Raises
+    ------
+    OSError
+        There is no such file, it is a link, or others may have written it.
+
+    """
+    with open(os.open(path, os.O_RDONLY | getattr(os, 'O_NOFOLLOW', 0)), 'rb') as file:
+        found = os.fstat(file.fileno())
+        if not stat.S_ISREG(found.st_mode) or (
+            hasattr(os, 'getuid') and (not _is_mine(found) or found.st_mode & _BY_OTHERS)
+        ):
+            raise PermissionError(f'others may have written {path}')
+        with suppress(OSError):
+            os.utime(file.fileno())  # it is in use: see `UNUSED`
+        return file.read()
+
+
+def write_own(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all; an `OSError` where that fails."""
+    handle, partial = tempfile.mkstemp(dir=path.parent, suffix='.part')
+    try:
+        with open(handle, 'wb') as file:
+            file.write(content)
+        os.replace(partial, path)
+    except OSError:
+        Path(partial).unlink(missing_ok=True)
+        raise
+
+
+def _is_mine(found: os.stat_result) -> bool:
+    return found.st_uid == os.getuid()
+
+
+def _clean(folder: Path) -> None:
+    """Remove kernels that nobody reads any more, and what broken off writers have left."""
+    for suffix, age in (('kernel', UNUSED), ('part', _PART_LEFT)):
+        for path in folder.glob(f'*.{suffix}'):
+            with suppress(OSError):
+                if time.time() - path.lstat().st_mtime > age:
+                    path.unlink()
+
+
+_said: set[str] = set()
+
+
+def complain(text: str) -> None:
+    """Say it on one line, once per process and cause."""
+    cause = text.split(':')[0]
+    if cause not in _said:
+        _said.add(cause)
+        warnings.warn_explicit(text, RuntimeWarning, 'tree_sway', 1)

@@ -1,0 +1,149 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Who may connect: the token, the Origin of a page, the Host that a browser believes it talks to.
+
+A server on this machine's own address needs no token, but a page from elsewhere must not reach it
+through the visitor's browser: its Origin, or its Host after a change of DNS, shows that.
+
+The token is read from a file, as whatever a command line or a parameter holds can be read by
+others on the machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+import hmac
+import ipaddress
+from pathlib import Path
+import stat
+from urllib.parse import urlsplit
+
+from tree_sway.errors import ParameterError
+
+_OWN_NAMES = ('localhost',)
+_LARGEST_TOKEN, _SHORTEST_TOKEN = 256, 8
+
+
+def is_loopback(address: str) -> bool:
+    """Whether an address to bind to is this machine's own alone."""
+    if address in _OWN_NAMES:
+        return True
+    try:
+        return ipaddress.ip_address(address.strip('[]')).is_loopback
+    except ValueError:
+        return False
+
+
+def read_token(path: str | Path) -> str:
+    """
+    Token that a file holds, alone on its first line; empty for no path.
+
+    Raises
+    ------
+    ParameterError
+        No such file, one that every user of the machine may read, or no token in it.
+
+    """
+    if not path:
+        return ''
+    try:
+        mode = Path(path).stat().st_mode
+        with open(path, encoding='ascii') as file:
+            text = file.read(_LARGEST_TOKEN + 1) if stat.S_ISREG(mode) else ''
+    except (OSError, ValueError) as error:
+        raise ParameterError(
+            f'the token cannot be read ({type(error).__name__})',
+            where=str(path),
+            cure='name a text file with the token on its first line',
+        ) from None
+    if mode & stat.S_IRWXO:
+        raise ParameterError(
+            'every user of this machine may read the token',
+            where=str(path),
+            cure=f'chmod o-rwx {path}',
+        )
+    token = text.strip()
+    if not _SHORTEST_TOKEN <= len(token) <= _LARGEST_TOKEN or not token.isprintable():
+        raise ParameterError(
+            f'no token of {_SHORTEST_TOKEN} to {_LARGEST_TOKEN} letters',
+            where=str(path),
+            cure='write one, as python3 -c "import secrets; print(secrets.token_urlsafe())" does',
+        )
+    return token
+
+
+def require_token(address: str, token: str) -> None:
+    """
+    Refuse to serve others without a token.
+
+    Raises
+    ------
+    ParameterError
+        Another address than this machine's own, and no token of at least 8 characters.
+
+    """
+    if not is_loopback(address) and len(token) < _SHORTEST_TOKEN:
+        raise ParameterError(
+            f'address {address} without a token of at least {_SHORTEST_TOKEN} characters',
+            where='page',
+            cure='name a token_file, or keep the address 127.0.0.1',
+        )
+
+
+def given_token(headers: Mapping[str, str], query: Mapping[str, str]) -> str:
+    """Token that came with a request, in its header or its address; may be empty."""
+    kind, _, token = headers.get('Authorization', '').partition(' ')
+    return token.strip() if kind.lower() == 'bearer' else query.get('token', '')
+
+
+def refusal(
+    headers: Mapping[str, str],
+    given: str,
+    *,
+    address: str,
+    token: str,
+    origins: Sequence[str] = (),
+) -> str | None:
+    """
+    Why a request is refused; None if it is not.
+
+    Parameters
+    ----------
+    headers
+        Headers of the request.
+    given
+        The token that came with it; may be empty.
+    address, token
+        What the server is bound to and asks for.
+    origins
+        Other origins whose pages may follow the stream.
+
+    Raises
+    ------
+    ValueError
+        An Origin or a Host that is no address.
+
+    """
+    host, origin = headers.get('Host', ''), headers.get('Origin')
+    if not f'{host}{origin}'.isascii():
+        raise ValueError('an address of letters that no address has')
+    if is_loopback(address) and not is_loopback(_name_of(host)):
+        return f"host '{host}' is not this machine"
+    if origin is not None and origin not in origins and urlsplit(origin).netloc != host:
+        return f"origin '{origin}' is not this server"
+    if token and not is_token(given, token):
+        return 'the token is missing or wrong'
+    return None
+
+
+def is_token(given: str, token: str) -> bool:
+    """Whether a token is the right one, in a time that does not depend on how much of it is."""
+    return hmac.compare_digest(*(each.encode(errors='surrogateescape') for each in (given, token)))
+
+
+def _name_of(host: str) -> str:
+    """Return a Host header without its port."""
+    if host.startswith('['):
+        return host.partition(']')[0].lstrip('[')
+    return host.rpartition(':')[0] or host

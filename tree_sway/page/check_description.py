@@ -1,0 +1,174 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+What a description must hold before anything is placed by it; ``static/checks.js`` asks the same.
+
+A kernel checks no bounds: a number that points outside of an array would read, or write, whatever
+lies there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tree_sway.errors import FormatError
+
+MOST_SEGMENTS = 500_000
+"""Segments of all kinds."""
+
+MOST_POSES = 10_000_000
+"""Segments of all trees."""
+
+MOST_COORDINATES = 65_535
+"""Coordinates of all trees; a frame counts them in two bytes."""
+
+_GREATEST = 1e12
+"""Of a height, an error or the law of the leaves."""
+
+Array = NDArray[Any]
+
+_FORMS: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    name: (kind, axes)
+    for kind, axes, names in (
+        ('<i4', ('branches',), 'branch_parent branch_base_segment branch_coordinate'),
+        ('<i4', ('branches',), 'branch_base_turn branch_turn'),
+        ('u1', ('branches',), 'branch_keys'),
+        ('<i4', ('branches + 1',), 'branch_first'),
+        ('<f4', ('branches', 3, 3), 'branch_frame'),
+        ('<f4', ('branches', 2), 'branch_skew'),
+        ('<f4', ('branches', 3), 'branch_offset'),
+        ('<f4', ('rows', 3), 'turn'),
+        ('<f4', ('segments',), 'segment_slope segment_tip_slope segment_length'),
+        ('<f4', ('segments', 3), 'segment_chord'),
+        ('<f4', ('segments', 4), 'segment_rest'),
+        ('<f4', ('segments', 2), 'segment_radius'),
+        ('<f4', ('keys', 'coordinates'), 'basis_matrix'),
+        ('<f4', ('coordinates',), 'basis_scale'),
+        ('<i4', ('clusters',), 'leaf_segment'),
+        ('<f4', ('clusters', 3), 'leaf_offset'),
+        ('<f4', ('clusters', 4), 'leaf_orientation'),
+        ('<f4', ('clusters',), 'leaf_size leaf_frequency leaf_phase'),
+    )
+    for name in names.split()
+}
+"""Type and axes of each array of a kind; those of leaves only where it bears any."""
+
+
+def check_description(
+    header: Mapping[str, Any], kinds: Sequence[Mapping[str, Array]], places: Array
+) -> None:
+    """
+    Refuse a description whose header or arrays do not fit each other.
+
+    Parameters
+    ----------
+    header
+        Names and numbers, as JSON has them.
+    kinds
+        Arrays of each kind by name.
+    places
+        Array ``tree_place``.
+
+    Raises
+    ------
+    FormatError
+        The first array or entry that is missing, of another type or shape, not finite, or that
+        points where there is nothing.
+
+    """
+    _require('header', all(isinstance(header[name], str) for name in ('name', 'frame_id')))
+    _require('kinds', len(kinds) > 0)
+    sizes = []
+    for number, (kind, arrays) in enumerate(zip(header['kinds'], kinds, strict=True)):
+        try:
+            sizes.append(_check_kind(kind, arrays))
+        except FormatError as error:
+            raise error.inside(f'kind {number}') from None
+    numbers = [tree['kind'] for tree in header['trees']]
+    names = [tree['name'] for tree in header['trees']]
+    _require('trees', all(isinstance(name, str) for name in names) and len(names) > 0)
+    _require('kind of a tree', all(type(k) is int and 0 <= k < len(kinds) for k in numbers))
+    _require('tree_place', places.dtype == '<f4' and places.shape == (len(numbers), 5))
+    _require('tree_place', np.isfinite(places).all(axis=1) & (places[:, 4] > 0.0))
+    _require('flutter', all(_is_finite(value) for value in header.get('flutter', {}).values()))
+    segments, coordinates = np.array(sizes).T
+    for what, count, most in (
+        ('segments of the kinds', segments.sum(), MOST_SEGMENTS),
+        ('segments of the trees', segments[numbers].sum(), MOST_POSES),
+        ('coordinates of the trees', coordinates[numbers].sum(), MOST_COORDINATES),
+    ):
+        if count > most:
+            raise FormatError(f'{count} {what}', cure=f'describe up to {most}')
+
+
+def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[int, int]:
+    """Refuse a kind that does not fit itself; its segments and coordinates."""
+    size = _sizes(arrays)
+    b, n, rows = size['branches'], size['segments'], size['rows']
+    _require('branch_parent', b > 0)
+    _require('basis_scale', arrays['basis_scale'] > 0.0)
+    _require('species', isinstance(kind['species'], str) and isinstance(kind['model'], str))
+    _require('height', _is_finite(kind['height']) and _is_finite(kind['basis_error']))
+    names = kind['branch_names']
+    _require('branch_names', len(names) == b and all(isinstance(name, str) for name in names))
+
+    parent, under, coordinate, keys, base_turn, turn = (
+        arrays[f'branch_{name}'].astype(np.int64)
+        for name in ('parent', 'base_segment', 'coordinate', 'keys', 'base_turn', 'turn')
+    )
+    first = arrays['branch_first'].astype(np.int64)
+    row = np.arange(b)
+    _require('branch_parent', (parent < row) & (parent >= np.minimum(row - 1, 0)))
+    _require('branch_first', size['branches + 1'] == b + 1 and first[0] == 0 and first[-1] == n)
+    count = np.diff(first)
+    _require('branch_first', count > 0)
+    # Here, as it loads the compiler, which nobody needs who only waits for a description.
+    from tree_sway.core.branch.shapes import MAX_COORDINATES
+
+    is_stem = row == 0
+    on_it = (first[parent] <= under) & (under < first[parent + 1])
+    _require('branch_base_segment', np.where(is_stem, under == -1, on_it))
+    _require('branch_keys', (keys >= 2) & (keys <= MAX_COORDINATES))
+    _require('branch_coordinate', (coordinate >= 0) & (coordinate + keys <= size['keys']))
+    within = (base_turn >= 0) & (base_turn + keys[parent] <= rows)
+    _require('branch_base_turn', np.where(is_stem, base_turn == -1, within))
+    within = (turn >= 0) & (turn + count * keys <= rows)
+    _require('branch_turn', np.where(turn == -1, keys <= 2, within))
+    if 'leaf_segment' in arrays:
+        _require('leaf_segment', (arrays['leaf_segment'] >= 0) & (arrays['leaf_segment'] < n))
+    return n, size['coordinates']
+
+
+def _sizes(arrays: Mapping[str, Array]) -> dict[str, int]:
+    """Sizes of all axes by name, once every array is there, of its type and shape, and finite."""
+    sizes: dict[str, int] = {}
+    for name, (kind, axes) in _FORMS.items():
+        if name.startswith('leaf') and 'leaf_segment' not in arrays:
+            continue
+        array = arrays.get(name)
+        if array is None:
+            raise FormatError('it is missing', where=name)
+        _require(f'type of {name}', array.dtype == kind)
+        _require(f'shape of {name}', array.ndim == len(axes))
+        for axis, size in zip(axes, array.shape, strict=True):
+            wanted = axis if isinstance(axis, int) else sizes.setdefault(axis, size)
+            _require(f'shape of {name}', size == wanted)
+        if kind == '<f4':
+            _require(name, np.isfinite(array).all(axis=tuple(range(1, array.ndim))))
+    return sizes
+
+
+def _is_finite(value: object) -> bool:
+    return type(value) in (int, float) and -_GREATEST < value < _GREATEST  # type: ignore[operator]
+
+
+def _require(name: str, holds: ArrayLike) -> None:
+    """Refuse what does not hold, or the first row where it does not."""
+    rows = np.atleast_1d(holds)
+    if not rows.all():
+        row = f'[{int(np.argmin(rows))}]' if np.ndim(holds) else ''
+        raise FormatError('it does not fit the rest, or is not finite', where=f'{name}{row}')

@@ -1,0 +1,290 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A client of the stream in Python: connects, keeps the line, says where every segment is now.
+
+Whatever arrives that cannot be read is counted and named, and the line is made again: a server
+that was updated, or a stranger on its port, must not leave an old picture that looks alive.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+import contextlib
+import json
+import random
+import threading
+import time
+from typing import Any
+from urllib.parse import parse_qs, urlsplit, urlunsplit
+
+import aiohttp
+
+from tree_sway.core.arrays import Floats
+from tree_sway.errors import FormatError, ParameterError, TransportError
+from tree_sway.page.controls import Value
+from tree_sway.page.placer import Placer
+from tree_sway.page.playout import DELAY, Moment, Playout
+from tree_sway.page.protocol import (
+    decode_description,
+    decode_frame,
+    Description,
+    Frame,
+    LARGEST_DESCRIPTION,
+    MAGIC,
+)
+
+_MOST_CREDIT, _LEAST_CREDIT, _GRANT_EVERY = 24, 8, 4
+_ON_THE_WAY = 200_000
+"""What may be on its way in [bytes], so that a slow line holds little that is old."""
+
+_LARGEST_TEXT = 2**20
+_ENDS = aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSING, aiohttp.WSMsgType.CLOSED
+_SHORTEST_WAIT, _LONGEST_WAIT = 0.5, 10.0
+_PING_EVERY, _SILENCE = 2.0, 4.0
+
+
+class StreamClient:
+    """
+    Follows a tree or a scene that ``tree-sway show`` or the node ``viewer`` serves.
+
+    It runs on a thread of its own. A line that is lost is made again, after waits that grow.
+
+    Parameters
+    ----------
+    url
+        Address of the page, with its token if it has one: ``http://127.0.0.1:8765/``.
+    rate
+        Frames per second to ask for [Hz].
+    delay
+        Playout delay [s].
+    on_frame
+        Called on the client's thread with every frame and its arrival [s] by the own clock.
+
+    Raises
+    ------
+    ParameterError
+        Text that is not an address, or a rate out of 0.1 to 1000 Hz.
+
+    Examples
+    --------
+    >>> with StreamClient("http://127.0.0.1:8765/") as client:
+    ...     client.wait()
+    ...     poses = client.poses()
+
+    """
+
+    def __init__(
+        self,
+        url: str,
+        *,
+        rate: float = 30.0,
+        delay: float = DELAY,
+        on_frame: Callable[[Frame, float], None] | None = None,
+    ) -> None:
+        try:
+            parts = urlsplit(url)
+        except ValueError as error:
+            raise ParameterError(f'not an address ({error})', where='url') from None
+        if not 0.1 <= rate <= 1000.0:
+            raise ParameterError(f'{rate:g} Hz', where='rate', cure='ask for 0.1 .. 1000 Hz')
+        path = parts.path.rstrip('/') + '/stream'
+        scheme = {'https': 'wss', 'wss': 'wss'}.get(parts.scheme, 'ws')
+        self.url = urlunsplit((scheme, parts.netloc, path, '', ''))
+        """Address of the stream; its token is sent beside it, so that no message shows it."""
+        token = parse_qs(parts.query).get('token')
+        self._headers = {'Authorization': f'Bearer {token[0]}'} if token else {}
+        self.playout = Playout(delay)
+        self.state = 'connecting'
+        """One of connecting, open, lost."""
+        self.problem = ''
+        """Why the line was lost, or a change was refused; empty if neither happened."""
+        self.unreadable = 0
+        """Messages that could not be read; after each the line is made again."""
+        self.round_trip = float('nan')
+        """To the server and back [s]."""
+        self.status: dict[str, object] = {}
+        """The newest status of the server."""
+        self._rate, self._on_frame = rate, on_frame
+        self._placer: Placer | None = None
+        self._more = threading.Condition()
+        self._loop = asyncio.new_event_loop()
+        self._ending = asyncio.Event()
+        self._task: asyncio.Task[None] | None = None
+        self._thread = threading.Thread(target=self._run, name='stream', daemon=True)
+        self._socket: aiohttp.ClientWebSocketResponse | None = None
+        self._awaited, self._credit = 0, _MOST_CREDIT
+
+    def __enter__(self) -> StreamClient:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the line and end the thread; may be called twice."""
+        if self._thread.is_alive():
+            self._loop.call_soon_threadsafe(self._end)
+            self._thread.join(timeout=5.0)
+
+    def _end(self) -> None:
+        self._ending.set()
+        if self._task is not None:
+            self._task.cancel()
+
+    def wait(self, seconds: float = 30.0, *, frames: int = 1) -> None:
+        """
+        Wait for a number of frames in all.
+
+        Raises
+        ------
+        TransportError
+            Fewer have come within the seconds [s].
+
+        """
+        with self._more:
+            if not self._more.wait_for(lambda: self.playout.received >= frames, seconds):
+                raise TransportError(
+                    f'{self.playout.received} frames within {seconds:g} s ({self.problem})',
+                    where=self.url,
+                    cure='start tree-sway show, or look at the address',
+                )
+
+    def set(self, name: str, value: Value) -> None:  # noqa: A003
+        """Change a control of the server; a refusal comes as `problem`."""
+        self._loop.call_soon_threadsafe(self._say, {'set': {'name': name, 'value': value}})
+
+    @property
+    def description(self) -> Description | None:
+        """Description that the server sent; None before that."""
+        placer = self._placer
+        return None if placer is None else placer.description
+
+    def sample(self, now: float | None = None) -> Moment | None:
+        """State to show at a time [s] of this machine's clock, now if None; None before any."""
+        with self._more:
+            return self.playout.sample(time.time() if now is None else now)
+
+    def poses(self, now: float | None = None) -> Floats | None:
+        """
+        Poses of all segments at a time, (n, 7): x y z in [m] and the quaternion's x y z w.
+
+        None before the first state.
+        """
+        moment, placer = self.sample(now), self._placer
+        if moment is None or placer is None:
+            return None
+        return placer.place_coordinates(moment.coordinates)
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self._loop)
+        self._task = self._loop.create_task(self._keep())
+        try:
+            self._loop.run_until_complete(self._task)
+        except asyncio.CancelledError:
+            pass
+        finally:
+            self._loop.close()
+
+    async def _keep(self) -> None:
+        """Connect again and again."""
+        wait = _SHORTEST_WAIT
+        async with aiohttp.ClientSession(headers=self._headers) as session:
+            while not self._ending.is_set():
+                self.state, received = 'connecting', self.playout.received
+                try:
+                    async with session.ws_connect(
+                        self.url, max_msg_size=LARGEST_DESCRIPTION, heartbeat=_SILENCE
+                    ) as socket:
+                        self._socket, self._awaited, self.state = socket, 0, 'open'
+                        await self._follow(socket)
+                except Exception as error:
+                    self.problem = str(error) or type(error).__name__
+                self._socket, self.state = None, 'lost'
+                if self.playout.received > received:
+                    wait = _SHORTEST_WAIT
+                # Many clients that lose one server do not come back in one instant.
+                with contextlib.suppress(asyncio.TimeoutError):
+                    pause = wait * random.uniform(0.75, 1.25)
+                    await asyncio.wait_for(self._ending.wait(), pause)
+                wait = min(2.0 * wait, _LONGEST_WAIT)
+
+    async def _follow(self, socket: aiohttp.ClientWebSocketResponse) -> None:
+        """Take what comes until the line ends, is silent for too long or cannot be read."""
+        self._say({'rate': self._rate, 'ping': time.monotonic()})
+        pinged = time.monotonic()
+        while True:
+            message = await socket.receive()
+            if message.type in _ENDS:
+                raise TransportError(f'the server closed the line ({socket.close_code})')
+            try:
+                self._take(message)
+            except Exception as error:
+                self.unreadable += 1
+                what = f'a message that cannot be read ({type(error).__name__}: {error})'
+                raise FormatError(what[:400], where='stream') from error
+            if time.monotonic() - pinged > _PING_EVERY:
+                pinged = time.monotonic()
+                self._say({'ping': pinged})
+
+    def _take(self, message: aiohttp.WSMessage) -> None:
+        if message.type is aiohttp.WSMsgType.TEXT:
+            self._hear(message.data)
+        elif message.type is not aiohttp.WSMsgType.BINARY:
+            raise FormatError(str(message.data))
+        elif message.data[:4] == MAGIC:
+            self._describe(decode_description(message.data))
+        else:
+            self._awaited -= 1
+            self._ask()
+            self._push(decode_frame(message.data), time.time())
+
+    def _ask(self) -> None:
+        """Ask for as many frames as may be on their way."""
+        more = self._credit - self._awaited
+        if more >= _GRANT_EVERY:
+            self._awaited += more
+            self._say({'credit': more})
+
+    def _say(self, message: Mapping[str, object]) -> None:
+        if self._socket is not None and not self._socket.closed:
+            task = self._loop.create_task(self._socket.send_json(message))
+            task.add_done_callback(lambda done: done.cancelled() or done.exception())
+
+    def _hear(self, text: str) -> None:
+        if len(text) > _LARGEST_TEXT:
+            raise FormatError(f'a text of {len(text)} characters')
+        message: dict[str, Any] = json.loads(text)
+        if not isinstance(message, dict):
+            raise FormatError(f'{text[:40]!r} where an object belongs')
+        if 'pong' in message:
+            self.round_trip = time.monotonic() - float(message['pong'])
+        if 'refused' in message:
+            self.problem = str(message['refused']['reason'])
+        self.status = dict(message.get('status', self.status))
+
+    def _describe(self, description: Description) -> None:
+        placer = Placer(description)
+        with self._more:
+            self._placer = placer
+            self.playout.clear()
+        fitting = _ON_THE_WAY // description.frame_size
+        self._credit = max(_LEAST_CREDIT, min(_MOST_CREDIT, fitting))
+        self._ask()
+
+    def _push(self, frame: Frame, arrival: float) -> None:
+        description = self.description
+        if description is None or frame.identity != description.short_identity:
+            return
+        values = description.coordinates(frame)
+        with self._more:
+            moment = Moment(1e-9 * frame.stamp, values, frame.wind, frame.flags)
+            self.playout.push(moment, arrival)
+            self._more.notify_all()
+        if self._on_frame is not None:
+            try:
+                self._on_frame(frame, arrival)
+            except Exception as error:
+                self.problem = f'on_frame: {type(error).__name__}: {error}'

@@ -1,0 +1,165 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+What a receiver needs to rebuild every pose from a frame.
+
+Of each kind of tree it is the rest geometry, how its branches bend, and the basis of its state; of
+each tree its kind, and where it stands.
+
+A kind has its root node at the origin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
+from tree_sway.core.leaves.foliage import LeafClusters
+from tree_sway.core.motion.fill_records import turns_of_segments
+from tree_sway.core.simulator.protocol import TreeSimulator
+from tree_sway.page.check_description import Array
+from tree_sway.page.protocol import encode_description
+from tree_sway.page.scene_kind import SceneKind
+
+NO_ROW = -1
+"""Of the turns, for a branch that sits on none or bends by its slope."""
+
+
+def describe_scene(
+    name: str,
+    kinds: Sequence[SceneKind],
+    tree_names: Sequence[str],
+    *,
+    frame_id: str = 'map',
+    leaves: Sequence[LeafClusters | None] = (),
+) -> bytes:
+    """
+    Describe a tree or a forest for receivers of its state.
+
+    Parameters
+    ----------
+    name
+        Of the scene.
+    kinds
+        Its trees by kind.
+    tree_names
+        A name per tree.
+    frame_id
+        Frame of the poses.
+    leaves
+        Clusters of leaves of each kind; none if empty.
+
+    Returns
+    -------
+    bytes
+        As `encode_description`.
+
+    """
+    places = np.zeros((len(tree_names), 5), dtype=np.float32)
+    kind_of = np.zeros(len(tree_names), dtype=np.int64)
+    entries = []
+    arrays: dict[str, Array] = {'tree_place': places}
+    for number, kind in enumerate(kinds):
+        places[kind.numbers], kind_of[kind.numbers] = kind.places, number
+        own, tree = _branches(kind.simulator), kind.simulator.tree
+        rows = _rows(kind.simulator.bank.branches)
+        own['basis_matrix'] = _float32(kind.basis.matrix)
+        own['basis_scale'] = _float32(kind.basis.scale)
+        clusters = leaves[number] if leaves else None
+        if clusters is not None:
+            own['leaf_segment'] = np.argsort(rows)[clusters.segment].astype(np.int32)
+            for field in ('offset', 'orientation', 'size', 'frequency', 'phase'):
+                own[f'leaf_{field}'] = _float32(getattr(clusters, field))
+        arrays |= {f'{number}/{field}': array for field, array in own.items()}
+        entries.append(
+            {
+                'species': tree.species,
+                'height': round(tree.height, 4),
+                'model': kind.simulator.model,
+                'basis_error': float(kind.basis.error.quantised_greatest),
+                'branch_names': _names(kind.simulator),
+            }
+        )
+    trees = [
+        {'name': each, 'kind': kind}
+        for each, kind in zip(tree_names, kind_of.tolist(), strict=True)
+    ]
+    header: dict[str, object] = {
+        'format': 'tree_sway description',
+        'name': name,
+        'frame_id': frame_id,
+        'kinds': entries,
+        'trees': trees,
+    }
+    if any(each is not None for each in leaves):
+        header['flutter'] = {'gain': FLUTTER_GAIN, 'largest_angle': LARGEST_ANGLE}
+    return encode_description(header, arrays)
+
+
+def _branches(simulator: TreeSimulator) -> dict[str, Array]:
+    """Arrays of one kind: how each of its branches is placed by the key rotations."""
+    tree, branches, segments = simulator.tree, simulator.bank.branches, simulator.bank.segments
+    keys, sizes = branches['n_coordinates'], branches['end'] - branches['first']
+    base_turn, own_turn = np.full((2, len(branches)), NO_ROW, dtype=np.int32)
+    turns: list[Floats] = [np.zeros((0, 3))]
+    count = 0
+    for branch, record in enumerate(branches):
+        if record['parent'] >= 0:
+            base_turn[branch] = count
+            turns.append(record['twist'][: keys[record['parent']], 3:])
+            count += len(turns[-1])
+        if keys[branch] > 2:
+            own_turn[branch] = count
+            turns.append(turns_of_segments(record, segments).reshape(-1, 3))
+            count += len(turns[-1])
+    first = np.concatenate([[0], np.cumsum(sizes)])
+    owner = np.repeat(np.arange(len(branches)), sizes)
+    at = branches['block'][owner] + np.arange(len(owner)) - first[owner]
+    lane, rows, on = branches['lane'][owner], _rows(branches), branches['base_segment']
+    indices = {
+        'branch_parent': branches['parent'],
+        'branch_base_segment': np.where(on < 0, -1, np.argsort(rows)[on]),
+        'branch_first': first,
+        'branch_coordinate': branches['coordinate'],
+        'branch_base_turn': base_turn,
+        'branch_turn': own_turn,
+    }
+    diameter = np.stack([tree.base_diameter, tree.tip_diameter], axis=1)
+    numbers = {
+        'branch_frame': branches['frame'],
+        'branch_skew': np.stack([branches['skew'], branches['tip_skew']], axis=1),
+        'branch_offset': np.where(branches['parent'][:, None] < 0, 0.0, branches['offset']),
+        'segment_slope': segments['slope'][at, lane],
+        'segment_tip_slope': segments['tip_slope'][at, lane],
+        'segment_chord': segments['chord'][at, :, lane],
+        'segment_rest': segments['rest'][at, :, lane],
+        'segment_length': tree.length[rows],
+        'segment_radius': 0.5 * diameter[rows],
+        'turn': np.concatenate(turns),
+    }
+    return {
+        **{name: array.astype(np.int32) for name, array in indices.items()},
+        'branch_keys': keys.astype(np.uint8),
+        **{name: _float32(array) for name, array in numbers.items()},
+    }
+
+
+def _rows(branches: Records) -> Ints:
+    """Return the row in the tree of each segment, (n,), branch after branch."""
+    pairs = zip(branches['first'].tolist(), branches['end'].tolist(), strict=True)
+    return np.concatenate([np.arange(first, end) for first, end in pairs])
+
+
+def _names(simulator: TreeSimulator) -> list[str]:
+    """Names of the branches; pieces of a branch that is cut have its name."""
+    tree = simulator.tree
+    whole = tree.branch_of_segment[simulator.bank.branches['first']]
+    return [tree.branch_names[branch] for branch in whole.tolist()]
+
+
+def _float32(values: ArrayLike) -> Array:
+    return np.asarray(values, dtype=np.float32)

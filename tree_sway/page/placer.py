@@ -1,0 +1,145 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A receiver in Python: a frame and its description to poses, by the solver's own placing."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.branch.shapes import MAX_COORDINATES
+from tree_sway.core.motion.fill_records import (
+    fill_places,
+    head_records,
+    lanes,
+    Places,
+    segment_records,
+)
+from tree_sway.core.motion.placing import place_standing_at
+from tree_sway.core.motion.records import BRANCH, head_layout, SEGMENT
+from tree_sway.errors import FormatError
+from tree_sway.page.check_description import Array
+from tree_sway.page.protocol import Description, Frame
+
+MOST_MEMORY = 512 * 2**20
+"""Of the records of a kind in [bytes]."""
+
+_TURNS = 'base_turn', 'turn'
+_Records = NDArray[np.void]
+
+
+class Placer:
+    """
+    Rebuilds the poses of a described tree or scene.
+
+    Parameters
+    ----------
+    description
+        What the sender sent once.
+
+    Raises
+    ------
+    FormatError
+        A tree whose records need more than `MOST_MEMORY`.
+
+    """
+
+    def __init__(self, description: Description) -> None:
+        """Lay the tree out for the placing kernel."""
+        self.description = description
+        kinds = [_kind(arrays) for arrays in description.kinds]
+        places = description.arrays['tree_place'].astype(np.float64).tolist()
+        kind_of = [kinds[tree['kind']] for tree in description.header['trees']]
+        self._trees = list(zip(places, kind_of, strict=True))
+        self.n_segments = sum(kind.n_segments for kind in kind_of)
+
+    def place(self, frame: Frame) -> Floats:
+        """
+        Poses of a frame, (n, 7): x y z in [m] and the quaternion's x y z w.
+
+        Raises
+        ------
+        FormatError
+            A frame of another description.
+
+        """
+        description = self.description
+        if frame.identity != description.short_identity:
+            raise FormatError(
+                f'a frame of description {frame.identity:08x}',
+                where='tree state',
+                cure=f'this one has {description.short_identity:08x}: ask for the new one',
+            )
+        return self.place_coordinates(description.coordinates(frame))
+
+    def place_coordinates(self, coordinates: Floats) -> Floats:
+        """Poses of coordinates in their own unit (m,), (n, 7)."""
+        poses, row, first = np.empty((self.n_segments, 7)), 0, 0
+        for (x, y, z, yaw, scale), kind in self._trees:
+            last, end = first + kind.matrix.shape[1], row + kind.n_segments
+            c, s = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
+            keys = kind.matrix @ coordinates[first:last]
+            branches, segments, heads, bases = kind.records
+            place_standing_at(
+                branches, segments, heads, bases, keys, x, y, z, c, s, scale, poses[row:end]
+            )
+            row, first = end, last
+        return poses
+
+
+class _Kind(NamedTuple):
+    """A kind laid out for the placing kernel."""
+
+    matrix: Floats
+    n_segments: int
+    records: tuple[_Records, _Records, _Records, Floats]
+    """Its branches and segments, heads of these, and scratch."""
+
+
+def _kind(arrays: dict[str, Array]) -> _Kind:
+    first = arrays['branch_first'].astype(np.int64)
+    parent, keys = arrays['branch_parent'].astype(np.int64), arrays['branch_keys'].astype(np.int64)
+    base_turn, own_turn = (arrays[f'branch_{name}'].astype(np.int64) for name in _TURNS)
+    matrix, turns = arrays['basis_matrix'].astype(np.float64), arrays['turn']
+    slope, tip_slope = arrays['segment_slope'], arrays['segment_tip_slope']
+    block, _, n_records = lanes(first, parent)
+    sizes = len(parent), n_records, len(np.unique(block)) + 1
+    memory = sum(
+        count * layout.itemsize
+        for count, layout in zip(sizes, (BRANCH, SEGMENT, head_layout()), strict=True)
+    )
+    if memory > MOST_MEMORY:
+        raise FormatError(
+            f'a kind of {memory // 2**20} MiB when laid out',
+            where='tree description',
+            cure=f'describe a tree of fewer branches: up to {MOST_MEMORY // 2**20} MiB',
+        )
+    frame = arrays['branch_frame'].astype(np.float64)
+    branch = np.repeat(np.arange(len(parent)), np.diff(first))
+    rank = np.arange(len(branch)) - first[branch]
+    # By its slope about the axes across its chord, or by rows of its own.
+    turn = np.zeros((len(branch), MAX_COORDINATES, 3))
+    turn[:, 0] = slope[:, None] * frame[branch, 2]
+    turn[:, 1] = -slope[:, None] * frame[branch, 1]
+    turn[own_turn[branch] >= 0] = 0.0
+    on_parent = np.zeros((len(parent), MAX_COORDINATES, 3))
+    for key in range(MAX_COORDINATES):
+        here = (base_turn >= 0) & (key < keys[parent])
+        on_parent[here, key] = turns[base_turn[here] + key]
+        here = (own_turn >= 0)[branch] & (key < keys[branch])
+        own = branch[here]
+        turn[here, key] = turns[own_turn[own] + rank[here] * keys[own] + key]
+    skew, tip_skew = arrays['branch_skew'].T
+    places = Places(
+        first, parent, arrays['branch_base_segment'], arrays['branch_coordinate'], keys, frame,
+        skew, tip_skew, arrays['branch_offset'], on_parent,
+        arrays['segment_chord'], arrays['segment_rest'], slope, tip_slope, turn,
+    )  # fmt: skip
+    branches, segments = np.zeros(len(parent), BRANCH), segment_records(places)
+    fill_places(places, branches)
+    heads = head_records(branches, segments)
+    return _Kind(matrix, int(first[-1]), (branches, segments, heads, np.zeros((len(branches), 8))))

@@ -1,0 +1,170 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+From frames that arrive when they will to a smooth motion, as ``static/playout.js`` does it.
+
+Shown a little late, on a curve through the states (Catmull & Rom 1974), never extrapolated.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import NamedTuple
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.page.protocol import PAUSED, RESTARTED
+
+DELAY = 0.17
+"""Playout delay [s]."""
+
+_WINDOW = 30.0
+_OTHER_CLOCK = 5.0
+_OUT_OF_ORDER = 1.0
+_LONGEST_GAP = 0.5
+_BLEND = 0.4
+_KEPT = 64
+
+
+class Moment(NamedTuple):
+    """
+    A state at a time.
+
+    Parameters
+    ----------
+    stamp
+        Of the sender's clock [s].
+    coordinates
+        In their own unit, (m,).
+    wind
+        Blowing to, in [m/s], (3,).
+    flags
+        As of a frame.
+
+    """
+
+    stamp: float
+    coordinates: Floats
+    wind: Floats
+    flags: int = 0
+
+
+class ClockOffset:
+    """
+    Difference of two clocks from one-way times.
+
+    Arrival less stamp is offset plus travel, so that the least of the last half minute is the
+    offset and the quickest travel.
+    """
+
+    def __init__(self) -> None:
+        self._least: deque[tuple[float, float]] = deque()
+
+    def add(self, stamp: float, arrival: float) -> None:
+        """Take a stamp of the sender's clock and its arrival by the own clock [s]."""
+        value = arrival - stamp
+        # A sender whose clock was set back or that started again is another clock.
+        if self._least and abs(value - self.value) > _OTHER_CLOCK:
+            self._least.clear()
+        while self._least and self._least[-1][1] >= value:
+            self._least.pop()
+        self._least.append((arrival, value))
+        while self._least[0][0] < arrival - _WINDOW:
+            self._least.popleft()
+
+    @property
+    def value(self) -> float:
+        """Own clock less the sender's, and the quickest travel [s]; 0 before the first stamp."""
+        return self._least[0][1] if self._least else 0.0
+
+
+class Playout:
+    """
+    Holds the newest states and finds what to show.
+
+    Parameters
+    ----------
+    delay
+        From a state's stamp to when it is shown, the quickest travel not counted [s].
+
+    """
+
+    def __init__(self, delay: float = DELAY) -> None:
+        self.delay = delay
+        self.clock = ClockOffset()
+        self.received = self.late = 0
+        """States that came, and those of them that came after they were to be shown."""
+        self._moments: deque[Moment] = deque(maxlen=_KEPT)
+        self._shown: Moment | None = None
+        self._before: Floats | None = None
+        self._blend_from = 0.0
+
+    def clear(self) -> None:
+        """Forget every state: another tree comes."""
+        self._moments.clear()
+        self._before = self._shown = None
+
+    def push(self, moment: Moment, arrival: float) -> None:
+        """Take a state that arrived at a time of the own clock [s]."""
+        if self._moments:
+            gap = moment.stamp - self._moments[-1].stamp
+            if -_OUT_OF_ORDER < gap <= 0.0:
+                return  # twice, or out of order
+            if gap <= 0.0 or gap > _LONGEST_GAP or moment.flags & RESTARTED:
+                self._before = None if self._shown is None else self._shown.coordinates
+                self._blend_from = arrival
+                self._moments.clear()
+        self.clock.add(moment.stamp, arrival)
+        self.received += 1
+        self.late += arrival - moment.stamp - self.clock.value > self.delay
+        self._moments.append(moment)
+
+    def sample(self, now: float) -> Moment | None:
+        """State to show at a time of the own clock [s]; None before the first."""
+        moments = self._moments
+        if not moments:
+            return self._shown
+        time = now - self.clock.value - self.delay
+        newest = len(moments) - 1
+        after = next((i for i, each in enumerate(moments) if each.stamp > time), newest)
+        i2 = max(after, min(1, newest))
+        i1 = max(i2 - 1, 0)
+        a, b = moments[i1], moments[i2]
+        span = b.stamp - a.stamp
+        u = min(max((time - a.stamp) / span, 0.0), 1.0) if span > 0.0 else 1.0
+        curve = catmull_rom(moments[max(i1 - 1, 0)], a, b, moments[min(i2 + 1, newest)], u)
+        wind = a.wind + u * (b.wind - a.wind)
+        stamp = a.stamp + u * span
+        self._shown = Moment(stamp, self._blended(curve, now), wind, b.flags & PAUSED)
+        return self._shown
+
+    def _blended(self, coordinates: Floats, now: float) -> Floats:
+        """Over from what was shown before the stream was cut."""
+        before, u = self._before, (now - self._blend_from) / _BLEND
+        if before is None or u >= 1.0 or before.shape != coordinates.shape:
+            self._before = None
+            return coordinates
+        return before + u * u * (3.0 - 2.0 * u) * (coordinates - before)
+
+
+def catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:
+    """
+    Coordinates on the curve through b and c, whose slopes there come from the neighbours.
+
+    Parameters
+    ----------
+    a, b, c, d
+        States in the order of their stamps; at an end of the stream a is b, or d is c.
+    u
+        From b to c, 0 to 1.
+
+    """
+    span, before, behind = c.stamp - b.stamp, c.stamp - a.stamp, d.stamp - b.stamp
+    u2, u3 = u * u, u * u * u
+    curve = (2.0 * u3 - 3.0 * u2 + 1.0) * b.coordinates + (3.0 * u2 - 2.0 * u3) * c.coordinates
+    if before > 0.0:
+        curve += (u3 - 2.0 * u2 + u) * span / before * (c.coordinates - a.coordinates)
+    if behind > 0.0:
+        curve += (u3 - u2) * span / behind * (d.coordinates - b.coordinates)
+    return np.asarray(curve)

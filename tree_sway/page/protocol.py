@@ -1,0 +1,299 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The binary form of a swaying tree: a description sent once, then frames that need no other frame.
+
+`doc/streaming.md` is the specification; ``static/protocol.js`` reads the same bytes. Everything is
+little-endian. A frame holds the state and the wind, no more: some 60 bytes whatever the tree's
+size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+import hashlib
+import json
+import math
+import struct
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.state.full_scale import FULL_SCALE, MARGIN
+from tree_sway.errors import FormatError
+from tree_sway.page.check_description import Array, check_description
+
+VERSION, FRAME_VERSION = 2, 1
+MAGIC = b'TSWD'
+FRAME_KIND = 0x46
+WIND_UNIT = 0.005
+"""Wind of one unit of its int16 in [m/s]."""
+
+PAUSED, BEYOND_SCALE, RESTARTED = 1, 2, 4
+"""Flags of a frame: paused, a number was clamped to its scale, the motion jumped."""
+
+_TYPES = {'f32': '<f4', 'i32': '<i4', 'u8': 'u1', 'i16': '<i2'}
+_NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
+_PREFIX = struct.Struct('<4sII')
+_FRAME = struct.Struct('<BBBxIIq3hH')
+_ALIGNMENT = 8
+
+LARGEST_DESCRIPTION = 64 * 2**20
+"""Of its message in [bytes]."""
+
+LARGEST_HEADER = 8 * 2**20
+"""Of the JSON in it in [bytes]."""
+
+_WRONG_JSON = (
+    ValueError, KeyError, IndexError, TypeError, AttributeError, OverflowError, RecursionError,
+)  # fmt: skip
+"""What reading JSON of another form raises."""
+
+
+class Frame(NamedTuple):
+    """
+    One state of a tree or a scene.
+
+    Parameters
+    ----------
+    identity
+        First four bytes of the identity of the description that it belongs to.
+    sequence
+        Counts frames, from 0, modulo 2^32.
+    stamp
+        Time of the state in [ns].
+    flags
+        Sum of `PAUSED`, `BEYOND_SCALE`, `RESTARTED`.
+    wind
+        At the anemometer, blowing to, in [m/s], (3,).
+    coordinates
+        As int16, (m,): full scale is `FULL_SCALE`.
+
+    """
+
+    identity: int
+    sequence: int
+    stamp: int
+    flags: int
+    wind: Floats
+    coordinates: Array
+
+
+@dataclass(frozen=True)
+class Description:
+    """
+    What is sent once.
+
+    Parameters
+    ----------
+    header
+        Names and numbers, as ``doc/streaming.md`` lists them.
+    arrays
+        Arrays by name; of a kind under its number and a slash.
+    identity
+        SHA-256 of the content, the first 16 hexadecimal digits.
+
+    Raises
+    ------
+    FormatError
+        As `check_description`.
+
+    """
+
+    header: dict[str, Any]
+    arrays: dict[str, Array]
+    identity: str
+
+    def __post_init__(self) -> None:
+        """Refuse arrays that do not fit each other."""
+        check_description(self.header, self.kinds, self.arrays['tree_place'])
+
+    @property
+    def short_identity(self) -> int:
+        """Return what frames carry of the identity."""
+        return int(self.identity[:8], 16)
+
+    @property
+    def frame_size(self) -> int:
+        """Size of a frame in [bytes]."""
+        return _FRAME.size + 2 * len(self.scale)
+
+    @cached_property
+    def kinds(self) -> list[dict[str, Array]]:
+        """Arrays of each kind by name."""
+        kinds: list[dict[str, Array]] = [{} for _ in self.header['kinds']]
+        for name, array in self.arrays.items():
+            number, is_of_kind, own = name.partition('/')
+            if is_of_kind:
+                kinds[int(number)][own] = array
+        return kinds
+
+    @cached_property
+    def scale(self) -> Floats:
+        """Return the value of each coordinate of all trees at full scale, (m,)."""
+        scales = [self.kinds[tree['kind']]['basis_scale'] for tree in self.header['trees']]
+        return np.concatenate(scales).astype(np.float64)
+
+    def coordinates(self, frame: Frame) -> Floats:
+        """Coordinates of a frame in their own unit, (m,); a `FormatError` if it has others."""
+        if len(frame.coordinates) != len(self.scale):
+            raise FormatError(
+                f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described',
+                where='tree state',
+            )
+        values: Floats = frame.coordinates * (self.scale / FULL_SCALE)
+        return values
+
+
+def encode_description(header: Mapping[str, object], arrays: Mapping[str, Array]) -> bytes:
+    """
+    Write a description.
+
+    Parameters
+    ----------
+    header
+        Whatever JSON can hold; `version`, `identity` and `arrays` are added.
+    arrays
+        Arrays of float32, int32, int16 or uint8.
+
+    """
+    body, table = bytearray(), {}
+    for name, value in arrays.items():
+        array = np.ascontiguousarray(value)
+        kind = _NAMES[array.dtype.newbyteorder('<')]
+        table[name] = {'type': kind, 'shape': list(array.shape), 'offset': len(body)}
+        body += array.astype(_TYPES[kind]).tobytes()
+        body += bytes(-len(body) % _ALIGNMENT)
+    content = {**header, 'version': VERSION, 'arrays': table}
+    digest = hashlib.sha256(_json(content) + body).hexdigest()
+    text = _json({**content, 'identity': digest[:16]})
+    text += b' ' * (-(_PREFIX.size + len(text)) % _ALIGNMENT)
+    return _PREFIX.pack(MAGIC, VERSION, len(text)) + text + bytes(body)
+
+
+def decode_description(data: bytes) -> Description:
+    """
+    Read a description.
+
+    Raises
+    ------
+    FormatError
+        Not a description, of another version, cut short, changed on the way, or with an array
+        that points outside of another.
+
+    """
+    if len(data) < _PREFIX.size or data[:4] != MAGIC:
+        raise _broken('it does not begin with TSWD')
+    _, version, size = _PREFIX.unpack_from(data)
+    if version != VERSION:
+        raise FormatError(
+            f'a description of version {version}',
+            where='tree description',
+            cure=f'this program reads version {VERSION}: update the older side',
+        )
+    begin = _PREFIX.size + size
+    if size > LARGEST_HEADER:
+        raise _broken(f'a header of {size} bytes; up to {LARGEST_HEADER} are read')
+    body = memoryview(data)[begin:]
+    try:
+        header = json.loads(data[_PREFIX.size : begin])
+        identity, table = header.pop('identity'), header['arrays']
+        arrays = {name: _array(body, entry) for name, entry in table.items()}
+        digest = hashlib.sha256(_json(header))
+        digest.update(body)
+        if digest.hexdigest()[:16] != identity:
+            raise ValueError('its content does not match its identity')
+        del header['arrays']
+        return Description(header, arrays, identity)
+    except FormatError as error:
+        raise error.inside('tree description') from None
+    except _WRONG_JSON as error:
+        raise _broken(f'{type(error).__name__}: {error}'[:200]) from None
+
+
+def encode_frame(frame: Frame) -> bytes:
+    """Write a frame; a wind beyond the range of its int16 is clamped and flagged."""
+    wind = np.rint(np.asarray(frame.wind) / WIND_UNIT)
+    cut = np.clip(wind, -FULL_SCALE, FULL_SCALE)
+    flags = frame.flags | (BEYOND_SCALE if (cut != wind).any() else 0)
+    x, y, z = cut.astype(int).tolist()
+    coordinates = np.asarray(frame.coordinates, dtype='<i2')
+    return (
+        _FRAME.pack(
+            FRAME_KIND, FRAME_VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF,
+            frame.stamp, x, y, z, len(coordinates),
+        )
+        + coordinates.tobytes()
+    )  # fmt: skip
+
+
+def decode_frame(data: bytes) -> Frame:
+    """
+    Read a frame.
+
+    Raises
+    ------
+    FormatError
+        Not a frame, of another version, or of another length than it says.
+
+    """
+    if len(data) < _FRAME.size or data[0] != FRAME_KIND:
+        raise FormatError(
+            'not a frame', where='tree state', cure='send frames of doc/streaming.md'
+        )
+    _, version, flags, identity, sequence, stamp, x, y, z, count = _FRAME.unpack_from(data)
+    if version != FRAME_VERSION or len(data) != _FRAME.size + 2 * count:
+        raise FormatError(
+            f'a frame of version {version}, {count} coordinates and {len(data)} bytes',
+            where='tree state',
+            cure=f'send version {FRAME_VERSION}, {_FRAME.size} bytes and 2 per coordinate',
+        )
+    coordinates = np.frombuffer(data, dtype='<i2', offset=_FRAME.size)
+    return Frame(identity, sequence, stamp, flags, WIND_UNIT * np.array([x, y, z]), coordinates)
+
+
+def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Array, bool]:
+    """
+    Coordinates as int16.
+
+    Parameters
+    ----------
+    values, scale
+        Coordinates, and their values at full scale, (m,).
+
+    Returns
+    -------
+    tuple
+        int16 (m,), clamped to full scale, and whether any coordinate is farther out than where
+        the error of the description was found.
+
+    """
+    exact = np.rint(np.asarray(values) * (FULL_SCALE / np.asarray(scale)))
+    cut = np.clip(exact, -FULL_SCALE, FULL_SCALE)
+    return cut.astype('<i2'), bool((np.abs(exact) > FULL_SCALE / MARGIN).any())
+
+
+def _json(content: Mapping[str, object]) -> bytes:
+    text = json.dumps(content, sort_keys=True, separators=(',', ':'), allow_nan=False)
+    return text.encode()
+
+
+def _array(body: memoryview, entry: Mapping[str, Any]) -> Array:
+    shape = tuple(int(size) for size in entry['shape'])
+    if any(size < 0 for size in shape):
+        raise ValueError(f'a shape of {shape}')
+    count = math.prod(shape)
+    flat = np.frombuffer(body, dtype=_TYPES[entry['type']], count=count, offset=entry['offset'])
+    return flat.reshape(shape)
+
+
+def _broken(why: str) -> FormatError:
+    return FormatError(
+        f'not a whole description: {why}',
+        where='tree description',
+        cure='ask the sender for it again',
+    )

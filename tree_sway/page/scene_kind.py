@@ -1,0 +1,106 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The kinds of a scene as they are described: trees on one table share geometry and basis.
+
+A tree that is solved by itself is a kind of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.simulator.protocol import Simulator, TreeSimulator
+from tree_sway.core.simulator.settings import USUAL
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.state.find_basis import state_basis
+from tree_sway.core.state.state_basis import StateBasis
+
+Place = tuple[float, float, float, float, float]
+"""Place of a tree: x, y, z [m], its turn about the vertical [rad], its scale."""
+
+
+@dataclass(eq=False)
+class SceneKind:
+    """
+    Trees that are described once.
+
+    Parameters
+    ----------
+    simulator
+        The simulator whose records describe them.
+    basis
+        The basis of its state.
+    coordinates
+        Called for the coordinates of its trees now, (t, m).
+    numbers, places
+        Their numbers in the scene, and their places.
+
+    """
+
+    simulator: TreeSimulator
+    basis: StateBasis
+    coordinates: Callable[[], Floats]
+    numbers: list[int]
+    places: list[Place]
+
+
+def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneKind]:
+    """
+    Find the kinds of a scene, and their bases.
+
+    Parameters
+    ----------
+    simulator
+        The simulator of a tree or a scene.
+    is_running
+        Whether it is stepped meanwhile: then a basis is found on another simulator.
+
+    """
+    if not isinstance(simulator, SceneSimulator):
+        return [_alone(0, each, is_running) for each in simulator.simulators]
+    kinds, trees = [], simulator.trees
+    for model, bank, numbers in simulator.shared:
+        # The model stays at rest: the scene steps its table.
+        basis = state_basis(model)
+        per_shape = bank.all_shapes @ basis.projection.T
+        found = partial(_shared, simulator, numbers, per_shape)
+        where = [trees[number] for number in numbers.tolist()]
+        places = [(tree.x, tree.y, tree.z, tree.yaw, tree.scale) for tree in where]
+        kinds.append(SceneKind(model, basis, found, numbers.tolist(), places))
+    return kinds + [_alone(t, each, is_running) for t, each in simulator.own.items()]
+
+
+def _alone(number: int, simulator: TreeSimulator, is_running: bool) -> SceneKind:
+    """Return the kind of a tree that shares nothing, described where it is."""
+    basis = state_basis(_runner(simulator, is_running))
+    x, y, z = simulator.tree.start[0].tolist()
+    found = partial(_coordinates, basis.projection, simulator)
+    return SceneKind(simulator, basis, found, [number], [(x, y, z, 0.0, 1.0)])
+
+
+def _shared(scene: SceneSimulator, numbers: Ints, per_shape: Floats) -> Floats:
+    """Coordinates of the trees of a scene that share a table, (t, m)."""
+    coordinates: Floats = scene.shares(numbers) @ per_shape
+    return coordinates
+
+
+def _coordinates(projection: Floats, simulator: TreeSimulator) -> Floats:
+    """Coordinates of one tree, (1, m)."""
+    return np.asarray(projection @ simulator.rotations())[None]
+
+
+def _runner(simulator: TreeSimulator, is_running: bool) -> SwaySimulator:
+    """Choose the simulator to find the basis on: this one if it is at rest and no dearer."""
+    is_cheap = isinstance(simulator, SwaySimulator) and simulator.model not in ('full', 'auto')
+    if isinstance(simulator, SwaySimulator) and is_cheap and not is_running:
+        return simulator
+    model = simulator.model if is_cheap else USUAL
+    settings = replace(simulator.settings, model=model)
+    return SwaySimulator(simulator.tree, simulator.species, settings)

@@ -1,0 +1,139 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The state of a running scene as frames: what is described once, what is sent of each moment."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
+from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.simulator.season import is_in_leaf
+from tree_sway.page.description import describe_scene
+from tree_sway.page.protocol import (
+    BEYOND_SCALE,
+    decode_description,
+    encode_frame,
+    Frame,
+    PAUSED,
+    quantised,
+    RESTARTED,
+)
+from tree_sway.page.scene_kind import scene_kinds, SceneKind
+
+FULLY_LEAVED = 4
+"""Kinds of which each is described with all the clusters of leaves that are asked for."""
+
+
+class SceneState:
+    """
+    Writes the state of a tree or a scene.
+
+    Finding the basis takes some seconds; the simulator may run meanwhile.
+
+    Parameters
+    ----------
+    simulator
+        The simulator of a tree or a scene.
+    n_leaves
+        How many clusters of leaves to describe on each kind that is in leaf; fewer where there are
+        more than `FULLY_LEAVED` kinds.
+    frame_id
+        Frame of the poses.
+    is_running
+        Whether the simulator is stepped meanwhile; one that is not is itself run, and set back.
+
+    Raises
+    ------
+    FormatError
+        A scene that is too large to describe, as of `check_description`.
+
+    """
+
+    def __init__(
+        self,
+        simulator: Simulator,
+        n_leaves: int = 0,
+        frame_id: str = 'map',
+        *,
+        is_running: bool = True,
+    ) -> None:
+        self.simulator = simulator
+        self.kinds = scene_kinds(simulator, is_running=is_running)
+        if isinstance(simulator, SceneSimulator):
+            self.names, name = simulator.names, simulator.name
+        else:
+            self.names, name = (simulator.tree.name,), simulator.tree.name
+        self.n_branches = sum(len(k.numbers) * k.simulator.tree.n_branches for k in self.kinds)
+        self.n_segments = sum(len(k.numbers) * k.simulator.tree.n_segments for k in self.kinds)
+        self._lay_out()
+        count = FULLY_LEAVED * n_leaves // max(FULLY_LEAVED, len(self.kinds))
+        leaves = [_leaves(kind, count) for kind in self.kinds]
+        self.description = describe_scene(
+            name, self.kinds, self.names, frame_id=frame_id, leaves=leaves
+        )
+        described = decode_description(self.description)
+        self.identity, self._short = described.identity, described.short_identity
+        self._sequence = 0
+
+    def _lay_out(self) -> None:
+        """Give the coordinates of all trees numbers, one tree after another."""
+        sizes = np.zeros(len(self.names), dtype=np.int64)
+        for kind in self.kinds:
+            sizes[kind.numbers] = len(kind.basis.scale)
+        first = np.cumsum([0, *sizes])
+        self._scale = np.zeros(first[-1])
+        self._rows = []
+        for kind in self.kinds:
+            rows = first[kind.numbers][:, None] + np.arange(len(kind.basis.scale))
+            self._scale[rows] = kind.basis.scale
+            self._rows.append(rows)
+        self._sizes = sizes.tolist()
+
+    @property
+    def coordinate_names(self) -> list[str]:
+        """Return a name per coordinate: ``tree/c0``, or ``c0`` of a tree alone."""
+        is_alone = len(self.names) == 1
+        return [
+            f'c{i}' if is_alone else f'{name}/c{i}'
+            for name, size in zip(self.names, self._sizes, strict=True)
+            for i in range(size)
+        ]
+
+    def coordinates(self) -> Floats:
+        """Coordinates of all trees now, (m,)."""
+        whole = np.empty(len(self._scale))
+        for kind, rows in zip(self.kinds, self._rows, strict=True):
+            whole[rows] = kind.coordinates()
+        return whole
+
+    def frame(self, stamp: int, *, is_paused: bool = False, has_restarted: bool = False) -> bytes:
+        """
+        Write the state of this moment.
+
+        Parameters
+        ----------
+        stamp
+            Its time in [ns].
+        is_paused
+            Whether time stands still.
+        has_restarted
+            Whether the motion jumped since the frame before.
+
+        """
+        steps, is_cut = quantised(self.coordinates(), self._scale)
+        flags = PAUSED * is_paused + RESTARTED * has_restarted + BEYOND_SCALE * is_cut
+        self._sequence += 1
+        frame = Frame(self._short, self._sequence - 1, stamp, flags, self.simulator.wind, steps)
+        return encode_frame(frame)
+
+
+def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:
+    """Clusters of leaves of a kind; None where it bears none."""
+    simulator = kind.simulator
+    if not count or not is_in_leaf(simulator.species, simulator.settings.in_leaf):
+        return None
+    rng, traits = np.random.default_rng(0), simulator.species.leaves
+    return leaf_clusters(simulator.tree, rng, count=count, traits=traits)

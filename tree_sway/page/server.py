@@ -1,0 +1,524 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The page's server: files, a description once, the newest frame to whoever has asked for one more.
+
+It runs on a thread and loop of its own. The solver's thread hands a frame over by storing it and
+waking the loop, and never waits. A client gets a frame only for a credit that it gave, and always
+the newest one, so that a slow client sees fewer frames, not old ones.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable, Mapping
+import contextlib
+from dataclasses import dataclass, field
+from html import escape
+import json
+import logging
+import math
+import socket
+import ssl
+import threading
+import time
+from typing import Any
+
+from aiohttp import web, WSCloseCode, WSMsgType
+from aiohttp.typedefs import Handler
+
+from tree_sway.errors import TransportError
+from tree_sway.page.access import given_token, is_token, read_token, refusal, require_token
+from tree_sway.page.controls import ControlPanel, Value
+from tree_sway.page.doorkeeper import Doorkeeper
+from tree_sway.page.static_files import StaticFiles
+
+LARGEST_MESSAGE = 4096
+"""Longest message that a client may send in [bytes]."""
+
+MOST_CREDIT = 64
+"""Most frames that may be on their way to one client."""
+
+SLOWEST, FASTEST = 0.1, 1000.0
+"""Frames per second that a client may ask for [Hz]."""
+
+IDLE_TIME = 60.0
+"""A client that says nothing for this time is closed [s]; a page sends several texts a second."""
+
+STATUS_PERIOD = 0.5
+_COMPLAINT_PERIOD = 10.0
+_LARGEST_PING = 1e15
+_LONGEST_PATH = 100
+_FORM = (
+    '<!doctype html><title>tree sway</title><p>refused: {}</p>'
+    '<form><label>Token <input name="token" type="password" autofocus></label> '
+    '<button>Open</button></form>'
+)
+_LOGGER = logging.getLogger('tree_sway.page')
+_START_TIMEOUT = 10.0
+_SEND_TIMEOUT = 5.0
+_HEADERS = {
+    'Content-Security-Policy': "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'",
+    'X-Content-Type-Options': 'nosniff',
+    'Referrer-Policy': 'no-referrer',
+    'Cache-Control': 'no-cache',
+}
+
+
+@dataclass(frozen=True)
+class PageSettings:
+    """
+    Where and to whom the page is served.
+
+    Parameters
+    ----------
+    address, port
+        To bind to; port 0 takes a free one.
+    token, token_file
+        What clients must know, or a file that holds it; needed for any address but this machine's
+        own.
+    certificate, private_key
+        PEM files for TLS; none if empty.
+    max_clients
+        Most pages at once.
+    origins
+        Other origins, as ``https://example.org``, whose pages may follow the stream.
+
+    """
+
+    address: str = '127.0.0.1'
+    port: int = 8765
+    token: str = field(default='', repr=False)
+    token_file: str = ''
+    certificate: str = ''
+    private_key: str = ''
+    max_clients: int = 64
+    origins: tuple[str, ...] = ()
+
+
+class _Client:
+    """One connected page: its credit, and what it has been sent."""
+
+    def __init__(self, socket: web.WebSocketResponse, transport: asyncio.Transport | None) -> None:
+        self.socket, self.transport = socket, transport
+        self.credit = 0
+        self.period = 0.0
+        self.timer: asyncio.TimerHandle | None = None
+        self.next_due = 0.0
+        self.sent = -1
+        self.wake = asyncio.Event()
+        self.texts: deque[str] = deque(maxlen=16)
+        self.description = b''
+        self.last_heard = time.monotonic()
+        self.sending_since = math.inf
+
+    def is_lost(self, now: float) -> bool:
+        """Whether it has been silent, or has not read, for too long by a time [s]."""
+        return now - self.last_heard > IDLE_TIME or now - self.sending_since > _SEND_TIMEOUT
+
+    def ring(self) -> None:
+        """Look again at what is to be sent."""
+        self.timer = None
+        self.wake.set()
+
+
+class PageServer:
+    """
+    Serves the page and the state of one scene.
+
+    Parameters
+    ----------
+    settings
+        Where and to whom.
+    panel
+        What viewers may change; nothing if None.
+    status
+        Called twice a second on the server's thread for what the page shows beside the tree.
+
+    Examples
+    --------
+    >>> with PageServer(PageSettings()) as server:
+    ...     server.describe(description)
+    ...     server.publish(frame)
+
+    """
+
+    def __init__(
+        self,
+        settings: PageSettings,
+        panel: ControlPanel | None = None,
+        status: Callable[[], Mapping[str, object]] | None = None,
+    ) -> None:
+        self.settings = settings
+        self._token = settings.token or read_token(settings.token_file)
+        require_token(settings.address, self._token)
+        self._panel = panel or ControlPanel()
+        self._status = status or dict
+        self._description = b''
+        self._frame: tuple[int, bytes] = (-1, b'')
+        self._clients: set[_Client] = set()
+        self._loop = asyncio.new_event_loop()
+        self._started = threading.Event()
+        self._failure: Exception | None = None
+        self._ending: asyncio.Event | None = None
+        self._is_woken = False
+        self._counts = dict.fromkeys(('sent', 'bytes', 'refused', 'closed_idle'), 0)
+        self._complained = -_COMPLAINT_PERIOD
+        self._doors = Doorkeeper(4 * settings.max_clients, self._complain)
+        self._thread = threading.Thread(target=self._run, name='page', daemon=True)
+        self.port = settings.port
+
+    def start(self) -> None:
+        """
+        Start serving.
+
+        Raises
+        ------
+        TransportError
+            The address cannot be bound, or the TLS files cannot be used.
+
+        """
+        self._thread.start()
+        self._started.wait(_START_TIMEOUT)
+        if self._failure is not None:
+            self._thread.join()
+            where = f'{self.settings.address}:{self.settings.port}'
+            raise TransportError(
+                f'the page cannot be served ({self._failure})',
+                where=where,
+                cure='choose another port, or end what uses this one',
+            ) from self._failure
+
+    def close(self) -> None:
+        """Close every client and stop; may be called twice."""
+        if self._thread.is_alive():
+            self._loop.call_soon_threadsafe(self._end)
+            self._thread.join(timeout=10.0)
+
+    def __enter__(self) -> PageServer:
+        self.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def url(self) -> str:
+        """Address for a browser, without the token: the page asks for it."""
+        scheme = 'https' if self.settings.certificate else 'http'
+        address = self.settings.address
+        host = f'[{address}]' if ':' in address else address
+        return f'{scheme}://{host}:{self.port}/'
+
+    @property
+    def n_clients(self) -> int:
+        """Pages that are connected."""
+        return len(self._clients)
+
+    def describe(self, description: bytes) -> None:
+        """Send all pages, now and later, what the frames that follow belong to."""
+        self._description = description
+        self._call(self._wake_all)
+
+    def publish(self, frame: bytes) -> None:
+        """Hand over the newest frame, from any thread, without waiting."""
+        self._frame = (self._frame[0] + 1, frame)
+        if not self._is_woken:
+            self._is_woken = True
+            self._call(self._wake_all)
+
+    def announce(
+        self, content: Mapping[str, object], values: Mapping[str, Value] | None = None
+    ) -> None:
+        """
+        Send all pages something, from any thread.
+
+        Parameters
+        ----------
+        content
+            What JSON can hold.
+        values
+            Controls that have other values now.
+
+        """
+        if values is not None:
+            self._panel.update(values)
+            content = {**content, 'values': self._panel.values()}
+        self._call(lambda: self._send_all(content))
+
+    def _call(self, action: Callable[[], None]) -> None:
+        try:
+            self._loop.call_soon_threadsafe(action)
+        except RuntimeError:  # the loop is closed
+            self._is_woken = False
+
+    def _wake_all(self) -> None:
+        self._is_woken = False
+        for client in self._clients:
+            client.wake.set()
+
+    def _end(self) -> None:
+        if self._ending is not None:
+            self._ending.set()
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self._loop)
+        self._loop.set_exception_handler(lambda _, context: self._complain(context['message']))
+        try:
+            self._loop.run_until_complete(self._serve())
+        except Exception as error:
+            self._failure = error
+            self._started.set()
+        finally:
+            self._loop.close()
+
+    async def _serve(self) -> None:
+        self._ending = asyncio.Event()
+        files, app = StaticFiles(), web.Application(middlewares=[self._guard])
+        app.router.add_get('/', files.index)
+        app.router.add_get('/stream', self._stream)
+        app.router.add_get('/healthz', self._health)
+        app.router.add_get('/metrics', self._metrics)
+        app.router.add_get('/static/{name:.+}', files.serve)
+        app.on_response_prepare.append(_add_headers)
+        logger = logging.Logger('page')
+        logger.addHandler(_Complaints(self._complain))
+        runner = web.AppRunner(
+            app, access_log=None, keepalive_timeout=15.0, lingering_time=0.5, shutdown_timeout=1.0,
+            logger=logger,
+        )  # fmt: skip
+        await runner.setup()
+        assert runner.server is not None
+        tls, address = _tls(self.settings), (self.settings.address, self.settings.port)
+        family = socket.AF_INET6 if ':' in address[0] else socket.AF_INET
+        with socket.create_server(address, family=family, backlog=256) as listener:
+            listener.setblocking(False)
+            self.port = listener.getsockname()[1]
+            tasks = [
+                self._loop.create_task(self._doors.admit(listener, runner.server, tls)),
+                self._loop.create_task(self._send_status()),
+            ]
+            self._started.set()
+            await self._ending.wait()
+            for task in tasks:
+                task.cancel()
+        for client in tuple(self._clients):
+            await client.socket.close(code=WSCloseCode.GOING_AWAY, message=b'server ends')
+        await runner.cleanup()
+
+    def _complain(self, what: str) -> None:
+        """Count what was refused, and log a line now and then."""
+        self._counts['refused'] += 1
+        now = time.monotonic()
+        if now - self._complained >= _COMPLAINT_PERIOD:
+            self._complained = now
+            count = self._counts['refused']
+            _LOGGER.warning('%s (%d refused since the start)', what[:200], count)
+
+    @web.middleware
+    async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        settings, given = self.settings, given_token(request.headers, request.query)
+        is_known = not self._token or is_token(given, self._token)
+        self._doors.let_in(request.protocol, is_known=is_known)
+        if request.can_read_body:
+            return self._refused(413, 'nothing here takes a body')
+        try:
+            if len(request.path) > _LONGEST_PATH:
+                raise ValueError('a path of no file')
+            if request.path != '/healthz' and not request.path.startswith('/static/'):
+                why = refusal(
+                    request.headers, given, address=settings.address, token=self._token,
+                    origins=settings.origins,
+                )  # fmt: skip
+                if why is not None:
+                    return self._refused(403, why, with_form=request.path == '/')
+        except ValueError as error:
+            return self._refused(400, f'not understood: {error}')
+        response: web.StreamResponse = await handler(request)
+        return response
+
+    def _refused(self, status: int, why: str, *, with_form: bool = False) -> web.Response:
+        self._complain(f'a request was refused: {why!a}')
+        text, kind = f'refused: {why}\n', 'text/plain'
+        if with_form:
+            text, kind = _FORM.format(escape(why)), 'text/html'
+        answer = web.Response(status=status, text=text, content_type=kind)
+        answer.force_close()
+        return answer
+
+    async def _health(self, _request: web.Request) -> web.Response:
+        return web.json_response({'status': 'ok', 'described': bool(self._description)})
+
+    async def _metrics(self, _request: web.Request) -> web.Response:
+        values: dict[str, object] = {
+            'clients': len(self._clients),
+            'connections': self._doors.n_open,
+            'frames_total': self._frame[0] + 1,
+            'sent_total': self._counts['sent'],
+            'sent_bytes_total': self._counts['bytes'],
+            'refused_total': self._counts['refused'],
+            'closed_total': self._counts['closed_idle'] + self._doors.n_closed,
+        }
+        lines = []
+        for name, value in values.items():
+            kind = 'counter' if name.endswith('_total') else 'gauge'
+            lines += [f'# TYPE tree_sway_page_{name} {kind}', f'tree_sway_page_{name} {value}']
+        return web.Response(text='\n'.join(lines) + '\n')
+
+    async def _stream(self, request: web.Request) -> web.StreamResponse:
+        if len(self._clients) >= self.settings.max_clients:
+            return self._refused(503, 'too many pages are connected')
+        socket = web.WebSocketResponse(
+            compress=False, max_msg_size=LARGEST_MESSAGE, heartbeat=20.0, timeout=2.0
+        )
+        await socket.prepare(request)
+        client = _Client(socket, request.transport)
+        client.texts.append(self._hello())
+        self._clients.add(client)
+        sender = self._loop.create_task(self._send(client))
+        try:
+            async for message in socket:
+                client.last_heard = time.monotonic()
+                try:
+                    if message.type is not WSMsgType.TEXT:
+                        raise ValueError('bytes where text is spoken')
+                    self._take(client, message.data)
+                except (ValueError, TypeError, RecursionError) as error:
+                    self._complain(f'a message was refused: {error!a}')
+                    await socket.close(
+                        code=WSCloseCode.POLICY_VIOLATION, message=b'not understood'
+                    )
+        finally:
+            self._clients.discard(client)
+            sender.cancel()
+            if client.timer is not None:
+                client.timer.cancel()
+        return socket
+
+    def _hello(self) -> str:
+        return json.dumps(
+            {'hello': {'controls': self._panel.entries(), 'address': self.settings.address}}
+        )
+
+    def _take(self, client: _Client, text: str) -> None:
+        """Take a message of a client; a `ValueError` or `TypeError` for anything else."""
+        message = json.loads(text)
+        if not isinstance(message, dict):
+            raise TypeError('not an object')
+        if 'credit' in message:
+            credit = client.credit + _number(message, 'credit', -MOST_CREDIT, math.inf)
+            client.credit = int(max(0, min(credit, MOST_CREDIT)))
+        if 'rate' in message:
+            client.period = 1.0 / _number(message, 'rate', SLOWEST, FASTEST)
+        if 'ping' in message:
+            ping = _number(message, 'ping', -_LARGEST_PING, _LARGEST_PING)
+            client.texts.append(json.dumps({'pong': ping, 'time': time.time_ns() / 1e6}))
+        if 'set' in message:
+            self._change(client, message['set'])
+        client.wake.set()
+
+    def _change(self, client: _Client, change: object) -> None:
+        change = change if isinstance(change, dict) else {}
+        name = change.get('name')
+        why = self._panel.set(name, change.get('value'))
+        if why is not None:
+            self._counts['refused'] += 1
+            refused = {'name': str(name)[:80], 'reason': why[:400]}
+            client.texts.append(json.dumps({'refused': refused, 'values': self._panel.values()}))
+            return
+        self._send_all({'values': self._panel.values()})
+
+    def _send_all(self, content: Mapping[str, object]) -> None:
+        text = json.dumps(content)
+        for client in self._clients:
+            client.texts.append(text)
+            client.wake.set()
+
+    async def _send(self, client: _Client) -> None:
+        """Send a client what is new, as its credit allows."""
+        while not client.socket.closed:
+            await client.wake.wait()
+            client.wake.clear()
+            # Looked at twice a second: a timer and a task per frame would cost memory.
+            client.sending_since = time.monotonic()
+            try:
+                await self._send_due(client)
+            except (ConnectionError, RuntimeError):
+                self._drop(client)
+                return
+            client.sending_since = math.inf
+
+    async def _send_due(self, client: _Client) -> None:
+        while client.texts:
+            await client.socket.send_str(client.texts.popleft())
+        if client.description is not self._description:
+            client.description = self._description
+            await client.socket.send_bytes(self._description)
+        number, frame = self._frame
+        if client.credit <= 0 or number == client.sent or not frame or not client.description:
+            return
+        now = self._loop.time()
+        # Half a period early is on time: the solver's frames and the client's rate share no grid.
+        if now < client.next_due - 0.5 * client.period:
+            if client.timer is None:
+                client.timer = self._loop.call_at(client.next_due, client.ring)
+            return
+        client.next_due = max(client.next_due + client.period, now)
+        client.credit -= 1
+        client.sent = number
+        self._counts['sent'] += 1
+        self._counts['bytes'] += len(frame)
+        await client.socket.send_bytes(frame)
+
+    async def _send_status(self) -> None:
+        assert self._ending is not None
+        while not self._ending.is_set():
+            with contextlib.suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self._ending.wait(), STATUS_PERIOD)
+            now = time.monotonic()
+            for client in tuple(self._clients):
+                if client.is_lost(now):
+                    self._drop(client)
+            if self._clients:
+                self._send_all({'status': {**self._status(), 'clients': len(self._clients)}})
+
+    def _drop(self, client: _Client) -> None:
+        """Close a client that does not read, without waiting for it."""
+        self._counts['closed_idle'] += 1
+        self._clients.discard(client)
+        if client.transport is not None:
+            client.transport.abort()
+
+
+class _Complaints(logging.Handler):
+    """Takes what the HTTP server would log with a traceback, as one sentence."""
+
+    def __init__(self, complain: Callable[[str], None]) -> None:
+        super().__init__()
+        self._complain = complain
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Complain of the error, or of what was to be logged."""
+        error = record.exc_info[1] if record.exc_info else None
+        self._complain(f'{record.getMessage()}: {error!a}')
+
+
+def _number(message: dict[str, Any], name: str, low: float, high: float) -> float:
+    """Return an entry that has to be a number within a range."""
+    value = message[name]
+    if type(value) not in (int, float) or not low <= value <= high:
+        raise ValueError(f'{name} out of {low:g} .. {high:g}')
+    return float(min(value, _LARGEST_PING))
+
+
+async def _add_headers(_request: web.Request, response: web.StreamResponse) -> None:
+    response.headers.update(_HEADERS)
+
+
+def _tls(settings: PageSettings) -> ssl.SSLContext | None:
+    if not settings.certificate:
+        return None
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.load_cert_chain(settings.certificate, settings.private_key or None)
+    return context

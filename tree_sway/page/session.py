@@ -1,0 +1,245 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A live tree without ROS: a thread that steps it in real time and hands each state to the server.
+
+What a viewer asks for that takes long (another tree, another model) is built on a second thread,
+while the first goes on, and taken over between two steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+import logging
+import threading
+import time
+
+from tree_sway.core.scene.demand import set_demand
+from tree_sway.core.scene.run import Run
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.wind.gate import WindGate
+from tree_sway.core.wind.intake import WindIntake
+from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.errors import ParameterError, TreeSwayError
+from tree_sway.page.controls import Value
+from tree_sway.page.scene_state import SceneState
+from tree_sway.page.server import PageServer
+from tree_sway.page.wind_source import blow, SimulatedWind, WindSource
+
+_LOGGER = logging.getLogger('tree_sway.page')
+_MOST_LATE = 0.25
+_NEWEST = 0.05
+_BUSY = 0.2
+"""Share of a period from which on only every second step is sent."""
+
+
+@dataclass(frozen=True)
+class Choices:
+    """
+    What is built: changing one of these makes a new simulator.
+
+    Parameters
+    ----------
+    tree
+        Name or file.
+    count
+        How many of it stand together, a whole number as text.
+    model
+        Its model.
+    damping_ratio
+        Of every mode; 0 for the species' own.
+
+    """
+
+    tree: str
+    count: str = '1'
+    model: str = str(Settings().model)
+    damping_ratio: float = 0.0
+
+
+Build = Callable[[Choices], Simulator]
+"""Makes the simulator of some choices."""
+
+_LEAVES = 1000
+"""Clusters of leaves of each kind of tree."""
+
+
+class Session:
+    """
+    Steps a scene in real time, and takes changes while it runs.
+
+    Parameters
+    ----------
+    build
+        Makes the simulator.
+    choices
+        What to begin with.
+    wind
+        What blows.
+    rate
+        Steps per second in [Hz].
+    tolerance
+        Largest error that model ``auto`` allows in [m].
+
+    Raises
+    ------
+    TreeSwayError
+        As `build`.
+
+    """
+
+    def __init__(
+        self,
+        build: Build,
+        choices: Choices,
+        wind: WindSource,
+        *,
+        rate: float = 60.0,
+        tolerance: float = 0.005,
+    ) -> None:
+        self._build, self.wind, self._rate, self._period = build, wind, rate, 1.0 / rate
+        self.choices, self._tolerance = choices, tolerance
+        self._scene, self._runtime = self._made(choices)
+        self._next: tuple[SceneState, Run] | None = None
+        self._server: PageServer | None = None
+        self._stop = threading.Event()
+        self._is_paused = self._resets = False
+        self._ticks, self._steps = 0, 0
+        self._work, self._spacing, self._late = 0.0, self._period, 0
+        self._last = time.perf_counter()
+        self._builder: threading.Thread | None = None
+        self._wanted: Choices | None = None
+        self._thread = threading.Thread(target=self._run, name='session', daemon=True)
+        self.failure: Exception | None = None
+
+    def serve(self, server: PageServer) -> None:
+        """Publish on a server from now on; the first time, begin to step."""
+        server.describe(self._scene.description)
+        self._server = server
+        if not self._thread.is_alive():
+            self._thread.start()
+
+    def wait(self, seconds: float) -> None:
+        """Wait some seconds [s], or until the session has failed."""
+        self._thread.join(max(0.0, seconds))
+
+    def stop(self) -> None:
+        """Stop stepping; may be called twice."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join(timeout=5.0)
+
+    def apply(self, name: str, value: Value) -> None:
+        """
+        Carry out a change of a viewer.
+
+        Raises
+        ------
+        ParameterError
+            A change that this session does not know, or cannot carry out now.
+
+        """
+        if name == 'pause':
+            self._is_paused = bool(value)
+        elif name == 'reset':
+            self._resets = True
+        elif name == 'tolerance':
+            self._tolerance = float(value or 0.0)
+            set_demand(self._scene.simulator.simulators, tolerance=self._tolerance)
+        elif name in ('mean_speed', 'intensity', 'bearing_to'):
+            if not isinstance(self.wind, SimulatedWind):
+                raise ParameterError(
+                    'the wind is a record', where=name, cure='start without --wind'
+                )
+            self.wind.set(name, float(value or 0.0))
+        elif name in Choices.__dataclass_fields__:
+            changed = {name: value}
+            self._want(replace(self._wanted or self.choices, **changed))  # type: ignore[arg-type]
+        else:
+            raise ParameterError(f"'{name}' cannot be changed", where='page')
+
+    def status(self) -> dict[str, object]:
+        """Return what the page shows beside the tree."""
+        simulator = self._scene.simulator
+        return {
+            'model': simulator.model,
+            'rate': round(1.0 / max(self._spacing, 1e-6), 1),
+            'work_us': round(1e6 * self._work, 1),
+            'late': self._late,
+            'trees': len(self._scene.names),
+            'branches': self._scene.n_branches,
+            'segments': self._scene.n_segments,
+            'solved': simulator.n_solved,
+            'building': self._wanted is not None,
+            'paused': self._is_paused,
+        }
+
+    def _made(self, choices: Choices) -> tuple[SceneState, Run]:
+        simulator = self._build(choices)
+        scene = SceneState(simulator, _LEAVES, is_running=False)
+        set_demand(simulator.simulators, tolerance=self._tolerance)
+        simulator.reset()
+        intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
+        return scene, Run(simulator, self._rate, intake=intake)
+
+    def _want(self, choices: Choices) -> None:
+        self._wanted = choices
+        if self._builder is None or not self._builder.is_alive():
+            self._builder = threading.Thread(target=self._build_wanted, daemon=True)
+            self._builder.start()
+
+    def _build_wanted(self) -> None:
+        """Build what was asked for last; viewers are sent the reason of a refusal or a failure."""
+        while (wanted := self._wanted) is not None:
+            try:
+                self._next = self._made(wanted)
+                self.choices = wanted
+                refused = None
+            except TreeSwayError as error:
+                refused = {'name': '', 'reason': str(error)}
+            except Exception as error:
+                _LOGGER.exception('%s cannot be built', wanted)
+                reason = f'{wanted.tree} cannot be built ({type(error).__name__}: {error})'
+                refused = {'name': '', 'reason': reason[:400]}
+            if self._wanted is wanted:
+                self._wanted = None
+            if refused is not None and self._server is not None:
+                self._server.announce({'refused': refused}, vars(self.choices))
+
+    def _run(self) -> None:
+        try:
+            due = self._last = time.perf_counter()
+            while not self._stop.is_set():
+                self._step(time.perf_counter())
+                due += self._period
+                now = time.perf_counter()
+                if now - due > _MOST_LATE:
+                    self._late += 1
+                    due = now
+                self._stop.wait(max(0.0, due - now))
+        except Exception as error:
+            self.failure = error
+
+    def _step(self, begin: float) -> None:
+        assert self._server is not None
+        has_restarted, self._resets = self._resets, False
+        if self._next is not None:
+            (self._scene, self._runtime), self._next = self._next, None
+            self._server.describe(self._scene.description)
+        if has_restarted:
+            self._scene.simulator.reset()
+        if not self._is_paused:
+            self._ticks += 1
+            blow(self._runtime, self.wind, self._ticks * self._runtime.period)
+        self._steps += 1
+        if has_restarted or self._steps % 2 == 0 or self._work < _BUSY * self._period:
+            frame = self._scene.frame(
+                time.time_ns(), is_paused=self._is_paused, has_restarted=has_restarted
+            )
+            self._server.publish(frame)
+        now = time.perf_counter()
+        self._work += _NEWEST * (now - begin - self._work)
+        self._spacing += _NEWEST * (begin - self._last - self._spacing)
+        self._last = begin

@@ -1,0 +1,153 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * What a description must hold before anything is placed by it; tree_sway/page/check_description.py
+ * asks the same.
+ */
+
+/** What cannot be read; its message is for people. */
+export class ProtocolError extends Error {}
+
+const MOST_SEGMENTS = 500000;
+const MOST_POSES = 10000000;
+const MOST_COORDINATES = 65535;
+/** Of a height or an error [m]. */
+const GREATEST = 1e12;
+
+/** Type and axes of each array of a kind. @type {Record<string, [Function, ...(string | number)[]]>} */
+const ARRAYS = {
+  branch_parent: [Int32Array, "branches"],
+  branch_base_segment: [Int32Array, "branches"],
+  branch_first: [Int32Array, "branches + 1"],
+  branch_coordinate: [Int32Array, "branches"],
+  branch_keys: [Uint8Array, "branches"],
+  branch_frame: [Float32Array, "branches", 3, 3],
+  branch_skew: [Float32Array, "branches", 2],
+  branch_base_turn: [Int32Array, "branches"],
+  branch_turn: [Int32Array, "branches"],
+  branch_offset: [Float32Array, "branches", 3],
+  turn: [Float32Array, "rows", 3],
+  segment_slope: [Float32Array, "segments"],
+  segment_tip_slope: [Float32Array, "segments"],
+  segment_chord: [Float32Array, "segments", 3],
+  segment_rest: [Float32Array, "segments", 4],
+  segment_length: [Float32Array, "segments"],
+  segment_radius: [Float32Array, "segments", 2],
+  basis_matrix: [Float32Array, "keys", "coordinates"],
+  basis_scale: [Float32Array, "coordinates"],
+};
+
+/** The same of a kind that bears leaves. @type {typeof ARRAYS} */
+const LEAVES = {
+  leaf_segment: [Int32Array, "clusters"],
+  leaf_offset: [Float32Array, "clusters", 3],
+  leaf_orientation: [Float32Array, "clusters", 4],
+  leaf_size: [Float32Array, "clusters"],
+  leaf_frequency: [Float32Array, "clusters"],
+  leaf_phase: [Float32Array, "clusters"],
+};
+
+/** Refuse what does not hold. @param {boolean} holds @param {string} name */
+export function need(holds, name) {
+  if (!holds) throw new ProtocolError(`${name} does not fit the rest, or is not finite`);
+}
+
+/** @param {unknown} value */
+const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREATEST;
+
+/** Refuse a kind whose arrays do not fit each other, and find its sizes.
+ * @param {import("./protocol.js").Kind} kind with its arrays
+ * @param {Record<string, number[]>} shapes of its arrays */
+export function checkKind(kind, shapes) {
+  const { arrays } = kind;
+  /** @type {Record<string, number>} */
+  const size = {};
+  const forms = arrays.leaf_segment ? { ...ARRAYS, ...LEAVES } : ARRAYS;
+  for (const [name, [type, ...axes]] of Object.entries(forms)) {
+    need(arrays[name]?.constructor === type, name);
+    need(shapes[name].length === axes.length, name);
+    axes.forEach((axis, i) => {
+      if (typeof axis === "string") size[axis] ??= shapes[name][i];
+      need(shapes[name][i] === (typeof axis === "string" ? size[axis] : axis), name);
+    });
+    if (type === Float32Array) need(arrays[name].every(Number.isFinite), name);
+  }
+  const { branches: b, segments: n, keys: nKeys, coordinates, rows } = size;
+  need(b > 0 && size["branches + 1"] === b + 1, "branch_first");
+  need(arrays.basis_scale.every((value) => value > 0), "basis_scale");
+  need(typeof kind.species === "string" && typeof kind.model === "string", "species");
+  need(isFinite(kind.height) && isFinite(kind.basis_error), "height");
+  const names = kind.branch_names;
+  need(names.length === b && names.every((name) => typeof name === "string"), "branch_names");
+  const first = arrays.branch_first;
+  need(first[0] === 0 && first[b] === n, "branch_first");
+  for (let i = 0; i < b; i++) {
+    const parent = arrays.branch_parent[i];
+    const under = arrays.branch_base_segment[i];
+    const key = arrays.branch_coordinate[i];
+    const keys = arrays.branch_keys[i];
+    const base = arrays.branch_base_turn[i];
+    const turn = arrays.branch_turn[i];
+    const count = first[i + 1] - first[i];
+    need(i ? parent >= 0 && parent < i : parent === -1, `branch_parent[${i}]`);
+    need(count > 0, `branch_first[${i}]`);
+    const isOnIt = i ? under >= first[parent] && under < first[parent + 1] : under === -1;
+    need(isOnIt, `branch_base_segment[${i}]`);
+    need(keys >= 2, `branch_keys[${i}]`);
+    need(key >= 0 && key + keys <= nKeys, `branch_coordinate[${i}]`);
+    const isTurned = i ? base >= 0 && base + arrays.branch_keys[parent] <= rows : base === -1;
+    need(isTurned, `branch_base_turn[${i}]`);
+    const isDrawn = turn === -1 ? keys <= 2 : turn >= 0 && turn + count * keys <= rows;
+    need(isDrawn, `branch_turn[${i}]`);
+  }
+  need(arrays.leaf_segment?.every((at) => at >= 0 && at < n) ?? true, "leaf_segment");
+  kind.nBranches = b;
+  kind.nSegments = n;
+  kind.nCoordinates = coordinates;
+  kind.nKeys = nKeys;
+}
+
+/** Refuse trees that do not fit their kinds.
+ * @param {Record<string, any>} header @param {import("./protocol.js").Kind[]} kinds
+ * @param {import("./protocol.js").NumberArray | undefined} places
+ * @param {number[] | undefined} shape of the places */
+export function checkTrees(header, kinds, places, shape) {
+  const { trees } = header;
+  need(typeof header.name === "string" && typeof header.frame_id === "string", "name");
+  need(/^[0-9a-f]{16}$/.test(header.identity), "identity");
+  need(trees.length > 0, "trees");
+  need(places instanceof Float32Array, "tree_place");
+  need(shape?.length === 2 && shape[0] === trees.length && shape[1] === 5, "tree_place");
+  need(/** @type {Float32Array} */ (places).every(Number.isFinite), "tree_place");
+  let [segments, poses, coordinates] = [0, 0, 0];
+  for (const [i, tree] of trees.entries()) {
+    need(Number.isInteger(tree.kind) && tree.kind in kinds, `trees[${i}]`);
+    need(typeof tree.name === "string", `trees[${i}]`);
+    need(/** @type {Float32Array} */ (places)[5 * i + 4] > 0, `tree_place[${i}]`);
+    poses += kinds[tree.kind].nSegments;
+    coordinates += kinds[tree.kind].nCoordinates;
+  }
+  for (const kind of kinds) segments += kind.nSegments;
+  need(Object.values(header.flutter ?? {}).every(isFinite), "flutter");
+  need(segments <= MOST_SEGMENTS, "number of segments");
+  need(poses <= MOST_POSES, "number of segments of all trees");
+  need(coordinates <= MOST_COORDINATES, "number of coordinates");
+}
+
+/** @param {any} value */
+const isObject = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
+
+/** Refuse a text of the server whose entries are not what doc/streaming.md says.
+ * @param {any} message @returns {Record<string, any>} */
+export function checkMessage(message) {
+  need(isObject(message), "message");
+  const { pong = 0, refused, hello, status = {}, values = {} } = message;
+  need(isFinite(pong), "pong");
+  need(isObject(status), "status");
+  need(isObject(values), "values");
+  need(refused === undefined || typeof refused?.reason === "string", "refused");
+  const controls = hello === undefined ? [] : hello?.controls;
+  need(Array.isArray(controls), "hello");
+  need(controls.every((/** @type {any} */ each) => isObject(each) && typeof each.name === "string"), "hello");
+  return message;
+}

@@ -1,0 +1,88 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * A client of the stream for any program: connects, keeps the line, tells where every segment is
+ * now. No dependency; three.js, Babylon or WebXR draw what it says.
+ */
+
+import { Connection } from "./connection.js";
+import { Placer } from "./placing.js";
+import { DELAY, Playout } from "./playout.js";
+
+/**
+ * @typedef {Partial<import("./connection.js").Listeners>} StreamListeners
+ *
+ * @typedef {object} StreamOptions
+ * @property {number} [rate] frames per second that are asked for
+ * @property {number} [delay] of the playout [ms]
+ */
+
+export class TreeStream {
+  /** @param {string} page address of the page, with its token if it has one
+   * @param {StreamListeners} [listeners] @param {StreamOptions} [options] */
+  constructor(page, listeners = {}, options = {}) {
+    this.playout = new Playout(options.delay ?? DELAY);
+    /** @type {Placer | null} */
+    this.placer = null;
+    this.connection = new Connection(
+      streamUrl(page),
+      {
+        onState: (state, retryIn) => listeners.onState?.(state, retryIn),
+        onDescription: (description) => {
+          this.playout.clear();
+          this.placer = null;
+          listeners.onDescription?.(description);
+        },
+        onFrame: (frame, arrival, size) => {
+          this.playout.push(frame, arrival);
+          listeners.onFrame?.(frame, arrival, size);
+        },
+        onMessage: (message) => listeners.onMessage?.(message),
+      },
+      options.rate,
+    );
+  }
+
+  /** Open the line now, whatever the wait. */
+  open() {
+    this.connection.open();
+  }
+
+  /** Close the line for good. */
+  close() {
+    this.connection.close();
+  }
+
+  /** What the server described; null before that. */
+  get description() {
+    return this.connection.description;
+  }
+
+  /** Change a control of the server.
+   * @param {string} name @param {number | string | boolean | null} value */
+  set(name, value) {
+    this.connection.send({ set: { name, value } });
+  }
+
+  /** Coordinates to show; null before the first frame. @param {number} [now] [ms] */
+  sample(now = Date.now()) {
+    return this.playout.sample(now);
+  }
+
+  /** Poses to show, `STRIDE` numbers per segment; null before the first frame.
+   * @param {number} [now] [ms] @returns {Float32Array | null} the same array each time */
+  poses(now = Date.now()) {
+    const coordinates = this.sample(now);
+    if (!coordinates || !this.description) return null;
+    this.placer ??= new Placer(this.description);
+    return this.placer.place(coordinates);
+  }
+}
+
+/** Where the stream of a page is. @param {string} page */
+export function streamUrl(page) {
+  const url = new URL("stream", page);
+  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  url.search = new URL(page).search;
+  return url.href;
+}

@@ -1,0 +1,177 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * The line to the server: opens it, asks for frames by credit, opens it again when it is lost.
+ */
+
+import { checkMessage } from "./checks.js";
+import {
+  decodeDescription,
+  decodeFrame,
+  frameSize,
+  isFrame,
+  LARGEST_DESCRIPTION,
+  ProtocolError,
+} from "./protocol.js";
+
+/** Frames that may be on their way at most, and at least where they are large. */
+const MOST_CREDIT = 24;
+const LEAST_CREDIT = 8;
+/** What may be on its way [bytes], so that a slow line holds little that is old. */
+const ON_THE_WAY = 200000;
+const GRANT_EVERY = 4;
+const SHORTEST_WAIT = 500;
+const LONGEST_WAIT = 10000;
+const PING_EVERY = 2000;
+/** A line that has been silent for longer is taken for lost [ms]. */
+const SILENCE = 6000;
+const LARGEST_TEXT = 2 ** 20;
+
+/**
+ * @typedef {"connecting" | "open" | "lost"} LineState
+ *
+ * @typedef {object} Listeners
+ * @property {(state: LineState, retryIn: number) => void} onState
+ * @property {(description: import("./protocol.js").Description) => void} onDescription
+ * @property {(frame: import("./protocol.js").Frame, arrival: number, size: number) => void} onFrame
+ * @property {(message: Record<string, any>) => void} onMessage
+ */
+
+/** One line to a server, kept from `open` to `close`. */
+export class Connection {
+  /** @param {string} url of the stream @param {Listeners} listeners
+   * @param {number} [rate] frames per second that are asked for */
+  constructor(url, listeners, rate = 30) {
+    this.url = url;
+    this.listeners = listeners;
+    this.rate = rate;
+    this.roundTrip = NaN;
+    /** @type {import("./protocol.js").Description | null} */
+    this.description = null;
+    /** @type {WebSocket | null} */
+    this._socket = null;
+    /** Messages that could not be read; after each the line is made again. */
+    this.unreadable = 0;
+    this._wait = SHORTEST_WAIT;
+    /** Frames that were asked for and have not come. */
+    this._awaited = 0;
+    this._credit = MOST_CREDIT;
+    this._heard = 0;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this._retry = undefined;
+    this._watching = setInterval(() => this._watch(), PING_EVERY);
+  }
+
+  /** Open the line now, whatever the wait. */
+  open() {
+    clearTimeout(this._retry);
+    this._socket?.close();
+    const socket = new WebSocket(this.url);
+    socket.binaryType = "arraybuffer";
+    this._socket = socket;
+    this._heard = performance.now();
+    this.listeners.onState("connecting", 0);
+    socket.onopen = () => {
+      this._awaited = 0;
+      this.send({ rate: this.rate, ping: performance.now() });
+      this.listeners.onState("open", 0);
+    };
+    socket.onmessage = (event) => {
+      if (socket === this._socket) this._take(event.data);
+    };
+    socket.onclose = () => {
+      if (socket === this._socket) this._lose();
+    };
+  }
+
+  /** Close the line for good. */
+  close() {
+    clearTimeout(this._retry);
+    clearInterval(this._watching);
+    const socket = this._socket;
+    this._socket = null;
+    socket?.close();
+  }
+
+  /** @param {Record<string, any>} message */
+  send(message) {
+    if (this._socket?.readyState === WebSocket.OPEN) this._socket.send(JSON.stringify(message));
+  }
+
+  _lose() {
+    this._socket = null;
+    // Many pages that lose one server do not come back in one instant.
+    const wait = this._wait * (0.75 + 0.5 * Math.random());
+    this._wait = Math.min(2 * this._wait, LONGEST_WAIT);
+    this._retry = setTimeout(() => this.open(), wait);
+    this.listeners.onState("lost", wait);
+  }
+
+  /** Close the line, and make it again. */
+  _drop() {
+    const socket = this._socket;
+    this._lose();
+    socket?.close();
+  }
+
+  _watch() {
+    if (this._socket?.readyState !== WebSocket.OPEN) return;
+    if (performance.now() - this._heard > SILENCE) return this._drop();
+    this.send({ ping: performance.now() });
+  }
+
+  /** Ask for as many frames as may be on their way. */
+  _ask() {
+    const more = this._credit - this._awaited;
+    if (more < GRANT_EVERY) return;
+    this._awaited += more;
+    this.send({ credit: more });
+  }
+
+  /** @param {string | ArrayBuffer} data */
+  _take(data) {
+    const arrival = Date.now();
+    this._heard = performance.now();
+    let deliver;
+    try {
+      deliver = typeof data === "string" ? this._text(data) : this._binary(data, arrival);
+    } catch (error) {
+      this.unreadable += 1;
+      const why = error instanceof ProtocolError ? error.message : String(error);
+      this._drop();
+      this.listeners.onMessage({ unreadable: why.slice(0, 400) });
+      return;
+    }
+    deliver();
+  }
+
+  /** Read a text.
+   * @param {string} data @returns {() => void} what is left to do: give it to the listener */
+  _text(data) {
+    if (data.length > LARGEST_TEXT) throw new ProtocolError(`a text of ${data.length} characters`);
+    const message = checkMessage(JSON.parse(data));
+    if ("pong" in message) this.roundTrip = performance.now() - message.pong;
+    return () => this.listeners.onMessage(message);
+  }
+
+  /** Read a description or a frame.
+   * @param {ArrayBuffer} data @param {number} arrival [ms] @returns {() => void} */
+  _binary(data, arrival) {
+    const size = data.byteLength;
+    if (size > LARGEST_DESCRIPTION) throw new ProtocolError(`a message of ${size} bytes`);
+    if (!isFrame(data)) {
+      const description = decodeDescription(data);
+      this.description = description;
+      const fitting = Math.floor(ON_THE_WAY / frameSize(description));
+      this._credit = Math.max(LEAST_CREDIT, Math.min(MOST_CREDIT, fitting));
+      this._ask();
+      return () => this.listeners.onDescription(description);
+    }
+    this._awaited -= 1;
+    this._ask();
+    const frame = decodeFrame(data, this.description);
+    if (!frame) return () => {};
+    this._wait = SHORTEST_WAIT;
+    return () => this.listeners.onFrame(frame, arrival, size);
+  }
+}

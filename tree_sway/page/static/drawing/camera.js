@@ -1,0 +1,184 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** A camera that turns about a point: mouse, touch and keys, and the matrix it makes. z is up. */
+
+const FIELD = (32 * Math.PI) / 180;
+
+/** @typedef {[number, number, number]} Vector */
+
+export class Camera {
+  constructor() {
+    this.azimuth = -0.6;
+    this.elevation = 0.18;
+    this.distance = 3;
+    /** @type {Vector} */
+    this.target = [0, 0, 0];
+    this.aspect = 1;
+    this._size = 1;
+    /** @type {(() => void) | null} */
+    this._home = null;
+    this.matrix = new Float32Array(16);
+    /** @type {Vector} */
+    this.eye = [0, 0, 0];
+  }
+
+  /** Frame a scene. @param {Vector} low corner of its box @param {Vector} high */
+  frame(low, high) {
+    this._home = () => {
+      const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
+      const tall = high[2] - low[2];
+      this._size = Math.hypot(wide, tall);
+      this.azimuth = -0.6;
+      // What is much wider than high is seen from higher up.
+      this.elevation = Math.min(0.32, 0.16 + 0.02 * Math.max(0, wide / tall - 3));
+      // On a phone the lines of wind and motion lie below.
+      const lower = this.aspect < 1 ? 0.15 * tall : 0;
+      this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2 - lower];
+      const seen = tall * Math.cos(this.elevation) + wide * Math.sin(this.elevation);
+      const half = Math.max(seen, wide / this.aspect, 0.7 * this._size) / 2;
+      this.distance = half / Math.tan(FIELD / 2) + (wide > 3 * tall ? 0.1 : 0.4) * wide;
+    };
+    this._home();
+  }
+
+  /** Where a link looked from. @param {number[]} view azimuth, elevation, distance, target */
+  set([azimuth, elevation, distance, x, y, z]) {
+    [this.azimuth, this.elevation, this.distance] = [azimuth, elevation, distance];
+    this.target = [x, y, z];
+  }
+
+  /** Back to where the whole scene is seen. */
+  home() {
+    this._home?.();
+  }
+
+  /** @param {number} dx [px] @param {number} dy */
+  orbit(dx, dy) {
+    this.azimuth -= dx * 0.006;
+    this.elevation = Math.min(Math.max(this.elevation + dy * 0.005, -0.05), 1.5);
+  }
+
+  /** @param {number} dx share of the height @param {number} dy */
+  pan(dx, dy) {
+    const span = 2 * this.distance * Math.tan(FIELD / 2);
+    const right = [-Math.sin(this.azimuth), Math.cos(this.azimuth)];
+    this.target[0] -= right[0] * dx * span;
+    this.target[1] -= right[1] * dx * span;
+    this.target[2] += dy * span;
+  }
+
+  /** @param {number} factor below 1 comes nearer */
+  zoom(factor) {
+    const least = 0.05 * this._size;
+    this.distance = Math.min(Math.max(this.distance * factor, least), 20 * this._size);
+  }
+
+  /** How the picture lies in the scene: half its width, half its height, and back to the eye. */
+  axes() {
+    const ce = Math.cos(this.elevation);
+    const back = [ce * Math.cos(this.azimuth), ce * Math.sin(this.azimuth), Math.sin(this.elevation)];
+    const right = [-Math.sin(this.azimuth), Math.cos(this.azimuth), 0];
+    const up = [
+      back[1] * right[2] - back[2] * right[1],
+      back[2] * right[0] - back[0] * right[2],
+      back[0] * right[1] - back[1] * right[0],
+    ];
+    const half = Math.tan(FIELD / 2);
+    return { right: right.map((r) => half * this.aspect * r), up: up.map((u) => half * u), back };
+  }
+
+  /** @returns {Float32Array} from the scene to clip space, column by column */
+  update() {
+    const { right: wide, up: high, back } = this.axes();
+    const half = Math.tan(FIELD / 2);
+    const right = wide.map((w) => w / half / this.aspect);
+    const up = high.map((h) => h / half);
+    this.eye = [
+      this.target[0] + this.distance * back[0],
+      this.target[1] + this.distance * back[1],
+      this.target[2] + this.distance * back[2],
+    ];
+    const near = 0.02 * this.distance;
+    const far = this.distance + 30 * this._size;
+    const f = 1 / Math.tan(FIELD / 2);
+    const g = f / this.aspect;
+    const a = (far + near) / (near - far);
+    const b = (2 * far * near) / (near - far);
+    const m = this.matrix;
+    const rows = [right, up, back];
+    const at = rows.map((r) => -(r[0] * this.eye[0] + r[1] * this.eye[1] + r[2] * this.eye[2]));
+    for (let c = 0; c < 3; c++) {
+      m[4 * c] = g * right[c];
+      m[4 * c + 1] = f * up[c];
+      m[4 * c + 2] = a * back[c];
+      m[4 * c + 3] = -back[c];
+    }
+    m[12] = g * at[0];
+    m[13] = f * at[1];
+    m[14] = a * at[2] + b;
+    m[15] = -at[2];
+    return m;
+  }
+
+  /** Where a point is seen, 0 to 1 from the left and from the top.
+   * @param {ArrayLike<number>} p @returns {[number, number]} */
+  project(p) {
+    const m = this.matrix;
+    const w = m[3] * p[0] + m[7] * p[1] + m[11] * p[2] + m[15];
+    const x = (m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12]) / w;
+    const y = (m[1] * p[0] + m[5] * p[1] + m[9] * p[2] + m[13]) / w;
+    return [0.5 + 0.5 * x, 0.5 - 0.5 * y];
+  }
+
+  /** Let mouse, touch and keys move the camera. @param {HTMLElement} element */
+  listen(element) {
+    /** @type {Map<number, PointerEvent>} */
+    const held = new Map();
+    element.addEventListener("pointerdown", (event) => {
+      element.setPointerCapture(event.pointerId);
+      held.set(event.pointerId, event);
+    });
+    const release = (/** @type {PointerEvent} */ event) => held.delete(event.pointerId);
+    element.addEventListener("pointerup", release);
+    element.addEventListener("pointercancel", release);
+    element.addEventListener("pointermove", (event) => {
+      const before = held.get(event.pointerId);
+      if (!before) return;
+      const high = element.clientHeight;
+      const dx = event.clientX - before.clientX;
+      const dy = event.clientY - before.clientY;
+      if (held.size === 2) {
+        const [other] = [...held.values()].filter((each) => each.pointerId !== event.pointerId);
+        const span = (/** @type {PointerEvent} */ e) =>
+          Math.hypot(e.clientX - other.clientX, e.clientY - other.clientY);
+        this.zoom(Math.max(span(before), 1) / Math.max(span(event), 1));
+        this.pan(dx / high / 2, dy / high / 2);
+      } else if (event.shiftKey || event.buttons & 6) {
+        this.pan(dx / high, dy / high);
+      } else {
+        this.orbit(dx, dy);
+      }
+      held.set(event.pointerId, event);
+    });
+    element.addEventListener("contextmenu", (event) => event.preventDefault());
+    element.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        this.zoom(Math.exp(0.0012 * Math.max(-400, Math.min(400, event.deltaY))));
+      },
+      { passive: false },
+    );
+    element.addEventListener("keydown", (event) => {
+      const step = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+      const move = step[/** @type {keyof typeof step} */ (event.key)];
+      if (move && event.shiftKey) this.pan(0.05 * move[0], 0.05 * move[1]);
+      else if (move) this.orbit(18 * move[0], 14 * move[1]);
+      else if (event.key === "+" || event.key === "=") this.zoom(0.88);
+      else if (event.key === "-") this.zoom(1.14);
+      else if (event.key === "0" || event.key === "Home") this.home();
+      else return;
+      event.preventDefault();
+    });
+  }
+}

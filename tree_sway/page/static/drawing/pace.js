@@ -1,0 +1,55 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * What is left out without a graphics unit so that frames come in time: first pixels, then frames,
+ * then leaves. No leaf grows to make up for others.
+ */
+
+/** Frames per second that fewer pixels are drawn for, and those that leaves are left out for. */
+const WANTED = 55;
+const LEAST = 24;
+/** Pixels per pixel of the page each way, and the share of leaves, that are drawn at least. */
+const COARSEST = 0.5;
+const THINNEST = 0.4;
+
+export class Pace {
+  constructor() {
+    /** Pixels of the picture per pixel of the page, each way. */
+    this.fineness = 1;
+    /** Share of the leaves that is drawn. */
+    this.density = 1;
+    this._from = 0;
+    this._frames = 0;
+    this._last = 0;
+    this._coarsened = 0;
+  }
+
+  /** Count a frame.
+   * @param {number} now [ms] @param {boolean} hasLeaves whether there are any to leave out */
+  count(now, hasLeaves) {
+    // A page that was hidden was not slow.
+    if (now - this._last > 1500) [this._from, this._frames] = [now, -1];
+    this._last = now;
+    this._frames++;
+    if (now - this._from < 700 || this._frames < 3) return;
+    const fps = (1000 * this._frames) / (now - this._from);
+    [this._from, this._frames] = [now, 0];
+    if (fps < WANTED - 5 && this.fineness > COARSEST) {
+      this.fineness = Math.max(COARSEST, this.fineness * Math.max(0.75, Math.sqrt(fps / WANTED)));
+      this._coarsened = now;
+    } else if (fps < LEAST && hasLeaves) {
+      this.density = Math.max(THINNEST, this.density * 0.85);
+    } else if (fps > LEAST + 6 && this.density < 1) {
+      this.density = Math.min(1, this.density * 1.05);
+    } else if (fps > WANTED && this.fineness < 1 && now - this._coarsened > 8000) {
+      this.fineness = Math.min(1, this.fineness * 1.06);
+    }
+  }
+
+  /** What is left out, for people: shares of pixels and leaves in percent; null if nothing. */
+  get leftOut() {
+    if (this.fineness > 0.99 && this.density > 0.99) return null;
+    const pixels = Math.round(100 * this.fineness ** 2);
+    return { pixels, leaves: Math.round(100 * this.density) };
+  }
+}

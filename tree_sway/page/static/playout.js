@@ -1,0 +1,165 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * From frames that arrive when they will to a smooth motion: shown a little late, on a curve
+ * through the states (Catmull-Rom), never extrapolated.
+ */
+
+import { PAUSED, RESTARTED } from "./protocol.js";
+
+/** Playout delay [ms]. */
+export const DELAY = 170;
+const WINDOW = 30000;
+const LONGEST_GAP = 500;
+const BLEND = 400;
+const KEPT = 64;
+
+/** @typedef {import("./protocol.js").Frame} Frame */
+
+/** Difference of two clocks from one-way times: arrival less stamp is offset plus travel, so the
+ * least of the last half minute is the offset and the quickest travel. */
+export class ClockOffset {
+  constructor() {
+    /** @type {{at: number, value: number}[]} */
+    this._least = [];
+  }
+
+  /** @param {number} stamp sender's clock [ms] @param {number} arrival own clock [ms] */
+  add(stamp, arrival) {
+    const value = arrival - stamp;
+    // A sender whose clock was set back or that started anew is another clock.
+    if (this._least.length && Math.abs(value - this.value) > 5000) this._least.length = 0;
+    while (this._least.length && this._least[this._least.length - 1].value >= value) {
+      this._least.pop();
+    }
+    this._least.push({ at: arrival, value });
+    while (this._least[0].at < arrival - WINDOW) this._least.shift();
+  }
+
+  /** Own clock less the sender's, and the quickest travel [ms]. */
+  get value() {
+    return this._least.length ? this._least[0].value : 0;
+  }
+}
+
+/** Holds the newest states and tells what to draw. */
+export class Playout {
+  /** @param {number} [delay] [ms] */
+  constructor(delay = DELAY) {
+    this.delay = delay;
+    this.clock = new ClockOffset();
+    /** @type {Frame[]} */
+    this._frames = [];
+    this.received = 0;
+    /** Frames that came after they were to be shown. */
+    this.late = 0;
+    /** Age of the newest frame when it came, over the quickest [ms]. */
+    this.lateness = 0;
+    /** @type {Float32Array | null} what was drawn when the stream was cut */
+    this._before = null;
+    this._blendFrom = 0;
+    /** @type {Float32Array | null} */
+    this._shown = null;
+    /** @type {[number, number, number]} */
+    this.wind = [0, 0, 0];
+    this.isPaused = false;
+  }
+
+  /** Forget everything: another tree comes. */
+  clear() {
+    this._frames.length = 0;
+    this._before = null;
+    this._shown = null;
+  }
+
+  /** Take a frame. @param {Frame} frame @param {number} arrival [ms] */
+  push(frame, arrival) {
+    const last = this._frames[this._frames.length - 1];
+    if (last && frame.stamp <= last.stamp) {
+      if (frame.stamp > last.stamp - 1000) return; // twice, or out of order
+      this._cut(arrival);
+    } else if (last && (frame.flags & RESTARTED || frame.stamp - last.stamp > LONGEST_GAP)) {
+      this._cut(arrival);
+    }
+    this.received++;
+    this.clock.add(frame.stamp, arrival);
+    this.lateness = arrival - frame.stamp - this.clock.value;
+    if (this.lateness > this.delay) this.late++;
+    this._frames.push(frame);
+    if (this._frames.length > KEPT) this._frames.shift();
+  }
+
+  /** @param {number} now */
+  _cut(now) {
+    this._before = this._shown ? this._shown.slice() : null;
+    this._blendFrom = now;
+    this._frames.length = 0;
+  }
+
+  /** Stamp of the newest frame [ms]; 0 before the first. */
+  get newest() {
+    return this._frames.length ? this._frames[this._frames.length - 1].stamp : 0;
+  }
+
+  /** The state to draw; null before the first frame.
+   * @param {number} now own clock [ms] @returns {Float32Array | null} the same array each time */
+  sample(now) {
+    const frames = this._frames;
+    if (!frames.length) return this._shown;
+    const time = now - this.clock.value - this.delay;
+    let after = frames.findIndex((frame) => frame.stamp > time);
+    if (after < 0) after = frames.length - 1;
+    const i2 = Math.max(after, Math.min(1, frames.length - 1));
+    const i1 = Math.max(i2 - 1, 0);
+    const a = frames[i1];
+    const b = frames[i2];
+    const span = b.stamp - a.stamp;
+    const u = span > 0 ? Math.min(Math.max((time - a.stamp) / span, 0), 1) : 1;
+    if (!this._shown || this._shown.length !== b.coordinates.length) {
+      this._shown = new Float32Array(b.coordinates.length);
+    }
+    catmullRom(frames[Math.max(i1 - 1, 0)], a, b, frames[Math.min(i2 + 1, frames.length - 1)], u,
+      this._shown);
+    for (let c = 0; c < 3; c++) this.wind[c] = a.wind[c] + u * (b.wind[c] - a.wind[c]);
+    this.isPaused = (b.flags & PAUSED) !== 0;
+    this._blend(now);
+    return this._shown;
+  }
+
+  /** @param {number} now */
+  _blend(now) {
+    const shown = this._shown;
+    if (!this._before || !shown || this._before.length !== shown.length) return;
+    const u = (now - this._blendFrom) / BLEND;
+    if (u >= 1) {
+      this._before = null;
+      return;
+    }
+    const share = u * u * (3 - 2 * u);
+    for (let i = 0; i < shown.length; i++) {
+      shown[i] = this._before[i] + share * (shown[i] - this._before[i]);
+    }
+  }
+}
+
+/** The curve through b and c whose slopes there come from the neighbours, stamps as they are.
+ * @param {Frame} a @param {Frame} b @param {Frame} c @param {Frame} d
+ * @param {number} u from b to c, 0 to 1 @param {Float32Array} out */
+export function catmullRom(a, b, c, d, u, out) {
+  const span = c.stamp - b.stamp;
+  const before = c.stamp - a.stamp;
+  const behind = d.stamp - b.stamp;
+  const u2 = u * u;
+  const u3 = u2 * u;
+  const hb = 2 * u3 - 3 * u2 + 1;
+  const hc = 3 * u2 - 2 * u3;
+  const sb = before > 0 ? ((u3 - 2 * u2 + u) * span) / before : 0;
+  const sc = behind > 0 ? ((u3 - u2) * span) / behind : 0;
+  for (let i = 0; i < out.length; i++) {
+    out[i] =
+      hb * b.coordinates[i] +
+      hc * c.coordinates[i] +
+      sb * (c.coordinates[i] - a.coordinates[i]) +
+      sc * (d.coordinates[i] - b.coordinates[i]);
+  }
+}

@@ -1,0 +1,185 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * The binary form of a swaying tree (doc/streaming.md): a description sent once, then frames that
+ * need no other frame. Reads what tree_sway/page/protocol.py writes.
+ */
+
+import { checkKind, checkTrees, ProtocolError, need } from "./checks.js";
+
+export { ProtocolError };
+
+/** Of descriptions, and of frames. */
+export const VERSION = 2;
+export const FRAME_VERSION = 1;
+export const FULL_SCALE = 32767;
+/** Wind of one unit of its int16 [m/s]. */
+export const WIND_UNIT = 0.005;
+export const PAUSED = 1;
+export const BEYOND_SCALE = 2;
+export const RESTARTED = 4;
+
+const MAGIC = 0x44575354; // "TSWD"
+const FRAME_KIND = 0x46;
+const FRAME_SIZE = 28;
+
+/**
+ * @typedef {Float32Array | Int32Array | Int16Array | Uint8Array} NumberArray
+ *
+ * @typedef {object} Kind what trees of one shape share
+ * @property {string} species
+ * @property {number} height [m]
+ * @property {string} model
+ * @property {number} basis_error what the basis leaves out [m]
+ * @property {string[]} branch_names
+ * @property {number} nSegments
+ * @property {number} nBranches
+ * @property {number} nCoordinates
+ * @property {number} nKeys key rotations
+ * @property {Record<string, NumberArray>} arrays
+ *
+ * @typedef {object} Tree
+ * @property {string} name
+ * @property {number} kind its number among the kinds
+ * @property {number} height [m]
+ * @property {number[]} place x, y, z [m], how far it is turned about the vertical [rad], its scale
+ * @property {number} firstSegment among those of all trees
+ * @property {number} firstCoordinate
+ *
+ * @typedef {object} Description
+ * @property {string} name
+ * @property {string} frame_id
+ * @property {string} identity
+ * @property {number} shortIdentity what frames carry of the identity
+ * @property {Kind[]} kinds
+ * @property {Tree[]} trees
+ * @property {{gain: number, largest_angle: number} | null} flutter law of the leaves
+ * @property {number} nSegments of all trees
+ * @property {number} nCoordinates
+ * @property {Float32Array} scale of each coordinate at full scale
+ *
+ * @typedef {object} Frame
+ * @property {number} identity
+ * @property {number} sequence
+ * @property {number} stamp [ms], of the sender's clock
+ * @property {number} flags
+ * @property {[number, number, number]} wind blowing to [m/s]
+ * @property {Float32Array} coordinates in their own unit
+ */
+
+/** Largest message with a description, and header in it [bytes]. */
+export const LARGEST_DESCRIPTION = 64 * 2 ** 20;
+const LARGEST_HEADER = 8 * 2 ** 20;
+
+const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: Uint8Array };
+
+/** Read a description; a `ProtocolError` if it is none, or if an array points outside of another.
+ * @param {ArrayBuffer} data @returns {Description} */
+export function decodeDescription(data) {
+  try {
+    return decoded(data);
+  } catch (error) {
+    if (error instanceof ProtocolError) throw error;
+    throw new ProtocolError(`not a whole description (${String(error).slice(0, 200)})`);
+  }
+}
+
+/** @param {ArrayBuffer} data @returns {Description} */
+function decoded(data) {
+  const view = new DataView(data);
+  if (data.byteLength < 12 || view.getUint32(0, true) !== MAGIC) {
+    throw new ProtocolError("not a description: it does not begin with TSWD");
+  }
+  const version = view.getUint32(4, true);
+  if (version !== VERSION) {
+    throw new ProtocolError(`a description of version ${version}: this page reads ${VERSION}`);
+  }
+  const begin = 12 + view.getUint32(8, true);
+  need(begin <= Math.min(data.byteLength, LARGEST_HEADER), "size of the header");
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, begin - 12)));
+  /** @type {Kind[]} */
+  const kinds = header.kinds.map((/** @type {Kind} */ kind) => ({ ...kind, arrays: {} }));
+  /** @type {Record<string, number[]>[]} */
+  const shapes = kinds.map(() => ({}));
+  /** @type {Record<string, NumberArray>} */
+  const own = {};
+  for (const [name, { type, shape, offset }] of Object.entries(header.arrays)) {
+    const kind = TYPES[/** @type {keyof typeof TYPES} */ (type)];
+    need(Boolean(kind) && shape.every((/** @type {number} */ n) => Number.isInteger(n) && n >= 0), name);
+    const count = shape.reduce((/** @type {number} */ a, /** @type {number} */ b) => a * b, 1);
+    const from = begin + offset;
+    need(from >= begin && from + count * kind.BYTES_PER_ELEMENT <= data.byteLength, name);
+    const [number, field] = name.split("/");
+    (field ? kinds[Number(number)].arrays : own)[field ?? name] = new kind(data, from, count);
+    if (field) shapes[Number(number)][field] = shape;
+  }
+  kinds.forEach((kind, number) => checkKind(kind, shapes[number]));
+  checkTrees(header, kinds, own.tree_place, header.arrays.tree_place?.shape);
+  const places = own.tree_place;
+  let nSegments = 0;
+  let nCoordinates = 0;
+  const trees = header.trees.map((/** @type {Tree} */ tree, /** @type {number} */ number) => {
+    const kind = kinds[tree.kind];
+    const place = Array.from(places.subarray(5 * number, 5 * number + 5));
+    const first = { firstSegment: nSegments, firstCoordinate: nCoordinates };
+    nSegments += kind.nSegments;
+    nCoordinates += kind.nCoordinates;
+    return { ...tree, ...first, place, height: kind.height * place[4] };
+  });
+  const scale = new Float32Array(nCoordinates);
+  for (const tree of trees) scale.set(kinds[tree.kind].arrays.basis_scale, tree.firstCoordinate);
+  return {
+    name: header.name,
+    frame_id: header.frame_id,
+    identity: header.identity,
+    shortIdentity: parseInt(header.identity.slice(0, 8), 16),
+    kinds,
+    trees,
+    flutter: header.flutter ?? null,
+    nSegments,
+    nCoordinates,
+    scale,
+  };
+}
+
+/** Whether a message is a frame. @param {ArrayBuffer} data */
+export function isFrame(data) {
+  return data.byteLength >= FRAME_SIZE && new Uint8Array(data, 0, 1)[0] === FRAME_KIND;
+}
+
+/** Size of a frame [bytes]. @param {Description} description */
+export function frameSize(description) {
+  return FRAME_SIZE + 2 * description.nCoordinates;
+}
+
+/** Read a frame; null if it belongs to another description, which is to come.
+ * @param {ArrayBuffer} data @param {Description | null} description @returns {Frame | null} */
+export function decodeFrame(data, description) {
+  const view = new DataView(data);
+  if (!isFrame(data)) throw new ProtocolError("not a frame");
+  const count = view.getUint16(26, true);
+  if (view.getUint8(1) !== FRAME_VERSION || data.byteLength !== FRAME_SIZE + 2 * count) {
+    throw new ProtocolError(`a frame of ${data.byteLength} bytes for ${count} coordinates`);
+  }
+  const identity = view.getUint32(4, true);
+  if (identity !== description?.shortIdentity) return null;
+  if (count !== description.nCoordinates) {
+    throw new ProtocolError(`a frame of ${count} coordinates, described are ${description.nCoordinates}`);
+  }
+  const { scale } = description;
+  const steps = new Int16Array(data, FRAME_SIZE, count);
+  const coordinates = new Float32Array(count);
+  for (let i = 0; i < count; i++) coordinates[i] = (steps[i] / FULL_SCALE) * scale[i];
+  return {
+    identity,
+    sequence: view.getUint32(8, true),
+    stamp: Number(view.getBigInt64(12, true)) / 1e6,
+    flags: view.getUint8(2),
+    wind: [
+      view.getInt16(20, true) * WIND_UNIT,
+      view.getInt16(22, true) * WIND_UNIT,
+      view.getInt16(24, true) * WIND_UNIT,
+    ],
+    coordinates,
+  };
+}

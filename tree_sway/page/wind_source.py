@@ -1,0 +1,116 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Samples of wind without a sensor: simulated, or a record that is played over and over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+import math
+from typing import Protocol
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.scene.run import Run
+from tree_sway.core.wind.simulated.anemometer import AnemometerModel
+
+_RATE = 20.0
+Sample = tuple[float, tuple[float, float, float]]
+"""Time in [s] and wind in [m/s], the way the air goes."""
+
+
+class WindSource(Protocol):
+    """Samples of wind by their times."""
+
+    def between(self, since: float, until: float) -> Iterator[Sample]:
+        """Give the samples after a time up to a later one, both in [s]."""
+
+
+def blow(run: Run, wind: WindSource, until: int) -> None:
+    """Step a run up to a time [ns] with the samples of a source since its last step."""
+    since = -1.0 if run.time is None else 1e-9 * run.time
+    for time, velocity in wind.between(since, 1e-9 * until):
+        run.offer(round(1e9 * time), velocity)
+    run.advance(until)
+
+
+class SimulatedWind:
+    """
+    Turbulent wind whose mean can be changed while it blows; the gusts keep their pattern.
+
+    Parameters
+    ----------
+    speed
+        Mean in [m/s].
+    intensity
+        Standard deviation along the wind over the mean.
+    bearing_to
+        Where it blows to, clockwise from north in [rad].
+    seed
+        Seed of the turbulence.
+
+    """
+
+    def __init__(
+        self,
+        speed: float = 6.0,
+        intensity: float = 0.2,
+        bearing_to: float = 0.5 * math.pi,
+        seed: int = 0,
+    ) -> None:
+        self.values = {'mean_speed': speed, 'intensity': intensity, 'bearing_to': bearing_to}
+        self._seed = seed
+        self._model = self._made()
+
+    def set(self, name: str, value: float) -> None:  # noqa: A003
+        """Change ``mean_speed`` [m/s], ``intensity`` or ``bearing_to`` [rad]."""
+        self.values[name] = value
+        self._model = self._made()
+
+    def between(self, since: float, until: float) -> Iterator[Sample]:
+        """Give the samples after a time up to a later one, both in [s]."""
+        model = self._model
+        first, end = (max(math.floor(t * _RATE + 1e-6) + 1, 0) for t in (since, until))
+        for tick in range(first, end):
+            x, y, z = model.sample(tick).tolist()
+            yield tick / _RATE, (x, y, z)
+
+    def _made(self) -> AnemometerModel:
+        values = self.values
+        return AnemometerModel(
+            values['mean_speed'],
+            bearing_to=values['bearing_to'],
+            intensity=values['intensity'],
+            rate=_RATE,
+            seed=self._seed,
+        )
+
+
+class RecordedWind:
+    """
+    A record, again from its beginning after its end.
+
+    Parameters
+    ----------
+    time
+        Time of each sample in [s], increasing, (n,).
+    velocity
+        Blowing to, in [m/s], (n, 3).
+
+    """
+
+    def __init__(self, time: Floats, velocity: Floats) -> None:
+        self._time, self._velocity = time - time[0], velocity
+        last = float(self._time[-1])
+        self._length = last + max(last / max(len(time) - 1, 1), 1e-3)
+
+    def between(self, since: float, until: float) -> Iterator[Sample]:
+        """Give the samples after a time up to a later one, both in [s]."""
+        lap, n = max(math.floor(since / self._length), 0), len(self._time)
+        i = int(self._time.searchsorted(since - lap * self._length + 1e-9, 'right'))
+        while True:
+            lap, i = lap + i // n, i % n
+            time = lap * self._length + float(self._time[i])
+            if time > until + 1e-9:
+                return
+            x, y, z = self._velocity[i].tolist()
+            yield time, (x, y, z)
+            i += 1

@@ -1,0 +1,161 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The form of a parameter; each is defined once, in `sway_parameters` or in the tables of the nodes.
+
+The ROS declaration, the check of values and of YAML files, and the table in the README come from
+the same definition. Nothing here needs ROS; `ros.declaration` puts a table on a node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+import math
+from typing import Any
+
+from tree_sway.errors import nearest, ParameterError
+
+Value = Any  # bool | int | float | str | tuple[float, ...]
+
+# What every ROS 2 node has besides its own.
+_OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
+QOS_PREFIX = 'qos_overrides.'
+"""Of parameters that change the quality of service of one publisher or subscription."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """
+    One parameter of a node.
+
+    Parameters
+    ----------
+    name
+        As in ROS.
+    default
+        Its kind (bool, int, float, str, tuple of floats) is the kind that is accepted; whole
+        numbers are accepted for floats.
+    description
+        One sentence for people.
+    unit
+        SI unit, empty if it has none.
+    minimum, maximum
+        Closed range of a number, of each number of a tuple; None for no bound.
+    choices
+        The strings that are accepted; empty for any.
+    most
+        A number from 0 to this is accepted beside the choices; None for none.
+    live
+        Whether it may change while the node runs.
+    source
+        Where the default or the range comes from; may be empty.
+
+    """
+
+    name: str
+    default: Value
+    description: str
+    unit: str = ''
+    minimum: float | None = None
+    maximum: float | None = None
+    choices: tuple[str, ...] = ()
+    most: int | None = None
+    live: bool = False
+    source: str = ''
+
+    def checked(self, value: Value) -> Value:
+        """
+        Convert a value to the parameter's kind.
+
+        A `ParameterError` says what is right: another kind, not finite, out of range, not among
+        the choices.
+        """
+        kind = type(self.default)
+        if kind is tuple:
+            return self._checked_tuple(value)
+        value = _of_kind(kind, value)
+        if self.most is not None and type(value) is int:
+            value = str(value)
+        if type(value) is not kind:
+            raise self._error(f'{value!r} is not {_KINDS[kind]}')
+        if kind in (float, int):
+            self._check_range(value)
+        if self.most is not None and str(value).isdecimal() and int(value) <= self.most:
+            return value
+        if self.choices and value not in self.choices:
+            short = str(value).replace('/msg/', '/')  # either is a type's name to ROS
+            if short in self.choices:
+                return short
+            near = nearest(str(value), self.choices)
+            raise self._error(f"'{value}' is not among its choices", near and f': {near}')
+        return value
+
+    @property
+    def range_text(self) -> str:
+        """Return the accepted values: ``0 .. 40``, ``to | from``; nothing if anything goes."""
+        if self.choices:
+            choices = [choice or '""' for choice in self.choices]
+            return ' | '.join(choices if self.most is None else [*choices, f'0 .. {self.most}'])
+        if self.minimum is None and self.maximum is None:
+            return ''
+        low = '' if self.minimum is None else f'{self.minimum:g}'
+        high = '' if self.maximum is None else f'{self.maximum:g}'
+        return f'{low} .. {high}'
+
+    def _checked_tuple(self, value: Value) -> tuple[float, ...]:
+        size = len(self.default)
+        try:
+            numbers = tuple(float(item) for item in value)
+        except (TypeError, ValueError):
+            numbers = ()
+        if isinstance(value, str | bytes) or len(numbers) != size:
+            raise self._error(f'{value!r} is not {size} numbers')
+        for number in numbers:
+            self._check_range(number)
+        return numbers
+
+    def _check_range(self, value: float) -> None:
+        if not math.isfinite(value):
+            raise self._error(f'{value} is not finite')
+        below = self.minimum is not None and value < self.minimum
+        above = self.maximum is not None and value > self.maximum
+        if below or above:
+            raise self._error(f'{value:g} is out of range')
+
+    def _error(self, what: str, advice: str = '') -> ParameterError:
+        limits = f' {self.range_text}' if self.range_text else f' {_KINDS[type(self.default)]}'
+        unit = f' [{self.unit}]' if self.unit else ''
+        cure = f'give{limits}{unit}{advice}'
+        return ParameterError(what, where=f"parameter '{self.name}'", cure=cure)
+
+
+def _of_kind(kind: type, value: Value) -> Value:
+    """Return a value as the kind that is meant, if there is but one: 40 for 40.0, 1 for true."""
+    if kind is float and isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    if kind is int and isinstance(value, float) and value.is_integer():
+        return int(value)
+    if kind is bool and str(value).lower() in _TRUTH:
+        return _TRUTH[str(value).lower()]
+    return value
+
+
+_TRUTH = {'true': True, '1': True, 'false': False, '0': False}
+_KINDS = {bool: 'true or false', int: 'a whole number', float: 'a number', str: 'a string'}
+_KINDS[tuple] = 'a list of numbers'
+
+Table = tuple[Parameter, ...]
+
+
+def unknown_names(table: Table, names: Iterable[str]) -> list[str]:
+    """Names that neither the table nor every ROS node has."""
+    known = {parameter.name for parameter in table} | set(_OF_EVERY_NODE)
+    return [n for n in names if n not in known and not n.startswith(QOS_PREFIX)]
+
+
+def unknown_parameter(table: Table, name: str, *, where: str = '') -> ParameterError:
+    """Make the error for a name that a table does not have, with the nearest that it has."""
+    names = [parameter.name for parameter in table]
+    cure = nearest(name, names) or f'known are: {", ".join(names)}'
+    return ParameterError(f"unknown parameter '{name}'", where=where, cure=cure)

@@ -1,0 +1,121 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Wind and the motion of a tree's tip over time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats
+from tree_sway.errors import ParameterError
+from tree_sway.pictures.plotting import new_figure, save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_WIND = '#1f6fb4'
+_EAST = '#2f6b2f'
+_NORTH = '#c0682b'
+
+
+def plot_wind_and_tip(
+    time: ArrayLike, wind: ArrayLike, tip: ArrayLike, path: str | Path, *, title: str = ''
+) -> Path:
+    """
+    Plot the wind's speed, the tip's displacement, and its path seen from above.
+
+    Parameters
+    ----------
+    time
+        In [s], (n,).
+    wind
+        Where it blows to in [m/s], (n, 3): east, north, up.
+    tip
+        Displacement of the tip from rest in [m], (n, 3).
+    path, title
+        File to write, whose suffix names the format, and what stands above the plot.
+
+    Raises
+    ------
+    ParameterError
+        If the three do not go together.
+
+    """
+    t = np.asarray(time, dtype=np.float64)
+    blowing = np.asarray(wind, dtype=np.float64)
+    moved = np.asarray(tip, dtype=np.float64)
+    if t.ndim != 1 or len(t) < 2 or blowing.shape != (len(t), 3) or moved.shape != (len(t), 3):
+        raise ParameterError(
+            f'time {t.shape}, wind {blowing.shape} and tip {moved.shape} do not go together',
+            cure='give (n,), (n, 3) and (n, 3) with n of 2 or more',
+        )
+    figure = new_figure(10.0, 4.6)
+    layout = figure.add_gridspec(
+        2, 2, width_ratios=(2.3, 1.0), left=0.075, right=0.97, bottom=0.12, top=0.9, wspace=0.26
+    )
+    speed = figure.add_subplot(layout[0, 0])
+    sway = figure.add_subplot(layout[1, 0], sharex=speed)
+    above = figure.add_subplot(layout[:, 1])
+    unit, scale = _readable(moved)
+    _plot_speed(speed, t, blowing)
+    sway.plot(t, scale * moved[:, 0], color=_EAST, lw=1.2, label='east')
+    sway.plot(t, scale * moved[:, 1], color=_NORTH, lw=1.2, label='north')
+    sway.set(xlabel='time [s]', ylabel=f'tip from rest [{unit}]', xlim=(t[0], t[-1]))
+    _legend_above(sway)
+    _plot_from_above(above, scale * moved, blowing.mean(axis=0), unit)
+    for axes in (speed, sway, above):
+        axes.grid(alpha=0.25)
+        axes.spines[['top', 'right']].set_visible(False)
+    figure.suptitle(title)
+    return save_figure(figure, path)
+
+
+def _readable(moved: Floats) -> tuple[str, float]:
+    """Choose the unit in which the displacement reads well, and its factor from metres."""
+    largest = float(np.abs(moved).max())
+    return ('m', 1.0) if largest >= 1.0 else ('cm', 100.0) if largest >= 0.01 else ('mm', 1000.0)
+
+
+def _plot_speed(axes: Axes, t: Floats, blowing: Floats) -> None:
+    speed = np.linalg.norm(blowing, axis=1)
+    axes.fill_between(t, speed, color=_WIND, alpha=0.15, lw=0)
+    axes.plot(t, speed, color=_WIND, lw=1.2)
+    axes.axhline(speed.mean(), color=_WIND, lw=0.8, ls='--')
+    axes.annotate(
+        f'mean {speed.mean():.1f} m/s',
+        (1.0, 1.03),
+        xycoords='axes fraction',
+        ha='right',
+        color=_WIND,
+    )
+    axes.set(ylabel='wind [m/s]', ylim=(0.0, max(1.1 * float(speed.max()), 0.1)))
+    axes.tick_params(labelbottom=False)
+
+
+def _legend_above(axes: Axes) -> None:
+    axes.legend(
+        loc='lower right', bbox_to_anchor=(1.02, 0.96), ncols=2, frameon=False, handlelength=1.2
+    )
+
+
+def _plot_from_above(axes: Axes, moved: Floats, mean: Floats, unit: str) -> None:
+    """Plot the tip's path, older parts paler, and the direction of the mean wind."""
+    from matplotlib.collections import LineCollection
+
+    steps = np.stack([moved[:-1, :2], moved[1:, :2]], axis=1)
+    age = np.linspace(0.15, 1.0, len(steps))
+    axes.add_collection(LineCollection(list(steps), colors=_EAST, alpha=age, linewidths=1.0))
+    axes.plot(0.0, 0.0, '+', color='black', ms=8)
+    reach = 1.15 * max(float(np.abs(moved[:, :2]).max()), 1e-3)
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect='equal')
+    axes.set(xlabel=f'east [{unit}]', ylabel=f'north [{unit}]', title='tip from above')
+    level = float(np.hypot(mean[0], mean[1]))
+    if level > 0.05:
+        along = 0.22 * reach * mean[:2] / level
+        middle = np.array([-0.68, 0.8]) * reach
+        arrow = {'arrowstyle': '-|>', 'lw': 2.0, 'color': _WIND}
+        axes.annotate('', xy=tuple(middle + along), xytext=tuple(middle - along), arrowprops=arrow)

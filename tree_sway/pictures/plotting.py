@@ -1,0 +1,62 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""matplotlib, asked for only when a picture is wanted, and never with a window."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tree_sway.errors import FormatError, MissingDependencyError
+from tree_sway.files.whole_file import whole_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Make an empty figure of a size [inch]; a `MissingDependencyError` without matplotlib."""
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingDependencyError(
+            'pictures need matplotlib', cure='pip install matplotlib'
+        ) from None
+    figure = Figure(figsize=(width, height), facecolor='white')
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save_figure(
+    figure: Figure, path: str | Path, dots_per_inch: float = 110.0, figures: Path | None = None
+) -> Path:
+    """
+    Write a figure to a file whose suffix names the format, ``.png`` for one.
+
+    Where a file of the numbers that it shows is named, a PNG carries their digest, so that a
+    picture older than its numbers is recognised. Raises a `FormatError` for no picture format, or
+    a file that cannot be written.
+    """
+    target = Path(path)
+    known = figure.canvas.get_supported_filetypes()
+    if target.suffix[1:].lower() not in known:
+        raise FormatError(
+            f"'{target.suffix}' is no picture format",
+            where=str(target),
+            cure=f'end the name with one of: {", ".join("." + k for k in sorted(known))}',
+        )
+    with whole_file(target) as partial:
+        figure.savefig(
+            partial,
+            dpi=dots_per_inch,
+            format=target.suffix[1:].lower(),
+            metadata={'Description': digest_of(figures)} if figures else None,
+        )
+    return target
+
+
+def digest_of(figures: Path) -> str:
+    """Digest of a file of numbers, as the picture of them carries it."""
+    return hashlib.sha256(figures.read_bytes()).hexdigest()

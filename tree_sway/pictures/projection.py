@@ -1,0 +1,48 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+From points to a picture plane.
+
+A camera without perspective looks level or from above; what it sees to the right and up are two
+coordinates, what is away from it is the third.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats
+
+
+@dataclass(frozen=True)
+class Camera:
+    """
+    Where a picture is taken from: heading of the line of sight, from x towards y, in [rad].
+
+    At pi/2 it looks north, and east (+x) is to the right; ``elevation`` [rad] is how far it looks
+    down.
+    """
+
+    azimuth: float = np.pi / 2.0
+    elevation: float = 0.12
+
+    def project(self, points: ArrayLike) -> Floats:
+        """Right, up and away of points (..., 3), all in [m]."""
+        sine, cosine = np.sin(self.azimuth), np.cos(self.azimuth)
+        down, level = np.sin(self.elevation), np.cos(self.elevation)
+        rows = np.array(
+            [
+                [sine, -cosine, 0.0],
+                [cosine * down, sine * down, level],
+                [cosine * level, sine * level, -down],
+            ]
+        )
+        return np.asarray(np.asarray(points, dtype=np.float64) @ rows.T)
+
+    def distance(self, points: ArrayLike) -> Floats:
+        """Depth [m] of points (..., 3) behind the picture plane, whatever their height."""
+        level = np.array([np.cos(self.azimuth), np.sin(self.azimuth), 0.0])
+        return np.asarray(np.asarray(points, dtype=np.float64) @ level)

@@ -1,0 +1,111 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""One case from plain data to plain numbers, in whatever process it is asked."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+import json
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.growth.grow import grow
+from tree_sway.core.scene.simulate import Rig
+from tree_sway.core.scene.sway_record import SwayRecord
+from tree_sway.core.tree.species import species_named
+from tree_sway.core.wind.frame_means import recorded_means
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.errors import FormatError
+from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.files.trees.source import open_tree
+from tree_sway.files.wind.wind_file import read_wind
+from tree_sway.studies.plan import Case, Plain
+
+
+def compute(case: Case) -> tuple[Plain, SwayRecord]:
+    """
+    Compute a case.
+
+    Parameters
+    ----------
+    case
+        What to compute.
+
+    Returns
+    -------
+    dict, SwayRecord
+        What it asked for beside its numbers: frequency in [Hz], tip in [m], base moment in [N m],
+        strain [-]; and the record over time.
+
+    Raises
+    ------
+    TreeSwayError
+        A tree, a wind or a setting that cannot be.
+
+    """
+    rig, frequency = _rig(json.dumps([case.tree, case.settings, case.digest], sort_keys=True))
+    tree = rig.tree
+    record = rig.run(_wind(case), rate=case.rate, seconds=case.seconds)
+    row: Plain = {**_told('tree', case.tree), **_told('wind', case.wind), **case.settings}
+    row |= {
+        'seconds': case.seconds,
+        'branches': tree.n_branches,
+        'segments': tree.n_segments,
+        'height': tree.height,
+        'model': record.model,
+        'frequency': frequency,
+        'wind_mean': float(np.linalg.norm(record.wind.mean(axis=0))),
+        'wind_largest': float(np.linalg.norm(record.wind, axis=1).max()),
+    }
+    row |= _summary('tip', record.tips[:, 0]) | _summary('base_moment', record.base_moment)
+    row['strain_largest'] = float(np.abs(record.base_strain).max())
+    return row, record
+
+
+@lru_cache(maxsize=2)
+def _rig(asked: str) -> tuple[Rig, float]:
+    """Tree and settings set up, as what comes next is often the same; its frequency in [Hz]."""
+    tree, settings, _ = json.loads(asked)
+    rig = Rig(_tree(tree), **settings)
+    return rig, float(rig.calibrated.natural_frequencies(1)[0])
+
+
+def _tree(asked: Plain) -> TreeFile:
+    if 'species' in asked:
+        species = species_named(asked['species'])
+        rng = np.random.default_rng(asked['seed'])
+        return TreeFile(grow(species.key, asked['height'], rng=rng), species, 'grown')
+    opened = open_tree(asked.get('file') or asked['name'])
+    if not isinstance(opened, TreeFile):
+        raise FormatError('is a forest', where=opened.source, cure='name its trees one by one')
+    return opened
+
+
+def _wind(case: Case) -> Floats:
+    if 'file' in case.wind:
+        record = read_wind(case.wind['file'])
+        return case.wind['scale'] * recorded_means(record.time, record.velocity, 1.0 / case.rate)
+    rng = np.random.default_rng(case.wind['seed'])
+    return simulate_turbulence(
+        case.wind['speed'],
+        rate=case.rate,
+        duration=case.seconds,
+        rng=rng,
+        intensity=case.wind['intensity'],
+    )
+
+
+def _told(what: str, asked: Plain) -> Plain:
+    return {f'{what}_{key}': value for key, value in asked.items()}
+
+
+def _summary(name: str, rows: Floats) -> Plain:
+    length = np.linalg.norm(rows, axis=1)
+    about = np.linalg.norm(np.std(rows, axis=0))
+    mean = np.linalg.norm(rows.mean(axis=0))
+    return {
+        f'{name}_mean': float(mean),
+        f'{name}_rms': float(about),
+        f'{name}_largest': float(length.max()),
+    }

@@ -1,0 +1,202 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Cases over all cores, or over a cluster, each once.
+
+A finished case is a file, written whole or not at all; a study that is run again computes what is
+missing. A worker that is killed takes its case with it, which another one then computes.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+import json
+from multiprocessing import resource_tracker
+import os
+from pathlib import Path
+import signal
+from typing import Any
+
+from tree_sway.errors import MissingDependencyError, TransportError, TreeSwayError
+from tree_sway.files.whole_file import write_text_whole
+from tree_sway.studies.plan import Case, Plain
+
+ATTEMPTS = 4
+"""How often a case may take its worker down before the study ends."""
+
+
+def run_study(
+    cases: list[Case],
+    folder: Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: Callable[[int, int], None] = lambda done, of: None,
+) -> list[Plain]:
+    """
+    Compute what is missing of a study, and return all of it.
+
+    Parameters
+    ----------
+    cases
+        What to compute.
+    folder
+        Where finished cases are kept.
+    workers
+        Processes; one per core if None.
+    scheduler
+        Address of a dask scheduler whose workers compute instead; they see the same folder.
+    progress
+        Called with how many cases are done, and of how many.
+
+    Returns
+    -------
+    list of dict
+        One row per case, in the order of the cases, whatever the order they were computed in.
+
+    Raises
+    ------
+    TreeSwayError
+        The first case that cannot be computed, by its name; the others are kept.
+    TransportError
+        Workers that die again and again, or a scheduler that does not answer.
+    MissingDependencyError
+        There is something to compute and dask is not installed.
+
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    missing = [case for case in cases if not result_path(folder, case).is_file()]
+    done = len(cases) - len(missing)
+    progress(done, len(cases))
+    failed: TreeSwayError | None = None
+    for outcome in _outcomes(missing, folder, workers, scheduler) if missing else ():
+        if outcome is not None:
+            failed = failed or outcome
+        else:
+            done += 1
+            progress(done, len(cases))
+    if failed is not None:
+        raise failed
+    return [json.loads(result_path(folder, case).read_text(encoding='utf-8')) for case in cases]
+
+
+def result_path(folder: Path, case: Case) -> Path:
+    """File of a finished case."""
+    return folder / f'{case.name}.json'
+
+
+def compute_to_file(case: Case, folder: Path) -> None:
+    """Compute one case and keep it: its row, and its record if the case asks for that."""
+    from tree_sway.studies.compute import compute
+
+    if result_path(folder, case).is_file():  # a worker that was killed had come this far
+        return
+    row, record = compute(case)
+    if case.series:
+        write_text_whole(folder / f'{case.name}.csv', record.to_csv())
+    write_text_whole(result_path(folder, case), json.dumps(row))
+
+
+def compute_batch(cases: list[Case], folder: Path) -> list[TreeSwayError | None]:
+    """Compute cases one after the other; of each what is wrong with it, or None."""
+    outcomes: list[TreeSwayError | None] = []
+    for case in cases:
+        try:
+            compute_to_file(case, folder)
+            outcomes.append(None)
+        except TreeSwayError as error:
+            where = f'tree {case.tree}, wind {case.wind}'
+            outcomes.append(TreeSwayError(str(error), where=where))
+    return outcomes
+
+
+def batches(cases: list[Case], workers: int) -> list[list[Case]]:
+    """
+    Cases of one tree with one set of settings together.
+
+    Its set-up costs more than a minute of wind does. A tree in many winds is given out in parts,
+    so that no worker is left without work.
+
+    """
+    most = -(-len(cases) // (4 * workers))
+    found: dict[str, list[list[Case]]] = {}
+    for case in cases:
+        parts = found.setdefault(json.dumps([case.tree, case.settings], sort_keys=True), [[]])
+        if len(parts[-1]) == most:
+            parts.append([])
+        parts[-1].append(case)
+    return [part for parts in found.values() for part in parts]
+
+
+def _outcomes(
+    cases: list[Case], folder: Path, workers: int | None, scheduler: str | None
+) -> Iterator[TreeSwayError | None]:
+    """Outcome of each case as it is finished: None, or what is wrong with it."""
+    distributed = _dask()
+    with _cluster(distributed, workers, scheduler) as client:
+        count = max(len(client.scheduler_info(n_workers=-1)['workers']), workers or 1)
+        futures = [
+            client.submit(compute_batch, part, folder.resolve(), key=part[0].name)
+            for part in batches(cases, count)
+        ]
+        try:
+            for future in distributed.as_completed(futures):
+                yield from future.result()
+        except distributed.KilledWorker as error:
+            raise TransportError(
+                f'a case took down {ATTEMPTS} workers in turn',
+                where=f'case {error.task}',
+                cure='look for what kills them (memory?), use fewer --workers, and run it again',
+            ) from None
+
+
+def _dask() -> Any:
+    try:
+        import cryptography
+        import distributed
+    except ImportError as error:
+        raise MissingDependencyError(
+            f'studies need {error.name}', cure='pip install "tree_sway_ros[study]"'
+        ) from None
+    del cryptography  # of the keys that keep other users of this machine out
+    return distributed
+
+
+@contextmanager
+def _cluster(distributed: Any, workers: int | None, scheduler: str | None) -> Iterator[Any]:
+    """Client of a scheduler, or of processes of its own, which end at once with the study."""
+    if scheduler is not None:
+        try:
+            client = distributed.Client(scheduler, timeout=10)
+        except OSError as error:
+            raise TransportError(
+                f'no scheduler answers ({error})', where=scheduler, cure='start dask scheduler'
+            ) from None
+        with client:
+            yield client
+        return
+    import dask
+
+    # This process alone hears Ctrl-C: its threads, and the workers that they start, inherit what
+    # is blocked here. The tracker would unblock it as it starts.
+    resource_tracker.ensure_running()
+    block = getattr(signal, 'pthread_sigmask', lambda *_: None)
+    block(signal.SIG_BLOCK, [signal.SIGINT])
+    quiet = {'distributed.scheduler.allowed-failures': ATTEMPTS - 1}
+    with (
+        dask.config.set(quiet),
+        distributed.LocalCluster(
+            n_workers=workers or os.cpu_count() or 1, threads_per_worker=1, memory_limit=0,
+            dashboard_address=None, silence_logs='CRITICAL', security=True,
+        ) as local,
+        distributed.Client(local) as client,
+    ):  # fmt: skip
+        try:
+            block(signal.SIG_UNBLOCK, [signal.SIGINT])
+            yield client
+        except BaseException:  # Ctrl-C: what is computed now is computed again, or never
+            for worker in local.workers.values():
+                os.kill(worker.pid, signal.SIGKILL)
+            raise

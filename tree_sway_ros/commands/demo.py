@@ -1,0 +1,134 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+``tree-sway demo``: a tree sways in wind, all nodes in one process, over real DDS.
+
+What it prints is what a subscriber receives, not what the solver believes to have sent.
+"""
+
+from __future__ import annotations
+
+import argparse
+from contextlib import ExitStack
+from pathlib import Path
+import sys
+import tempfile
+import webbrowser
+
+from tree_sway.commands.arguments import add_sway_arguments, opened_scene
+from tree_sway.commands.ending import Ending, LONGEST
+from tree_sway.commands.page_arguments import add_page_arguments, page_settings
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError
+from tree_sway.files.export.tree_export import write_tree
+from tree_sway.parameters.parameter import Value
+from tree_sway_ros.commands.monitor import StreamMonitor
+from tree_sway_ros.commands.only_demo import only_demo
+from tree_sway_ros.commands.text import summary
+from tree_sway_ros.commands.watch import checked_seconds, watch
+from tree_sway_ros.process.composition import Composition
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add = parser.add_argument
+    add_sway_arguments(parser)
+    add('--start', type=float, default=0.0, metavar='T', help='time skipped of the record [s]')
+    add(
+        '--sensor',
+        metavar='ADDRESS',
+        help='of an anemometer in place of both: serial:/dev/ttyUSB0:4800, tcp://host:port, '
+        'udp://:port',
+    )
+    add('--seconds', type=float, metavar='N', help='end after this time [s]; else by Ctrl-C')
+    add('--rate', type=float, default=60.0, help='poses per second [Hz] (%(default)s)')
+    add('--gravity', choices=('on', 'off'), default='on', help='its own weight (%(default)s)')
+    add('--no-page', action='store_true', help='serve no page')
+    add_page_arguments(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the demo until its time is over, the record ends, or Ctrl-C."""
+    seconds = checked_seconds(arguments.seconds)
+    scene = opened_scene(arguments)
+    for warning in scene.warnings:
+        print(f'warning: {warning}', file=sys.stderr)
+    tree = scene.tree
+    print(
+        f'{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)',
+        flush=True,
+    )
+    with (
+        Ending() as ending,
+        only_demo(),
+        Composition({}) as nodes,
+        StreamMonitor(nodes.context, tree) as monitor,
+        ExitStack() as files,
+    ):
+
+        def continues() -> bool:
+            nodes.check()
+            return not nodes.is_done
+
+        monitor.expect_silence()
+        for name, values in _nodes(arguments, _tree_of(scene, arguments, files)).items():
+            nodes.add(name, values)
+        if not arguments.no_page:
+            _serve_page(nodes, arguments)
+        ending.limit = LONGEST
+        watch(monitor, seconds, continues)
+        print(summary(monitor.totals, arguments.rate), flush=True)
+    return 0
+
+
+def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
+    """Add the viewer, print where its page is, and open it if asked to."""
+    values = {**vars(page_settings(arguments)), 'control': True}
+    values['origins'] = ' '.join(values['origins'])
+    del values['token']  # the node reads it from its file
+    url = nodes.add('viewer', values).server.url
+    print(f'page: {url}', flush=True)
+    if arguments.open:
+        webbrowser.open(url)
+
+
+def size_of(tree: Tree) -> str:
+    """Return branches and segments, trees if there are more, and height, for people."""
+    n_trees = int((tree.branch_parent < 0).sum())
+    trees = f'{n_trees} trees, ' if n_trees > 1 else ''
+    return f'{trees}{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m'
+
+
+def _tree_of(scene: Scene, arguments: argparse.Namespace, files: ExitStack) -> str:
+    """Return what the solver opens: TREE, or a file of it with the wood and the options given."""
+    own = (arguments.seed, arguments.option, arguments.modulus, arguments.density)
+    if not any(own) or not scene.is_one_tree:
+        return str(arguments.tree)
+    path = Path(files.enter_context(tempfile.TemporaryDirectory()), 'tree.yaml')
+    write_tree(path, scene.tree, scene.species)
+    return str(path)
+
+
+def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Value]]:
+    solver: dict[str, Value] = {
+        'tree': tree,
+        'species': '' if tree != arguments.tree else arguments.species or '',
+        'rate': arguments.rate,
+        'model': arguments.model,
+    }
+    solver['leaves'] = arguments.leaves
+    if arguments.gravity == 'off':
+        solver['gravity'] = 0.0
+    if arguments.sensor is not None:
+        if arguments.wind is not None:
+            raise ParameterError('both --sensor and --wind', cure='give one of the two')
+        return {'sensor': {'address': arguments.sensor}, 'wind': {}, 'solver': solver}
+    if arguments.wind is None:
+        return {'anemometer': {'mean_speed': arguments.speed}, 'wind': {}, 'solver': solver}
+    player = {
+        'file': arguments.wind,
+        'reader_options': ' '.join(arguments.wind_option),
+        'start': arguments.start,
+    }
+    return {'player': player, 'wind': {}, 'solver': solver}

@@ -1,0 +1,40 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+``tree-sway listen``: count what a solver in another process streams, by a raw subscription.
+
+`ros2 topic hz` turns every pose into a Python object and cannot keep up with a thousand of them.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from tree_sway.commands.ending import Ending, LONGEST
+from tree_sway_ros.commands.monitor import StreamMonitor
+from tree_sway_ros.commands.text import summary
+from tree_sway_ros.commands.watch import checked_seconds, watch
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument('--namespace', default='', help="of the tree's nodes")
+    parser.add_argument(
+        '--seconds', type=float, metavar='N', help='end after this time [s]; else by Ctrl-C'
+    )
+    parser.add_argument(
+        '--rate',
+        type=float,
+        default=60.0,
+        help='poses per second that should come [Hz] (%(default)s)',
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Listen until the time is over or Ctrl-C."""
+    seconds = checked_seconds(arguments.seconds)
+    with Ending() as ending, StreamMonitor(None, None, arguments.namespace) as monitor:
+        ending.limit = LONGEST
+        watch(monitor, seconds, lambda: True)
+        print(summary(monitor.totals, arguments.rate), flush=True)
+    return 0

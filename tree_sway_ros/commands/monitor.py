@@ -1,0 +1,89 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Listens to a swaying tree as any other program would: poses as bytes, over DDS."""
+
+from __future__ import annotations
+
+import struct
+import time
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import TransportError
+from tree_sway_ros.commands.totals import StreamTotals
+from tree_sway_ros.process.listener import Listener
+from tree_sway_ros.process.topics import (
+    message_class,
+    qos_profile,
+    SEGMENT_POSES,
+    WIND,
+    WIND_FILTERED,
+)
+
+_POSE = 7 * 8
+_QUEUE = 50
+"""Messages that may wait: what came while this program was busy is late, not missing."""
+_LOOK_AROUND = 1.0  # [s]: how long programs that run already take to be seen
+
+
+class StreamMonitor(Listener):
+    """A node that receives poses and wind; without a tree it counts poses and follows no tip."""
+
+    def __init__(self, context: Any, tree: Tree | None, namespace: str = '') -> None:
+        super().__init__('monitor', namespace, context)
+        self.totals, self.recent = StreamTotals(), StreamTotals()
+        self._tree = tree
+        self._tip = 0 if tree is None else int(np.argmax(tree.end[:, 2]))
+        for topic, callback, raw in (
+            (SEGMENT_POSES, self._receive_poses, True),
+            (WIND_FILTERED, self._receive_wind, False),
+        ):
+            qos = qos_profile(topic)
+            qos.depth = _QUEUE
+            self.node.create_subscription(message_class(topic), topic.name, callback, qos, raw=raw)
+
+    def expect_silence(self) -> None:
+        """Raise a `TransportError` if somebody publishes: a second wind or tree would mix in."""
+        self.spin(_LOOK_AROUND)
+        for topic in (WIND, SEGMENT_POSES):
+            if self.node.count_publishers(topic.name):
+                raise TransportError(
+                    f"another program publishes '{topic.name}' in this ROS domain",
+                    cure='end it, or set ROS_DOMAIN_ID to another number up to 101',
+                )
+
+    def restart(self) -> None:
+        """Forget what came until now; all counts begin here."""
+        self.totals, self.recent = StreamTotals(), StreamTotals()
+
+    def take_recent(self) -> StreamTotals:
+        """Return what came since this was called before."""
+        recent, self.recent = self.recent, StreamTotals()
+        return recent
+
+    def _receive_poses(self, data: bytes) -> None:
+        arrival = time.time()
+        # CDR: four bytes of header, the stamp, the frame's name; the poses are what it ends with.
+        second, nanosecond = struct.unpack_from('<iI', data, 4)
+        stamp, tip = second + 1e-9 * nanosecond, self._displacement(data)
+        for totals in (self.totals, self.recent):
+            totals.add_poses(arrival, stamp, tip)
+
+    def _displacement(self, data: bytes) -> Floats | None:
+        """Displacement of the highest tip from rest in a serialised pose array in [m], (3,)."""
+        if self._tree is None:
+            return None
+        offset = len(data) - (self._tree.n_segments - self._tip) * _POSE
+        pose = np.array(struct.unpack_from('<7d', data, offset))
+        _, end = ends_of_poses(pose[None], self._tree.length[self._tip, None])
+        return end[0] - self._tree.end[self._tip]
+
+    def _receive_wind(self, message: Any) -> None:
+        stamp, vector = message.header.stamp, message.vector
+        wind = np.array([vector.x, vector.y, vector.z])
+        for totals in (self.totals, self.recent):
+            totals.add_wind(stamp.sec + 1e-9 * stamp.nanosec, wind)

@@ -1,0 +1,60 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Watching a stream until its time is over or it is ended, in a line that follows what comes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import sys
+import time
+
+from tree_sway.errors import ParameterError, TransportError
+from tree_sway_ros.commands.monitor import StreamMonitor
+from tree_sway_ros.commands.text import status_line
+
+_SETTLING = 0.5
+_LIVE_PERIOD, _LOG_PERIOD = 0.5, 2.0
+
+
+def checked_seconds(seconds: float | None) -> float:
+    """Return for how long to watch in [s], for ever if None; refuse what is no length of time."""
+    if seconds is None:
+        return float('inf')
+    if not seconds > 0.0:
+        raise ParameterError(
+            f'{seconds:g} s is no time to run', where='--seconds', cure='give more than 0'
+        )
+    return seconds
+
+
+def watch(
+    monitor: StreamMonitor, seconds: float, check: Callable[[], bool], *, patience: float = 30.0
+) -> None:
+    """
+    Receive for a time [s] from when poses come, and print how it goes.
+
+    ``check`` is called now and then: it raises if something failed, and returns True to go on. A
+    `TransportError` is raised if no poses come within the ``patience`` [s].
+    """
+    deadline = time.monotonic() + patience
+    while not monitor.totals.arrivals.count and check():
+        monitor.spin(0.1)
+        if time.monotonic() > deadline:
+            raise TransportError(
+                f'no poses within {patience:g} s',
+                cure='is a solver running in this ROS_DOMAIN_ID? without multicast, '
+                'set ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_STATIC_PEERS',
+            )
+    monitor.spin(_SETTLING)
+    monitor.restart()
+    begin = time.time()
+    is_live = sys.stdout.isatty()
+    try:
+        while check() and (left := begin + seconds - time.time()) > 0.0:
+            monitor.spin(min(_LIVE_PERIOD if is_live else _LOG_PERIOD, left))
+            line = status_line(monitor.take_recent(), time.time() - begin)
+            print(f'\r\033[K{line}' if is_live else line, end='' if is_live else '\n', flush=True)
+    except KeyboardInterrupt:
+        pass
+    if is_live:
+        print()

@@ -1,8 +1,0 @@
-# Copyright 2026 Tree Sway maintainers
-# SPDX-License-Identifier: Apache-2.0
-"""
-Trees, forests and species written by people, as YAML with schemas.
-
-Each schema stands beside its reader.
-Other formats have rooms of their own.
-"""

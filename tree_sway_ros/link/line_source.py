@@ -1,0 +1,150 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A thread that listens to an instrument and, whenever the link breaks, takes it up again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+import importlib
+import socket
+import threading
+import time
+from typing import Any
+
+from tree_sway.errors import MissingDependencyError
+from tree_sway_ros.link.address import Address
+from tree_sway_ros.link.lines import Lines
+
+FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
+"""Between two attempts [s]: doubled from the first to the longest while nothing comes."""
+_CONNECT_FOR = 5.0  # [s]
+_READ_FOR = 0.1  # [s]: as soon a silent link sees that it is to end
+_DATAGRAM = 65_536
+
+Read = Callable[[], bytes | None]
+"""Bytes that have come, none where nothing came for a while, None at the end of the link."""
+
+
+class LineSource:
+    """
+    Listens to an instrument at an address; hands each line to `take`, in a thread of its own.
+
+    A link without a byte for the time of `silence` [s] is given up and opened again, first after
+    `first_pause` [s]. A `MissingDependencyError` says that a serial port needs pyserial.
+    """
+
+    def __init__(
+        self,
+        address: Address,
+        take: Callable[[str], None],
+        log: Callable[[str], None],
+        *,
+        silence: float = 10.0,
+        first_pause: float = FIRST_PAUSE,
+    ) -> None:
+        if address.kind == 'serial':
+            _pyserial()
+        self._address = address
+        self._take = take
+        self._log = log
+        self._silence = silence
+        self._first_pause = first_pause
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._run, name='instrument', daemon=True)
+        self.is_up = False
+        self.links = 0
+        self.lines = 0
+        self.failure = ''
+
+    def start(self) -> None:
+        """Start listening."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop listening; may be called twice."""
+        self._ending.set()
+        if self._thread.is_alive():
+            self._thread.join(timeout=_CONNECT_FOR + 1.0)
+
+    def _run(self) -> None:
+        pause = self._first_pause
+        while not self._ending.is_set():
+            before = self.lines
+            try:
+                with _LINKS[self._address.kind](self._address) as read:
+                    why = self._listen(read)
+            except Exception as error:  # an instrument may fail in any way, and is tried again
+                why = f'{type(error).__name__}: {error}'
+            self._lose(why)
+            pause = self._first_pause if self.lines > before else min(2.0 * pause, LONGEST_PAUSE)
+            self._ending.wait(pause)
+
+    def _listen(self, read: Read) -> str:
+        """Read until the link ends; return why it did."""
+        lines, latest = Lines(), time.monotonic()
+        self.is_up, self.failure = True, ''
+        self.links += 1
+        self._log(f'listening to {self._address}')
+        while not self._ending.is_set():
+            data = read()
+            if data is None:
+                return 'closed by the other side'
+            if data:
+                latest = time.monotonic()
+            elif time.monotonic() - latest > self._silence:
+                return f'nothing for {self._silence:g} s'
+            for line in lines.feed(data, is_whole=self._address.kind == 'udp'):
+                self.lines += 1
+                self._take(line)
+        return ''
+
+    def _lose(self, why: str) -> None:
+        if not self._ending.is_set() and (self.is_up or why != self.failure):
+            self._log(f'{self._address}: {why}; trying again')
+        self.is_up, self.failure = False, why
+
+
+@contextmanager
+def _tcp(address: Address) -> Iterator[Read]:
+    with socket.create_connection((address.place, address.number), _CONNECT_FOR) as link:
+        link.settimeout(_READ_FOR)
+        yield lambda: _received(link)
+
+
+@contextmanager
+def _udp(address: Address) -> Iterator[Read]:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+        link.bind((address.place, address.number))
+        link.settimeout(_READ_FOR)
+        yield lambda: _received(link) or b''
+
+
+@contextmanager
+def _port(address: Address) -> Iterator[Read]:
+    with _pyserial().Serial(address.place, address.number, timeout=_READ_FOR) as port:
+        yield lambda: port.read(max(1, port.in_waiting))
+
+
+def _received(link: socket.socket) -> bytes | None:
+    try:
+        return link.recv(_DATAGRAM) or None
+    except TimeoutError:
+        return b''
+
+
+_LINKS: dict[str, Callable[[Address], AbstractContextManager[Read]]] = {
+    'tcp': _tcp,
+    'udp': _udp,
+    'serial': _port,
+}
+
+
+def _pyserial() -> Any:
+    try:
+        return importlib.import_module('serial')
+    except ImportError:
+        raise MissingDependencyError(
+            'a serial port needs pyserial, which is not installed',
+            cure='install python3-serial, or pip install pyserial',
+        ) from None

@@ -1,0 +1,57 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The one guard around every callback of a node: what is raised is counted and logged, not passed on.
+
+An exception that leaves a callback ends the executor, and with it every node that shares it; one
+that leaves the callback of a service leaves its caller without an answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import functools
+import traceback
+from typing import Any
+
+
+class CallbackGuard:
+    """Wraps callbacks; a place that raises is logged once, with its trace, and always counted."""
+
+    def __init__(self, log: Callable[[str], None]) -> None:
+        self.count = 0
+        self.latest = ''
+        self._log = log
+        self._places: set[tuple[str, str, int]] = set()
+
+    def wrapped(self, callback: Callable[..., Any]) -> Callable[..., Any]:
+        """
+        Return a callback that never raises.
+
+        Where the wrapped one raises, it returns its last argument: of a service this is the
+        response as it was made, so that the caller gets an answer.
+        """
+
+        @functools.wraps(callback)
+        def guarded(*arguments: Any) -> Any:
+            try:
+                return callback(*arguments)
+            except Exception as error:
+                self.note(error)
+                return arguments[-1] if arguments else None
+
+        return guarded
+
+    def note(self, error: Exception) -> None:
+        """Count what was raised; log it if it is the first from its place."""
+        self.count += 1
+        self.latest = f'{type(error).__name__}: {error}'
+        frames = traceback.extract_tb(error.__traceback__)
+        last = frames[-1] if frames else None
+        place = (type(error).__name__, last.filename, last.lineno or 0) if last else ('', '', 0)
+        if place not in self._places:
+            self._places.add(place)
+            trace = ''.join(traceback.format_exception(error)).rstrip()
+            self._log(
+                f'a callback failed, and is counted from now on without further words\n{trace}'
+            )

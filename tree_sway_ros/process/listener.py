@@ -1,0 +1,67 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A node that a program has beside its own work, spun when the program has time for it."""
+
+from __future__ import annotations
+
+import time
+from typing import Any, TypeVar
+
+from tree_sway_ros.process.spin import create, init, require_rclpy
+
+_LOOK = 0.2  # [s]: so soon a Ctrl-C is seen while nothing comes
+
+_Own = TypeVar('_Own', bound='Listener')
+
+
+class Listener:
+    """
+    A node with an executor of its own; without a context it has its own, which ends with it.
+
+    Raises
+    ------
+    MissingDependencyError
+        Without ROS.
+    TransportError
+        If the domain cannot be used.
+
+    """
+
+    def __init__(self, name: str, namespace: str = '', context: Any = None) -> None:
+        rclpy = require_rclpy()
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.node import Node
+
+        self._own = rclpy.context.Context() if context is None else None
+        if self._own is not None:
+            off = rclpy.signals.SignalHandlerOptions.NO
+            init(rclpy, [], context=self._own, signal_handler_options=off)
+        within = context or self._own
+        self.node: Any = create(
+            lambda **given: Node(name, **given), context=within, namespace=namespace
+        )
+        self._executor = SingleThreadedExecutor(context=within)
+        self._executor.add_node(self.node)
+
+    def spin(self, seconds: float) -> None:
+        """Take what comes for a time [s]."""
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0.0:
+            self._executor.spin_once(timeout_sec=min(left, _LOOK))
+
+    def spin_once(self, seconds: float) -> None:
+        """Take the next that comes within a time [s]."""
+        self._executor.spin_once(timeout_sec=seconds)
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self._executor.shutdown(timeout_sec=1.0)
+        self.node.destroy_node()
+        if self._own is not None:
+            self._own.try_shutdown()
+
+    def __enter__(self: _Own) -> _Own:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()

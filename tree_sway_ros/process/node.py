@@ -1,0 +1,314 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What all nodes have in common: parameters, topics from the table, reports, failures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+import sys
+from typing import Any
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.lifecycle import LifecycleNodeMixin, TransitionCallbackReturn
+from rclpy.node import Node
+from rclpy.qos import qos_check_compatible, QoSCompatibility
+from rclpy.qos_overriding_options import QoSOverridingOptions
+
+from tree_sway.core.wind.gate import LARGEST_LEAD
+from tree_sway.errors import TreeSwayError
+from tree_sway_ros.parameters.declaration import ParameterValues
+from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
+from tree_sway_ros.parameters.origin import own_names
+from tree_sway_ros.process.guard import CallbackGuard
+from tree_sway_ros.process.reporter import Reporter
+from tree_sway_ros.process.rivals import Rivals
+from tree_sway_ros.process.topics import message_class, qos_profile, Topic
+from tree_sway_ros.reports.diagnostics import Status, WARN
+
+_ENTITIES = {
+    'publishers': 'destroy_publisher',
+    'subscriptions': 'destroy_subscription',
+    'services': 'destroy_service',
+    'clients': 'destroy_client',
+    'timers': 'destroy_timer',
+}
+"""What a node holds, and what destroys one of it."""
+
+
+class _Never(CallbackGroup):  # type: ignore[misc]
+    """Of a subscription that no executor looks at."""
+
+    def can_execute(self, _entity: Any) -> bool:
+        return False
+
+
+def _nobody(_message: Any) -> None:
+    """Do nothing, where rclpy wants a callback."""
+
+
+def _match(offer: Any, request: Any) -> bool:
+    """Whether a subscription receives what a publisher sends."""
+    found, _reason = qos_check_compatible(offer.qos_profile, request.qos_profile)
+    return offer.topic_type == request.topic_type and found != QoSCompatibility.ERROR
+
+
+class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
+    """
+    A node with a table of parameters, found under its name, whatever the node is remapped to.
+
+    It is a managed node of ROS, which configures and activates itself unless the parameter
+    `autostart` leaves that to a manager. Options are those of `rclpy.node.Node`.
+    """
+
+    def __init__(self, name: str, **options: Any) -> None:
+        # Made first: rclpy's own subscriptions and services are guarded as well.
+        self.guard = CallbackGuard(lambda text: self.get_logger().error(text))
+        own = {each.name for each in options.get('parameter_overrides') or ()}
+        if options.get('use_global_arguments', True):
+            own |= own_names([*sys.argv, *(options.get('cli_args') or ())], name)
+        Node.__init__(self, name, automatically_declare_parameters_from_overrides=True, **options)
+        self.failure: Exception | None = None
+        self.is_done = self.is_active = False
+        self._refusal: Exception | None = None
+        self._alone: dict[str, Rivals] = {}
+        self._closers: list[Callable[[], None]] = []
+        try:
+            self.values = ParameterValues(
+                self,
+                NODE_PARAMETERS[name],
+                self.on_change,
+                self.check_values,
+                lambda parameter: parameter in own,
+            )
+            self._be_managed()
+            if self.values['autostart']:
+                self._start_by_itself()
+        except BaseException:
+            self.close()
+            raise
+
+    def configure(self) -> None:
+        """Open files, compile, create publishers and subscriptions; nothing moves yet."""
+
+    def activate(self) -> None:
+        """Start what moves by itself; `on_close` takes what stops it."""
+
+    def on_configure(self, _state: Any) -> TransitionCallbackReturn:
+        """Configure; a node that cannot says why, and stays unconfigured."""
+        self._kept = {each for kind in _ENTITIES for each in getattr(self, kind)}
+        if self._succeeds(self.configure):
+            return TransitionCallbackReturn.SUCCESS
+        self.on_cleanup(_state)
+        return TransitionCallbackReturn.FAILURE
+
+    def on_activate(self, _state: Any) -> TransitionCallbackReturn:
+        """Start; a node that cannot says why, and stays inactive."""
+        self.is_active = True
+        if self._succeeds(self.activate):
+            return TransitionCallbackReturn.SUCCESS
+        self.stop()
+        return TransitionCallbackReturn.FAILURE
+
+    def on_deactivate(self, _state: Any) -> TransitionCallbackReturn:
+        """Stop; topics and files stay open."""
+        self.stop()
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_cleanup(self, _state: Any) -> TransitionCallbackReturn:
+        """Destroy all that `configure` made."""
+        self.stop()
+        for kind, destroy in _ENTITIES.items():
+            for each in [each for each in getattr(self, kind) if each not in self._kept]:
+                getattr(self, destroy)(each)
+        self._alone.clear()
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, _state: Any) -> TransitionCallbackReturn:
+        """Stop for good; the process ends."""
+        self.stop()
+        self.is_done = True
+        return TransitionCallbackReturn.SUCCESS
+
+    def _succeeds(self, stage: Callable[[], None]) -> bool:
+        """Whether a stage of the start succeeds; what it raises is kept, and logged."""
+        self._refusal = None
+        try:
+            stage()
+        except Exception as error:
+            self._refusal = error
+            if self.values['autostart']:  # it is raised where the node is made
+                return False
+            if isinstance(error, TreeSwayError):
+                self.get_logger().error(str(error))
+            else:
+                self.guard.note(error)
+        return self._refusal is None
+
+    def _start_by_itself(self) -> None:
+        for stage in (self.trigger_configure, self.trigger_activate):
+            stage()
+            if self._refusal is not None:
+                raise self._refusal
+
+    def _be_managed(self) -> None:
+        n_services = len(self._services)
+        LifecycleNodeMixin.__init__(self)
+        for service in self._services[n_services:]:
+            service.callback = self.guard.wrapped(service.callback)
+
+    def create_subscription(
+        self, kind: Any, topic: str, callback: Any, *more: Any, **named: Any
+    ) -> Any:
+        """Subscribe, with the guard around the callback."""
+        return super().create_subscription(
+            kind, topic, self.guard.wrapped(callback), *more, **named
+        )
+
+    def create_service(self, kind: Any, name: str, callback: Any, **named: Any) -> Any:
+        """Offer a service, with the guard around the callback."""
+        return super().create_service(kind, name, self.guard.wrapped(callback), **named)
+
+    def create_timer(self, period: float, callback: Any, *more: Any, **named: Any) -> Any:
+        """Start a timer, with the guard around the callback."""
+        return super().create_timer(period, self.guard.wrapped(callback), *more, **named)
+
+    def publisher(self, topic: Topic, kind: Any = None, *, alone: bool = False) -> Any:
+        """
+        Make a publisher of a topic of the table, of a kind where a parameter chooses it.
+
+        ``alone``: a second publisher on the topic is a fault, to be reported.
+        """
+        made = self.create_publisher(
+            kind or message_class(topic),
+            topic.name,
+            qos_profile(topic),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
+        if alone:
+            self._alone[made.topic_name] = Rivals()
+        return made
+
+    def subscription(
+        self,
+        topic: Topic,
+        callback: Callable[[Any], None],
+        kind: Any = None,
+        *,
+        raw: bool = False,
+        alone: bool = False,
+    ) -> Any:
+        """
+        Subscribe to a topic of the table, of a kind where a parameter chooses it.
+
+        ``raw`` gives bytes; ``alone``: a second publisher on the topic is a fault.
+        """
+        made = self.create_subscription(
+            kind or message_class(topic),
+            topic.name,
+            callback,
+            qos_profile(topic, is_input=True),
+            raw=raw,
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
+        if alone:
+            self._alone[made.topic_name] = Rivals()
+        return made
+
+    def polled(self, topic: Topic) -> Callable[[], Iterator[Any]]:
+        """
+        Subscribe without a callback: the function returned takes what has come, oldest first.
+
+        No executor comes between a thread that keeps time and its messages: what came before the
+        clock went on is there when the tick is.
+        """
+        made = self.create_subscription(
+            message_class(topic),
+            topic.name,
+            _nobody,
+            qos_profile(topic, is_input=True),
+            callback_group=_Never(),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
+
+        def take() -> Iterator[Any]:
+            for _ in range(made.qos_profile.depth):
+                with made.handle:
+                    taken = made.handle.take_message(made.msg_type, False)
+                if taken is None:
+                    return
+                yield taken[0]
+
+        return take
+
+    def listeners(self, topic: str) -> int:
+        """Count the subscriptions of other nodes that receive what is published on a topic."""
+        own = [
+            each for each in self.publishers if each.topic_name == self.resolve_topic_name(topic)
+        ]
+        if own:
+            return int(own[0].get_subscription_count())
+        here = self.get_subscriptions_info_by_topic(topic)
+        offers = self.get_publishers_info_by_topic(topic)
+        me = (self.get_name(), self.get_namespace())
+        return sum(
+            (each.node_name, each.node_namespace) != me
+            and (not offers or any(_match(offer, each) for offer in offers))
+            for each in here
+        )
+
+    @property
+    def clock_lead(self) -> int:
+        """How far stamps may be ahead of the clock in [ns]: simulated time stops between ticks."""
+        return LARGEST_LEAD if self.get_clock().ros_time_is_active else 0
+
+    def report_with(self, hardware: str, collect: Callable[[], list[Status]]) -> None:
+        """Publish what `collect` returns on `/diagnostics`."""
+        self.reporter = Reporter(self, hardware, lambda: [*collect(), *self._own_statuses()])
+
+    def _own_statuses(self) -> list[Status]:
+        """Failures of callbacks, and other publishers where there should be none."""
+        statuses = []
+        if self.guard.count:
+            values = {'failed': self.guard.count, 'last': self.guard.latest}
+            statuses.append(Status('callbacks', WARN, f'{self.guard.count} failed', values))
+        for topic, rivals in self._alone.items():
+            here = [
+                f'{each.node_namespace.rstrip("/")}/{each.node_name}'
+                for each in self.get_publishers_info_by_topic(topic)
+            ]
+            if text := rivals.warning(topic, here):
+                statuses.append(Status('topics', WARN, text))
+                if text not in rivals.said:
+                    rivals.said.add(text)
+                    self.get_logger().warning(f'{text}; end one, or give it another namespace')
+        return statuses
+
+    def check_values(self, values: dict[str, Any]) -> None:
+        """Raise `ParameterError` where values that are each in range do not go together."""
+
+    def on_change(self, values: dict[str, Any]) -> None:
+        """Take live changes of parameters; by default whoever needs a value reads it again."""
+
+    def on_close(self, closer: Callable[[], None]) -> None:
+        """Have something called when the node closes, last come first served."""
+        self._closers.append(closer)
+
+    def fail(self, error: Exception) -> None:
+        """Note what a thread of the node died of; whoever spins the node raises it."""
+        self.failure = error
+
+    def slip(self, error: Exception) -> None:
+        """Note what one tick of a thread failed of; it goes on with the next."""
+        if self.context.ok():  # otherwise the graph is gone, and the thread about to end
+            self.guard.note(error)
+
+    def stop(self) -> None:
+        """Stop the node's threads; may be called twice."""
+        self.is_active = False
+        while self._closers:
+            self._closers.pop()()
+
+    def close(self) -> None:
+        """Stop the node's threads and leave the graph."""
+        self.stop()
+        self.destroy_node()

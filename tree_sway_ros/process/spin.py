@@ -1,0 +1,155 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The life of a node's process, written once: start, spin, end.
+
+Exit codes: 0 after Ctrl-C, SIGTERM or the end of the work, 2 with one line where the user can do
+something about it. ROS itself may be missing, so nothing here imports it at the top.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import ctypes
+import gc
+import importlib
+import os
+from pathlib import Path
+import sys
+from typing import Any
+
+from tree_sway.commands.ending import Ending
+from tree_sway.errors import MissingDependencyError, TransportError, TreeSwayError
+
+_BAD_NAMES = ('InvalidNamespaceException', 'InvalidNodeNameException')
+_CHECK_PERIOD = 0.2
+_SWITCH_INTERVAL = 0.0005
+_M_MMAP_THRESHOLD, _LARGE = -3, 1 << 20
+"""Of glibc: what is larger [bytes] goes back to the system when it is freed."""
+_PROFILES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
+"""Name the file of Fast DDS 2 and of 3."""
+
+
+def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
+    """
+    Run a node until it is done or asked to end; returns the exit code.
+
+    Its module is imported only if ROS is there; the command line is `sys.argv` if None.
+    """
+    gc.disable()  # what a start loads stays
+    try:
+        rclpy = require_rclpy()
+        _spin(rclpy, module, node_class, args)
+    except TreeSwayError as error:
+        print(f'{module.rsplit(".", 1)[-1]}: {error}', file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        pass
+    return 0
+
+
+def require_rclpy() -> Any:
+    """Import rclpy; a `MissingDependencyError` says what to do if it is not there."""
+    try:
+        return importlib.import_module('rclpy')
+    except ImportError as error:
+        raise MissingDependencyError(
+            f'ROS 2 (rclpy) cannot be imported: {error}',
+            cure='source /opt/ros/jazzy/setup.bash, or run it with python3 .ci/in_venv.py',
+        ) from None
+
+
+def init(
+    rclpy: Any, args: Sequence[str] | None = None, profile: str = 'discovery.xml', **options: Any
+) -> None:
+    """
+    Initialise rclpy with one of the profiles beside this file, where the environment names none.
+
+    A `TransportError` if the domain or the arguments cannot be used.
+    """
+    # The paced threads must not wait 5 ms for an executor that holds the interpreter.
+    sys.setswitchinterval(_SWITCH_INTERVAL)
+    # glibc would raise the threshold to what was last freed, and memory grow for half an hour.
+    if hasattr(ctypes.pythonapi, 'mallopt'):
+        ctypes.pythonapi.mallopt(_M_MMAP_THRESHOLD, _LARGE)
+    own = Path(__file__).with_name(profile)
+    named = [os.environ.get(name) for name in _PROFILES]
+    if all(Path(each or own).parent == own.parent for each in named):  # not by the user
+        os.environ.update(dict.fromkeys(_PROFILES, str(own)))
+    domain = os.environ.get('ROS_DOMAIN_ID', '')
+    if domain and not (domain.isdecimal() and int(domain) <= 232):
+        raise TransportError(
+            f'ROS_DOMAIN_ID={domain} is no domain', cure='use a whole number from 0 to 101'
+        )
+    given = sys.argv if args is None else [sys.argv[0], *args]
+    try:
+        rclpy.init(args=[*given, *_without_log_files()], **options)
+    except Exception as error:  # rclpy has a class an error and no common root
+        raise TransportError(f'ROS 2 cannot start: {_first_line(error)}') from error
+
+
+def _without_log_files() -> list[str]:
+    """Return arguments by which ROS starts on a machine where it can write no log."""
+    home = os.environ.get('ROS_HOME') or os.path.expanduser('~/.ros')
+    folder = Path(os.environ.get('ROS_LOG_DIR') or os.path.join(home, 'log'))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if os.access(folder, os.W_OK):
+            return []
+    except OSError:
+        pass
+    return ['--ros-args', '--disable-external-lib-logs']
+
+
+def create(make: Any, **options: Any) -> Any:
+    """Create a node; a `TransportError` if the middleware cannot join the domain."""
+    try:
+        return make(**options)
+    except Exception as error:
+        kind, text = type(error).__name__, _first_line(error)
+        if kind in _BAD_NAMES or 'invalid node name' in text:
+            raise TransportError(
+                text.split(', at /')[0].rstrip(':'),
+                where=f"namespace '{options['namespace']}'" if options.get('namespace') else '',
+                cure='use letters, digits and _, levels parted by one /, no digit first',
+            ) from None
+        if kind != 'RCLError':
+            raise
+        if 'security' in text:
+            cure = 'use the rclpy of a ROS machine, or unset ROS_SECURITY_ENABLE'
+            raise TransportError(text, cure=cure) from error
+        domain = os.environ.get('ROS_DOMAIN_ID', '0')
+        raise TransportError(
+            f'cannot join domain {domain}: {text}',
+            cure='too many processes may be in it, or no network is up: try another ROS_DOMAIN_ID',
+        ) from error
+
+
+def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) -> None:
+    from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+
+    node = None
+    with Ending() as ending:
+        no_handlers = rclpy.signals.SignalHandlerOptions.NO
+        init(rclpy, args, 'node.xml', signal_handler_options=no_handlers)
+        try:
+            node = create(getattr(importlib.import_module(module), node_class))
+            gc.freeze()
+            gc.enable()
+            ending.look()
+            executor = SingleThreadedExecutor()
+            executor.add_node(node)
+            while not (ending.is_asked or node.is_done or node.failure) and rclpy.ok():
+                executor.spin_once(timeout_sec=_CHECK_PERIOD)
+            if node.failure is not None:
+                raise node.failure
+        except ExternalShutdownException:
+            pass
+        finally:
+            if node is not None:
+                node.close()
+            rclpy.try_shutdown()
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).split('\n', 1)[0]

@@ -1,9 +1,0 @@
-# Copyright 2026 Tree Sway maintainers
-# SPDX-License-Identifier: Apache-2.0
-"""
-The laboratory: methods side by side, battery, benches, charts, comparisons.
-
-Reached by ``tree-sway battery|chart|compare|bench``.
-Nothing that runs imports it.
-
-"""

@@ -1,0 +1,199 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A thread that works at a fixed rate, on a grid of absolute times of a ROS clock.
+
+Ticks lie at whole multiples of the period since the clock's epoch, so two runs over the same
+record tick at the same times. The number of periods since the last tick is counted from the clock,
+never from the calls: a late tick reports how many it covers, and what was missed is skipped,
+never made up for in a burst. Simulated time is followed: paused, nothing ticks; set back, the next
+tick says so.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+import logging
+import threading
+import time
+from typing import Any, NamedTuple
+
+import numpy as np
+
+LONGEST_STEP = 500_000_000
+"""A tick never covers more time than this [ns]: a clock that jumped forward is no long
+step."""
+PATIENCE = 10
+"""Number of ticks that may fail one after another before the thread gives up."""
+_BACK = 100_000_000
+_WINDOW = 600
+_log = logging.getLogger(__name__)
+
+
+class Tick(NamedTuple):
+    """
+    One tick: its time on the grid [ns], and the periods since the last one, 1 unless late.
+
+    ``restarted`` is true for the first, and for the first after the clock was set back.
+    """
+
+    time: int
+    periods: int
+    restarted: bool
+
+
+class Pace(NamedTuple):
+    """
+    How well the pace was kept: rate [Hz], lateness [s], work [s], and counts since the start.
+
+    `skipped` are frames on the grid that never came, however many at once; `clamped` are jumps of
+    the clock forward, `restarts` jumps back, `silence` is the time since the last tick [s].
+    """
+
+    rate: float
+    late_p50: float
+    late_p95: float
+    late_max: float
+    work_mean: float
+    ticks: int
+    skipped: int
+    clamped: int
+    restarts: int
+    silence: float
+
+
+class Pacer:
+    """
+    Calls `work` with each tick at a fixed rate [Hz] in a thread of its own, by a node's clock.
+
+    What it raised in `PATIENCE` ticks one after another goes to `on_error`, and the thread ends;
+    what it raised before that goes to `on_slip`, and the next tick comes as if nothing had been.
+    """
+
+    def __init__(
+        self,
+        clock: Any,
+        rate: float,
+        work: Callable[[Tick], None],
+        on_error: Callable[[Exception], None],
+        on_slip: Callable[[Exception], None] = lambda _error: None,
+    ) -> None:
+        self.period = round(1e9 / rate)
+        self._clock = clock
+        self._work = work
+        self._on_error = on_error
+        self._on_slip = on_slip
+        self._slips = 0
+        self._last_steady = self._late = 0
+        self._last: int | None = None
+        self._wake = threading.Event()
+        self._stopping = False
+        self._recent: deque[tuple[float, int, float]] = deque(maxlen=_WINDOW)
+        self._ticks = self._skipped = self._clamped = self._restarts = 0
+        self._thread = threading.Thread(target=self._run, name='pacer', daemon=True)
+        self._jumps: Any = None
+
+    def start(self) -> None:
+        """Start ticking."""
+        from rclpy.clock import JumpThreshold
+        from rclpy.duration import Duration
+
+        # Simulated time moves by jumps; each wakes the thread.
+        smallest = Duration(nanoseconds=1)
+        threshold = JumpThreshold(
+            min_forward=smallest, min_backward=Duration(nanoseconds=-1), on_clock_change=True
+        )
+        self._jumps = self._clock.create_jump_callback(
+            threshold, post_callback=lambda _jump: self._wake.set()
+        )
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop ticking and wait for the work under way."""
+        self._stopping = True
+        self._wake.set()
+        if self._thread.is_alive() and self._thread is not threading.current_thread():
+            self._thread.join(timeout=5.0)
+        if self._jumps is not None:
+            self._jumps.unregister()
+            self._jumps = None
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether the clock is simulated time, which may stand still."""
+        return bool(self._clock.ros_time_is_active)
+
+    def pace(self) -> Pace:
+        """How well the pace was kept over the last 600 ticks."""
+        recent = list(self._recent)
+        silence = 1e-9 * (time.monotonic_ns() - self._last_steady) if self._last_steady else 0.0
+        counts = (self._ticks, self._skipped, self._clamped, self._restarts, silence)
+        if len(recent) < 2:
+            return Pace(0.0, 0.0, 0.0, 0.0, 0.0, *counts)
+        table = np.array(recent)
+        p50, p95 = np.quantile(table[:, 1], (0.5, 0.95)) * 1e-9
+        duration = table[-1, 0] - table[0, 0]
+        rate = (len(table) - 1) / duration if duration > 0.0 else 0.0
+        latest = float(table[:, 1].max() * 1e-9)
+        work = float(table[:, 2].mean())
+        return Pace(float(rate), float(p50), float(p95), latest, work, *counts)
+
+    def _run(self) -> None:
+        try:
+            while not self._stopping:
+                self._wake.clear()
+                now = self._clock.now().nanoseconds
+                tick = self._due(now)
+                if tick is None:
+                    self._wake.wait(self._until_next(now))
+                    continue
+                begin = time.perf_counter()
+                self._do(tick)
+                self._recent.append((begin, now - tick.time, time.perf_counter() - begin))
+                self._ticks += 1
+        except Exception as error:
+            _log.debug('pacer stopped', exc_info=True)
+            if not self._stopping:
+                self._on_error(error)
+
+    def _do(self, tick: Tick) -> None:
+        try:
+            self._work(tick)
+            self._slips = 0
+        except Exception as error:
+            self._slips += 1
+            if self._stopping or self._slips >= PATIENCE:
+                raise
+            self._on_slip(error)
+
+    def _due(self, now: int) -> Tick | None:
+        """Return the tick that is due, if one is."""
+        if now <= 0:  # simulated time that has not begun
+            return None
+        index = now // self.period
+        if self._last is None or now < self._last * self.period - _BACK:
+            self._restarts += self._last is not None
+            self._last, self._last_steady = index, time.monotonic_ns()
+            self._late = now % self.period
+            return Tick(index * self.period, 1, True)
+        periods = index - self._last
+        if periods <= 0:
+            return None
+        steady = time.monotonic_ns()
+        passed = steady - self._last_steady + self._late  # since the last tick's time on the grid
+        self._last, self._last_steady, self._late = index, steady, now % self.period
+        most = max(1, LONGEST_STEP // self.period)
+        if not self.is_simulated:
+            # A wall clock that was set forward skips nothing; one that went on as time does, does.
+            self._skipped += min(periods, max(1, round(passed / self.period))) - 1
+            self._clamped += periods * self.period > passed + LONGEST_STEP
+        elif periods > most:
+            self._clamped += 1
+        return Tick(index * self.period, min(periods, most), False)
+
+    def _until_next(self, now: int) -> float | None:
+        """Longest sleep in [s]; simulated time wakes the thread by itself."""
+        if self.is_simulated or self._last is None:
+            return 0.5
+        return max(0.0, ((self._last + 1) * self.period - now) * 1e-9)

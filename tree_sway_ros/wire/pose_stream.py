@@ -1,0 +1,108 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The tree on the wire: its description, and frame by frame its poses, markers and transforms."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import math
+from typing import Any
+
+from rclpy.clock import Clock, ClockType
+from std_msgs.msg import String
+
+from tree_sway.core.leaves.foliage import LeafClusters
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import MissingDependencyError
+from tree_sway_ros.process.topics import MARKERS, SEGMENT_POSES, TF, TREE_DESCRIPTION
+from tree_sway_ros.timing.divider import Divider
+from tree_sway_ros.wire.cdr import pose_array_template
+from tree_sway_ros.wire.markers import TreeMarkers
+from tree_sway_ros.wire.tree_description import describe, REPEAT_PERIOD
+from tree_sway_ros.wire.wind_messages import fill_stamp
+
+_MARKER_RATE = 20.0
+"""As many pictures per second as RViz draws of a large tree [Hz]."""
+
+
+class PoseStream:
+    """Publishes one tree, or a forest as one; what nobody subscribes to is not computed."""
+
+    def __init__(self, node: Any, tree: Tree, leaves: LeafClusters | None = None) -> None:
+        values = node.values
+        frame_id = values['frame_id']
+        self.frames = 0
+        self._template = pose_array_template(tree.n_segments, frame_id)
+        self.poses = self._template.blocks[0]
+        self._pose_publisher = node.publisher(SEGMENT_POSES, alone=True)
+        self._pose_divider, self._marker_divider = Divider(), Divider()
+        self._marker_every = max(1, math.ceil(values['rate'] / _MARKER_RATE))
+        self._markers = TreeMarkers(tree, frame_id)
+        self._marker_publisher = node.publisher(MARKERS)
+        self._transforms = _Transforms(node, tree, frame_id) if values['publish_tf'] else None
+        self._description = String(data=describe(tree, frame_id, leaves))
+        self._description_publisher = node.publisher(TREE_DESCRIPTION)
+        self._timer = node.create_timer(
+            REPEAT_PERIOD, self.publish_description, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
+        self.publish_description()
+
+    def tell_more(self, content: dict[str, Any]) -> None:
+        """Add to the description, from any thread, and publish it."""
+        whole = {**json.loads(self._description.data), **content}
+        self._description = String(data=json.dumps(whole, separators=(',', ':')))
+        self.publish_description()
+
+    def publish_description(self) -> None:
+        """Publish what the poses do not say."""
+        self._description_publisher.publish(self._description)
+
+    def publish(self, simulator: Any, index: int, stamp: int, every: int) -> None:
+        """Publish what is due at a tick; the simulator is asked if somebody wants poses."""
+        poses_due = self._pose_divider.is_due(index, every)
+        markers_due = self._marker_divider.is_due(index, self._marker_every)
+        poses_due = poses_due and self._pose_publisher.get_subscription_count() > 0
+        markers_due = markers_due and self._marker_publisher.get_subscription_count() > 0
+        if not (poses_due or markers_due or self._transforms):
+            return
+        simulator.place(self.poses)
+        if poses_due:
+            self._pose_publisher.publish(self._template.to_bytes(stamp))
+            self.frames += 1
+        if markers_due:
+            self._marker_publisher.publish(self._markers.to_bytes(self.poses, stamp))
+        if self._transforms is not None:
+            self._transforms.publish(self.poses, stamp)
+
+
+class _Transforms:
+    """A frame per segment on /tf, for tools that know nothing else; RViz bears some 100."""
+
+    def __init__(self, node: Any, tree: Tree, frame_id: str) -> None:
+        try:
+            message_class = importlib.import_module('tf2_msgs.msg').TFMessage
+        except ImportError:
+            raise MissingDependencyError(
+                'publish_tf needs tf2_msgs, which is not installed',
+                cure='install ros-jazzy-tf2-msgs, or leave publish_tf false',
+            ) from None
+        from geometry_msgs.msg import TransformStamped
+
+        self._publisher = node.publisher(TF)
+        self._message = message_class()
+        # Frames are one space for all trees: what a namespace holds apart on topics, names do
+        # here.
+        prefix = '/'.join(filter(None, (node.get_namespace().strip('/'), tree.name)))
+        for name in tree.segment_names:
+            transform = TransformStamped(child_frame_id=f'{prefix}/{name}')
+            transform.header.frame_id = frame_id
+            self._message.transforms.append(transform)
+
+    def publish(self, poses: Any, stamp: int) -> None:
+        for item, pose in zip(self._message.transforms, poses.tolist(), strict=True):
+            fill_stamp(item.header.stamp, stamp)
+            to = item.transform
+            to.translation.x, to.translation.y, to.translation.z = pose[:3]
+            to.rotation.x, to.rotation.y, to.rotation.z, to.rotation.w = pose[3:]
+        self._publisher.publish(self._message)

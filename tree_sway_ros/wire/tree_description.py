@@ -1,0 +1,58 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The tree as JSON: what the poses do not say, once, for whoever draws them.
+
+Row i of every list belongs to pose i of `segment_poses`. The version is raised when a reader of
+the old form would go wrong; new keys alone do not raise it.
+"""
+
+from __future__ import annotations
+
+import json
+
+from tree_sway.core.leaves.flutter import leaf_list
+from tree_sway.core.leaves.foliage import LeafClusters
+from tree_sway.core.state.tree_state import digest_of
+from tree_sway.core.tree.tree import Tree
+
+VERSION = 1
+REPEAT_PERIOD = 5.0
+"""From one description to the next [s]: bags and bridges lose a latched topic."""
+
+
+def tree_hash(tree: Tree) -> str:
+    """Sixteen hexadecimal digits that change with the tree: with any segment, name or place."""
+    return digest_of(tree)
+
+
+def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> str:
+    """
+    Describe a tree as JSON of ``doc/tree_description.schema.json``.
+
+    Of trees joined to one record, each begins with a segment whose parent is -1.
+    """
+    return json.dumps(
+        {
+            **({} if leaves is None else {'leaves': leaf_list(leaves)}),
+            'version': VERSION,
+            'name': tree.name,
+            'hash': tree_hash(tree),
+            'species': tree.species,
+            'frame_id': frame_id,
+            'segments': {
+                'names': list(tree.segment_names),
+                'parents': tree.segment_parent.tolist(),
+                'lengths': tree.length.tolist(),
+                'base_radii': (tree.base_diameter / 2.0).tolist(),
+                'tip_radii': (tree.tip_diameter / 2.0).tolist(),
+                'branches': tree.branch_of_segment.tolist(),
+            },
+            'branches': {
+                'names': list(tree.branch_names),
+                'parents': tree.branch_parent.tolist(),
+                'first_segments': tree.branch_first[:-1].tolist(),
+            },
+        },
+        separators=(',', ':'),
+    )

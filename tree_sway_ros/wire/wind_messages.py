@@ -1,0 +1,136 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The wind in a message: the four types of common_interfaces that drivers use, to and from numbers.
+
+There is no standard wind message. All four hold a vector of three numbers; what they mean (unit,
+sign, frame) is for `core.wind_convention` to know.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import math
+from typing import Any, NamedTuple
+
+from geometry_msgs.msg import (
+    PoseStamped,
+    TwistStamped,
+    TwistWithCovarianceStamped,
+    Vector3,
+    Vector3Stamped,
+)
+from rosgraph_msgs.msg import Clock
+
+from tree_sway.core.wind.convention import WindConvention
+from tree_sway.errors import ParameterError
+from tree_sway_ros.parameters.node_parameters import WIND_TYPE_NAMES
+
+_SECOND = 1_000_000_000
+
+
+class WindSample(NamedTuple):
+    """
+    A wind vector as a message holds it, in whatever unit and convention the sender uses.
+
+    The stamp [ns] is 0, and the frame empty, where the message has none.
+    """
+
+    stamp: int
+    frame_id: str
+    u: float
+    v: float
+    w: float
+
+
+_CLASSES = dict(
+    zip(
+        WIND_TYPE_NAMES,
+        (Vector3Stamped, TwistStamped, TwistWithCovarianceStamped, Vector3),
+        strict=True,
+    )
+)
+_VECTORS: dict[Any, Callable[[Any], Any]] = {
+    Vector3Stamped: lambda message: message.vector,
+    TwistStamped: lambda message: message.twist.linear,
+    TwistWithCovarianceStamped: lambda message: message.twist.twist.linear,
+    Vector3: lambda message: message,
+}
+
+
+def wind_class(type_name: str) -> Any:
+    """Class of a wind message, as ``geometry_msgs/Vector3Stamped``; else a `ParameterError`."""
+    try:
+        return _CLASSES[type_name]
+    except KeyError:
+        raise ParameterError(
+            f"'{type_name}' is no wind type", cure=f'use one of: {", ".join(_CLASSES)}'
+        ) from None
+
+
+def wind_from_message(message: Any) -> WindSample:
+    """
+    Read a wind message of any of the four types.
+
+    A covariance that begins with -1 says that there is no reading, as REP-145 has it of an IMU:
+    then the vector is not a number, for the gate to refuse and count.
+    """
+    vector = _VECTORS[type(message)](message)
+    if type(message) is TwistWithCovarianceStamped and message.twist.covariance[0] == -1.0:
+        vector = Vector3(x=math.nan, y=math.nan, z=math.nan)
+    header = getattr(message, 'header', None)
+    if header is None:
+        return WindSample(0, '', vector.x, vector.y, vector.z)
+    return WindSample(stamp_to_ns(header.stamp), header.frame_id, vector.x, vector.y, vector.z)
+
+
+def wind_to_message(message_class: Any, sample: WindSample) -> Any:
+    """Write a wind message of any of the four types."""
+    message = message_class()
+    vector = _VECTORS[message_class](message)
+    vector.x, vector.y, vector.z = float(sample.u), float(sample.v), float(sample.w)
+    if hasattr(message, 'header'):
+        fill_stamp(message.header.stamp, sample.stamp)
+        message.header.frame_id = sample.frame_id
+    return message
+
+
+class WindWriter:
+    """Writes wind as a driver would: one of the four types, vectors ``to`` or ``from``."""
+
+    def __init__(self, output_type: str, direction_convention: str, frame_id: str) -> None:
+        self.message_class = wind_class(output_type)
+        self._convention = WindConvention(direction_convention)
+        self._frame_id = frame_id
+
+    def message(self, stamp: int, velocity: Any) -> Any:
+        """Write a velocity, blowing to, ENU in [m/s], (3,), stamped with a time in [ns]."""
+        components = self._convention.components(velocity)
+        return wind_to_message(self.message_class, WindSample(stamp, self._frame_id, *components))
+
+
+def plane_message(stamp: int, frame_id: str, wxyz: Any) -> Any:
+    """Write the attitude of the force plane as a PoseStamped at the origin."""
+    message = PoseStamped()
+    fill_stamp(message.header.stamp, stamp)
+    message.header.frame_id = frame_id
+    to = message.pose.orientation
+    to.w, to.x, to.y, to.z = map(float, wxyz)
+    return message
+
+
+def clock_message(stamp: int) -> Any:
+    """Write a time in [ns] as a Clock."""
+    message = Clock()
+    fill_stamp(message.clock, stamp)
+    return message
+
+
+def stamp_to_ns(stamp: Any) -> int:
+    """Time of a ``builtin_interfaces/Time`` in [ns]."""
+    return int(stamp.sec) * _SECOND + int(stamp.nanosec)
+
+
+def fill_stamp(stamp: Any, nanoseconds: int) -> None:
+    """Write a time in [ns] into a ``builtin_interfaces/Time``."""
+    stamp.sec, stamp.nanosec = divmod(int(nanoseconds), _SECOND)
