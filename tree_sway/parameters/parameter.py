@@ -159,7 +159,7 @@ Table = tuple[Parameter, ...]
 def read_tables(path: Path, shared: Table = ()) -> dict[str, Table]:
     """Read a YAML file of the package; a name without keys is that of a shared parameter."""
     by_name = {parameter.name: parameter for parameter in shared}
-    content = yaml.load(path.read_text(encoding='utf-8'), _LOADER)
+    content = _LOADER(path.read_text(encoding='utf-8')).get_single_data()
     return {
         key: tuple(_read(name, body) if body else by_name[name] for name, body in table.items())
         for key, table in content.items()
