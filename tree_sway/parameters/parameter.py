@@ -50,7 +50,7 @@ class Parameter:
         Closed range of a number, of each number of a tuple; None for no bound. In files both
         are ``range``.
     choices
-        The strings that are accepted; empty for any. In files ``module:NAME`` stands for those of
+        The strings that are accepted; empty for any. In files ``module:NAME`` means those of
         a table of the library.
     most
         A number from 0 to this is accepted beside the choices; None for none.
