@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.motion.fill_records import turns_of_segments
