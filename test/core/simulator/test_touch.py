@@ -87,6 +87,20 @@ def test_every_model_moves_by_the_same_and_the_foot_holds_the_force(tree, model)
     np.testing.assert_allclose(load[3:], np.cross(arm, force), rtol=1e-3)
 
 
+def test_a_pull_moves_a_tree_further_than_any_wind_may():
+    tree, segment, force = kind_called('leaning'), 7, np.array([4000.0, 1200.0, 0.0])
+    table, truth = (make_simulator(tree, WOOD, model=each) for each in (60, 'full'))
+    for _ in range(round(5.0 / DT)):
+        for sim in (table, truth):
+            sim.push(segment, force, 1.0)
+            sim.step(CALM, DT)
+    record, instance = table.bank.oscillators.record[0], table.bank.oscillators.instance[0]
+    assert record['stiffness'] @ instance['eta'] ** 2 > record['most_energy']
+    there = moved(truth, segment)
+    assert np.linalg.norm(moved(table, segment) - there) < 0.05 * np.linalg.norm(there)
+    assert table.counts.held == 0
+
+
 def test_twice_the_force_moves_twice_as_far_where_it_bends_little(tree):
     segment = outer_segment(tree)
     found = []
