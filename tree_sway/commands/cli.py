@@ -43,7 +43,7 @@ COMMANDS: dict[str, Command] = {
     ),
     'convert': Command(
         'write a tree in another format',
-        'convert goldcrest -o goldcrest.obj',
+        'convert goldcrest -o goldcrest.glb',
         'tree_sway.commands.convert',
     ),
     'calibrate': Command(
