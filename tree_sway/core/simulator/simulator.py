@@ -424,9 +424,7 @@ class SwaySimulator:
         if self._tuning is None:
             tunable, ratio = self.bank.oscillators.tunable, self._calibrated.damping_ratio
             self._tuning = LiveTuning(tunable, self.settings, ratio)
-        goal = self._tuning.goal.changed(**changes)
-        self._tuning.check(goal)
-        return goal
+        return self._tuning.changed(**changes)
 
     def tune(self, **changes: float) -> None:
         """
@@ -435,8 +433,8 @@ class SwaySimulator:
         Parameters
         ----------
         **changes
-            ``damping_ratio``, ``stiffness_factor``, ``gravity``, ``volume_stiffness`` or
-            ``volume_damping``, as of `Tuning`. What is not named stays.
+            ``damping_ratio``, ``stiffness_factor`` or ``gravity``, as of `Tuning`. What is not
+            named stays.
 
         Raises
         ------
