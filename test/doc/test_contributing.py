@@ -119,8 +119,8 @@ CHANGES = {
         'from tree_sway.core.motion.drag import AIR_DENSITY; print(AIR_DENSITY)', '1.0',
     ),
     'unit': (
-        'tree_sway/files/wind/units.py', "'mph': 0.44704,", "'mph': 0.44704, 'yd/s': 0.9144,",
-        "from tree_sway.files.wind.units import SPEED_UNITS; print(SPEED_UNITS['yd/s'])",
+        'tree_sway/files/columns.json', '"mph": 0.44704,', '"mph": 0.44704, "yd/s": 0.9144,',
+        "from tree_sway.files.table_file import UNITS; print(UNITS['speed']['yd/s'])",
         '0.9144',
     ),
     'format': (
