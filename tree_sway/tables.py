@@ -11,7 +11,7 @@ from typing import Any
 
 def table_beside(module: str, name: str) -> list[dict[str, Any]]:
     """
-    Read a table that stands beside a module, given by its ``__file__``.
+    Read a table in the folder of a module, which is given by its ``__file__``.
 
     One row a line under a line of names. Cells are numbers, several numbers with spaces between
     them, ``yes`` or ``no``, or else text.
