@@ -141,8 +141,8 @@ def _measured(arguments: argparse.Namespace) -> SwayEstimate:
 def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: bool) -> list[str]:
     """Say what changed, for people; `error` is the frequency's relative standard error."""
     after, table = fitted.species, species_named(before.key)
-    stood = fitted.frequency_before is not None
-    was = f'{fitted.frequency_before:.4g} Hz' if stood else 'could not stand'
+    was_stable = fitted.frequency_before is not None
+    was = f'{fitted.frequency_before:.4g} Hz' if was_stable else 'could not stand'
     spread = f' +- {100.0 * fitted.sensitivity * error:.1f} %' if error else ''
     season = 'damping_in_leaf' if in_leaf else 'damping_bare'
     return [

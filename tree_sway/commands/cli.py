@@ -48,7 +48,7 @@ _OWN = {
         'plot benjamina --seconds 20 -o sway.png',
     ),
     'render': (
-        'a tree in wind as a moving picture: GIF, MP4 or frames',
+        'a tree in wind as a moving picture: GIF or MP4',
         'render goldcrest --speed 9 --seconds 2 -o sway.gif',
     ),
     'relay': (
