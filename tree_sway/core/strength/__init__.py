@@ -1,0 +1,3 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""How much of its strength a tree uses: the wood by its strain, the roots by the moment."""
