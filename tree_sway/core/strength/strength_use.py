@@ -59,7 +59,8 @@ class StrengthUse:
             for share in (self.wood, self.roots)
         )
         roots = roots if np.isfinite(self.roots).all() else 'unknown in a pot'
-        return f'strength used: wood {wood} in {self.branch}, {self.height:.2g} m up; roots {roots}'
+        place = f'{self.branch}, {self.height:.2g} m up'
+        return f'strength used: wood {wood} in {place}; roots {roots}'
 
 
 class StrengthGauge:
