@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.state.full_scale import FULL_SCALE, MARGIN
+from tree_sway.core.state.state_basis import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array, check_description
 

@@ -14,7 +14,6 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.simulator.assembly import CalibratedTree
-from tree_sway.core.simulator.protocol import TreeSimulator
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
@@ -99,7 +98,7 @@ class Rig:
         self.tree, self.species = tree_and_species(tree)
         self.settings = settings_with(settings, changes)
         self.calibrated = CalibratedTree(self.tree, self.species, self.settings)
-        self._simulator: TreeSimulator | None = None
+        self._simulator: SwaySimulator | None = None
         self.base = BaseMoment(self.calibrated)
 
     def run(
@@ -140,6 +139,7 @@ class Rig:
             gauge.use(),
         )
 
+<<<<<<< HEAD
     def strength_curve(
         self, speeds: ArrayLike, *, rng: np.random.Generator, seconds: float = 60.0
     ) -> list[StrengthUse]:
@@ -164,6 +164,9 @@ class Rig:
         return used
 
     def _at_rest(self) -> TreeSimulator:
+=======
+    def _at_rest(self) -> SwaySimulator:
+>>>>>>> main
         """Return the simulator at rest; one that chooses its model by its winds is made again."""
         if self.settings.model == 'auto':
             return make_simulator(self.tree, self.species, self.settings)
