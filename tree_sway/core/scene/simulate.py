@@ -139,7 +139,6 @@ class Rig:
             gauge.use(),
         )
 
-<<<<<<< HEAD
     def strength_curve(
         self, speeds: ArrayLike, *, rng: np.random.Generator, seconds: float = 60.0
     ) -> list[StrengthUse]:
@@ -163,10 +162,7 @@ class Rig:
             used.append(self.run(wind).strength)
         return used
 
-    def _at_rest(self) -> TreeSimulator:
-=======
     def _at_rest(self) -> SwaySimulator:
->>>>>>> main
         """Return the simulator at rest; one that chooses its model by its winds is made again."""
         if self.settings.model == 'auto':
             return make_simulator(self.tree, self.species, self.settings)
