@@ -229,19 +229,6 @@ def test_letters_that_a_terminal_lacks_are_escaped(tmp_path: Path) -> None:
     assert result.stderr == ''
 
 
-def test_the_shell_completes_names(tmp_path: Path) -> None:
-    pytest.importorskip('argcomplete', reason='needs argcomplete')
-    line = 'tree-sway plot --mod'
-    asked = {
-        '_ARGCOMPLETE': '1',
-        'COMP_LINE': line,
-        'COMP_POINT': str(len(line)),
-        '_ARC_DEBUG': '',
-    }
-    result = run_process('$TREE_SWAY 8>&1 9>/dev/null', **asked, IFS='\013')
-    assert {word.strip() for word in result.stdout.split('\013')} == {'--model', '--modulus'}
-
-
 def test_a_reader_that_goes_away_is_no_error() -> None:
     command = f'{sys.executable} -m tree_sway.commands.cli info goldcrest --json --quiet | head -1'
     result = subprocess.run(

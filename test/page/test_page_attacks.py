@@ -29,6 +29,8 @@ from tree_sway.page.client import StreamClient  # noqa: E402
 from tree_sway.page.controls import Control, ControlPanel  # noqa: E402
 from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
 
+pytestmark = pytest.mark.usefixtures('little_effort')
+
 DEADLINE = 10.0
 DESCRIPTION = (Path(__file__).parent / 'vectors' / 'description.bin').read_bytes()
 TOKEN = 'confidential-words'
