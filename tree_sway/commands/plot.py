@@ -31,7 +31,7 @@ from tree_sway.core.wind.convention import velocity_of_bearing
 from tree_sway.core.wind.frame_means import recorded_means
 from tree_sway.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway.errors import ParameterError, TreeError
-from tree_sway.parameters.sway_parameters import MEAN_SPEED
+from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.pictures.pictures import picture_in_wind
 from tree_sway.pictures.plots import plot_strength, plot_wind_and_tip
 
@@ -121,7 +121,7 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
         raise ParameterError(
             f'{len(scene.trees)} trees', where='--strength', cure=f'give {_CURVES} or fewer'
         )
-    most = 30.0 if arguments.speed is None else MEAN_SPEED.checked(arguments.speed)
+    most = 30.0 if arguments.speed is None else SWAY['mean_speed'].checked(arguments.speed)
     speeds, used = np.linspace(0.0, most, 7)[1:], {}
     for each in bar(scene.trees, 'loading trees'):
         leaf_on = told_leaves(arguments) if each.leaf_on is None else each.leaf_on

@@ -33,7 +33,7 @@ ROOT_MOMENT, ROOT_BAND = 110.0, (77.0, 146.0)
 @dataclass(frozen=True)
 class StrengthUse:
     """
-    The largest shares of strength used so far.
+    The largest shares of strength that a tree used.
 
     Parameters
     ----------
