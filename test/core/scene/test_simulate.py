@@ -63,7 +63,7 @@ def test_the_record_as_columns(fork):
     columns = record.columns()
     assert [*columns][:3] == ['time [s]', 'wind_x [m/s]', 'wind_y [m/s]']
     rows = np.stack([*columns.values()], axis=1)
-    assert rows.shape == (7, 12)
+    assert rows.shape == (7, 13)
     assert (rows[:, 7:10] == record.tips[:, 0]).all()
     assert len(repr(record)) < 120
     pandas = pytest.importorskip('pandas', reason='pandas is not installed')
