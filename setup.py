@@ -65,7 +65,7 @@ extras = {
         f'ros-jazzy-common-interfaces==5.3.6{LINUX}',
     ],
     'serial': ['pyserial>=3.5'],
-    'bag': ['rosbags>=0.10'],
+    'bag': ['rosbags>=0.11'],
     'relay': ['eclipse-zenoh>=1.0'],
     'plot': ['matplotlib>=3.6'],
     'h5': ['h5py>=3.7'],

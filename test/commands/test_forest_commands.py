@@ -6,10 +6,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+import time
+from typing import Any
 
 import pytest
 
-from tree_sway.commands import cli
+from tree_sway.commands import cli, info, info_forest
+from tree_sway.commands.mode_table import mode_table
 from tree_sway.files.trees.source import open_scene
 
 SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
@@ -38,6 +41,37 @@ def test_info_sums_up(forest: str, capsys: pytest.CaptureFixture[str]) -> None:
     text = capsys.readouterr().out
     assert '2 trees of 2 kinds, 8 branches, 12 segments' in text
     assert text.count(' Hz') == 2
+
+
+def test_a_thousand_trees_of_one_kind_are_worked_out_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = ''.join(f'{3 * i},0,fig,{0.4 + 0.001 * i}\n' for i in range(1000))
+    (tmp_path / 'plot.csv').write_text(f'x,y,species,height\n{rows}')
+    kinds = f'kinds:\n  - {{species: fig, tree: {SEEDLING}}}\n'
+    (tmp_path / 'hall.yaml').write_text(f'stand: plot.csv\n{kinds}')
+    asked, counted = [], []
+
+    def table(*given: Any) -> Any:
+        asked.append(given)
+        return mode_table(*given)
+
+    def bar(items: Any, what: str) -> Any:
+        counted.append((len(items), what))
+        return items
+
+    monkeypatch.setattr(info, 'mode_table', table)
+    monkeypatch.setattr(info_forest, 'bar', bar)
+    began = time.monotonic()
+    assert cli.main(['info', str(tmp_path / 'hall.yaml'), '--json']) == 0
+    assert time.monotonic() - began < 10.0
+    assert len(asked) == 1
+    assert counted == [(1, 'kinds of trees')]
+    facts = json.loads(capsys.readouterr().out)
+    assert len(facts['trees']) == 1000
+    slow, fast = facts['trees'][-1], facts['trees'][0]
+    assert slow['height'] == pytest.approx(1.399)
+    assert slow['frequencies'][0] < fast['frequencies'][0]
 
 
 @pytest.mark.parametrize(

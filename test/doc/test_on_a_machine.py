@@ -180,7 +180,7 @@ def test_its_commands_do_what_they_promise(
     if '--scheduler' in text:
         stand_ins['tcp://login:8786'] = request.getfixturevalue('cluster')
         small = 'trees: [benjamina]\nwinds: [{speed: 4, seeds: 2}]\n'
-        small += 'settings: {model: modes}\nseconds: 2\n'
+        small += 'settings: {model: 20}\nseconds: 2\n'
         (machine.folder / 'small.yaml').write_text(small, encoding='utf-8')
         stand_ins['config/examples/grown_trees.yaml'] = 'small.yaml'
     if any(f'tree-sway {each}' in text for each in NEEDS_A_TREE):

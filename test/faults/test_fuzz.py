@@ -24,7 +24,7 @@ JUMPS = (-10_000_000_000, -900_000_000, 30_000_000_000)
 LINES = (
     '$WIMWV,084.0,T,10.4,N,A*04',
     '$WIMWD,270.0,T,268.0,M,12.4,N,6.4,M*5C',
-    '$IIVWR,75,R,1.0,N,0.51,M,1.85,K*6C',
+    '$IIMWV,075,R,1.0,N,A*20',
     'Q,229,002.74,M,00,16',
     'S 00.65 S2 00.65 D 245 U 00.58 V 00.27 W 00.09 T 22.6',
 )
@@ -152,7 +152,6 @@ def fuzz(wind, solver, n, seed):
         assert np.abs(off).max(initial=0.0) < 1e-6
         planes.clear()
     counts = asdict(wind._intake.counts)
-    assert not counts.pop('sluggish')  # damaged messages jump
     return counts
 
 

@@ -34,16 +34,25 @@ def record(kind: int, body: bytes) -> bytes:
     return struct.pack('<BQ', kind, len(body)) + body
 
 
-def chunk(name: bytes, packed: bytes) -> bytes:
-    head = struct.pack('<QQQII', 0, 0, 1 << 40, 0, len(name)) + name
+def chunk(name: bytes, packed: bytes, size: int) -> bytes:
+    head = struct.pack('<QQQII', 0, 0, size, 0, len(name)) + name
     return record(0x06, head + struct.pack('<Q', len(packed)) + packed)
+
+
+MCAP = b'\x89MCAP0\r\n'
+
+
+def mcap(records: bytes) -> bytes:
+    """Return a file without an index, which is scanned from its beginning."""
+    header = record(0x01, struct.pack('<I', 4) + b'ros2' + struct.pack('<I', 0))
+    return MCAP + header + records + record(0x02, bytes(20)) + MCAP
 
 
 def chunks_in_chunks(path: Path) -> None:
     inside = b''
     for _ in range(30):
-        inside = chunk(b'', inside)
-    path.write_bytes(b'\x89MCAP0\r\n' + inside)
+        inside = chunk(b'', inside, len(inside))
+    path.write_bytes(mcap(inside))
 
 
 def zstd_of(size: int) -> bytes:
@@ -55,13 +64,18 @@ def zstd_of(size: int) -> bytes:
 
 
 def packed_chunk(path: Path) -> None:
-    schema = record(0x03, struct.pack('<H', 1) + struct.pack('<I', 4) + b'kind')
-    path.write_bytes(b'\x89MCAP0\r\n' + schema + chunk(b'zstd', zstd_of(3 << 30)))
+    size = 3 << 30
+    path.write_bytes(mcap(chunk(b'zstd', zstd_of(size), size)))
 
 
 def packed_bag(path: Path) -> None:
-    path.mkdir()
-    (path / 'bag.mcap.zstd').write_bytes(zstd_of(3 << 30))
+    rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags is not installed')
+    writer = rosbag2.Writer(path, version=9, storage_plugin=rosbag2.StoragePlugin.MCAP)
+    writer.set_compression(rosbag2.CompressionMode.FILE, rosbag2.CompressionFormat.ZSTD)
+    with writer:
+        pass
+    (file,) = path.glob('*.zstd')
+    file.write_bytes(zstd_of(3 << 30))
 
 
 def database(path: Path, messages: str) -> None:
@@ -84,7 +98,9 @@ def view_without_end(path: Path) -> None:
 
 
 def computed_column(path: Path) -> None:
-    database(path, 'CREATE TABLE messages (topic_id, timestamp, data AS (zeroblob(900000000)))')
+    database(
+        path, 'CREATE TABLE messages (id, topic_id, timestamp, data AS (zeroblob(900000000)))'
+    )
 
 
 def element(kind: int, body: bytes) -> bytes:
@@ -124,13 +140,13 @@ def million_keys(path: Path) -> None:
 
 
 BOMBS: dict[str, tuple[Callable[[Path], None], str]] = {
-    'chunks.mcap': (chunks_in_chunks, 'a chunk in a chunk'),
-    'packed.mcap': (packed_chunk, 'unpacks to more than 50 times its size'),
-    'packed': (packed_bag, 'unpacks to more than 50 times its size'),
-    'view.db3': (view_without_end, 'no plain tables of topics'),
-    'computed.db3': (computed_column, 'no plain tables of topics'),
+    'chunks.mcap': (chunks_in_chunks, 'Nested MCAP chunks'),
+    'packed.mcap': (packed_chunk, 'more than 768 MiB of memory or 20 s'),
+    'packed': (packed_bag, 'File too large'),
+    'view.db3': (view_without_end, 'missing tables'),
+    'computed.db3': (computed_column, 'not a bag that can be read'),
     'cells.mat': (many_cells, 'more than 100000 arrays'),
-    'claim.mat': (endless_claim, 'more than 768 MiB of memory or 10 s, or is damaged'),
+    'claim.mat': (endless_claim, 'more than 768 MiB of memory or 20 s, or is damaged'),
     'ends.csv': (line_ends, 'more than 4000000 lines'),
     'keys.yaml': (million_keys, 'more than 600000 keys and values'),
 }

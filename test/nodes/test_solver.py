@@ -213,7 +213,7 @@ def test_the_tree_is_tuned_while_it_sways(compose, observer, tree_file):
     observer.until(lambda: block(frames[-1])[2, 0] < 0.5 * lean, 'less bend')
     assert 'out of range' in change('stiffness_factor', 11.0).reason
     assert 'without weight' in change('gravity', 9.81).reason
-    assert 'volume rule' in change('volume_rule.stiffness', 1.0e5).reason
+    assert not change('volume_rule.stiffness', 1.0e5).successful
     assert 'for the start' in change('damping_ratio', 0.0).reason
     assert solver.values['gravity'] == 0.0
     assert solver.simulator.check_tuning().stiffness_factor == 8.0

@@ -9,12 +9,11 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
-from geometry_msgs.msg import TransformStamped  # noqa: E402, I100
+from geometry_msgs.msg import TransformStamped, Vector3Stamped  # noqa: E402, I100
 
 from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES  # noqa: E402
 from tree_sway_ros.nodes import wind as wind_node  # noqa: E402
 from tree_sway_ros.nodes.wind import WindNode  # noqa: E402
-from tree_sway_ros.parameters.node_parameters import WIND_TYPE_NAMES  # noqa: E402
 from tree_sway_ros.process.topics import (  # noqa: E402
     DIAGNOSTICS,
     FORCE_PLANE,
@@ -31,19 +30,20 @@ from tree_sway_ros.wire.wind_messages import (  # noqa: E402
     fill_stamp,
     stamp_to_ns,
     wind_class,
+    WIND_CLASSES,
     wind_from_message,
     wind_to_message,
     WindSample,
 )
 
-STAMPED = wind_class(WIND_TYPE_NAMES[0])
+STAMPED = Vector3Stamped
 PERIOD = 50_000_000
 
 
 class Mast:
     """An anemometer in the hand of the test: it says when and what."""
 
-    def __init__(self, observer, type_name=WIND_TYPE_NAMES[0]):
+    def __init__(self, observer, type_name='geometry_msgs/Vector3Stamped'):
         self._kind = wind_class(type_name)
         self._publisher = observer.publisher(WIND, self._kind)
         self._clock = observer.node.get_clock()
@@ -60,7 +60,7 @@ def vector(message):
 
 
 @pytest.mark.parametrize('convention', ['to', 'from'])
-@pytest.mark.parametrize('type_name', WIND_TYPE_NAMES)
+@pytest.mark.parametrize('type_name', WIND_CLASSES)
 def test_a_westerly_bends_the_tree_to_the_east(
     compose, observer, tree_file, type_name, convention
 ):

@@ -137,14 +137,14 @@ def panel(applied: list[Any]) -> ControlPanel:
     """Make a slider, a choice and a button."""
 
     def apply(name: str, value: Any) -> None:
-        if value == 'segments':
-            raise ParameterError("leaves on model 'segments'", cure="use 'coupled'")
+        if value == 'full':
+            raise ParameterError("leaves on model 'full'", cure="use 'branch'")
         applied.append((name, value))
 
     return ControlPanel(
         (
             Control('wind', 'Wind', 6.0, unit='m/s', minimum=0.0, maximum=40.0),
-            Control('model', 'Model', 'modes', choices=('modes', 'segments')),
+            Control('model', 'Model', 'branch', choices=('branch', 'full')),
             Control('reset', 'Reset', None, is_action=True),
         ),
         apply,
@@ -163,8 +163,8 @@ def test_what_is_changed_is_applied_or_refused_with_the_reason() -> None:
             ('wind', 41.0, 'out of range; give 0 .. 40 m/s'),
             ('wind', 'strong', 'is not a number'),
             ('wind', float('nan'), 'out of range'),
-            ('model', 'best', 'not among its choices; use one of: modes, segments'),
-            ('model', 'segments', "leaves on model 'segments'; use 'coupled'"),
+            ('model', 'best', 'not among its choices; use one of: branch, full'),
+            ('model', 'full', "leaves on model 'full'; use 'branch'"),
             ('gravity', 0.0, "nothing called 'gravity'"),
             (None, None, 'nothing called'),
         ):

@@ -13,6 +13,8 @@ from tree_sway.errors import FormatError, ParameterError
 from tree_sway.studies import plan
 from tree_sway.studies.plan import read_study
 
+LEAST = 'trees: [a]\nwinds: [{speed: 3}]\n'
+
 
 @pytest.fixture
 def study(tmp_path):
@@ -77,6 +79,8 @@ def test_and_after_the_source_of_growth_and_of_readers(study, tmp_path, monkeypa
         ('trees: [a]\nwinds: [{speed: fast}]', FormatError, r'study\.yaml:2: winds\[0\]\.speed'),
         ('trees: [a]\nwinds: [{speed: 3}]\nseconds: 0', FormatError, r'study\.yaml:3: seconds'),
         ('trees: [a]\nwinds: [{speed: 3}]\nsettings: {wobble: 1}', ParameterError, "'wobble'"),
+        (f'{LEAST}settings: {{model: [8, modes]}}', ParameterError, "unknown model 'modes'"),
+        (f'{LEAST}settings: {{damping_ratio: strong}}', ParameterError, 'strong'),
         ('trees: [a]\nwinds: [{file: gone.csv}]', FormatError, r'gone\.csv'),
         ('trees: [a]\nwinds: [{seeds: 2}]', FormatError, 'a wind is a file or a speed'),
         ('trees: [', FormatError, r'study\.yaml:'),

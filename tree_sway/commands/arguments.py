@@ -27,7 +27,7 @@ from tree_sway.files.trees.yaml.species_yaml import open_species
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
-from tree_sway.parameters.sway_parameters import MEAN_SPEED
+from tree_sway.parameters.sway_parameters import SWAY
 
 OUTPUT_HELP = 'file to write; its suffix names the format: .yaml, .obj, .glb, .gltf, .html'
 _TREE = 'benjamina, goldcrest, broadleaf, or a file'
@@ -166,7 +166,7 @@ def opened_wind(arguments: argparse.Namespace) -> WindSource:
     if arguments.wind is not None:
         record = opened_record(arguments)
         return RecordedWind(record.time, record.velocity)
-    return SimulatedWind(MEAN_SPEED.checked(arguments.speed))
+    return SimulatedWind(SWAY['mean_speed'].checked(arguments.speed))
 
 
 def add_sway_arguments(parser: argparse.ArgumentParser, record: str = '') -> None:

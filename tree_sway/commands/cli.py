@@ -62,7 +62,7 @@ COMMANDS: dict[str, Command] = {
         'tree_sway.commands.plot',
     ),
     'render': Command(
-        'a tree in wind as a moving picture: GIF, MP4 or frames',
+        'a tree in wind as a moving picture: GIF or MP4',
         'render goldcrest --speed 9 --seconds 2 -o sway.gif',
         'tree_sway.commands.render',
     ),

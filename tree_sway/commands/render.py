@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add('--start', type=float, default=0.0, help='of the wind [s] (%(default)s)')
     add('--rate', type=float, default=20.0, help='pictures per second [Hz] (%(default)s)')
     add('--pixels', type=int, default=480, help='height of the picture (%(default)s)')
-    add_output_arguments(parser, 'file to write: .gif, .png, .mp4, or a folder for its frames')
+    add_output_arguments(parser, 'film to write: .gif or .mp4')
 
 
 def run(arguments: argparse.Namespace) -> int:

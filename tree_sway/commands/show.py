@@ -31,14 +31,7 @@ from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET
 from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, Session
 from tree_sway.page.wind_source import SimulatedWind, WindSource
-from tree_sway.parameters.sway_parameters import (
-    BEARING_TO,
-    DAMPING_RATIO,
-    INTENSITY,
-    MEAN_SPEED,
-    MODEL,
-    TOLERANCE,
-)
+from tree_sway.parameters.sway_parameters import SWAY
 
 _SPACING = 1.2
 """Between the trees of a stand over the greater of height and spread of one."""
@@ -138,12 +131,12 @@ def _controls(
     """Make what viewers may change, with the ranges of the nodes' parameters."""
     controls = []
     if isinstance(wind, SimulatedWind):
-        for each in (MEAN_SPEED, INTENSITY, BEARING_TO):
-            controls.append(Control.of(each, _LABELS[each.name], wind.values[each.name]))
+        for name in ('mean_speed', 'intensity', 'bearing_to'):
+            controls.append(Control.of(SWAY[name], _LABELS[name], wind.values[name]))
     if is_one_tree:
         models = tuple(dict.fromkeys(('auto', *map(str, DIAL), *MODELS[1:], choices.model)))
-        controls.append(replace(Control.of(MODEL, 'Model', choices.model), choices=models))
-    controls += [Control.of(each, _LABELS[each.name]) for each in (TOLERANCE, DAMPING_RATIO)]
+        controls.append(replace(Control.of(SWAY['model'], 'Model', choices.model), choices=models))
+    controls += [Control.of(SWAY[name], _LABELS[name]) for name in ('tolerance', 'damping_ratio')]
     trees = (*BUILTIN_TREES, *(() if choices.tree in BUILTIN_TREES else (choices.tree,)))
     counts = tuple(dict.fromkeys((*_COUNTS, choices.count)))
     controls.append(Control('tree', 'Tree', choices.tree, 'What is shown.', choices=trees))

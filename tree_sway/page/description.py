@@ -16,11 +16,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.motion.fill_records import turns_of_segments
-from tree_sway.core.simulator.protocol import TreeSimulator
+from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import encode_description
 from tree_sway.page.scene_kind import SceneKind
@@ -66,12 +66,11 @@ def describe_scene(
     for number, kind in enumerate(kinds):
         places[kind.numbers], kind_of[kind.numbers] = kind.places, number
         own, tree = _branches(kind.simulator), kind.simulator.tree
-        rows = _rows(kind.simulator.bank.branches)
         own['basis_matrix'] = _float32(kind.basis.matrix)
         own['basis_scale'] = _float32(kind.basis.scale)
         clusters = leaves[number] if leaves else None
         if clusters is not None:
-            own['leaf_segment'] = np.argsort(rows)[clusters.segment].astype(np.int32)
+            own['leaf_segment'] = clusters.segment.astype(np.int32)
             for field in ('offset', 'orientation', 'size', 'frequency', 'phase'):
                 own[f'leaf_{field}'] = _float32(getattr(clusters, field))
         arrays |= {f'{number}/{field}': array for field, array in own.items()}
@@ -80,7 +79,7 @@ def describe_scene(
                 'species': tree.species,
                 'height': round(tree.height, 4),
                 'model': kind.simulator.model,
-                'basis_error': float(kind.basis.error.quantised_greatest),
+                'basis_error': kind.basis.error,
                 'branch_names': _names(kind.simulator),
             }
         )
@@ -100,9 +99,9 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
-def _branches(simulator: TreeSimulator) -> dict[str, Array]:
+def _branches(simulator: SwaySimulator) -> dict[str, Array]:
     """Arrays of one kind: how each of its branches is placed by the key rotations."""
-    tree, branches, segments = simulator.tree, simulator.bank.branches, simulator.bank.segments
+    tree, branches, segments = simulator.tree, _in_order(simulator), simulator.bank.segments
     keys, sizes = branches['n_coordinates'], branches['end'] - branches['first']
     base_turn, own_turn = np.full((2, len(branches)), NO_ROW, dtype=np.int32)
     turns: list[Floats] = [np.zeros((0, 3))]
@@ -119,10 +118,10 @@ def _branches(simulator: TreeSimulator) -> dict[str, Array]:
     first = np.concatenate([[0], np.cumsum(sizes)])
     owner = np.repeat(np.arange(len(branches)), sizes)
     at = branches['block'][owner] + np.arange(len(owner)) - first[owner]
-    lane, rows, on = branches['lane'][owner], _rows(branches), branches['base_segment']
+    lane = branches['lane'][owner]
     indices = {
         'branch_parent': branches['parent'],
-        'branch_base_segment': np.where(on < 0, -1, np.argsort(rows)[on]),
+        'branch_base_segment': branches['base_segment'],
         'branch_first': first,
         'branch_coordinate': branches['coordinate'],
         'branch_base_turn': base_turn,
@@ -137,8 +136,8 @@ def _branches(simulator: TreeSimulator) -> dict[str, Array]:
         'segment_tip_slope': segments['tip_slope'][at, lane],
         'segment_chord': segments['chord'][at, :, lane],
         'segment_rest': segments['rest'][at, :, lane],
-        'segment_length': tree.length[rows],
-        'segment_radius': 0.5 * diameter[rows],
+        'segment_length': tree.length,
+        'segment_radius': 0.5 * diameter,
         'turn': np.concatenate(turns),
     }
     return {
@@ -148,16 +147,23 @@ def _branches(simulator: TreeSimulator) -> dict[str, Array]:
     }
 
 
-def _rows(branches: Records) -> Ints:
-    """Return the row in the tree of each segment, (n,), branch after branch."""
-    pairs = zip(branches['first'].tolist(), branches['end'].tolist(), strict=True)
-    return np.concatenate([np.arange(first, end) for first, end in pairs])
+def _in_order(simulator: SwaySimulator) -> Records:
+    """
+    Return the branches, their segments in the order of the tree.
+
+    A branch that is cut is several here, and what its first piece carries comes before the second.
+    """
+    branches = simulator.bank.branches
+    order = np.argsort(branches['first'])
+    ordered, place = branches[order], np.argsort(order)
+    ordered['parent'] = np.where(ordered['parent'] < 0, -1, place[ordered['parent']])
+    return ordered
 
 
-def _names(simulator: TreeSimulator) -> list[str]:
+def _names(simulator: SwaySimulator) -> list[str]:
     """Names of the branches; pieces of a branch that is cut have its name."""
     tree = simulator.tree
-    whole = tree.branch_of_segment[simulator.bank.branches['first']]
+    whole = tree.branch_of_segment[_in_order(simulator)['first']]
     return [tree.branch_names[branch] for branch in whole.tolist()]
 
 

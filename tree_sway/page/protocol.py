@@ -18,18 +18,20 @@ import hashlib
 import json
 import math
 import struct
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene
-from tree_sway.core.state.full_scale import FULL_SCALE, MARGIN
+from tree_sway.core.state.state_basis import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array, check_description
 
 VERSION, FRAME_VERSION = 2, 1
+if TYPE_CHECKING:
+    from tree_sway.core.scene.received_scene import ReceivedScene
+
 MAGIC, TABLES = b'TSWD', b'TSWT'
 """First bytes of a description, and of the tables by which a receiver solves it."""
 
@@ -157,6 +159,9 @@ class Tables:
 
     def scene(self, description: Description, dt: float) -> ReceivedScene:
         """Return the scene at rest, for time steps of dt [s]; a `FormatError` for another one."""
+        # Here, as it loads the compiler, which nobody needs who only draws.
+        from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene
+
         header = self.header
         if header['description'] != description.identity:
             raise FormatError('tables of another description', cure='ask for both again')

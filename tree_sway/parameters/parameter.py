@@ -1,23 +1,29 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The form of a parameter; each is defined once, in `sway_parameters` or in the tables of the nodes.
+The form of a parameter; each is defined once, in ``sway.yaml`` or in the ``nodes.yaml`` of ROS.
 
 The ROS declaration, the check of values and of YAML files, and the table in the README come from
-the same definition. Nothing here needs ROS; `ros.declaration` puts a table on a node.
+the same definition. Nothing here needs ROS; `declaration` of the nodes puts a table on a node.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+import importlib
 import math
+from pathlib import Path
 from typing import Any
+
+import yaml
 
 from tree_sway.errors import nearest, ParameterError
 
 Value = Any  # bool | int | float | str | tuple[float, ...]
 
+# The C parser, where PyYAML was built with it, is ten times faster.
+_LOADER: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 # What every ROS 2 node has besides its own.
 _OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
 QOS_PREFIX = 'qos_overrides.'
@@ -41,9 +47,11 @@ class Parameter:
     unit
         SI unit, empty if it has none.
     minimum, maximum
-        Closed range of a number, of each number of a tuple; None for no bound.
+        Closed range of a number, of each number of a tuple; None for no bound. In files both
+        are ``range``.
     choices
-        The strings that are accepted; empty for any.
+        The strings that are accepted; empty for any. In files ``module:NAME`` means those of
+        a table of the library.
     most
         A number from 0 to this is accepted beside the choices; None for none.
     live
@@ -146,6 +154,32 @@ _KINDS = {bool: 'true or false', int: 'a whole number', float: 'a number', str: 
 _KINDS[tuple] = 'a list of numbers'
 
 Table = tuple[Parameter, ...]
+
+
+def read_tables(path: Path, shared: Table = ()) -> dict[str, Table]:
+    """Read a YAML file of the package; a name without keys is that of a shared parameter."""
+    by_name = {parameter.name: parameter for parameter in shared}
+    content = _LOADER(path.read_text(encoding='utf-8')).get_single_data()
+    return {
+        key: tuple(_read(name, body) if body else by_name[name] for name, body in table.items())
+        for key, table in content.items()
+    }
+
+
+def _read(name: str, body: Mapping[str, Any]) -> Parameter:
+    minimum, maximum = body.get('range', (None, None))
+    keys: dict[str, Any] = {
+        key: tuple(value) if isinstance(value, list) else value
+        for key, value in body.items()
+        if key not in ('range', 'choices')
+    }
+    keys['choices'] = tuple(each for entry in body.get('choices', ()) for each in _choices(entry))
+    return Parameter(name, minimum=minimum, maximum=maximum, **keys)
+
+
+def _choices(entry: str) -> Iterable[str]:
+    module, _, name = entry.partition(':')
+    return getattr(importlib.import_module(module), name) if name else (entry,)
 
 
 def unknown_names(table: Table, names: Iterable[str]) -> list[str]:

@@ -88,7 +88,7 @@ def read_study(path: str | Path) -> list[Case]:
     FormatError
         A file that cannot be read, is no YAML, or is not what the schema says.
     ParameterError
-        A setting that there is not.
+        A setting that there is not, or a value that it does not take.
 
     """
     path = path_of(path)
@@ -163,7 +163,14 @@ def _settings(varied: Plain, path: Path) -> list[Plain]:
             where=f'{path}: settings',
             cure=nearest(unknown[0], known) or f'use one of: {", ".join(sorted(known))}',
         )
-    return list(_products(varied))
+    found = list(_products(varied))
+    for each in found:
+        try:
+            Settings(**each)
+        except TypeError as error:
+            where = f'{path}: settings'
+            raise ParameterError(f'{each}: {error}', where=where, cure='give numbers') from None
+    return found
 
 
 def _products(varied: Plain) -> Iterator[Plain]:

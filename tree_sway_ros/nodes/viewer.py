@@ -25,7 +25,7 @@ from tree_sway.page.protocol import (
     quantised,
 )
 from tree_sway.page.server import PageServer, PageSettings
-from tree_sway.parameters.sway_parameters import BEARING_TO, INTENSITY, MEAN_SPEED, TOLERANCE
+from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import TREE_DESCRIPTION, TREE_STATE
 from tree_sway_ros.reports.diagnostics import OK, Status
@@ -34,12 +34,11 @@ from tree_sway_ros.wire.wind_messages import stamp_to_ns
 
 _CHECK_PERIOD = 0.5
 _LIVE = {
-    MEAN_SPEED: ('anemometer', 'Wind'),
-    INTENSITY: ('anemometer', 'Gustiness'),
-    BEARING_TO: ('anemometer', 'Blows to'),
-    TOLERANCE: ('solver', 'Tolerance'),
+    'mean_speed': ('anemometer', 'Wind'),
+    'intensity': ('anemometer', 'Gustiness'),
+    'bearing_to': ('anemometer', 'Blows to'),
+    'tolerance': ('solver', 'Tolerance'),
 }
-_NODES = {parameter.name: node for parameter, (node, _) in _LIVE.items()}
 
 
 class ViewerNode(TreeSwayNode):
@@ -131,7 +130,7 @@ class ViewerNode(TreeSwayNode):
         else:
             number = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value))
             request = SetParameters.Request(parameters=[ParameterMessage(name=name, value=number)])
-            self._ask(self._setters[_NODES[name]], request, _reason)
+            self._ask(self._setters[_LIVE[name][0]], request, _reason)
 
     def _ask(self, client: Any, request: Any, reason: Callable[[Any], str]) -> None:
         if not client.service_is_ready():
@@ -155,5 +154,5 @@ def _reason(answer: Any) -> str:
 
 def _controls() -> tuple[Control, ...]:
     """Make what viewers may change, with the ranges of the nodes' parameters."""
-    live = (Control.of(parameter, label) for parameter, (_, label) in _LIVE.items())
+    live = (Control.of(SWAY[name], label) for name, (_, label) in _LIVE.items())
     return (*live, *PAUSE_AND_RESET)

@@ -24,7 +24,6 @@ from rosgraph_msgs.msg import Clock
 
 from tree_sway.core.wind.convention import WindConvention
 from tree_sway.errors import ParameterError
-from tree_sway_ros.parameters.node_parameters import WIND_TYPE_NAMES
 
 _SECOND = 1_000_000_000
 
@@ -43,28 +42,22 @@ class WindSample(NamedTuple):
     w: float
 
 
-_CLASSES = dict(
-    zip(
-        WIND_TYPE_NAMES,
-        (Vector3Stamped, TwistStamped, TwistWithCovarianceStamped, Vector3),
-        strict=True,
-    )
-)
 _VECTORS: dict[Any, Callable[[Any], Any]] = {
     Vector3Stamped: lambda message: message.vector,
     TwistStamped: lambda message: message.twist.linear,
     TwistWithCovarianceStamped: lambda message: message.twist.twist.linear,
     Vector3: lambda message: message,
 }
+WIND_CLASSES = {f'geometry_msgs/{each.__name__}': each for each in _VECTORS}
 
 
 def wind_class(type_name: str) -> Any:
     """Class of a wind message, as ``geometry_msgs/Vector3Stamped``; else a `ParameterError`."""
     try:
-        return _CLASSES[type_name]
+        return WIND_CLASSES[type_name]
     except KeyError:
         raise ParameterError(
-            f"'{type_name}' is no wind type", cure=f'use one of: {", ".join(_CLASSES)}'
+            f"'{type_name}' is no wind type", cure=f'use one of: {", ".join(WIND_CLASSES)}'
         ) from None
 
 

@@ -12,8 +12,8 @@ from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.validation.truth import WOOD
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.simulator.pull import moments_of_force
 from tree_sway.core.simulator.simulator import LOAD_HELD
+from tree_sway.core.simulator.touch import Touch
 from tree_sway.errors import ParameterError
 
 DT = 1.0 / 60.0
@@ -55,14 +55,10 @@ def test_moments_are_the_derivatives_of_places(tree, name, along):
     assert np.abs(x).max() > 0.05  # it is bent
     rng = np.random.default_rng(3)
     for segment in (outer_segment(tree), 1, tree.n_segments - 1):
-        records = sim.bank.branches
-        holds = (records['first'] <= segment) & (segment < records['end'])
-        branch = int(np.flatnonzero(holds)[0])
-        force, moments = rng.normal(size=3), np.empty(len(x))
-        moments_of_force(
-            sim.bank.branches, sim.bank.segments, tree.rest_frame, poses, x, branch, segment,
-            place_of(poses, tree, segment, along), force, moments,
-        )  # fmt: skip
+        touch, force = Touch(tree, sim.bank), rng.normal(size=3)
+        touch.add(segment, force, 1.0, along)
+        push = touch._pushes[segment]
+        touch._renew(push, push.place(poses), tree.start[0], x.copy())
         by_differences = np.empty(len(x))
         for i, step in enumerate(np.eye(len(x)) * 1e-5):
             there, back = (
@@ -71,7 +67,7 @@ def test_moments_are_the_derivatives_of_places(tree, name, along):
             )
             by_differences[i] = force @ (there - back) / 2e-5
         largest = np.abs(by_differences).max()
-        np.testing.assert_allclose(moments, by_differences, atol=1e-3 * largest)
+        np.testing.assert_allclose(force @ push.lever, by_differences, atol=1e-3 * largest)
 
 
 @pytest.mark.parametrize('model', [60, 'auto', 'full'])
@@ -89,6 +85,20 @@ def test_every_model_moves_by_the_same_and_the_foot_holds_the_force(tree, model)
     np.testing.assert_allclose(load[:3], force)
     arm = place_of(sims[1].place(), tree, segment) - tree.start[0]
     np.testing.assert_allclose(load[3:], np.cross(arm, force), rtol=1e-3)
+
+
+def test_a_pull_moves_a_tree_further_than_any_wind_may():
+    tree, segment, force = kind_called('leaning'), 7, np.array([4000.0, 1200.0, 0.0])
+    table, truth = (make_simulator(tree, WOOD, model=each) for each in (60, 'full'))
+    for _ in range(round(5.0 / DT)):
+        for sim in (table, truth):
+            sim.push(segment, force, 1.0)
+            sim.step(CALM, DT)
+    record, instance = table.bank.oscillators.record[0], table.bank.oscillators.instance[0]
+    assert record['stiffness'] @ instance['eta'] ** 2 > record['most_energy']
+    there = moved(truth, segment)
+    assert np.linalg.norm(moved(table, segment) - there) < 0.05 * np.linalg.norm(there)
+    assert table.counts.held == 0
 
 
 def test_twice_the_force_moves_twice_as_far_where_it_bends_little(tree):

@@ -268,7 +268,7 @@ def test_memory_is_bounded():
     average = WindAverage(capacity=64)
     for i in range(5000):
         average.add(i * 0.01, (1.0, 0.0, 0.0))
-    assert len(average._curve) == 64
+    assert len(average._curve.knots) == 64
 
 
 class TestDropouts:

@@ -115,11 +115,19 @@ def written(path: Path, storage: str, largest: int) -> subprocess.CompletedProce
     return subprocess.run(command, capture_output=True, text=True, timeout=60)
 
 
-@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
-def test_what_a_killed_recorder_wrote_is_in_the_bag(tmp_path: Path, storage: str) -> None:
-    ended = written(tmp_path / 'bag', storage, 1 << 30)
+def test_what_a_killed_recorder_wrote_is_in_the_bag(tmp_path: Path) -> None:
+    ended = written(tmp_path / 'bag', 'sqlite3', 1 << 30)
     assert ended.returncode == -signal.SIGKILL
     assert len(read_bag(tmp_path / 'bag', [STATE_TYPE]).messages['/state']) == 100
+
+
+def test_an_mcap_of_a_killed_recorder_can_be_recovered(tmp_path: Path) -> None:
+    ended = written(tmp_path / 'bag', 'mcap', 1 << 30)
+    assert ended.returncode == -signal.SIGKILL
+    (file,) = (tmp_path / 'bag').glob('*.mcap')
+    assert file.read_bytes().count(bytes(1000)) == 100
+    with pytest.raises(FormatError, match="mend it with 'mcap recover'"):
+        read_bag(tmp_path / 'bag', [STATE_TYPE])
 
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
@@ -127,4 +135,7 @@ def test_a_full_disk_is_one_line_and_leaves_what_was_written(tmp_path: Path, sto
     ended = written(tmp_path / 'bag', storage, 80_000)
     assert (ended.returncode, ended.stderr) == (0, '')
     assert 'cannot be written to' in ended.stdout
-    assert len(read_bag(tmp_path / 'bag', [STATE_TYPE]).messages['/state']) > 20
+    (file,) = (each for each in (tmp_path / 'bag').iterdir() if each.suffix != '.yaml')
+    assert file.read_bytes().count(bytes(1000)) > 20
+    if storage == 'sqlite3':
+        assert len(read_bag(tmp_path / 'bag', [STATE_TYPE]).messages['/state']) > 20

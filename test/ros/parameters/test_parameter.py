@@ -9,19 +9,22 @@ from hypothesis import strategies as st
 import pytest
 import yaml
 
-from tree_sway.core.simulator.settings import Settings  # noqa: I100
+from tree_sway.core.simulator.settings import MOST, Settings  # noqa: I100
 from tree_sway.core.wind.convention import WindConvention
 from tree_sway.core.wind.gate import WindGate
+from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.core.wind.simulated.spectra import SPECTRA
 from tree_sway.errors import ParameterError
 from tree_sway.parameters.parameter import (
     Parameter,
     unknown_names,
     unknown_parameter,
 )
-from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS, SOLVER
+from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 
 ROOT = Path(__file__).parents[3]
 SPEED = Parameter('speed', 6.0, 'Mean speed.', 'm/s', 0.0, 40.0)
+SOLVER = NODE_PARAMETERS['solver']
 EVERY = [p for table in NODE_PARAMETERS.values() for p in table]
 
 
@@ -29,6 +32,23 @@ EVERY = [p for table in NODE_PARAMETERS.values() for p in table]
 def test_a_default_is_good(parameter):
     assert parameter.checked(parameter.default) == parameter.default
     assert parameter.description.endswith('.')
+
+
+def test_choices_are_those_of_the_library():
+    (turbulence,) = (each for each in NODE_PARAMETERS['anemometer'] if each.name == 'turbulence')
+    assert turbulence.choices == (*SPECTRA, 'none')
+
+
+def test_the_defaults_and_limits_are_those_of_the_library():
+    solver, settings = {each.name: each for each in SOLVER}, Settings()
+    assert solver['model'].default == str(settings.model)
+    assert solver['model'].most == MOST
+    assert solver['gravity'].default == settings.gravity
+    assert solver['volume_rule.damping'].default == settings.volume_damping
+    assert solver['profile'].default == settings.profile.kind
+    assert solver['anemometer_height'].default == settings.profile.anemometer_height
+    (fastest,) = (each for each in NODE_PARAMETERS['wind'] if each.name == 'max_speed')
+    assert fastest.maximum == FASTEST_WIND
 
 
 @pytest.mark.parametrize('table', NODE_PARAMETERS.values(), ids=list(NODE_PARAMETERS))

@@ -119,16 +119,6 @@ def test_a_frozen_sensor_is_named(clock):
     assert (status.level, status.message[:6]) == (WARN, 'frozen')
 
 
-def test_a_sluggish_sensor_is_named_and_its_samples_are_taken(clock):
-    report, gate = WindReport(), WindGate()
-    for k in range(130):  # a straight line is as smooth as can be
-        assert gate.offer(SECOND + k * SECOND, (0.1 * k, 0.0, 0.0)).accepted
-        report.add(True)
-    status = report.status(TIMEOUT, gate)
-    assert (status.level, status.message[:8]) == (WARN, 'sluggish')
-    assert status.values['sluggish'] == 1
-
-
 def pace(skipped, silence=0.0):
     return Pace(60.0, 1e-4, 2e-3, 5e-3, 1e-3, 600, skipped, 0, 0, silence)
 

@@ -126,7 +126,7 @@ class AdaptiveSimulator(SwaySimulator):
         return *super().memory(), self._shares, self._wanted
 
     def set_state(self, state: TreeState) -> None:
-        """Go on from a state, and from what it shows; see `KeepsState.set_state`."""
+        """Go on from a state, and from what it shows; see `SwaySimulator.set_state`."""
         super().set_state(state)
         estimates = self.estimates(self._tracker.climate)
         self.choice = next(e for e in estimates if e.n_coordinates >= self._wanted[0])

@@ -21,7 +21,7 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.tree.leaf_traits import LeafTraits
 from tree_sway.core.tree.species import leaf_traits
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.convention import quaternion_of_axes
+from tree_sway.core.wind.convention import quaternions_of_axes
 from tree_sway.errors import ParameterError
 
 MAX_LEAF_AREA_INDEX = 6.0
@@ -170,4 +170,4 @@ def _facing_up(away: Floats, rest: Floats) -> Floats:
     # A leaf that points straight up may look any way across.
     z[size < 1e-3] = np.cross(away[size < 1e-3], [1.0, 0.0, 0.0])
     z /= np.linalg.norm(z, axis=1)[:, None]
-    return np.array([quaternion_of_axes(*axes) for axes in zip(away, z, strict=True)])
+    return quaternions_of_axes(away, z)

@@ -283,8 +283,10 @@ def step_instance(
         instance.eta, instance.rate, instance.force, pace.half, pace.whole,
     )  # fmt: skip
     middle, middle_rate, wanted = instance.middle, instance.middle_rate, instance.wanted
+    before = 0.0
     for i in range(len(eta)):
         q, v, f = eta[i], rate[i], force[i]
+        before += table.stiffness[i] * q * q + v * v
         middle[i] = half[0, i] * q + half[1, i] * v + half[2, i] * f
         middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
     diagonal = instance.diagonal
@@ -303,10 +305,11 @@ def step_instance(
         eta[i] = whole[0, i] * q + whole[1, i] * v + (whole[2, i] + whole[3, i]) * f
         rate[i] = whole[4, i] * q + whole[5, i] * v + (whole[6, i] + whole[7, i]) * f
         force[i] = f
-        energy += table.stiffness[i] * eta[i] * eta[i]
-    if not energy <= table.most_energy:
-        # Further over than any wind holds it: it is let no further.
-        share = math.sqrt(table.most_energy / energy)
+        energy += table.stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i]
+    most = max(before, table.most_energy)
+    if not energy <= most:
+        # A hand may pull it further over than any wind does; no wind takes it further.
+        share = math.sqrt(most / energy)
         for i in range(len(eta)):
             eta[i], rate[i] = share * eta[i], share * rate[i]
         instance.outside = 0 if is_held else 1

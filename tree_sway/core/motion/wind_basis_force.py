@@ -39,7 +39,7 @@ def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
             ('degree', 'i8'),
             ('levels', 'f8', (a, n)),  # leans of a tree held in winds, rising
             ('most_pressure', 'f8'),  # up to which the table holds [kg/m/s^2]
-            ('most_energy', 'f8'),  # twice the strain energy up to which it holds [J]
+            ('most_energy', 'f8'),  # of strain and motion, twice, up to which a wind takes it [J]
             ('stiffness', 'f8', (m,)),
             (
                 'motion',

@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
-from tree_sway.core.simulator.protocol import TreeSimulator
+from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
 
 def set_demand(
-    simulators: Iterable[TreeSimulator],
+    simulators: Iterable[SwaySimulator],
     *,
     tolerance: float,
     budget: float = 0.0,
@@ -52,7 +52,7 @@ def set_demand(
             each.tolerance = tolerance_in_metres(tolerance_pixels, distance, focal_length)
 
 
-def set_cost_scale(simulators: Iterable[TreeSimulator], spent: float) -> None:
+def set_cost_scale(simulators: Iterable[SwaySimulator], spent: float) -> None:
     """Give the trees that choose their model what a frame of them alone takes here, in [us]."""
     adaptive = adaptive_among(simulators)
     expected = sum(each.choice.cost for each in adaptive)

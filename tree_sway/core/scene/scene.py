@@ -65,7 +65,7 @@ class Scene:
     Examples
     --------
     >>> row = [PlacedTree(f"oak {i}", oak, x=8.0 * i, scale=0.8 + 0.01 * i) for i in range(40)]
-    >>> simulator = Scene(row).simulator(model="wind_basis")
+    >>> simulator = Scene(row).simulator(model=20)
     >>> simulator.step((8.0, 0.0, 0.0), 1 / 60)
     0
 

@@ -35,7 +35,6 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import joined_where_placed, Kind, kinds_of, PlacedTree
 from tree_sway.core.simulator.assembly import Kept
 from tree_sway.core.simulator.live_tuning import Tuning
-from tree_sway.core.simulator.protocol import TreeSimulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import (
     Counts,
@@ -117,7 +116,7 @@ class SceneSimulator:
         self._make_tables()
         self._numbers, self._is_shared = counts, ~is_own
         self._show()
-        self.own: dict[int, TreeSimulator] = {}
+        self.own: dict[int, SwaySimulator] = {}
         """Simulators of the trees that share no table, by their numbers."""
         for t in np.flatnonzero(is_own).tolist():
             self.own[t] = _own_simulator(trees[t], settings, tolerance, kept)
@@ -147,7 +146,7 @@ class SceneSimulator:
         )
 
     @property
-    def simulators(self) -> tuple[TreeSimulator, ...]:
+    def simulators(self) -> tuple[SwaySimulator, ...]:
         """Return the simulators of the trees that share no table."""
         return tuple(self.own.values())
 
@@ -425,7 +424,7 @@ def _model_of(
 
 def _own_simulator(
     tree: PlacedTree, scene: Settings, tolerance: float, kept: Kept | None
-) -> TreeSimulator:
+) -> SwaySimulator:
     """Make the simulator of a tree where it is; what is wrong with it names the tree."""
     settings = tree.settings_where_it_stands(scene)
     try:

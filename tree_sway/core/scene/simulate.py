@@ -14,7 +14,6 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.simulator.assembly import CalibratedTree
-from tree_sway.core.simulator.protocol import TreeSimulator
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
@@ -97,7 +96,7 @@ class Rig:
         self.tree, self.species = tree_and_species(tree)
         self.settings = settings_with(settings, changes)
         self.calibrated = CalibratedTree(self.tree, self.species, self.settings)
-        self._simulator: TreeSimulator | None = None
+        self._simulator: SwaySimulator | None = None
         self.base = BaseMoment(self.calibrated)
 
     def run(
@@ -133,7 +132,7 @@ class Rig:
             self.base.strain(moment),
         )
 
-    def _at_rest(self) -> TreeSimulator:
+    def _at_rest(self) -> SwaySimulator:
         """Return the simulator at rest; one that chooses its model by its winds is made again."""
         if self.settings.model == 'auto':
             return make_simulator(self.tree, self.species, self.settings)

@@ -416,7 +416,7 @@ class CalibratedTree:
         stiffness = np.asarray(layer.reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
         weight = np.asarray(layer.reduction.gravity.diagonal()).reshape(-1, 2).mean(axis=1)
         damping = 2.0 * self.damping_ratio * np.sqrt(stiffness * inertia)
-        if settings.stiffness == 'volume_rule':
+        if settings.volume_stiffness:
             volume = np.add.reduceat(tree.volume, tree.branch_first[:-1])
             parent = volume[np.maximum(tree.branch_parent, 0)]
             rule = np.sqrt(volume * parent)

@@ -20,12 +20,12 @@ from tree_sway.core.simulator.assembly import CalibratedTree, Kept
 from tree_sway.core.simulator.bank import Bank
 from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings, settings_with
-from tree_sway.core.state.tree_state import digest_of, KeepsState
+from tree_sway.core.state.tree_state import digest_of, refuse_version, TreeState
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.limits import components_of, is_wind
-from tree_sway.errors import ParameterError
+from tree_sway.errors import ParameterError, StateError
 
 if TYPE_CHECKING:
     from tree_sway.core.simulator.crown_gusts import CrownGusts
@@ -54,7 +54,7 @@ class Counts:
     refused_pushes: int = 0
 
 
-class SwaySimulator(KeepsState):
+class SwaySimulator:
     """
     A tree that sways.
 
@@ -193,6 +193,48 @@ class SwaySimulator(KeepsState):
         """Return views of what is carried between steps, the wind of the last step first."""
         crown = () if self._gusts is None else self._gusts.wind.memory()
         return self._wind, *self.bank.oscillators.memory(), *crown
+
+    def state(self) -> TreeState:
+        """Return a copy of all that is carried from one step to the next."""
+        values = np.concatenate([np.ravel(array) for array in self.memory()])
+        return TreeState(self.tree.name, self.digest(), self.model, values)
+
+    def set_state(self, state: TreeState) -> None:
+        """
+        Go on from a state.
+
+        Raises a `StateError` for another tree, model or version, or what is not finite; what was
+        before stays.
+        """
+        refuse_version(state.version)
+        arrays = self.memory()
+        n_values = sum(array.size for array in arrays)
+        for what, theirs, own in (
+            ('tree', state.tree, self.tree.name),
+            ('model', state.model, self.model),
+            ('settings', state.digest, self.digest()),
+            ('number of values', len(state.values), n_values),
+        ):
+            if theirs != own:
+                raise StateError(
+                    f"a state of {what} '{theirs}', and this is '{own}'",
+                    where=self.tree.name,
+                    cure='set a state of the same tree with the same species, settings and model',
+                )
+        if not np.isfinite(state.values).all():
+            raise StateError('a state that is not finite', where=self.tree.name)
+        first = 0
+        for array in arrays:
+            array[...] = state.values[first : first + array.size].reshape(array.shape)
+            first += array.size
+
+    def expand(self, state: TreeState, out: Floats | None = None) -> Floats:
+        """Poses of a state, (n, 7), as `place` gives them; the simulator stays as it is."""
+        own = self.state()
+        self.set_state(state)
+        rotations = self.rotations().copy()
+        self.set_state(own)
+        return self.place_rotations(rotations, out)
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,), in the order of `joints`; the same array each time."""
@@ -382,9 +424,7 @@ class SwaySimulator(KeepsState):
         if self._tuning is None:
             tunable, ratio = self.bank.oscillators.tunable, self._calibrated.damping_ratio
             self._tuning = LiveTuning(tunable, self.settings, ratio)
-        goal = self._tuning.goal.changed(**changes)
-        self._tuning.check(goal)
-        return goal
+        return self._tuning.changed(**changes)
 
     def tune(self, **changes: float) -> None:
         """
@@ -393,8 +433,8 @@ class SwaySimulator(KeepsState):
         Parameters
         ----------
         **changes
-            ``damping_ratio``, ``stiffness_factor``, ``gravity``, ``volume_stiffness`` or
-            ``volume_damping``, as of `Tuning`. What is not named stays.
+            ``damping_ratio``, ``stiffness_factor`` or ``gravity``, as of `Tuning`. What is not
+            named stays.
 
         Raises
         ------

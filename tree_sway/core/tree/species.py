@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 import re
 
-from tree_sway.core.tree.leaf_traits import BROAD_LEAVES, LeafTraits
+from tree_sway.core.tree.leaf_traits import LeafTraits
 from tree_sway.core.tree.species_table import NAMES, SPECIES
 from tree_sway.core.tree.wood import Species
 from tree_sway.errors import nearest, SpeciesError
@@ -15,7 +15,7 @@ from tree_sway.errors import nearest, SpeciesError
 __all__ = ['Species']
 
 _KEYS = {key.replace('_', ' '): key for key in SPECIES}
-_KEYS |= {name: key for key, names in NAMES.items() for name in names.split(', ')}
+_KEYS |= {name: key for key, names in NAMES.items() for name in names}
 _WORDS = [name for name in _KEYS if len(name) > 3]
 _CONIFEROUS = re.compile(r'conifer|nadel|cypress|cedar|yew|hemlock|redwood|(fir|pine|spruce)\b')
 
@@ -88,4 +88,4 @@ def typical_root_stiffness(stem_mass: float) -> float:
 
 def leaf_traits(key: str) -> LeafTraits:
     """Leaves of a species; those of an average broadleaf if the table does not have it."""
-    return SPECIES[key].leaves if key in SPECIES else BROAD_LEAVES
+    return SPECIES[key].leaves if key in SPECIES else LeafTraits()

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 import math
 
-from tree_sway.core.tree.leaf_traits import BROAD_LEAVES, LeafTraits
+from tree_sway.core.tree.leaf_traits import LeafTraits
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Species:
     bare_drag_coefficient: float = 1.2
     shear_ratio: float = 1.0 / 14.0
     root_stiffness: float = math.inf
-    leaves: LeafTraits = BROAD_LEAVES
+    leaves: LeafTraits = field(default_factory=LeafTraits)
     bark: tuple[float, float, float] = (0.36, 0.28, 0.22)
     habit: str = 'broadleaf'
     is_estimate: bool = False

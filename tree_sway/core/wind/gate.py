@@ -28,7 +28,6 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.checks import three_numbers, within
 from tree_sway.core.wind.limits import FASTEST_WIND, is_wind
-from tree_sway.core.wind.response import ResponseWatch
 
 # What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
 # 0x8000, which is 327.68 where the count is 0.01 m/s.
@@ -106,8 +105,8 @@ class GateCounts:
         before.
     clock_back
         Times the clock was set back.
-    frozen, sluggish
-        Times the sensor began to repeat one reading, and to pass slow changes alone.
+    frozen
+        Times the sensor began to repeat one reading.
 
     """
 
@@ -128,7 +127,6 @@ class GateCounts:
     overtaken_stamp: int = 0
     clock_back: int = 0
     frozen: int = 0
-    sluggish: int = 0
 
     @property
     def refused(self) -> int:
@@ -197,12 +195,6 @@ class WindGate:
         self._refused_since: int | None = None
         self._equal_since = 0
         self._is_frozen = False
-        self._response = ResponseWatch()
-
-    @property
-    def is_sluggish(self) -> bool:
-        """Whether the sensor passes slow changes alone (`response`)."""
-        return self._response.is_sluggish
 
     @property
     def is_frozen(self) -> bool:
@@ -259,7 +251,6 @@ class WindGate:
             self._good, self._good_time = (x, y, z), time
             self._refused_since = None
             self._fade_in(since)
-            self.counts.sluggish += self._response.add(time, self._good)
         return Verdict(reason is Reason.ACCEPTED, reason, time, self._given)
 
     def _fade_in(self, since: float) -> None:

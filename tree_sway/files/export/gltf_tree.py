@@ -21,9 +21,9 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.state.find_basis import state_basis, Swaying
-from tree_sway.core.state.full_scale import MARGIN
-from tree_sway.core.state.state_basis import StateBasis
+from tree_sway.core.simulator.find_basis import state_basis
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.state.state_basis import MARGIN, StateBasis
 from tree_sway.core.tree.species import bark_color, leaf_traits
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
@@ -98,7 +98,7 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
 
 
 def morphing_tree(
-    simulator: Swaying, leaves: LeafClusters | None = None
+    simulator: SwaySimulator, leaves: LeafClusters | None = None
 ) -> tuple[GltfDocument, LinearForm]:
     """
     Return a tree on any model of a simulator as a mesh with a morph target per coordinate.
@@ -178,7 +178,9 @@ def _inverse_matrices(poses: Floats) -> Any:
     return columns.astype(np.float32)
 
 
-def _swung(simulator: Swaying, basis: StateBasis, k: int, size: float) -> tuple[Floats, Floats]:
+def _swung(
+    simulator: SwaySimulator, basis: StateBasis, k: int, size: float
+) -> tuple[Floats, Floats]:
     """Poses with one coordinate at a part of its unit, to one side and to the other."""
     coordinates = np.zeros(basis.n_coordinates)
     coordinates[k] = _SWING * size
@@ -191,7 +193,9 @@ def _change(mesh: TreeMesh, step: tuple[Floats, Floats]) -> Floats:
     return (0.5 / _SWING) * (mesh.placed(step[0]) - mesh.placed(step[1]))
 
 
-def _breeze(simulator: Swaying, basis: StateBasis, unit: Floats) -> tuple[Floats, list[Floats]]:
+def _breeze(
+    simulator: SwaySimulator, basis: StateBasis, unit: Floats
+) -> tuple[Floats, list[Floats]]:
     """Weights (f, m) and poses of the frames of a gusty wind."""
     before = simulator.state()
     rng = np.random.default_rng(7)

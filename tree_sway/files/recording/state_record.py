@@ -50,7 +50,7 @@ def read_state_record(path: Path, name: str = 'tree_state') -> StateRecord:
     FormatError
         Not a bag, or one without both.
     MissingDependencyError
-        If it is compressed by what is not installed.
+        If rosbags is not installed.
 
     """
     source = str(path)
@@ -80,7 +80,7 @@ def read_state_record(path: Path, name: str = 'tree_state') -> StateRecord:
         description,
         source,
         len(sent) - len(kept),
-        (f'{topic}: {len(kept)} states', *([f'damaged: {bag.damage}'] if bag.damage else [])),
+        (f'{topic}: {len(kept)} states',),
     )
 
 

@@ -42,7 +42,7 @@ def read_bag_wind(
     FormatError
         Not a bag, no such topic, several to choose from, or no good message.
     MissingDependencyError
-        If it is compressed by what is not installed.
+        If rosbags is not installed.
 
     """
     WindConvention(direction_convention)  # refused before the file is read
@@ -62,8 +62,6 @@ def read_bag_wind(
         epoch = (stamp or recorded) if epoch < 0 else epoch
         rows.add(number, ((stamp or recorded) - epoch) * 1e-9, velocity)
     notes = [f'topic {chosen}, {kind}']
-    if bag.damage:
-        notes.insert(0, f'damaged after {len(messages)} messages, which were read: {bag.damage}')
     if n_unstamped:
         notes.append(f'{n_unstamped} messages without a stamp have the time they were recorded at')
     return rows.record(

@@ -1,30 +1,22 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""
-Variables of a MATLAB file, read by scipy (versions 4 to 7) or h5py (7.3) in a process of its own.
-
-A few bytes can claim gigabytes, nest without end, or end the process that the libraries run in; so
-that process is another one, with so much memory and time and no more.
-"""
+"""Variables of a MATLAB file, read by scipy (versions 4 to 7) or h5py (7.3), within bounds."""
 
 from __future__ import annotations
 
-import io
-import os
 from pathlib import Path
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.errors import FormatError, MissingDependencyError
+from tree_sway.errors import FormatError
+from tree_sway.files.bounded import Arrays, bounded_arrays
 from tree_sway.files.text_file import read_bytes
-from tree_sway.files.trees.cylinders import mat_child
 
 Variables = dict[str, Any]
 """Arrays by name; structs as dictionaries, several of them in one with numbers for names."""
+_MAX_DEPTH = 8
 
 
 def looks_like_mat(head: str) -> bool:
@@ -45,35 +37,9 @@ def read_mat(path: Path) -> Variables:
 
     """
     read_bytes(path, at_most=1)
-    command = [sys.executable, mat_child.__file__, str(path.absolute())]
-    environment = {**os.environ, 'OPENBLAS_NUM_THREADS': '1'}  # each takes memory of its own
-    budget = f'{mat_child.MEMORY >> 20} MiB of memory or {mat_child.SECONDS} s'
-    try:
-        ended = subprocess.run(
-            command, capture_output=True, env=environment, timeout=2 * mat_child.SECONDS
-        )
-        reason = ended.stderr.decode('utf-8', 'replace').strip().split('\n')[-1]
-    except subprocess.TimeoutExpired:
-        ended, reason = None, ''
-    if reason == 'no module h5py':
-        raise MissingDependencyError(
-            'a MATLAB file of version 7.3 needs h5py',
-            where=str(path),
-            cure='pip install h5py, or save it with the option -v7',
-        )
-    if ended is None or ended.returncode:
-        is_large = ended is None or ended.returncode < 0 or 'MemoryError' in reason
-        what = f'it takes more than {budget}, or is damaged' if is_large else reason
-        raise FormatError(
-            f'not a MATLAB file that can be read: {what}', where=str(path), cure='save it again'
-        )
-    with np.load(io.BytesIO(ended.stdout)) as arrays:
-        return _nested({name: arrays[name] for name in arrays.files})
-
-
-def _nested(arrays: dict[str, Any]) -> Variables:
-    """Dictionaries in dictionaries from paths."""
+    cure = 'save it again with the option -v7'
     variables: Variables = {}
+    arrays = bounded_arrays(numbers_of_mat, path, kind='a MATLAB file', cure=cure)
     for name, array in arrays.items():
         *above, last = name.split('/')
         place = variables
@@ -88,3 +54,61 @@ def numbers(value: Any, name: str) -> Floats:
     if not isinstance(value, np.ndarray):
         raise FormatError(f"'{name}' is not numeric")
     return value.astype(np.float64).squeeze()
+
+
+def numbers_of_mat(path: str) -> Arrays:
+    """Yield the arrays of numbers in a file by their paths, such as ``QSM/cylinder/radius``."""
+    with open(path, 'rb') as stream:
+        head = stream.read(128)
+    if b'HDF\r\n' in head[:8] or head.startswith(b'MATLAB 7.3'):
+        import h5py
+
+        with h5py.File(path, 'r') as file:
+            yield from _of_hdf5(file, '', 0)
+        return
+    from scipy.io import loadmat
+
+    for name, value in loadmat(path, chars_as_strings=False).items():
+        if name[:2] != '__':
+            yield from _of_matlab(name, value, 0)
+
+
+def _of_matlab(name: str, value: Any, depth: int) -> Arrays:
+    """Arrays of numbers in a variable; structs and cells of several have numbers in their path."""
+    _check_depth(depth)
+    if not isinstance(value, np.ndarray):
+        return
+    if value.dtype.kind in 'fiub':
+        yield name, value
+    elif value.dtype.kind in 'OV':
+        for number, one in enumerate(value.ravel(order='F')):
+            inner = name if value.dtype.names and value.size == 1 else f'{name}/{number}'
+            if not value.dtype.names:
+                yield from _of_matlab(inner, one, depth + 1)
+            for each in value.dtype.names or ():
+                yield from _of_matlab(f'{inner}/{each}', one[each], depth + 1)
+
+
+def _of_hdf5(node: Any, name: str, depth: int) -> Arrays:
+    """Arrays of numbers in a group or a dataset; references, which cells are, are followed."""
+    import h5py
+
+    _check_depth(depth)
+    if isinstance(node, h5py.Group):
+        for each in node:
+            if each[0] != '#' and isinstance(node.get(each, getlink=True), h5py.HardLink):
+                yield from _of_hdf5(node[each], f'{name}/{each}'.lstrip('/'), depth + 1)
+    elif isinstance(node, h5py.Dataset) and node.shape and node.dtype.kind in 'fiubO':
+        if node.external or node.is_virtual:
+            raise ValueError(f'{node.name} is stored in another file')
+        if node.dtype.kind != 'O':
+            yield name, np.transpose(node[()])  # MATLAB's columns are HDF5's rows
+        elif h5py.check_ref_dtype(node.dtype) is h5py.Reference:
+            for number, one in enumerate(np.ravel(node[()])):
+                if one:
+                    yield from _of_hdf5(node.file[one], f'{name}/{number}', depth + 1)
+
+
+def _check_depth(depth: int) -> None:
+    if depth > _MAX_DEPTH:
+        raise ValueError(f'nested deeper than {_MAX_DEPTH}')

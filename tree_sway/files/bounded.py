@@ -1,0 +1,100 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Read a file by a library in a process of its own, with so much memory and time and no more.
+
+A few bytes can claim gigabytes, nest without end, or end the process that a library runs in. The
+reader runs in a child, which this file is the program of, and gives arrays back in numpy's own
+format, which is read without pickles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from importlib import import_module
+import io
+import os
+from pathlib import Path
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+
+from tree_sway.errors import FormatError, MissingDependencyError
+from tree_sway.files.text_file import reason_of
+
+MEMORY, SECONDS = 768 << 20, 20
+"""What reading a file may take: memory, and each file that is unpacked [bytes]; processor [s]."""
+_MAX_ARRAYS = 100_000
+
+Arrays = Iterator[tuple[str, Any]]
+
+
+def bounded_arrays(
+    read: Callable[..., Arrays], path: Path, *words: str, kind: str, cure: str
+) -> dict[str, Any]:
+    """
+    Return the named arrays that a function of a module yields for a path and further words.
+
+    Raises
+    ------
+    FormatError
+        The function raised an error, or took more than `MEMORY` or `SECONDS`; the ``kind`` of file
+        and the cure are for its message.
+    MissingDependencyError
+        The function imports what is not installed.
+
+    """
+    command = [sys.executable, __file__, read.__module__, read.__name__, str(path.absolute())]
+    found = os.pathsep.join(filter(None, sys.path))
+    environment = {**os.environ, 'PYTHONPATH': found, 'OPENBLAS_NUM_THREADS': '1'}
+    try:
+        ended = subprocess.run(
+            [*command, *words], capture_output=True, env=environment, timeout=2 * SECONDS
+        )
+        reason = ended.stderr.decode('utf-8', 'replace').strip().split('\n')[-1]
+    except subprocess.TimeoutExpired:
+        ended, reason = None, ''
+    if reason.startswith('no module '):
+        missing = reason.rsplit(' ', 1)[1]
+        raise MissingDependencyError(
+            f'to read {kind} needs {missing}', where=str(path), cure=f'pip install {missing}'
+        )
+    if ended is None or ended.returncode:
+        is_large = ended is None or ended.returncode < 0 or 'MemoryError' in reason
+        budget = f'it takes more than {MEMORY >> 20} MiB of memory or {SECONDS} s, or is damaged'
+        why = budget if is_large else reason
+        raise FormatError(f'not {kind} that can be read: {why}', where=str(path), cure=cure)
+    with np.load(io.BytesIO(ended.stdout)) as arrays:
+        return {name: arrays[name] for name in arrays.files}
+
+
+def _main(module: str, name: str, path: str, *words: str) -> None:
+    with suppress(ImportError):  # of systems other than Unix, where the parent's clock is left
+        import resource
+
+        for kind, most in (
+            (resource.RLIMIT_AS, MEMORY),
+            (resource.RLIMIT_CPU, SECONDS),
+            (resource.RLIMIT_FSIZE, MEMORY),
+        ):
+            hard = resource.getrlimit(kind)[1]
+            unlimited = hard == resource.RLIM_INFINITY
+            resource.setrlimit(kind, (most if unlimited else min(most, hard), hard))
+    found: dict[str, Any] = {}
+    try:
+        for each, array in getattr(import_module(module), name)(path, *words):
+            found[each] = array
+            if len(found) > _MAX_ARRAYS:
+                raise ValueError(f'more than {_MAX_ARRAYS} arrays')
+        np.savez(sys.stdout.buffer, **found)
+    except ModuleNotFoundError as error:
+        sys.exit(f'no module {error.name}')
+    except Exception as error:
+        sys.exit(reason_of(error))
+
+
+if __name__ == '__main__':
+    _main(*sys.argv[1:])
