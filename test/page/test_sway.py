@@ -21,6 +21,7 @@ from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.simulator.protocol import Simulator  # noqa: E402
 from tree_sway.core.simulator.settings import Settings  # noqa: E402
+from tree_sway.errors import FormatError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.page.protocol import decode_description, decode_tables  # noqa: E402
 from tree_sway.page.scene_state import SceneState  # noqa: E402
@@ -103,3 +104,36 @@ def test_a_stand_sways_as_in_python(tmp_path: Path) -> None:
     ]  # fmt: skip
     found = compared(Scene(trees, 'row').simulator(Settings(), model=20), tmp_path)
     assert found['wrong'] <= 1e-12 * max(1.0, found['greatest'])
+
+
+def test_a_scan_sways_as_in_python(tmp_path: Path) -> None:
+    scan = open_scene(str(SCAN / 'fork.treeqsm24.txt'))
+    found = compared(scan.simulator(Settings()), tmp_path)
+    assert found['wrong'] <= 1e-12 * max(1.0, found['greatest'])
+
+
+def test_what_the_factors_leave_out_is_not_seen(tmp_path: Path) -> None:
+    simulator = open_scene('goldcrest').simulator(Settings(), model=20)
+    received, farthest, left_out = exported(simulator, tmp_path), 0.0, 0.0
+    for wind in gusty(600):
+        simulator.step(wind, DT)
+        received.step(wind)
+        eta = simulator.memory()[1][0, :20]
+        farthest = max(farthest, float(np.abs(eta).max()))
+        left_out = max(left_out, float(np.abs(received.coordinates(0) - eta).max()))
+    assert left_out <= 1e-3 * farthest
+
+
+@pytest.mark.parametrize('cut', [0, 3, 11, 500, -9])
+def test_damaged_tables_are_refused_in_a_sentence(cut: int, tmp_path: Path) -> None:
+    simulator = open_scene('goldcrest').simulator(Settings(), model=6)
+    compared(simulator, tmp_path)
+    whole = (tmp_path / 'tables.bin').read_bytes()
+    (tmp_path / 'tables.bin').write_bytes(whole[:cut])
+    node = str(shutil.which('node'))
+    command = [node, str(HERE / 'sway_vectors.mjs'), str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode != 0
+    assert 'ProtocolError' in done.stderr
+    with pytest.raises(FormatError, match='tables'):
+        decode_tables(whole[:cut])

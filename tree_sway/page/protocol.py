@@ -28,10 +28,10 @@ from tree_sway.core.state.state_basis import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array, check_description
 
-VERSION, FRAME_VERSION = 2, 1
 if TYPE_CHECKING:
     from tree_sway.core.scene.received_scene import ReceivedScene
 
+VERSION, FRAME_VERSION = 2, 1
 MAGIC, TABLES = b'TSWD', b'TSWT'
 """First bytes of a description, and of the tables by which a receiver solves it."""
 

@@ -36,12 +36,11 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
         own['correction'] = (np.linalg.pinv(state / root[:, None]) / root).astype(np.float32)
         arrays |= {f'{number}/{name}': array for name, array in own.items()}
         entries.append({**numbers, 'drag_law': list(model.drag_law)})
-    is_scene = isinstance(simulator, SceneSimulator)
     count = sum(len(kind.numbers) for kind in kinds)
     arrays['tree_speed'] = np.ones(count, dtype=np.float32)
     header: dict[str, object] = {'format': 'tree_sway tables', 'description': identity}
     header |= {'kinds': entries, 'anemometer': None, 'convection_ratio': 1.0}
-    if is_scene:
+    if isinstance(simulator, SceneSimulator):
         arrays['tree_speed'][:] = simulator.speeds
         ratio = simulator.convection_ratio
         anemometer = simulator.anemometer

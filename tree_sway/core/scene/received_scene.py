@@ -91,11 +91,12 @@ class ReceivedScene:
                         [rows[0], rows[1], rows[2] + rows[3], rows[4], rows[5], rows[6] + rows[7]]
                     )
                 own[name][:, :size] = rows
-        self._standing = np.zeros(len(places), dtype=STANDING)
-        rows = self._standing
-        rows['kind'], rows['pace'], rows['at'] = self._kind_of, pace.ravel(), places[:, :3]
-        rows['scale'], rows['speed'] = places[:, 4], speeds
-        rows['cosine'], rows['sine'] = np.cos(0.5 * places[:, 3]), np.sin(0.5 * places[:, 3])
+        standing = self._standing = np.zeros(len(places), dtype=STANDING)
+        standing['kind'], standing['pace'] = self._kind_of, pace.ravel()
+        standing['at'] = places[:, :3]
+        standing['scale'], standing['speed'] = places[:, 4], speeds
+        half = 0.5 * places[:, 3]
+        standing['cosine'], standing['sine'] = np.cos(half), np.sin(half)
         self._gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
 
     def step(self, wind: ArrayLike) -> int:

@@ -221,12 +221,14 @@ export class TreeState {
    * @returns {boolean} whether the load was that of the table's edge */
   step(half, whole, wx, wy, wz) {
     const { table, eta, rate, force } = this;
-    const { m, mostPressure, stiffness } = table;
+    const { m, mostPressure, mostEnergy, stiffness } = table;
     const [middle, paced, wanted, diagonal] = table.scratch;
     const speed = Math.sqrt(wx * wx + wy * wy + wz * wz);
     const drag = table.pressure(speed);
     let isHeld = drag * speed * speed > mostPressure;
+    let before = 0;
     for (let i = 0, at = 0; i < m; i++, at += 6) {
+      before += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
       middle[i] = half[at] * eta[i] + half[at + 1] * rate[i] + half[at + 2] * force[i];
       paced[i] = half[at + 3] * eta[i] + half[at + 4] * rate[i] + half[at + 5] * force[i];
     }
@@ -241,13 +243,15 @@ export class TreeState {
       eta[i] = whole[at] * q + whole[at + 1] * v + whole[at + 2] * f;
       rate[i] = whole[at + 3] * q + whole[at + 4] * v + whole[at + 5] * f;
       force[i] = f;
-      energy += stiffness[i] * eta[i] * eta[i];
+      energy += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
     }
-    if (!(energy <= table.mostEnergy)) {
-      // Further over than any wind holds it; from rest again where it is not a number.
-      const share = energy > 0 && energy < Infinity ? Math.sqrt(table.mostEnergy / energy) : 0;
-      for (let i = 0; i < m; i++) [eta[i], rate[i]] = share ? [share * eta[i], share * rate[i]] : [0, 0];
-      if (!share) force.fill(0);
+    const most = Math.max(before, mostEnergy);
+    if (!(energy <= most)) {
+      // No wind takes it further; from rest again where it is not a number.
+      const share = energy < Infinity ? Math.sqrt(most / energy) : 0;
+      for (const each of share ? [eta, rate] : [eta, rate, force]) {
+        for (let i = 0; i < m; i++) each[i] = share ? share * each[i] : 0;
+      }
       isHeld = true;
     }
     return isHeld;
