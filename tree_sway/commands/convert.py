@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
     add_model_argument(parser)
-    add_output_arguments(parser, OUTPUT_HELP)
+    add_output_arguments(parser, f'{OUTPUT_HELP}, .html')
     parser.add_argument(
         '--sway',
         nargs='?',
@@ -83,7 +83,7 @@ def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
 
 
 def _write_morphing(scene: Scene, arguments: argparse.Namespace) -> None:
-    """Write a tree with morph targets and say what their linear form leaves out."""
+    """Write a tree with morph targets, and an animation of a breeze."""
     if not scene.is_one_tree:
         raise ParameterError(
             'a forest by morph targets', where='--sway', cure='convert its trees one by one'
@@ -91,10 +91,5 @@ def _write_morphing(scene: Scene, arguments: argparse.Namespace) -> None:
     settings = Settings(in_leaf=told_leaves(arguments))
     with waiting('finding what sways'):
         simulator = SwaySimulator(scene.tree, scene.species, settings)
-        document, form = morphing_tree(simulator, drawn_leaves(scene, arguments))
+        document = morphing_tree(simulator, drawn_leaves(scene, arguments))
     write_gltf(arguments.output, document)
-    print(
-        f'  {len(form.names)} weights; in a breeze that moves it by {1e3 * form.motion_rms:.3g} '
-        f'mm (rms; at most {1e3 * form.motion_greatest:.3g}), the linear form is off by '
-        f'{1e3 * form.rms:.2g} mm (at most {1e3 * form.greatest:.2g})'
-    )
