@@ -86,10 +86,11 @@ def test_plot_draws_it(forest: str, tmp_path: Path, arguments: list[str]) -> Non
 
 
 def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -> None:
-    out = tmp_path / 'glade.obj'
+    out = tmp_path / 'glade.gltf'
     assert cli.main(['convert', forest, '-o', str(out)]) == 0
-    objects = [line[2:] for line in out.read_text().splitlines() if line.startswith('o ')]
-    assert objects == ['_'.join(name.split()) for name in open_scene(forest).tree.segment_names]
+    document = json.loads(out.read_text())
+    names = [document['nodes'][joint]['name'] for joint in document['skins'][0]['joints']]
+    assert names == list(open_scene(forest).tree.segment_names)
 
 
 @pytest.mark.parametrize(

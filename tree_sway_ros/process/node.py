@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-import sys
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
@@ -18,7 +17,6 @@ from tree_sway.core.wind.gate import LARGEST_LEAD
 from tree_sway.errors import TreeSwayError
 from tree_sway_ros.parameters.declaration import ParameterValues
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
-from tree_sway_ros.parameters.origin import own_names
 from tree_sway_ros.process.guard import CallbackGuard
 from tree_sway_ros.process.reporter import Reporter
 from tree_sway_ros.process.rivals import Rivals
@@ -63,9 +61,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     def __init__(self, name: str, **options: Any) -> None:
         # Made first: rclpy's own subscriptions and services are guarded as well.
         self.guard = CallbackGuard(lambda text: self.get_logger().error(text))
-        own = {each.name for each in options.get('parameter_overrides') or ()}
-        if options.get('use_global_arguments', True):
-            own |= own_names([*sys.argv, *(options.get('cli_args') or ())], name)
         Node.__init__(self, name, automatically_declare_parameters_from_overrides=True, **options)
         self.failure: Exception | None = None
         self.is_done = self.is_active = False
@@ -73,13 +68,8 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         self._alone: dict[str, Rivals] = {}
         self._closers: list[Callable[[], None]] = []
         try:
-            self.values = ParameterValues(
-                self,
-                NODE_PARAMETERS[name],
-                self.on_change,
-                self.check_values,
-                lambda parameter: parameter in own,
-            )
+            table = NODE_PARAMETERS[name]
+            self.values = ParameterValues(self, table, self.on_change, self.check_values)
             self._be_managed()
             if self.values['autostart']:
                 self._start_by_itself()

@@ -104,7 +104,7 @@ def run(arguments: argparse.Namespace) -> int:
                     for name, process in processes.items():
                         _check(name, process)
                         seen[name].append(health(since, process.pid))
-                    print(_line(seen, monitor.take_recent().arrivals.rate), flush=True)
+                    print(_line(seen, monitor.take_recent().poses.rate), flush=True)
                     monitor.spin(min(period, seconds - since))
         code = _told(monitor, reports, seen, rate, arguments.slope)
     return code
@@ -220,7 +220,7 @@ def _wait_for_poses(
 ) -> None:
     deadline = time.monotonic() + _PATIENCE
     while (
-        not (monitor.totals.arrivals.count and monitor.totals.wind.count) and not ending.is_asked
+        not (monitor.totals.poses.count and monitor.totals.wind.count) and not ending.is_asked
     ):
         for name, process in processes.items():
             _check(name, process)

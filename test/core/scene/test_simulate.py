@@ -64,7 +64,7 @@ def test_the_record_as_text_is_read_back(fork):
     text = record.to_csv()
     assert text.startswith('time [s],wind_x [m/s],wind_y [m/s],wind_z [m/s],moment_x [N m]')
     rows = np.loadtxt(io.StringIO(text), delimiter=',', skiprows=1)
-    assert rows.shape == (7, 12)
+    assert rows.shape == (7, 13)
     assert rows[:, 7:10] == pytest.approx(record.tips[:, 0], rel=1e-8, abs=1e-12)
     assert len(repr(record)) < 120
     pandas = pytest.importorskip('pandas', reason='pandas is not installed')

@@ -16,10 +16,12 @@ from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.simulator.assembly import CalibratedTree
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.pose_ends import tips_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.frame_means import recorded_means
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
 
@@ -110,14 +112,17 @@ class Rig:
     ) -> SwayRecord:
         """Sway the tree in a wind from rest, as `simulate`, whatever it went through before."""
         means, chosen = _step_means(wind, rate, seconds), _chosen(self.tree, branches)
-        simulator = self._at_rest()
+        simulator, gauge = self._at_rest(), StrengthGauge(self.calibrated)
+        strain = np.empty((len(means), len(chosen)))
         rest = tips_of_poses(self.tree, simulator.place(), chosen)
         tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
         poses, every = np.empty((self.tree.n_segments, 7)), max(len(means) // 100, 1)
         for step, mean in enumerate(means):
             simulator.step(mean, 1.0 / rate)
             tips[step] = tips_of_poses(self.tree, simulator.place(poses), chosen) - rest
-            moment[step] = self.base.of(simulator.rotations())
+            rotations = simulator.rotations()
+            moment[step] = self.base.of(rotations)
+            strain[step] = gauge.read(rotations, moment[step])[chosen]
             if progress is not None and step % every == 0:
                 progress(step / len(means))
         return SwayRecord(
@@ -130,7 +135,32 @@ class Rig:
             tips,
             moment,
             self.base.strain(moment),
+            strain,
+            gauge.use(),
         )
+
+    def strength_curve(
+        self, speeds: ArrayLike, *, rng: np.random.Generator, seconds: float = 60.0
+    ) -> list[StrengthUse]:
+        """
+        Find the shares of strength used in turbulence of each of some mean speeds.
+
+        Parameters
+        ----------
+        speeds
+            Mean speeds in [m/s], (n,).
+        rng
+            Where the turbulence comes from; all speeds have the same gusts, faster.
+        seconds
+            Length of each wind in [s].
+
+        """
+        seed, used = int(rng.integers(2**32)), []
+        for speed in np.asarray(speeds, dtype=np.float64).tolist():
+            same = np.random.default_rng(seed)
+            wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=same)
+            used.append(self.run(wind).strength)
+        return used
 
     def _at_rest(self) -> SwaySimulator:
         """Return the simulator at rest; one that chooses its model by its winds is made again."""

@@ -64,9 +64,7 @@ def state_basis(simulator: SwaySimulator) -> StateBasis:
     return replace(basis, error=error)
 
 
-def _run(
-    simulator: SwaySimulator, speed: float, seed: int, turns: float
-) -> Iterator[Floats]:
+def _run(simulator: SwaySimulator, speed: float, seed: int, turns: float) -> Iterator[Floats]:
     """Key rotations in a wind that turns about the tree a number of times."""
     rng = np.random.default_rng(seed)
     wind = simulate_turbulence(speed, rate=1.0 / _DT, duration=_STEPS * _DT, rng=rng)

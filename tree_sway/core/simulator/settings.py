@@ -171,4 +171,3 @@ def model_of(given: object) -> int | str:
         cure=f'{near + ", or " if near else ""}use one of: {", ".join(MODELS)}, or a number of '
         f'coordinates from 0 to {MOST}',
     )
-
