@@ -92,6 +92,7 @@ class SceneSimulator:
     ) -> None:
         """Make a table for every kind that needs one, and a simulator for every other tree."""
         self.trees, self.settings, self.name = tuple(trees), settings, name
+        self.anemometer, self.convection_ratio = anemometer, convection_ratio
         self.names = tuple(each.name for each in trees)
         models = [settings.model if each.model is None else each.model for each in trees]
         self._kinds, self._kind_numbers = kinds_of(trees)
@@ -316,6 +317,12 @@ class SceneSimulator:
         kinds = np.where(self._is_shared, self._standing['kind'], -1)
         pairs = enumerate(zip(self._models, self._banks, strict=True))
         return [(model, bank, np.flatnonzero(kinds == k)) for k, (model, bank) in pairs]
+
+    @property
+    def speeds(self) -> Floats:
+        """Wind of each tree over that of its kind, (t,)."""
+        speeds: Floats = self._standing['speed']
+        return speeds
 
     def shares(self, numbers: Ints) -> Floats:
         """How much trees of one kind bend in each shape, (t, m)."""
