@@ -23,7 +23,7 @@ from tree_sway.page.placer import Placer  # noqa: E402
 from tree_sway.page.protocol import decode_description  # noqa: E402
 from tree_sway_ros.commands.record import _MORE, _USUAL, Recorder  # noqa: E402
 from tree_sway_ros.process.topics import TREE_DESCRIPTION, TREE_STATE  # noqa: E402
-from tree_sway_ros.wire.tree_state import read_state_entry  # noqa: E402
+from tree_sway_ros.wire.tree_state import read_state, read_state_entry  # noqa: E402
 
 CONFIG = Path(__file__).resolve().parents[2] / 'config'
 DEADLINE = 60.0
@@ -64,7 +64,7 @@ def test_a_recorded_state_can_be_drawn_again(
     assert (np.diff(stamps) > 0).all()
     entry = read_state_entry(json.loads(found[TREE_DESCRIPTION.name][-1].data))
     description = decode_description(entry)
-    moved = [np.ptp(column) for column in np.array([each.position for each in states]).T]
+    moved = [np.ptp(column) for column in np.array([read_state(each)[1] for each in states]).T]
     assert max(moved) > 1e-6
     assert len(moved) == len(description.scale)
     assert Placer(description).n_segments == 7
