@@ -56,6 +56,11 @@ LONGEST_TRANSPORT = 2 * SECOND
 CLOCK_RESET = SECOND
 """Backward step in [ns] that is a clock set back (a bag that loops), not samples out of order."""
 
+JUMP_FLOOR = 1.0
+"""Change between two samples that is always believed in [m/s]: resolution and small eddies."""
+JUMP_FRACTION = 0.25
+"""Such a change, in addition, as a fraction of the speed in [-]; eddies grow with the wind."""
+
 
 class Reason(str, Enum):
     """Why a sample was refused, or ``accepted``."""
@@ -148,10 +153,6 @@ class WindGate:
         Time in [s] after which a change is believed, however sudden.
     frozen_after
         Time in [s] of equal samples, other than zero, after which the sensor counts as frozen.
-    jump_floor
-        Change between two samples that is always believed in [m/s]: resolution and small eddies.
-    jump_fraction
-        Such a change, in addition, as a fraction of the speed in [-]; eddies grow with the wind.
 
     Raises
     ------
@@ -166,9 +167,6 @@ class WindGate:
         max_rate: float = 20.0,
         longest_refusal: float = 0.5,
         frozen_after: float = 10.0,
-        *,
-        jump_floor: float = 1.0,
-        jump_fraction: float = 0.25,
     ) -> None:
         """Open the gate with no sample seen."""
         self._max_speed = within('max_speed', max_speed, 0.0, FASTEST_WIND, 'm/s', above=True)
@@ -176,8 +174,6 @@ class WindGate:
         refusal = within('longest_refusal', longest_refusal, 0.0, 60.0, 's')
         frozen = within('frozen_after', frozen_after, 0.0, 1e5, 's', above=True)
         self._longest_refusal, self._frozen_after = round(SECOND * refusal), round(SECOND * frozen)
-        self._jump_floor = within('jump_floor', jump_floor, 0.0, 100.0, 'm/s')
-        self._jump_fraction = within('jump_fraction', jump_fraction, 0.0, 10.0)
         self.counts = GateCounts()
         self.reset()
 
@@ -308,8 +304,8 @@ class WindGate:
         since = math.inf if self._good_time is None else 1e-9 * (time - self._good_time)
         # While a new level fades in, its end is a return to the level before.
         for level in (self._good, self._before or self._good):
-            allowed = self._max_rate * since + self._jump_floor
-            if math.dist((x, y, z), level) <= allowed + self._jump_fraction * math.hypot(*level):
+            allowed = self._max_rate * since + JUMP_FLOOR
+            if math.dist((x, y, z), level) <= allowed + JUMP_FRACTION * math.hypot(*level):
                 return Reason.ACCEPTED
         if self._refused_since is None:
             self._refused_since = time
