@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.checks import array_to_fill
+from tree_sway.core.checks import array_to_fill, three_numbers
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.records import zeros_in_lines
@@ -49,7 +49,7 @@ from tree_sway.core.simulator.simulator import (
 from tree_sway.core.tree.pose_ends import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.gust_travel import GustHistory
-from tree_sway.core.wind.limits import take_wind
+from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import nearest, ParameterError, TreeSwayError
 
 _NO_TABLES: Records = np.zeros(0, dtype=STANDING)
@@ -219,7 +219,10 @@ class SceneSimulator:
         refuse_time_step(dt)
         status = OK
         # The history must not remember what no tree would take.
-        if not take_wind(self._wind, wind_mean, self.settings.max_wind):
+        wind = three_numbers('wind', wind_mean)
+        if is_wind(*wind, self.settings.max_wind):
+            self._wind[:] = wind
+        else:
             status = WIND_REFUSED
             self._counts.refused += 1
         has_glided = [model.glide(dt) for model in self._models]
