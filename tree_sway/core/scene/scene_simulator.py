@@ -161,12 +161,6 @@ class SceneSimulator:
         shared = sum(m.n_solved * n for m, n in self._moving())
         return shared + sum(sim.n_solved for sim in self.own.values())
 
-    @property
-    def n_copied(self) -> int:
-        """Branches that copy the motion of another."""
-        shared = sum(m.n_copied * n for m, n in self._moving())
-        return shared + sum(sim.n_copied for sim in self.own.values())
-
     def _moving(self) -> list[tuple[SwaySimulator, int]]:
         """Return each table's model, and how many trees sway on it."""
         moving = self._standing['kind'][self._standing['is_still'] == 0]
@@ -316,11 +310,6 @@ class SceneSimulator:
             last = np.arange(m) >= self._numbers[those, None]
             self._instances['left_out'][those] = left_out
             self._instances['faded'][those] = last
-
-    @property
-    def held(self) -> tuple[str, ...]:
-        """Names of the trees whose load was at the edge of their table in the last step."""
-        return tuple(self.names[t] for t in np.flatnonzero(self._standing['is_held']))
 
     @property
     def shared(self) -> list[tuple[SwaySimulator, WindBasisBank, Ints]]:

@@ -78,14 +78,6 @@ class SwayRecord:
         names = enumerate(self.branch_names)
         return found | {f'{name} largest strain [-]': self.strain[:, k] for k, name in names}
 
-    def to_csv(self) -> str:
-        """Return the record as comma-separated values under one line of names and units."""
-        columns = self.columns()
-        head = ','.join(f'"{name}"' if ',' in name else name for name in columns)
-        table = np.stack([*columns.values()], axis=1)
-        rows = (','.join(f'{value:.9g}' for value in row) for row in table)
-        return '\n'.join((head, *rows, ''))
-
     def __repr__(self) -> str:
         """Name tree, model, length and the largest motion of the first tip on one line."""
         largest = float(np.linalg.norm(self.tips[:, 0], axis=1).max())
