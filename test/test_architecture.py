@@ -37,7 +37,7 @@ STOREYS = {
     'motion': 4,
     'reference': 5, 'state': 5,
     'simulator': 6,
-    'fidelity': 7, 'identification': 7,
+    'fidelity': 7, 'identification': 7, 'strength': 7,
     'scene': 8,
 }  # fmt: skip
 #: Most files in one folder.

@@ -168,7 +168,7 @@ def test_a_missing_module_of_ours_is_a_fault_and_not_hidden(
 
 
 def test_quiet_leaves_errors_alone(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    out = str(tmp_path / 'tree.obj')
+    out = str(tmp_path / 'tree.glb')
     assert cli.main(['convert', 'goldcrest', '-o', out, '--quiet']) == 0
     assert capsys.readouterr().err == ''
     assert cli.main(['info', 'nope', '--quiet']) == 2
@@ -179,7 +179,7 @@ def test_quiet_leaves_errors_alone(capsys: pytest.CaptureFixture[str], tmp_path:
 def test_a_file_that_is_there_is_not_written_over_in_silence(
     command: list[str], capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    path = tmp_path / 'tree.obj'
+    path = tmp_path / 'tree.glb'
     path.write_text('mine')
     assert cli.main([*command, '-o', str(path)]) == 2
     assert 'is there already; name another file, or write over it' in capsys.readouterr().err
@@ -187,7 +187,7 @@ def test_a_file_that_is_there_is_not_written_over_in_silence(
 
 
 def test_a_file_is_written_over_with_force(tmp_path: Path) -> None:
-    path = tmp_path / 'tree.obj'
+    path = tmp_path / 'tree.glb'
     path.write_text('mine')
     assert cli.main(['convert', 'goldcrest', '-o', str(path), '--force']) == 0
     assert path.read_text() != 'mine'
@@ -260,7 +260,7 @@ def test_names_outside_ascii_on_an_ascii_terminal(tmp_path: Path) -> None:
             'convert',
             'benjamina',
             '-o',
-            'Bäume.obj',
+            'Bäume.glb',
         ],
         cwd=tmp_path,
         env={**os.environ, 'PYTHONIOENCODING': 'ascii'},
@@ -269,5 +269,5 @@ def test_names_outside_ascii_on_an_ascii_terminal(tmp_path: Path) -> None:
         check=False,
     )
     assert (result.returncode, result.stderr) == (0, '')
-    assert r'B\xe4ume.obj: benjamina' in result.stdout
-    assert (tmp_path / 'Bäume.obj').is_file()
+    assert r'B\xe4ume.glb: benjamina' in result.stdout
+    assert (tmp_path / 'Bäume.glb').is_file()

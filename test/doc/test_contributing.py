@@ -104,8 +104,8 @@ CHANGES = {
         'tree_sway/core/wind/simulated/gust_event.py',
         "    'step': _Shape(lambda x: x, lasts=True),\n",
         "    'step': _Shape(lambda x: x, lasts=True),\n    'surge': _Shape(lambda x: x * x),\n",
-        'from tree_sway.core.wind.simulated.gust_event import gust;'
-        "print(gust('surge', 1.0, 4.0, 2.0))",
+        'from tree_sway.core.wind.simulated.gust_event import GustEvent;'
+        "print(GustEvent('surge', 4.0, 2.0).at(1.0))",
         '1.0',
     ),
     'flutter': (

@@ -89,7 +89,7 @@ def test_an_odd_request_is_answered_by_400_and_one_counted_line(
     for count in range(1, 21):
         answer = answer_to(server.port, ODD_REQUESTS[name] + b'Connection: close\r\n\r\n')
         assert answer.split()[1] == b'400', answer[:200]
-        assert server._counts['refused'] == count
+        assert server.n_refused == count
     assert len(lines_of(caplog)) == 1
     assert not caplog.records[0].exc_info
 
@@ -156,7 +156,7 @@ def test_an_odd_text_ends_the_line_and_is_counted(
         assert ws.close_code == aiohttp.WSCloseCode.POLICY_VIOLATION
 
     run(server, script)
-    assert server._counts['refused'] == 1
+    assert server.n_refused == 1
     assert len(lines_of(caplog)) == 1
 
 

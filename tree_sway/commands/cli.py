@@ -34,7 +34,7 @@ _OWN = {
         'make a tree of a species and a height',
         'grow --species oak --height 12 -o oak.yaml',
     ),
-    'convert': ('write a tree in another format', 'convert goldcrest -o goldcrest.obj'),
+    'convert': ('write a tree in another format', 'convert goldcrest -o goldcrest.glb'),
     'calibrate': (
         'fit modulus and damping to one measured sway',
         'calibrate goldcrest --frequency 3 -o measured.yaml',

@@ -15,7 +15,7 @@ from tree_sway.commands.arguments import (
     output_path,
     write_tree_file,
 )
-from tree_sway.core.growth.grow import grow, HABITS
+from tree_sway.core.growth.grow import grow
 from tree_sway.core.simulator.assembly import CalibratedTree
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.grown_tree import rooted
@@ -36,7 +36,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='M',
         help='at breast height [m]; from the height if left out',
     )
-    add('--habit', choices=HABITS, help="the species' own if left out")
     add('--seed', type=int, default=0, help='another seed, another tree (%(default)s)')
     add_output_arguments(parser, OUTPUT_HELP)
 
@@ -53,7 +52,6 @@ def run(arguments: argparse.Namespace) -> int:
         species.key,
         arguments.height,
         arguments.diameter,
-        arguments.habit,
         rng=np.random.default_rng(arguments.seed),
     )
     species = rooted(tree, species)

@@ -24,16 +24,20 @@ from tree_sway.commands.arguments import (
 from tree_sway.commands.progress import bar, waiting
 from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
+from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.wind.convention import velocity_of_bearing
 from tree_sway.errors import ParameterError, TreeError
 from tree_sway.page.wind_source import RecordedWind
+from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.pictures.pictures import picture_in_wind
-from tree_sway.pictures.plots import plot_wind_and_tip
+from tree_sway.pictures.plots import plot_strength, plot_wind_and_tip
 
 _SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
 _RATE = 60.0
+_CURVES = 12
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,6 +48,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action='store_true',
         help='draw the tree at rest and, beside it, in a steady wind',
     )
+    strength = 'draw the share of its strength that each tree uses, up to --speed (30 m/s)'
+    parser.add_argument('--strength', action='store_true', help=strength)
+    parser.set_defaults(speed=None)
     parser.add_argument(
         '--from',
         dest='bearing',
@@ -63,10 +70,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Draw, and say where the picture is."""
     if not 0.0 < arguments.seconds <= 3600.0:
         raise ParameterError(f'{arguments.seconds:g} s', where='--seconds', cure='give 0 to 3600')
+    if arguments.speed is None:
+        arguments.speed = 30.0 if arguments.strength else 10.0 if arguments.portrait else 6.0
     _refuse_bearing(arguments)
     output = output_path(arguments, 'sway.png')
     scene = opened_scene(arguments)
-    draw = _portrait if arguments.portrait else _motion
+    draw = _strength if arguments.strength else _portrait if arguments.portrait else _motion
     draw(scene, arguments, output)
     print(output)
     return 0
@@ -105,6 +114,23 @@ def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
         light = scene.simulator(**model, gravity=0.0)
         print(f'note: without its own weight, as it cannot stand: {error}', file=sys.stderr)
         return light
+
+
+def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
+    """Draw the strength that each tree uses over wind speed, and print it."""
+    if len(scene.trees) > _CURVES:
+        raise ParameterError(
+            f'{len(scene.trees)} trees', where='--strength', cure=f'give {_CURVES} or fewer'
+        )
+    speeds, used = np.linspace(0.0, SWAY['mean_speed'].checked(arguments.speed), 7)[1:], {}
+    for each in bar(scene.trees, 'loading trees'):
+        leaf_on = told_leaves(arguments) if each.leaf_on is None else each.leaf_on
+        tree = PlacedTree(each.name, each.placed(), species=each.species)
+        rig = Rig(tree, model=arguments.model, in_leaf=leaf_on)
+        used[each.name] = rig.strength_curve(speeds, rng=np.random.default_rng(0))
+        for speed, use in zip(speeds, used[each.name], strict=True):
+            print(f'{each.name} in {speed:.3g} m/s: {use}')
+    plot_strength(speeds, used, output)
 
 
 def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:

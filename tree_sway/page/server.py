@@ -16,9 +16,11 @@ from collections.abc import Callable, Mapping
 import contextlib
 from dataclasses import dataclass, field
 from html import escape
+from importlib import resources
 import json
 import logging
 import math
+from pathlib import Path
 import socket
 import ssl
 import threading
@@ -32,7 +34,6 @@ from tree_sway.errors import TransportError
 from tree_sway.page.access import given_token, is_token, read_token, refusal, require_token
 from tree_sway.page.controls import ControlPanel, Value
 from tree_sway.page.doorkeeper import Doorkeeper
-from tree_sway.page.static_files import StaticFiles
 
 LARGEST_MESSAGE = 4096
 """Longest message that a client may send in [bytes]."""
@@ -58,6 +59,7 @@ _FORM = (
 _LOGGER = logging.getLogger('tree_sway.page')
 _START_TIMEOUT = 10.0
 _SEND_TIMEOUT = 5.0
+_STATIC = Path(str(resources.files('tree_sway.page'))) / 'static'
 _HEADERS = {
     'Content-Security-Policy': "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'",
     'X-Content-Type-Options': 'nosniff',
@@ -163,7 +165,8 @@ class PageServer:
         self._failure: Exception | None = None
         self._ending: asyncio.Event | None = None
         self._is_woken = False
-        self._counts = dict.fromkeys(('sent', 'bytes', 'refused', 'closed_idle'), 0)
+        self.n_refused = 0
+        """Requests and messages that were refused."""
         self._complained = -_COMPLAINT_PERIOD
         self._doors = Doorkeeper(4 * settings.max_clients, self._complain)
         self._thread = threading.Thread(target=self._run, name='page', daemon=True)
@@ -275,12 +278,11 @@ class PageServer:
 
     async def _serve(self) -> None:
         self._ending = asyncio.Event()
-        files, app = StaticFiles(), web.Application(middlewares=[self._guard])
-        app.router.add_get('/', files.index)
+        app = web.Application(middlewares=[self._guard])
+        app.router.add_get('/', _index)
         app.router.add_get('/stream', self._stream)
         app.router.add_get('/healthz', self._health)
-        app.router.add_get('/metrics', self._metrics)
-        app.router.add_get('/static/{name:.+}', files.serve)
+        app.router.add_static('/static/', _STATIC)
         app.on_response_prepare.append(_add_headers)
         logger = logging.Logger('page')
         logger.addHandler(_Complaints(self._complain))
@@ -309,12 +311,11 @@ class PageServer:
 
     def _complain(self, what: str) -> None:
         """Count what was refused, and log a line now and then."""
-        self._counts['refused'] += 1
+        self.n_refused += 1
         now = time.monotonic()
         if now - self._complained >= _COMPLAINT_PERIOD:
             self._complained = now
-            count = self._counts['refused']
-            _LOGGER.warning('%s (%d refused since the start)', what[:200], count)
+            _LOGGER.warning('%s (%d refused since the start)', what[:200], self.n_refused)
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
@@ -336,6 +337,8 @@ class PageServer:
         except ValueError as error:
             return self._refused(400, f'not understood: {error}')
         response: web.StreamResponse = await handler(request)
+        if isinstance(response, web.FileResponse) and _takes_packed(request):
+            response.enable_compression(web.ContentCoding.gzip)
         return response
 
     def _refused(self, status: int, why: str, *, with_form: bool = False) -> web.Response:
@@ -349,22 +352,6 @@ class PageServer:
 
     async def _health(self, _request: web.Request) -> web.Response:
         return web.json_response({'status': 'ok', 'described': bool(self._description)})
-
-    async def _metrics(self, _request: web.Request) -> web.Response:
-        values: dict[str, object] = {
-            'clients': len(self._clients),
-            'connections': self._doors.n_open,
-            'frames_total': self._frame[0] + 1,
-            'sent_total': self._counts['sent'],
-            'sent_bytes_total': self._counts['bytes'],
-            'refused_total': self._counts['refused'],
-            'closed_total': self._counts['closed_idle'] + self._doors.n_closed,
-        }
-        lines = []
-        for name, value in values.items():
-            kind = 'counter' if name.endswith('_total') else 'gauge'
-            lines += [f'# TYPE tree_sway_page_{name} {kind}', f'tree_sway_page_{name} {value}']
-        return web.Response(text='\n'.join(lines) + '\n')
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         if len(self._clients) >= self.settings.max_clients:
@@ -423,7 +410,7 @@ class PageServer:
         name = change.get('name')
         why = self._panel.set(name, change.get('value'))
         if why is not None:
-            self._counts['refused'] += 1
+            self.n_refused += 1
             refused = {'name': str(name)[:80], 'reason': why[:400]}
             client.texts.append(json.dumps({'refused': refused, 'values': self._panel.values()}))
             return
@@ -467,8 +454,6 @@ class PageServer:
         client.next_due = max(client.next_due + client.period, now)
         client.credit -= 1
         client.sent = number
-        self._counts['sent'] += 1
-        self._counts['bytes'] += len(frame)
         await client.socket.send_bytes(frame)
 
     async def _send_status(self) -> None:
@@ -485,7 +470,6 @@ class PageServer:
 
     def _drop(self, client: _Client) -> None:
         """Close a client that does not read, without waiting for it."""
-        self._counts['closed_idle'] += 1
         self._clients.discard(client)
         if client.transport is not None:
             client.transport.abort()
@@ -510,6 +494,17 @@ def _number(message: dict[str, Any], name: str, low: float, high: float) -> floa
     if type(value) not in (int, float) or not low <= value <= high:
         raise ValueError(f'{name} out of {low:g} .. {high:g}')
     return float(min(value, _LARGEST_PING))
+
+
+async def _index(_request: web.Request) -> web.FileResponse:
+    return web.FileResponse(_STATIC / 'index.html')
+
+
+def _takes_packed(request: web.Request) -> bool:
+    """Whether a file may be packed; not where it may be none, as aiohttp packs that as well."""
+    headers = request.headers
+    is_sent = request.method == 'GET' and not {'If-None-Match', 'If-Modified-Since'} & {*headers}
+    return is_sent and 'gzip' in headers.get('Accept-Encoding', '')
 
 
 async def _add_headers(_request: web.Request, response: web.StreamResponse) -> None:

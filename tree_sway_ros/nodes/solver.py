@@ -171,9 +171,7 @@ class SolverNode(TreeSwayNode):
         set_demand(
             self.simulator.simulators,
             camera=self._camera,
-            tolerance_pixels=self.values['tolerance_angle'],
-            focal_length=1.0,
-            **self.values('tolerance', 'budget'),
+            **self.values('tolerance', 'tolerance_angle', 'budget'),
         )
 
     def slip(self, error: Exception) -> None:

@@ -65,7 +65,6 @@ def _model(simulator: Simulator) -> Status:
     values = {
         'model': simulator.model,
         'branches solved': simulator.n_solved,
-        'branches copied': simulator.n_copied,
         **vars(simulator.counts),
     }
     trees = simulator.simulators

@@ -167,11 +167,10 @@ def test_a_wind_beyond_the_table_is_held_and_counted(kinds):
     stand = swaying([PlacedTree(f't{i}', kinds['fork'], x=i) for i in range(3)], **EVEN)
     assert stand.step((60.0, 0.0, 0.0), DT) == LOAD_HELD
     assert stand.counts.held == 3
-    assert stand.held == ('t0', 't1', 't2')
     assert stand.step((1.0, 0.0, 9.0), DT) == 0
     assert stand.step((0.0, 0.0, 9.0), DT) == 0
     assert stand.step((2.0, 0.0, 0.0), DT) == 0
-    assert stand.held == ()
+    assert stand.counts.held == 3
     for _ in range(600):
         stand.step((60.0, 20.0, 5.0), DT)
     assert np.isfinite(stand.place()).all()

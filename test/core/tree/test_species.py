@@ -8,8 +8,7 @@ import dataclasses
 
 import pytest
 
-from tree_sway.core.tree.species import species_keys, species_like, species_named
-from tree_sway.core.tree.species_table import NAMES
+from tree_sway.core.tree.species import NAMES, species_keys, species_like, species_named
 from tree_sway.errors import SpeciesError
 
 

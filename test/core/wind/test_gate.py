@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.wind.gate import LARGEST_LEAD, Reason, SECOND, WindGate
-from tree_sway.core.wind.simulated.gust_event import gust
+from tree_sway.core.wind.simulated.gust_event import GustEvent
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
@@ -42,7 +42,7 @@ def record_with_spikes_and_gusts(seed, mean_speed):
     time = np.arange(n) / 20.0
     for start in 10.0 + 45.0 * np.arange(40):
         duration, amplitude = rng.uniform(1.5, 6.0), rng.uniform(4.0, 12.0)
-        wind[:, 0] += gust('one_minus_cos', time, amplitude, duration, start)
+        wind[:, 0] += GustEvent('one_minus_cos', amplitude, duration, start).at(time)
     at = 20 * rng.choice(n // 20, 180, replace=False) + rng.integers(0, 10, 180)
     direction = rng.normal(size=(180, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)

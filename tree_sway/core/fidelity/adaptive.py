@@ -75,8 +75,6 @@ class AdaptiveSimulator(SwaySimulator):
         Largest error of the tips in [m], root mean square over time and tips.
     budget
         Largest cost of a step and a placing in [us]; 0 for none.
-    expected
-        The wind to start for; a fresh breeze of 8 m/s if None.
 
     """
 
@@ -91,7 +89,6 @@ class AdaptiveSimulator(SwaySimulator):
         *,
         tolerance: float = 0.005,
         budget: float = 0.0,
-        expected: WindClimate | None = None,
         kept: Kept | None = None,
     ) -> None:
         """Make the tree on all coordinates, and judge how many the expected wind asks for."""
@@ -102,7 +99,7 @@ class AdaptiveSimulator(SwaySimulator):
         self.cost_scale = 1.0
         """Cost here over the cost that is estimated: set it once it is measured."""
         self._touched_for = 0.0
-        self._expected_wind = expected or WindClimate.steady(8.0, 0.2)
+        self._expected_wind = WindClimate.steady(8.0, 0.2)  # a fresh breeze
         self._shares = np.zeros(self.bank.oscillators.shapes.shape[1])
         self._wanted = np.zeros(1)
         self._expect()

@@ -92,6 +92,7 @@ class SceneSimulator:
     ) -> None:
         """Make a table for every kind that needs one, and a simulator for every other tree."""
         self.trees, self.settings, self.name = tuple(trees), settings, name
+        self.anemometer, self.convection_ratio = anemometer, convection_ratio
         self.names = tuple(each.name for each in trees)
         models = [settings.model if each.model is None else each.model for each in trees]
         self._kinds, self._kind_numbers = kinds_of(trees)
@@ -159,12 +160,6 @@ class SceneSimulator:
         """Branches that are solved, of kinds once for each tree."""
         shared = sum(m.n_solved * n for m, n in self._moving())
         return shared + sum(sim.n_solved for sim in self.own.values())
-
-    @property
-    def n_copied(self) -> int:
-        """Branches that copy the motion of another."""
-        shared = sum(m.n_copied * n for m, n in self._moving())
-        return shared + sum(sim.n_copied for sim in self.own.values())
 
     def _moving(self) -> list[tuple[SwaySimulator, int]]:
         """Return each table's model, and how many trees sway on it."""
@@ -317,16 +312,17 @@ class SceneSimulator:
             self._instances['faded'][those] = last
 
     @property
-    def held(self) -> tuple[str, ...]:
-        """Names of the trees whose load was at the edge of their table in the last step."""
-        return tuple(self.names[t] for t in np.flatnonzero(self._standing['is_held']))
-
-    @property
     def shared(self) -> list[tuple[SwaySimulator, WindBasisBank, Ints]]:
         """Each model in a frame of its own, its table, and the trees that share it."""
         kinds = np.where(self._is_shared, self._standing['kind'], -1)
         pairs = enumerate(zip(self._models, self._banks, strict=True))
         return [(model, bank, np.flatnonzero(kinds == k)) for k, (model, bank) in pairs]
+
+    @property
+    def speeds(self) -> Floats:
+        """Wind of each tree over that of its kind, (t,)."""
+        speeds: Floats = self._standing['speed']
+        return speeds
 
     def shares(self, numbers: Ints) -> Floats:
         """How much trees of one kind bend in each shape, (t, m)."""

@@ -40,10 +40,6 @@ class Simulator(Protocol):
         """Branches that are solved."""
 
     @property
-    def n_copied(self) -> int:
-        """Branches that copy the motion of another."""
-
-    @property
     def wind(self) -> Floats:
         """Wind of the last step in [m/s], (3,)."""
 

@@ -22,6 +22,7 @@ from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.state.tree_state import digest_of, refuse_version, TreeState
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
+from tree_sway.core.tree.pose_ends import ends_of_poses
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.limits import components_of, is_wind
@@ -135,7 +136,6 @@ class SwaySimulator:
         self._filled = self._poses
         self._origin = tree.start[0].copy()
         self._highest = int(np.argmax(tree.end[:, 2]))
-        self._rest_tip = tree.end[self._highest].copy()
 
     @property
     def model(self) -> str:
@@ -151,11 +151,6 @@ class SwaySimulator:
     def n_solved(self) -> int:
         """Branches that are solved; the others copy."""
         return self.bank.n_solved
-
-    @property
-    def n_copied(self) -> int:
-        """Branches that copy the motion of another."""
-        return self.tree.n_branches - self.bank.n_solved
 
     @property
     def wind(self) -> Floats:
@@ -227,14 +222,6 @@ class SwaySimulator:
         for array in arrays:
             array[...] = state.values[first : first + array.size].reshape(array.shape)
             first += array.size
-
-    def expand(self, state: TreeState, out: Floats | None = None) -> Floats:
-        """Poses of a state, (n, 7), as `place` gives them; the simulator stays as it is."""
-        own = self.state()
-        self.set_state(state)
-        rotations = self.rotations().copy()
-        self.set_state(own)
-        return self.place_rotations(rotations, out)
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,), in the order of `joints`; the same array each time."""
@@ -394,13 +381,9 @@ class SwaySimulator:
     @property
     def tip_displacement(self) -> Floats:
         """Displacement of the highest tip from rest in [m], (3,)."""
-        x, y, z, qx, qy, qz, qw = self.place(self._poses)[self._highest]
-        length = self.tree.length[self._highest]
-        along = np.array(
-            [1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qz * qw), 2 * (qx * qz - qy * qw)]
-        )
-        displacement: Floats = np.array([x, y, z]) + length * along - self._rest_tip
-        return displacement
+        top = slice(self._highest, self._highest + 1)
+        tip = ends_of_poses(self.place(self._poses)[top], self.tree.length[top])[1][0]
+        return np.asarray(tip - self.tree.end[self._highest])
 
     @property
     def base_moment(self) -> Floats:

@@ -6,6 +6,7 @@
  */
 
 import { Connection } from "./connection.js";
+import { OwnLine } from "./own_line.js";
 import { Placer } from "./placing.js";
 import { DELAY, Playout } from "./playout.js";
 
@@ -15,32 +16,37 @@ import { DELAY, Playout } from "./playout.js";
  * @typedef {object} StreamOptions
  * @property {number} [rate] frames per second that are asked for
  * @property {number} [delay] of the playout [ms]
+ * @property {import("./own_line.js").Kept | null} [kept] scene that is solved here, of no server
  */
+
+/** Playout delay of a scene that is solved here [ms]. */
+const OWN_DELAY = 40;
 
 export class TreeStream {
   /** @param {string} page address of the page, with its token if it has one
    * @param {StreamListeners} [listeners] @param {StreamOptions} [options] */
   constructor(page, listeners = {}, options = {}) {
-    this.playout = new Playout(options.delay ?? DELAY);
+    const { kept = null, delay = kept ? OWN_DELAY : DELAY } = options;
+    this.playout = new Playout(delay);
     /** @type {Placer | null} */
     this.placer = null;
-    this.connection = new Connection(
-      streamUrl(page),
-      {
-        onState: (state, retryIn) => listeners.onState?.(state, retryIn),
-        onDescription: (description) => {
-          this.playout.clear();
-          this.placer = null;
-          listeners.onDescription?.(description);
-        },
-        onFrame: (frame, arrival, size) => {
-          this.playout.push(frame, arrival);
-          listeners.onFrame?.(frame, arrival, size);
-        },
-        onMessage: (message) => listeners.onMessage?.(message),
+    /** @type {import("./connection.js").Listeners} */
+    const taking = {
+      onState: (state, retryIn) => listeners.onState?.(state, retryIn),
+      onDescription: (description) => {
+        this.playout.clear();
+        this.placer = null;
+        listeners.onDescription?.(description);
       },
-      options.rate,
-    );
+      onFrame: (frame, arrival, size) => {
+        this.playout.push(frame, arrival);
+        listeners.onFrame?.(frame, arrival, size);
+      },
+      onMessage: (message) => listeners.onMessage?.(message),
+    };
+    this.connection = kept
+      ? new OwnLine(kept, taking, new URL(page).searchParams.get("wind"))
+      : new Connection(streamUrl(page), taking, options.rate);
   }
 
   /** Open the line now, whatever the wait. */

@@ -19,7 +19,8 @@ export const PAUSED = 1;
 export const BEYOND_SCALE = 2;
 export const RESTARTED = 4;
 
-const MAGIC = 0x44575354; // "TSWD"
+/** First bytes of what is sent once. */
+const MAGIC = { description: "TSWD", tables: "TSWT" };
 const FRAME_KIND = 0x46;
 const FRAME_SIZE = 28;
 
@@ -84,24 +85,38 @@ export function decodeDescription(data) {
   }
 }
 
-/** @param {ArrayBuffer} data @returns {Description} */
-function decoded(data) {
+/**
+ * Take a message of a header and arrays apart; a `ProtocolError` if it is none.
+ * @typedef {Record<string, {values: NumberArray, shape: number[]}>} Arrays
+ * @param {ArrayBuffer} data @param {keyof typeof MAGIC} what
+ * @returns {{header: Record<string, any>, kinds: Arrays[], own: Arrays}} own arrays are those of no kind
+ */
+export function unpack(data, what) {
+  try {
+    return unpacked(data, what);
+  } catch (error) {
+    if (error instanceof ProtocolError) throw error;
+    throw new ProtocolError(`not a whole message of ${what} (${String(error).slice(0, 200)})`);
+  }
+}
+
+/** @param {ArrayBuffer} data @param {keyof typeof MAGIC} what */
+function unpacked(data, what) {
   const view = new DataView(data);
-  if (data.byteLength < 12 || view.getUint32(0, true) !== MAGIC) {
-    throw new ProtocolError("not a description: it does not begin with TSWD");
+  const begins = new TextDecoder().decode(new Uint8Array(data, 0, Math.min(4, data.byteLength)));
+  if (data.byteLength < 12 || begins !== MAGIC[what]) {
+    throw new ProtocolError(`no message of ${what}: it does not begin with ${MAGIC[what]}`);
   }
   const version = view.getUint32(4, true);
   if (version !== VERSION) {
-    throw new ProtocolError(`a description of version ${version}: this page reads ${VERSION}`);
+    throw new ProtocolError(`a message of version ${version}: this page reads ${VERSION}`);
   }
   const begin = 12 + view.getUint32(8, true);
   need(begin <= Math.min(data.byteLength, LARGEST_HEADER), "size of the header");
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, begin - 12)));
-  /** @type {Kind[]} */
-  const kinds = header.kinds.map((/** @type {Kind} */ kind) => ({ ...kind, arrays: {} }));
-  /** @type {Record<string, number[]>[]} */
-  const shapes = kinds.map(() => ({}));
-  /** @type {Record<string, NumberArray>} */
+  /** @type {Arrays[]} */
+  const kinds = header.kinds.map(() => ({}));
+  /** @type {Arrays} */
   const own = {};
   for (const [name, { type, shape, offset }] of Object.entries(header.arrays)) {
     const kind = TYPES[/** @type {keyof typeof TYPES} */ (type)];
@@ -110,12 +125,22 @@ function decoded(data) {
     const from = begin + offset;
     need(from >= begin && from + count * kind.BYTES_PER_ELEMENT <= data.byteLength, name);
     const [number, field] = name.split("/");
-    (field ? kinds[Number(number)].arrays : own)[field ?? name] = new kind(data, from, count);
-    if (field) shapes[Number(number)][field] = shape;
+    (field ? kinds[Number(number)] : own)[field ?? name] = { values: new kind(data, from, count), shape };
   }
-  kinds.forEach((kind, number) => checkKind(kind, shapes[number]));
-  checkTrees(header, kinds, own.tree_place, header.arrays.tree_place?.shape);
-  const places = own.tree_place;
+  return { header, kinds, own };
+}
+
+/** @param {ArrayBuffer} data @returns {Description} */
+function decoded(data) {
+  const { header, kinds: parts, own } = unpack(data, "description");
+  /** @type {Kind[]} */
+  const kinds = header.kinds.map((/** @type {Kind} */ kind, /** @type {number} */ number) => {
+    const named = Object.entries(parts[number]).map(([name, { values }]) => [name, values]);
+    return { ...kind, arrays: Object.fromEntries(named) };
+  });
+  kinds.forEach((kind, number) => checkKind(kind, parts[number]));
+  checkTrees(header, kinds, own.tree_place);
+  const places = own.tree_place.values;
   let nSegments = 0;
   let nCoordinates = 0;
   const trees = header.trees.map((/** @type {Tree} */ tree, /** @type {number} */ number) => {
