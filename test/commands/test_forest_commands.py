@@ -98,12 +98,12 @@ def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -
     [
         (['convert', '{}', '-o', 'x.yaml'], 'a forest as the YAML of one tree'),
         (['info', '{}', '--modulus', '1e9'], 'modulus or density for a whole forest'),
-        (['info', '{}', '--option', 'merge_below=1'], "option 'merge_below' for a forest"),
+        (['info', '{}', '--option', 'twig_diameter=1'], "option 'twig_diameter' for a forest"),
         (['lab', 'compare', '{}'], 'a forest, where one tree is asked for'),
         (['info', str(SCAN), '--option', 'up'], 'write NAME=VALUE'),
         (
-            ['info', str(SCAN), '--option', 'merge_below=x'],
-            "option merge_below is 'x'; give a number",
+            ['info', str(SCAN), '--option', 'twig_diameter=x'],
+            "option twig_diameter is 'x'; give a number",
         ),
         (['info', str(SCAN), '--option', 'tapper=true'], "no option 'tapper'; it has: "),
         (['info', 'benjamina', '--option', 'up=z'], "option 'up' for a built-in tree"),
