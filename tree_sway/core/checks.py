@@ -40,7 +40,7 @@ def within(
 
 
 def one_of(name: str, value: object, known: Collection[object]) -> None:
-    """Refuse a value that is none of those known; a `ParameterError` names them."""
+    """Refuse a value that is not known; a `ParameterError` names those that are."""
     if value not in known:
         near = nearest(str(value), [str(each) for each in known])
         cure = f'{near} use one of: {", ".join(map(str, known))}'.lstrip()
