@@ -26,13 +26,13 @@ def without_zero_length(cylinders: Cylinders, order: Ints) -> Cylinders:
     if keep.all() or not keep.any():
         return cylinders
     parent = cylinders.parent.copy()
-    goes_on = None if cylinders.continues is None else cylinders.continues.copy()
+    continues = None if cylinders.continues is None else cylinders.continues.copy()
     for index in order.tolist():
         above = parent[index]
         if above >= 0 and not keep[above]:
             parent[index] = parent[above]  # which is one that is kept, as it came before
-            if goes_on is not None:
-                goes_on[index] &= goes_on[above]
+            if continues is not None:
+                continues[index] &= continues[above]
     roots = np.flatnonzero(keep & (parent < 0))
     first = roots[np.argmax(cylinders.diameter[roots, 0])]
     parent[roots[roots != first]] = first
@@ -45,6 +45,6 @@ def without_zero_length(cylinders: Cylinders, order: Ints) -> Cylinders:
         end=cylinders.end[kept],
         diameter=cylinders.diameter[kept],
         parent=np.where(above < 0, -1, number[above]),
-        continues=None if goes_on is None else goes_on[kept],
+        continues=None if continues is None else continues[kept],
         labels=[cylinders.labels[index] for index in kept],
     )
