@@ -52,7 +52,7 @@ def one_line(text: str) -> str:
         (['info', 'benjamina', '--modulus', '-1'], '--modulus: -1 is not positive'),
         (['info', 'benjamina', '--density', 'nan'], '--density: nan is not positive'),
         (['info', 'benjamina', '--count', '0'], '--count: 0 frequencies'),
-        (['info', 'benjamina', '--seed', '-1'], 'seed -1 is negative'),
+        (['info', 'benjamina', '--seed', '-1'], 'seed: -1 is out of range'),
         (['plot', '--seconds', '0'], '--seconds: 0 s'),
         (['plot', '--wind', '/no/such.csv'], '/no/such.csv: no such file'),
         (
@@ -190,7 +190,7 @@ def test_a_file_is_written_over_with_force(tmp_path: Path) -> None:
     path = tmp_path / 'tree.glb'
     path.write_text('mine')
     assert cli.main(['convert', 'goldcrest', '-o', str(path), '--force']) == 0
-    assert path.read_text() != 'mine'
+    assert path.read_bytes() != b'mine'
 
 
 def run_process(command: str, **environment: str) -> subprocess.CompletedProcess[str]:

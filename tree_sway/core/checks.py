@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 import math
-from typing import SupportsFloat
+from typing import Any, SupportsFloat
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tree_sway.errors import ParameterError
+from tree_sway.errors import nearest, ParameterError
 
 
 def within(
@@ -38,6 +39,14 @@ def within(
     return number
 
 
+def one_of(name: str, value: object, known: Collection[object]) -> None:
+    """Refuse a value that is not known; a `ParameterError` names those that are."""
+    if value not in known:
+        near = nearest(str(value), [str(each) for each in known])
+        cure = f'{near} use one of: {", ".join(map(str, known))}'.lstrip()
+        raise ParameterError(f"unknown {name} '{value}'", cure=cure)
+
+
 def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:
     """
     Return the three components of a vector, which may be infinite or not-a-number.
@@ -47,7 +56,8 @@ def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:
     try:
         if isinstance(vector, str | bytes):
             raise ValueError
-        x, y, z = np.asarray(vector, dtype=np.float64).tolist()
+        numbers: Any = vector.tolist() if isinstance(vector, np.ndarray) else vector
+        x, y, z = numbers
         return float(x), float(y), float(z)  # lists, of a matrix, are no floats
     except (TypeError, ValueError, OverflowError):
         text = ' '.join(repr(vector).split())[:80]

@@ -229,4 +229,3 @@ class SolverNode(TreeSwayNode):
             )
             statuses.append(Status('camera', WARN, text, {'refused': self._refused_cameras}))
         return statuses
-

@@ -103,20 +103,6 @@ def test_gusts_reach_one_tree_after_the_other(kinds):
     assert stand.gusts.delay[0] == 0.0
 
 
-def test_only_what_is_asked_for_is_placed(kinds):
-    stand = swaying([PlacedTree(f't{i}', kinds['fork'], x=3.0 * i) for i in range(4)])
-    for wind in winds(30):
-        stand.step(wind, DT)
-    whole, some = stand.place(), np.full((stand.n_segments, 7), 9.0)
-    stand.place(some, which=[1, 3])
-    for number, name in enumerate(stand.names):
-        rows = stand.segments_of(name)
-        assert (some[rows] == (whole[rows] if number in (1, 3) else 9.0)).all()
-    for wrong in ([4], [-1]):
-        with pytest.raises(ParameterError, match='scene of 4'):
-            stand.place(which=wrong)
-
-
 @pytest.fixture
 def mixed(kinds):
     """Make a stand of every sort of tree."""

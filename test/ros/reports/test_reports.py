@@ -157,7 +157,7 @@ def test_trees_that_the_gusts_do_not_reach_in_time_are_told_of():
         history.push((8.0, 0.0, 0.0), 1.0 / 60.0)
         status = sway_report._gusts(history)
         assert status.level == level
-    assert 'too far downwind' in status.message
+    assert '1 are too far downwind' in status.message
 
 
 def test_a_report_each_second_takes_no_memory():

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import three_numbers
 from tree_sway.core.fidelity.estimate import dialled, ErrorEstimator, Estimate
 from tree_sway.core.simulator.assembly import Kept
 from tree_sway.core.simulator.settings import Settings, settings_with, USUAL
@@ -37,7 +38,7 @@ from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import ClimateTracker, WindClimate
-from tree_sway.core.wind.limits import components_of, is_wind
+from tree_sway.core.wind.limits import is_wind
 
 LEAVE_IN = 1.0
 """How long coordinates that are left out take to fade in [s]."""
@@ -193,7 +194,7 @@ class AdaptiveSimulator(SwaySimulator):
 
     def _check_load(self, wind_mean: ArrayLike, dt: float) -> None:
         """Notice, before its step, a load beyond what the number was chosen for."""
-        x, y, z = components_of(wind_mean)
+        x, y, z = three_numbers('wind', wind_mean)
         load = x * x + y * y + z * z
         self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
         if self._gust < load and is_wind(x, y, z, self._max_wind):

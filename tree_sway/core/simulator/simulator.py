@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.checks import array_to_fill, array_to_read
+from tree_sway.core.checks import array_to_fill, array_to_read, three_numbers
 from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.simulator.assembly import CalibratedTree, Kept
@@ -25,7 +25,7 @@ from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.pose_ends import ends_of_poses
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.limits import components_of, is_wind
+from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import ParameterError, StateError
 
 if TYPE_CHECKING:
@@ -260,7 +260,7 @@ class SwaySimulator:
 
         """
         counts = self.counts
-        x, y, z = components_of(wind_mean)
+        x, y, z = three_numbers('wind', wind_mean)
         if dt != self._dt or self.glide(dt):
             self._set_step(dt)
         counts.steps += 1

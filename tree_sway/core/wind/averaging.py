@@ -35,6 +35,16 @@ Backward step in [s] that is a clock set back, not a sample out of order or a lo
 
 """
 
+BLEND = 0.5
+"""
+Longest time in [s] over which the first sample after a dropout is faded in; a dropout shorter than
+that fades in over its own length.
+
+"""
+
+CAPACITY = 512
+"""Number of samples kept. A step must not span more."""
+
 _CALM = np.zeros(3)
 _STALE_DECAYS = 5.0  # decay times after which the wind counts as gone
 
@@ -49,11 +59,6 @@ class WindAverage:
         Age of the newest sample in [s] up to which it is held; at least three sensor periods.
     decay
         Time constant in [s] with which the wind then dies down.
-    blend
-        Longest time in [s] over which the first sample after a dropout is faded in; a dropout
-        shorter than that fades in over its own length.
-    capacity
-        Number of samples kept. A step must not span more.
 
     Raises
     ------
@@ -62,25 +67,16 @@ class WindAverage:
 
     """
 
-    def __init__(
-        self,
-        timeout: float = 2.0,
-        decay: float = 3.0,
-        *,
-        blend: float = 0.5,
-        capacity: int = 512,
-    ) -> None:
+    def __init__(self, timeout: float = 2.0, decay: float = 3.0) -> None:
         """Start without a sample."""
         self._timeout = within('timeout', timeout, 0.0, 3600.0, 's', above=True)
         self._decay = within('decay', decay, 0.0, 3600.0, 's', above=True)
-        self._blend = min(within('blend', blend, 0.0, 60.0, 's', above=True), self._timeout)
-        self._capacity = int(within('capacity', capacity, 8, 1e6))
         self.refused = 0
         self.reset()
 
     def reset(self) -> None:
         """Forget every sample and every step; keep the count of the refused ones."""
-        self._curve = WindCurve(self._capacity)
+        self._curve = WindCurve(CAPACITY)
         self._before, self._fade_start, self._fade_end = _CALM, -math.inf, -math.inf
         self._timing = SensorTiming(self._timeout)
         self._newest = -math.inf  # time of the newest sample
@@ -239,9 +235,9 @@ class WindAverage:
         """Start a new curve; what there was until now fades over into the samples to come."""
         since = self._passed
         before = self._mean(since, since)
-        self._curve = WindCurve(self._capacity)
+        self._curve = WindCurve(CAPACITY)
         self._before, self._fade_start = before, since
-        self._fade_end = since + min(silence, self._blend)
+        self._fade_end = since + min(silence, BLEND, self._timeout)
         if since > -math.inf:
             self._curve.append(since, before)
         self._curve.append(max(time, self._fade_end), value)

@@ -29,7 +29,7 @@ class AnemometerModel:
         Where the mean wind blows to, clockwise from north in [rad]; the default is a westerly.
     turbulence
         ``kaimal``, ``von_karman`` or ``none``.
-    height, intensity, reference_intensity
+    height, intensity
         As in `Turbulence`.
     rate
         Samples per second in [Hz], 1 to 100.
@@ -54,7 +54,6 @@ class AnemometerModel:
         turbulence: str = 'kaimal',
         height: float = 10.0,
         intensity: float | None = None,
-        reference_intensity: float = 0.14,
         rate: float = 20.0,
         events: Sequence[GustEvent] = (),
         seed: int = 0,
@@ -68,7 +67,7 @@ class AnemometerModel:
         self._stream: TurbulenceStream | None = None
         if turbulence != 'none':
             level = mean_speed or 1.0
-            parameters = Turbulence(level, turbulence, height, intensity, reference_intensity)
+            parameters = Turbulence(level, turbulence, height, intensity)
             if mean_speed > 0.0:
                 self._stream = TurbulenceStream(parameters, self._rate, seed)
 
