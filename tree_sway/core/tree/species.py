@@ -79,7 +79,7 @@ def species_like(name: str) -> tuple[Species, str]:
     """
     Look a species up; one that no table has is what its last word is, as a silver maple a maple.
 
-    If that is none either, it is a conifer or a broadleaf of no known species.
+    Any other is a conifer or a broadleaf of no known species.
 
     Returns
     -------
