@@ -112,6 +112,6 @@ def _trees(
 
 
 def _beside(folder: Path, name: str) -> str | Path:
-    """File of a name in a folder, or the name itself where there is none."""
+    """File of a name in a folder; the name itself if the folder has no such file."""
     beside = folder / path_of(name)
     return beside if beside.is_file() else name
