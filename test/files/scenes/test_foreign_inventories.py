@@ -11,7 +11,7 @@ import pytest
 from tree_sway.errors import FormatError
 from tree_sway.files.trees.source import open_scene
 
-#: Head of each as its pages describe it, one or two rows made up; species and heights [m] expected.
+#: Head of each as its pages describe it with rows made up; species and heights [m] expected.
 READ = {
     'Berlin, Baumbestand': (
         'gml_id;baumid;standortnr;artdtsch;art_bot;pflanzjahr;stammumfg;baumhoehe;x;y\n'
@@ -89,5 +89,5 @@ def test_it_is_refused_with_the_cure(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize('cell', ['POINT (nan 48.2)', 'somewhere', '48.2 16.3 200'])
 def test_a_place_that_is_none_is_named(tmp_path: Path, cell: str) -> None:
     text = f'SHAPE,species,height\n{cell},oak,12\n'
-    with pytest.raises(FormatError, match='trees.csv:2: .* is no latitude and longitude'):
+    with pytest.raises(FormatError, match=r'trees.csv:2: .* is no latitude and longitude'):
         open_scene(written(tmp_path, text))
