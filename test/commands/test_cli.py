@@ -190,7 +190,7 @@ def test_a_file_is_written_over_with_force(tmp_path: Path) -> None:
     path = tmp_path / 'tree.glb'
     path.write_text('mine')
     assert cli.main(['convert', 'goldcrest', '-o', str(path), '--force']) == 0
-    assert path.read_text() != 'mine'
+    assert path.read_bytes() != b'mine'
 
 
 def run_process(command: str, **environment: str) -> subprocess.CompletedProcess[str]:
