@@ -94,7 +94,6 @@ def workers_of(parent: int) -> list[int]:
     return found
 
 
-@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find a worker to kill')
 def test_a_killed_worker_loses_nothing(alone, tmp_path, monkeypatch):
     killed = []
 
@@ -110,6 +109,16 @@ def test_a_killed_worker_loses_nothing(alone, tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find the workers')
+@pytest.fixture
+def ctrl_c():
+    """Have Ctrl-C reach commands, also where tests run in the background of a shell."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find a worker to kill')
+@pytest.mark.usefixtures('ctrl_c')
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_whatever_ends_a_study_ends_its_workers(tmp_path, number):
     study = tmp_path / 'study.yaml'

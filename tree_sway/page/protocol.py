@@ -39,14 +39,17 @@ FRAME_KIND = 0x46
 WIND_UNIT = 0.005
 """Wind of one unit of its int16 in [m/s]."""
 
-PAUSED, BEYOND_SCALE, RESTARTED = 1, 2, 4
-"""Flags of a frame: paused, a number was clamped to its scale, the motion jumped."""
+PAUSED, BEYOND_SCALE, RESTARTED, PART = 1, 2, 4, 8
+"""Flags of a frame: paused, a number clamped to its scale, the motion jumped, some coordinates."""
 
 _TYPES = {'f32': '<f4', 'i32': '<i4', 'u8': 'u1', 'i16': '<i2'}
 _NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
 _PREFIX = struct.Struct('<4sII')
 _FRAME = struct.Struct('<BBBxIIq3hH')
 _ALIGNMENT = 8
+
+FRAME_SIZE = _FRAME.size
+"""Of a frame of the wind alone in [bytes]."""
 
 LARGEST_DESCRIPTION = 64 * 2**20
 """Of its message in [bytes]."""
@@ -77,7 +80,9 @@ class Frame(NamedTuple):
     wind
         At the anemometer, blowing to, in [m/s], (3,).
     coordinates
-        As int16, (m,): full scale is `FULL_SCALE`.
+        As int16, (m,): full scale is `FULL_SCALE`. None of them is a frame of wind alone.
+    first
+        Number of the first of them.
 
     """
 
@@ -87,6 +92,7 @@ class Frame(NamedTuple):
     flags: int
     wind: Floats
     coordinates: Array
+    first: int = 0
 
 
 @dataclass(frozen=True)
@@ -141,12 +147,14 @@ class Description:
 
     def coordinates(self, frame: Frame) -> Floats:
         """Coordinates of a frame in their own unit, (m,); a `FormatError` if it has others."""
-        if len(frame.coordinates) != len(self.scale):
+        count, most = len(frame.coordinates), len(self.scale)
+        part = slice(frame.first, frame.first + count)
+        if part.stop > most or (count not in (0, most) and not frame.flags & PART):
             raise FormatError(
                 f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described',
                 where='tree state',
             )
-        values: Floats = frame.coordinates * (self.scale / FULL_SCALE)
+        values: Floats = frame.coordinates * (self.scale[part] / FULL_SCALE)
         return values
 
 
@@ -312,14 +320,29 @@ def decode_frame(data: bytes) -> Frame:
             'not a frame', where='tree state', cure='send frames of doc/streaming.md'
         )
     _, version, flags, identity, sequence, stamp, x, y, z, count = _FRAME.unpack_from(data)
-    if version != FRAME_VERSION or len(data) != _FRAME.size + 2 * count:
+    begin = _FRAME.size + 2 * bool(flags & PART)
+    if version != FRAME_VERSION or len(data) != begin + 2 * count:
         raise FormatError(
             f'a frame of version {version}, {count} coordinates and {len(data)} bytes',
             where='tree state',
-            cure=f'send version {FRAME_VERSION}, {_FRAME.size} bytes and 2 per coordinate',
+            cure=f'send version {FRAME_VERSION}, {begin} bytes and 2 per coordinate',
         )
-    coordinates = np.frombuffer(data, dtype='<i2', offset=_FRAME.size)
-    return Frame(identity, sequence, stamp, flags, WIND_UNIT * np.array([x, y, z]), coordinates)
+    coordinates = np.frombuffer(data, dtype='<i2', offset=begin)
+    first = int.from_bytes(data[begin - 2 : begin], 'little') if flags & PART else 0
+    wind = WIND_UNIT * np.array([x, y, z])
+    return Frame(identity, sequence, stamp, flags, wind, coordinates, first)
+
+
+def part_of_frame(frame: bytes, first: int, count: int) -> bytes:
+    """Return a frame of some of the coordinates of one; of the wind alone if the count is 0."""
+    head, size = bytearray(frame[: _FRAME.size]), _FRAME.size
+    count = min(count, (len(frame) - size) // 2 - first)
+    head[-2:] = count.to_bytes(2, 'little')
+    if count == 0:
+        return bytes(head)
+    head[2] |= PART
+    part = frame[size + 2 * first : size + 2 * (first + count)]
+    return bytes(head) + first.to_bytes(2, 'little') + part
 
 
 def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Array, bool]:

@@ -34,6 +34,7 @@ from tree_sway.errors import TransportError
 from tree_sway.page.access import given_token, is_token, read_token, refusal, require_token
 from tree_sway.page.controls import ControlPanel, Value
 from tree_sway.page.doorkeeper import Doorkeeper
+from tree_sway.page.protocol import FRAME_SIZE, part_of_frame
 
 LARGEST_MESSAGE = 4096
 """Longest message that a client may send in [bytes]."""
@@ -48,6 +49,12 @@ IDLE_TIME = 60.0
 """A client that says nothing for this time is closed [s]; a page sends several texts a second."""
 
 STATUS_PERIOD = 0.5
+STATE_PERIOD = 5.0
+"""Time after which a client that solves by itself is sent coordinates again [s]."""
+
+MOST_IN_STATE = 600
+"""Coordinates that it is sent then; of a scene of more, others each time."""
+
 _COMPLAINT_PERIOD = 10.0
 _LARGEST_PING = 1e15
 _LONGEST_PATH = 100
@@ -112,12 +119,28 @@ class _Client:
         self.wake = asyncio.Event()
         self.texts: deque[str] = deque(maxlen=16)
         self.description = b''
+        self.wants_wind = self.is_solving = False
+        self.states, self.next_state, self.first = 0, 0.0, 0
         self.last_heard = time.monotonic()
         self.sending_since = math.inf
 
     def is_lost(self, now: float) -> bool:
         """Whether it has been silent, or has not read, for too long by a time [s]."""
         return now - self.last_heard > IDLE_TIME or now - self.sending_since > _SEND_TIMEOUT
+
+    def thinned(self, frame: bytes, now: float) -> bytes:
+        """Return what one that solves by itself needs of a frame: the wind, now and then more."""
+        if self.states < 2:  # two to begin with, for the rates
+            self.states, self.next_state = self.states + 1, now + STATE_PERIOD
+            return frame
+        if now < self.next_state:
+            return part_of_frame(frame, 0, 0)
+        self.next_state = now + STATE_PERIOD
+        part = part_of_frame(frame, self.first, MOST_IN_STATE)
+        self.first += MOST_IN_STATE
+        if 2 * self.first >= len(frame) - FRAME_SIZE:
+            self.first = 0
+        return part
 
     def ring(self) -> None:
         """Look again at what is to be sent."""
@@ -157,7 +180,7 @@ class PageServer:
         require_token(settings.address, self._token)
         self._panel = panel or ControlPanel()
         self._status = status or dict
-        self._description = b''
+        self._description, self._tables = b'', _no_tables
         self._frame: tuple[int, bytes] = (-1, b'')
         self._clients: set[_Client] = set()
         self._loop = asyncio.new_event_loop()
@@ -219,9 +242,15 @@ class PageServer:
         """Pages that are connected."""
         return len(self._clients)
 
-    def describe(self, description: bytes) -> None:
-        """Send all pages, now and later, what the frames that follow belong to."""
-        self._description = description
+    def describe(
+        self, description: bytes, tables: Callable[[], bytes | None] | None = None
+    ) -> None:
+        """
+        Send all pages, now and later, what the frames that follow belong to.
+
+        Clients that ask for the wind alone are sent what `tables` returns, and solve by it.
+        """
+        self._description, self._tables = description, tables or _no_tables
         self._call(self._wake_all)
 
     def publish(self, frame: bytes) -> None:
@@ -401,6 +430,8 @@ class PageServer:
         if 'ping' in message:
             ping = _number(message, 'ping', -_LARGEST_PING, _LARGEST_PING)
             client.texts.append(json.dumps({'pong': ping, 'time': time.time_ns() / 1e6}))
+        if message.get('wind') is True:
+            client.wants_wind, client.description = True, b''
         if 'set' in message:
             self._change(client, message['set'])
         client.wake.set()
@@ -442,6 +473,8 @@ class PageServer:
         if client.description is not self._description:
             client.description = self._description
             await client.socket.send_bytes(self._description)
+            if client.wants_wind:
+                await self._send_tables(client)
         number, frame = self._frame
         if client.credit <= 0 or number == client.sent or not frame or not client.description:
             return
@@ -454,7 +487,19 @@ class PageServer:
         client.next_due = max(client.next_due + client.period, now)
         client.credit -= 1
         client.sent = number
+        if client.is_solving:
+            frame = client.thinned(frame, now)
         await client.socket.send_bytes(frame)
+
+    async def _send_tables(self, client: _Client) -> None:
+        """Send the tables, or say that there are none: then it is sent every state."""
+        tables = await self._loop.run_in_executor(None, self._tables)
+        client.is_solving, client.states = tables is not None, 0
+        if tables is not None:
+            await client.socket.send_bytes(tables)
+            return
+        reason = 'this scene cannot be solved elsewhere: it is sent state by state'
+        client.texts.append(json.dumps({'refused': {'name': 'wind', 'reason': reason}}))
 
     async def _send_status(self) -> None:
         assert self._ending is not None
@@ -473,6 +518,11 @@ class PageServer:
         self._clients.discard(client)
         if client.transport is not None:
             client.transport.abort()
+
+
+def _no_tables() -> bytes | None:
+    """Return no tables."""
+    return None
 
 
 class _Complaints(logging.Handler):

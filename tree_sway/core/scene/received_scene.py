@@ -98,6 +98,10 @@ class ReceivedScene:
         half = 0.5 * places[:, 3]
         standing['cosine'], standing['sine'] = np.cos(half), np.sin(half)
         self._gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
+        self._states = [kind.arrays['state'].astype(np.float64) for kind in kinds]
+        self._corrections = [kind.arrays['correction'].astype(np.float64) for kind in kinds]
+        described = np.array([len(kind.arrays['correction']) for kind in kinds])
+        self._first = np.concatenate([[0], np.cumsum(described[self._kind_of])])
 
     def step(self, wind: ArrayLike) -> int:
         """Advance by a step of mean wind (3,) in [m/s]; how many trees are held at their edge."""
@@ -110,3 +114,24 @@ class ReceivedScene:
         size = self._sizes[int(self._kind_of[tree])]
         found: Floats = self.instances['eta'][tree, :size]
         return found
+
+    def state(self, name: str = 'eta') -> Floats:
+        """Coordinates by which all trees are described, or their ``rate``, (M,)."""
+        states = []
+        for own, kind in zip(self.instances[name], self._kind_of.tolist(), strict=True):
+            states.append(own[: self._sizes[kind]] @ self._states[kind])
+        return np.concatenate(states)
+
+    def correct(self, values: Floats, first: int = 0, name: str = 'eta') -> None:
+        """Bring described coordinates, or their ``rate``, from the first on to values (c,)."""
+        change = np.zeros(self._first[-1])
+        part = slice(first, first + len(values))
+        change[part] = values - self.state(name)[part]
+        for tree, kind in enumerate(self._kind_of.tolist()):
+            own = change[self._first[tree] : self._first[tree + 1]]
+            self.instances[name][tree, : self._sizes[kind]] += own @ self._corrections[kind]
+
+    def reset(self) -> None:
+        """Go back to rest, without wind."""
+        self.instances[:] = np.zeros((), dtype=self.instances.dtype)
+        self._gusts.reset()

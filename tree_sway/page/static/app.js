@@ -110,7 +110,7 @@ const stream = new TreeStream(location.href, {
     }
     if (message.status) status = message.status;
   },
-}, { kept });
+}, { kept, byWind: new URLSearchParams(location.search).has("solve") });
 
 const { connection, playout } = stream;
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
@@ -172,6 +172,8 @@ function showFacts() {
   element("drawn").textContent = `${Math.round(fps)} fps${leftOut ? ` · ${leftOut.leaves} % ❧` : ""}`;
   element("drawn").title = leftOut ? word("left_out", leftOut.pixels, leftOut.leaves) : "";
   element("stream").textContent = `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`;
+  const { corrections = 0, largest = 0 } = stream.byWind ?? {};
+  element("stream").title = stream.byWind ? word("corrected", corrections, (100 * largest).toFixed(2)) : "";
   const half = connection.roundTrip / 2;
   const latency = Number.isFinite(half) ? half + Math.max(0, playout.lateness) : NaN;
   element("latency").textContent = Number.isFinite(latency)

@@ -135,7 +135,7 @@ export class OwnLine {
     this._hasRestarted = false;
     const coordinates = this.stand.write(new Float32Array(this.description.nCoordinates));
     const { shortIdentity: identity } = this.description;
-    const frame = { identity, sequence: this._sequence++, stamp: this._time, flags, coordinates };
+    const frame = { identity, sequence: this._sequence++, stamp: this._time, flags, coordinates, first: 0 };
     this.listeners.onFrame({ ...frame, wind: [x, y, z] }, this._time, 0);
   }
 }

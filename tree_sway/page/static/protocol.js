@@ -18,6 +18,7 @@ export const WIND_UNIT = 0.005;
 export const PAUSED = 1;
 export const BEYOND_SCALE = 2;
 export const RESTARTED = 4;
+export const PART = 8;
 
 /** First bytes of what is sent once. */
 const MAGIC = { description: "TSWD", tables: "TSWT" };
@@ -65,7 +66,8 @@ const FRAME_SIZE = 28;
  * @property {number} stamp [ms], of the sender's clock
  * @property {number} flags
  * @property {[number, number, number]} wind blowing to [m/s]
- * @property {Float32Array} coordinates in their own unit
+ * @property {Float32Array} coordinates in their own unit; none in a frame of the wind alone
+ * @property {number} first number of the first of them
  */
 
 /** Largest message with a description, and header in it [bytes]. */
@@ -167,6 +169,11 @@ function decoded(data) {
   };
 }
 
+/** Whether a message is one of tables. @param {ArrayBuffer} data */
+export function isTables(data) {
+  return data.byteLength >= 12 && new TextDecoder().decode(new Uint8Array(data, 0, 4)) === MAGIC.tables;
+}
+
 /** Whether a message is a frame. @param {ArrayBuffer} data */
 export function isFrame(data) {
   return data.byteLength >= FRAME_SIZE && new Uint8Array(data, 0, 1)[0] === FRAME_KIND;
@@ -183,23 +190,27 @@ export function decodeFrame(data, description) {
   const view = new DataView(data);
   if (!isFrame(data)) throw new ProtocolError("not a frame");
   const count = view.getUint16(26, true);
-  if (view.getUint8(1) !== FRAME_VERSION || data.byteLength !== FRAME_SIZE + 2 * count) {
+  const flags = view.getUint8(2);
+  const begin = flags & PART ? FRAME_SIZE + 2 : FRAME_SIZE;
+  if (view.getUint8(1) !== FRAME_VERSION || data.byteLength !== begin + 2 * count) {
     throw new ProtocolError(`a frame of ${data.byteLength} bytes for ${count} coordinates`);
   }
   const identity = view.getUint32(4, true);
   if (identity !== description?.shortIdentity) return null;
-  if (count !== description.nCoordinates) {
-    throw new ProtocolError(`a frame of ${count} coordinates, described are ${description.nCoordinates}`);
+  const { scale, nCoordinates } = description;
+  const first = flags & PART ? view.getUint16(FRAME_SIZE, true) : 0;
+  if (first + count > nCoordinates || (count !== nCoordinates && count && !(flags & PART))) {
+    throw new ProtocolError(`a frame of ${count} coordinates, described are ${nCoordinates}`);
   }
-  const { scale } = description;
-  const steps = new Int16Array(data, FRAME_SIZE, count);
+  const steps = new Int16Array(data, begin, count);
   const coordinates = new Float32Array(count);
-  for (let i = 0; i < count; i++) coordinates[i] = (steps[i] / FULL_SCALE) * scale[i];
+  for (let i = 0; i < count; i++) coordinates[i] = (steps[i] / FULL_SCALE) * scale[first + i];
   return {
     identity,
     sequence: view.getUint32(8, true),
     stamp: Number(view.getBigInt64(12, true)) / 1e6,
-    flags: view.getUint8(2),
+    flags,
+    first,
     wind: [
       view.getInt16(20, true) * WIND_UNIT,
       view.getInt16(22, true) * WIND_UNIT,

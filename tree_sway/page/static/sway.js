@@ -445,8 +445,6 @@ export class Stand {
     this._gusts = this._newGusts();
     /** Trees whose load was at the edge of their table in the last step. */
     this.held = 0;
-    /** Trees that were brought to a state by `correct`. */
-    this.corrected = 0;
     /** @type {Map<string, Float64Array>} */
     const paces = new Map();
     this.trees = trees.map(({ kind, place, firstCoordinate }, number) => {
@@ -478,34 +476,38 @@ export class Stand {
     });
   }
 
-  /** Write the coordinates of the description that hold the state.
-   * @template {Float32Array | Float64Array} T @param {T} out @returns {T} */
-  write(out) {
+  /** Write the coordinates of the description that hold the state, or their rates.
+   * @template {Float32Array | Float64Array} T @param {T} out @param {"eta" | "rate"} [what]
+   * @returns {T} */
+  write(out, what = "eta") {
     for (const { state, firstCoordinate } of this.trees) {
       const { m, n, state: matrix } = state.table;
       for (let k = 0; k < n; k++) {
         let sum = 0;
-        for (let i = 0; i < m; i++) sum += state.eta[i] * matrix[i * n + k];
+        for (let i = 0; i < m; i++) sum += state[what][i] * matrix[i * n + k];
         out[firstCoordinate + k] = sum;
       }
     }
     return out;
   }
 
-  /** Bring trees to coordinates that came from elsewhere; rates go on.
-   * @param {Float32Array} coordinates of some trees that follow each other
-   * @param {number} [from] the first of theirs */
-  correct(coordinates, from = 0) {
-    const now = this.write(new Float64Array(this.description.nCoordinates));
+  /** Bring coordinates of the description, or their rates, to values that came from elsewhere.
+   * @param {Float32Array} values @param {number} [from] the first of them
+   * @param {"eta" | "rate"} [what] @returns {number} the largest change over full scale */
+  correct(values, from = 0, what = "eta") {
+    const { nCoordinates, scale } = this.description;
+    const now = this.write(new Float64Array(nCoordinates), what);
+    let largest = 0;
     for (const { state, firstCoordinate: first } of this.trees) {
       const { m, n, correction } = state.table;
-      if (first < from || first + n > from + coordinates.length) continue;
       for (let k = 0; k < n; k++) {
-        const by = coordinates[first - from + k] - now[first + k];
-        for (let i = 0; i < m; i++) state.eta[i] += by * correction[k * m + i];
+        const by = values[first + k - from] - now[first + k];
+        if (first + k < from || first + k - from >= values.length) continue;
+        for (let i = 0; i < m; i++) state[what][i] += by * correction[k * m + i];
+        largest = Math.max(largest, Math.abs(by) / scale[first + k]);
       }
-      this.corrected++;
     }
+    return largest;
   }
 
   /** Back to rest, without wind. */
