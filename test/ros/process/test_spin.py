@@ -211,7 +211,7 @@ def test_a_start_that_fails_is_one_line(rclpy, monkeypatch):
 @pytest.mark.skipif(not sys.platform.startswith('linux'), reason='writes to /proc')
 def test_a_machine_that_is_read_only_is_one_line_with_the_cure():
     pytest.importorskip('rclpy.node', reason='ROS 2 is not installed')
-    start = 'from tree_sway_ros.nodes.executables import anemometer; raise SystemExit(anemometer())'
+    start = 'from tree_sway_ros.nodes.executables import wind; raise SystemExit(wind())'
     ended = subprocess.run(
         [sys.executable, '-c', start], env={**os.environ, 'ROS_LOG_DIR': '/proc/nowhere'},
         capture_output=True, text=True, timeout=60, check=False,
