@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
+import math
 
 import numpy as np
 
@@ -23,11 +24,18 @@ from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.records import LANES, WORK
-from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, wind_forces
+from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
 from tree_sway.core.reduction.matrices import Reduction
 from tree_sway.core.reduction.modes import Modes
+
+
+MOST_TRIALS, ENOUGH = 12, 0.05
+"""
+How often a step's load is found at most, and the share by which it may miss that of its middle.
+
+"""
 
 
 class ModalBank(Branchwise):
@@ -61,6 +69,7 @@ class ModalBank(Branchwise):
         self.modal = np.zeros((5, m))
         self.state = np.zeros((3, n))
         self.whole, self.half = np.zeros((2, m, 8))
+        self._tried = np.zeros((3 + 2 * MOST_TRIALS, m))
 
     @property
     def mean_square_motion(self) -> Floats:
@@ -113,7 +122,7 @@ class ModalBank(Branchwise):
     def _compiled(self) -> Callable[..., int]:
         arrays = (
             self.branches, self.work, self._loads, self.modal, self.state, self._shapes,
-            self.limit, self.whole, self.half,
+            self.limit, self.whole, self.half, self.stiffness, self._tried,
         )  # fmt: skip
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
@@ -249,36 +258,86 @@ def wind_moments(
         here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
         for c in range(branches[b].n_coordinates):
             here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
-        for k in range(6):
-            here.velocity[k, j] = work[b].velocity[k]
-        for k in range(3):
-            here.base[k, j] = work[b].rotation[k]
-    wind_forces(branches, work, loads, wx, wy, wz, per_speed_squared)
+    set_air(work, loads, wx, wy, wz)
+    wind_forces(loads, per_speed_squared)
     bent_loads(branches, work, loads, moment)
 
 
 @fused
 def _advance(
     branches: Records, work: Records, loads: Records, modal: Floats, state: Floats, shapes: Floats,
-    limit: Floats, whole: Floats, half: Floats,
+    limit: Floats, whole: Floats, half: Floats, stiffness: Floats, tried: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
-    _to_middle(modal, state, shapes, half)
     eta, rate, force = modal[0], modal[1], modal[2]
     moment, x, v = state[0], state[1], state[2]
-    wind_moments(branches, work, loads, x, v, moment, wx, wy, wz, per_speed_squared)
     over, total = 0, 0.0
-    for i in range(len(moment)):
-        if not abs(moment[i]) <= limit[i]:
-            moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
-            over += 1
-    for k in range(len(eta)):
-        pushed = 0.0
+    for trial in range(MOST_TRIALS):
+        _to_middle(modal, state, shapes, half)
+        wind_moments(branches, work, loads, x, v, moment, wx, wy, wz, per_speed_squared)
+        over = 0
         for i in range(len(moment)):
-            pushed += shapes[k, i] * moment[i]
-        force[k] = pushed
-        c, old = whole[k], eta[k]
+            if not abs(moment[i]) <= limit[i]:
+                moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
+                over += 1
+        left, size = 0.0, 0.0
+        missing = tried[0]
+        for k in range(len(eta)):
+            pushed = 0.0
+            for i in range(len(moment)):
+                pushed += shapes[k, i] * moment[i]
+            missing[k] = pushed - force[k]
+            left += missing[k] * missing[k] / stiffness[k]
+            size += pushed * pushed / stiffness[k]
+        if left <= ENOUGH * ENOUGH * size or trial == MOST_TRIALS - 1:
+            for k in range(len(eta)):
+                force[k] += missing[k]
+            break
+        _try_next(stiffness, tried, force, trial)
+    for k in range(len(eta)):
+        c, old, pushed = whole[k], eta[k], force[k]
         eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * pushed
         rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * pushed
         total += 0.0 * eta[k] + 0.0 * rate[k]
     return over if total == 0.0 else -1
+
+
+@fused
+def _try_next(stiffness: Floats, tried: Floats, force: Floats, trial: int) -> None:
+    """
+    Take the force to where nothing should be missing, by what the trials before have shown.
+
+    Rows of ``tried`` are what is missing now and was missing before, the last change of the force,
+    then pairs of what a change of the force brings, orthonormal, and that change (Anderson's
+    mixing; Walker & Ni 2011, SIAM Journal on Numerical Analysis 49, 1715-1735).
+    """
+    missing, before, change = tried[0], tried[1], tried[2]
+    n = len(force)
+    if trial > 0:
+        brought, made = tried[1 + 2 * trial], tried[2 + 2 * trial]
+        for k in range(n):
+            brought[k], made[k] = missing[k] - before[k], change[k]
+        for other in range(1, trial):
+            share = 0.0
+            for k in range(n):
+                share += brought[k] * tried[1 + 2 * other, k] / stiffness[k]
+            for k in range(n):
+                brought[k] -= share * tried[1 + 2 * other, k]
+                made[k] -= share * tried[2 + 2 * other, k]
+        square = 0.0
+        for k in range(n):
+            square += brought[k] * brought[k] / stiffness[k]
+        scale = 1.0 / math.sqrt(max(square, 1e-300))
+        for k in range(n):
+            brought[k] *= scale
+            made[k] *= scale
+    for k in range(n):
+        before[k], change[k] = missing[k], missing[k]
+    for other in range(1, trial + 1):
+        share = 0.0
+        for k in range(n):
+            share += missing[k] * tried[1 + 2 * other, k] / stiffness[k]
+        for k in range(n):
+            change[k] -= share * (tried[1 + 2 * other, k] + tried[2 + 2 * other, k])
+    for k in range(n):
+        force[k] += change[k]

@@ -15,7 +15,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.motion.modal import ModalBank
-from tree_sway.core.motion.plain.numpy_passes import into_lanes, NumpyPasses, of_lanes
+from tree_sway.core.motion.plain.numpy_passes import Bases, into_lanes, NumpyPasses, of_lanes
 from tree_sway.core.motion.plain.numpy_rotation import two_axis_moment
 from tree_sway.core.motion.uncoupled import UncoupledBank
 
@@ -50,13 +50,14 @@ class NumpyUncoupledBank(UncoupledBank):
         h = self._half[:, :, None]
         middle_x = h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment
         middle_v = h[:, 3] * x + h[:, 4] * v + h[:, 5] * moment
-        base = np.zeros((n, 9))
+        base = Bases.at_rest(n)
         wind = np.array([wx, wy, wz]) + of_lanes(self._banks['gust'], n)
         force = passes.wind_forces(
             base, middle_x, middle_v, wind, per_speed_squared, self._compliance, impulse
         )
+        force = passes.at_bases(middle_x, force)
         load = passes.own_loads(force)
-        self.work['force'] = force
+        self.work['force'] = force[self.branches['source']]
         into_lanes(impulse, self._banks['drag_impulse'])
         into_lanes(load, self._banks['load'])
         return self._step(x, v, load)
@@ -115,8 +116,7 @@ class NumpyModalBank(ModalBank):
         wind = np.array([wx, wy, wz]) + of_lanes(self._loads['gust'], n)
         compliance = of_lanes(self._loads['compliance'], n)
         on_branches = passes.wind_forces(base, x, v, wind, per_speed_squared, compliance, impulse)
-        passes.bent_loads(base, x, on_branches, moment)
-        self.work['force'] = on_branches
+        self.work['force'] = passes.bent_loads(base, x, on_branches, moment)
         into_lanes(impulse, self._loads['drag_impulse'])
         over = ~(np.abs(moment) <= self.limit)
         moment[over] = np.where(moment[over] > 0.0, self.limit[over], -self.limit[over])
