@@ -42,8 +42,12 @@ def outward_pass(branches: Records, work: Records, x: Floats, v: Floats) -> None
             tx, ty, tz = tx + q * row[3], ty + q * row[4], tz + q * row[5]
             ux, uy, uz = ux + rate * row[0], uy + rate * row[1], uz + rate * row[2]
             wx, wy, wz = wx + rate * row[3], wy + rate * row[4], wz + rate * row[5]
-        sx, sy, sz = sx + ty * at[2] - tz * at[1], sy + tz * at[0] - tx * at[2], sz + tx * at[1] - ty * at[0]
-        ux, uy, uz = ux + wy * at[2] - wz * at[1], uy + wz * at[0] - wx * at[2], uz + wx * at[1] - wy * at[0]
+        sx += ty * at[2] - tz * at[1]
+        sy += tz * at[0] - tx * at[2]
+        sz += tx * at[1] - ty * at[0]
+        ux += wy * at[2] - wz * at[1]
+        uy += wz * at[0] - wx * at[2]
+        uz += wx * at[1] - wy * at[0]
         far = branch.per_arm * (sx * sx + sy * sy + sz * sz)
         gone = 2.0 * branch.per_arm * (sx * ux + sy * uy + sz * uz)
         ax = (1.0 - far) * branch.arm[0] + sx
@@ -136,19 +140,24 @@ def _drag_forces(loads: Record, per_speed_squared: float) -> None:
                 free[k, j] += flow[c, k, j] * v[c, j]
     for j in range(LANES):
         tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
-        ux, uy, uz = turned(
-            -tx, -ty, -tz, air[0, j] - speed[0, j], air[1, j] - speed[1, j], air[2, j] - speed[2, j]
-        )
+        ux, uy, uz = air[0, j] - speed[0, j], air[1, j] - speed[1, j], air[2, j] - speed[2, j]
+        ux, uy, uz = turned(-tx, -ty, -tz, ux, uy, uz)
         wx, wy, wz = turned(-tx, -ty, -tz, speed[3, j], speed[4, j], speed[5, j])
         beta = loads.compliance[j]
-        ux += beta * slip[0, j] - free[0, j] - (
-            couple[0, 0, j] * wx + couple[1, 0, j] * wy + couple[2, 0, j] * wz
+        ux += (
+            beta * slip[0, j]
+            - free[0, j]
+            - (couple[0, 0, j] * wx + couple[1, 0, j] * wy + couple[2, 0, j] * wz)
         )
-        uy += beta * slip[1, j] - free[1, j] - (
-            couple[0, 1, j] * wx + couple[1, 1, j] * wy + couple[2, 1, j] * wz
+        uy += (
+            beta * slip[1, j]
+            - free[1, j]
+            - (couple[0, 1, j] * wx + couple[1, 1, j] * wy + couple[2, 1, j] * wz)
         )
-        uz += beta * slip[2, j] - free[2, j] - (
-            couple[0, 2, j] * wx + couple[1, 2, j] * wy + couple[2, 2, j] * wz
+        uz += (
+            beta * slip[2, j]
+            - free[2, j]
+            - (couple[0, 2, j] * wx + couple[1, 2, j] * wy + couple[2, 2, j] * wz)
         )
         fx, fy, fz, f = drag(
             p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],

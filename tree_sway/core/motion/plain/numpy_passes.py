@@ -74,7 +74,8 @@ class NumpyPasses:
         """Move the bases by angles and rates (b, c)."""
         bases = Bases.at_rest(len(x))
         for level in self.levels:
-            parent, twist, at, arm = (self._of[k][level] for k in ('parent', 'twist', 'base', 'arm'))
+            names = ('parent', 'twist', 'base', 'arm')
+            parent, twist, at, arm = (self._of[name][level] for name in names)
             moved, rate = (np.einsum('bc,bck->bk', each[parent], twist) for each in (x, v))
             turn, spin = moved[:, 3:], rate[:, 3:]
             shift, gone = moved[:, :3] + cross(turn, at), rate[:, :3] + cross(spin, at)
@@ -122,7 +123,7 @@ class NumpyPasses:
         return np.asarray(per_speed * across)
 
     def at_bases(self, x: Floats, force: Floats) -> Floats:
-        """Forces (b, 3) on branches at angles (b, c), in the frames of their bases."""
+        """Turn forces (b, 3) on branches at angles (b, c) into the frames of their bases."""
         return turned_by(np.einsum('bc,bck->bk', x, self._of['load_rotation']), force)
 
     def own_loads(self, force: Floats) -> Floats:
@@ -145,7 +146,8 @@ class NumpyPasses:
         wrench = np.hstack([turned_by(own_turn, force), couple])
         world = quaternion_rotated(bases.attitude, wrench[:, :3])
         for level in reversed(self.levels):
-            parent, twist, at, arm = (of[name][level] for name in ('parent', 'twist', 'base', 'arm'))
+            names = ('parent', 'twist', 'base', 'arm')
+            parent, twist, at, arm = (of[name][level] for name in names)
             turn, shift, per = bases.turn[level], bases.shift[level], of['per_arm'][level, None]
             f, m = (turned_by(turn, wrench[level][:, k : k + 3]) for k in (0, 3))
             np.add.at(wrench, parent, np.hstack([f, m + cross(bases.arm[level], f)]))
