@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""For all tests: repeatable Hypothesis, a thread and a ROS domain each, small trees, slopes."""
+"""For all tests: Hypothesis that repeats, a thread and a ROS domain each, limits, small trees."""
 
 import contextlib
 import os
@@ -8,6 +8,7 @@ from pathlib import Path
 import random
 import sys
 import tempfile
+import time
 
 # Before numpy is loaded: matrices here are small, and idle threads of BLAS that spin slow down the
 # test beside.
@@ -76,6 +77,27 @@ def ros_environment(domain):
     """Environment of a process in a ROS domain for one test alone, on this machine alone."""
     own = {'ROS_DOMAIN_ID': str(domain), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
     return os.environ | own
+
+
+@pytest.fixture
+def little_effort():
+    """Fail a test that takes 5 s of a processor or 1 GiB more memory: what hostile input may."""
+    peak = _peak_memory()
+    began = time.process_time()
+    yield
+    spent, grown = time.process_time() - began, _peak_memory(anew=False) - peak
+    assert spent < 5.0, f'{spent:.1f} s of a processor'
+    assert grown < 2**30, f'{grown / 2**20:.0f} MiB'
+
+
+def _peak_memory(anew=True):
+    """Return the most memory that this process had, from now on if anew [bytes]; 0 elsewhere."""
+    if not sys.platform.startswith('linux'):
+        return 0
+    if anew:
+        Path('/proc/self/clear_refs').write_text('5')
+    status = Path('/proc/self/status').read_text(encoding='ascii')
+    return 1024 * int(status.partition('VmHWM:')[2].split()[0])
 
 
 @pytest.hookimpl(tryfirst=True)

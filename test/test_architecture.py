@@ -26,8 +26,8 @@ PACKAGES = {
 
 #: Layer of each room of the library; a room imports only from lower layers and from itself.
 LAYERS = {
-    'errors': 0, 'kernel_folder': 0, 'kernel_cache': 0.5, 'core': 1, 'files': 2, 'parameters': 2.5,
-    'page': 3, 'relay': 3, 'pictures': 3, 'studies': 5, 'commands': 4,
+    'errors': 0, 'tables': 0, 'kernel_folder': 0, 'kernel_cache': 0.5, 'core': 1, 'files': 2,
+    'parameters': 2.5, 'page': 3, 'relay': 3, 'pictures': 3, 'studies': 5, 'commands': 4,
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {
@@ -37,7 +37,7 @@ STOREYS = {
     'motion': 4,
     'reference': 5, 'state': 5,
     'simulator': 6,
-    'fidelity': 7, 'identification': 7,
+    'fidelity': 7, 'identification': 7, 'strength': 7,
     'scene': 8,
 }  # fmt: skip
 #: Most files in one folder.

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import ast
+import os
 from pathlib import Path
 import re
 import runpy
@@ -13,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 from typing import Any
+import venv
 from xml.etree import ElementTree
 import zipfile
 
@@ -175,3 +177,23 @@ def test_colcon_gets_no_second_executables(tmp_path: Path) -> None:
     assert scripts == {*NODES, 'tree-sway'}
     first = (installed / 'lib' / 'tree_sway_ros' / 'solver').read_text().split('\n')[0]
     assert first == '#!/usr/bin/env python3'  # so that an activated environment is heeded
+
+
+@pytest.mark.long
+def test_colcon_builds_the_package_without_the_laboratory(tmp_path: Path) -> None:
+    """As in a workspace: colcon of the package index builds what ``ros2 run`` starts."""
+    source = copy_of_source(tmp_path)
+    venv.create(tmp_path / 'venv', with_pip=True)
+    programs = tmp_path / 'venv' / 'bin'
+    tools = ('colcon-core', 'colcon-ros', 'setuptools<80')
+    subprocess.run([programs / 'pip', 'install', '-q', *tools], check=True)
+    build = [programs / 'colcon', 'build', '--base-paths', str(source)]
+    path = f'{programs}{os.pathsep}{os.environ["PATH"]}'
+    subprocess.run(build, cwd=tmp_path, check=True, env={**os.environ, 'PATH': path})
+    installed = tmp_path / 'install' / 'tree_sway_ros'
+    assert {path.name for path in (installed / 'lib/tree_sway_ros').iterdir()} == {
+        *NODES,
+        'tree-sway',
+    }
+    assert (installed / 'share/tree_sway_ros/package.xml').exists()
+    assert not list(installed.rglob('tree_sway_lab'))

@@ -50,8 +50,8 @@ def why_no_compiler() -> str:
     reason = _what_is_wrong_with_numba()
     if reason:
         complain(
-            f'{reason}: trees are solved in numpy, some 100 times slower (3 ms for a frame of '
-            "1,000 segments), and the model 'segments' not at all; install numba 0.59 or later"
+            f'{reason}: trees are solved in numpy, some 100 times slower (4 ms for a frame of '
+            '1,000 segments); install numba 0.59 or later'
         )
     return reason
 

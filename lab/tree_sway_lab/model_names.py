@@ -7,8 +7,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.simulator.protocol import TreeSimulator
 from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 
@@ -37,6 +37,6 @@ def settings_called(model: str, settings: Settings) -> Settings:
 
 def simulator_called(
     model: str, tree: Tree, species: Species, settings: Settings
-) -> TreeSimulator:
+) -> SwaySimulator:
     """Make a simulator on a model, as of `settings_called`."""
     return make_simulator(tree, species, settings_called(model, settings))

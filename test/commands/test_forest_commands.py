@@ -86,10 +86,11 @@ def test_plot_draws_it(forest: str, tmp_path: Path, arguments: list[str]) -> Non
 
 
 def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -> None:
-    out = tmp_path / 'glade.obj'
+    out = tmp_path / 'glade.gltf'
     assert cli.main(['convert', forest, '-o', str(out)]) == 0
-    objects = [line[2:] for line in out.read_text().splitlines() if line.startswith('o ')]
-    assert objects == ['_'.join(name.split()) for name in open_scene(forest).tree.segment_names]
+    document = json.loads(out.read_text())
+    names = [document['nodes'][joint]['name'] for joint in document['skins'][0]['joints']]
+    assert names == list(open_scene(forest).tree.segment_names)
 
 
 @pytest.mark.parametrize(
@@ -97,12 +98,12 @@ def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -
     [
         (['convert', '{}', '-o', 'x.yaml'], 'a forest as the YAML of one tree'),
         (['info', '{}', '--modulus', '1e9'], 'modulus or density for a whole forest'),
-        (['info', '{}', '--option', 'merge_below=1'], "option 'merge_below' for a forest"),
+        (['info', '{}', '--option', 'twig_diameter=1'], "option 'twig_diameter' for a forest"),
         (['lab', 'compare', '{}'], 'a forest, where one tree is asked for'),
         (['info', str(SCAN), '--option', 'up'], 'write NAME=VALUE'),
         (
-            ['info', str(SCAN), '--option', 'merge_below=x'],
-            "option merge_below is 'x'; give a number",
+            ['info', str(SCAN), '--option', 'twig_diameter=x'],
+            "option twig_diameter is 'x'; give a number",
         ),
         (['info', str(SCAN), '--option', 'tapper=true'], "no option 'tapper'; it has: "),
         (['info', 'benjamina', '--option', 'up=z'], "option 'up' for a built-in tree"),

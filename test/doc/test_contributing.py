@@ -17,9 +17,9 @@ PAGE = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
 
 
 def blocks_of(heading: str) -> list[str]:
-    """Blocks of Python under a heading of the page."""
+    """Blocks of Python or of rows under a heading of the page."""
     section = PAGE.split(f'## {heading}\n')[1].split('\n## ')[0]
-    return re.findall(r'^```py\n(.*?)^```$', section, re.MULTILINE | re.DOTALL)
+    return re.findall(r'^```(?:py|csv)\n(.*?)^```$', section, re.MULTILINE | re.DOTALL)
 
 
 def changed_copy(folder: Path, module: str, text: str) -> None:
@@ -41,8 +41,8 @@ def changed_copy(folder: Path, module: str, text: str) -> None:
     ('heading', 'module', 'before', 'tests', 'name', 'known'),
     [
         (
-            'A new species', 'tree_sway/core/tree/species_table.py',
-            [r"^ +_species\('ash'", r"^ +'ash': "], 'test/core/tree/test_species.py', 'hornbeam',
+            'A new species', 'tree_sway/core/tree/species.csv',
+            [r'^ash,'], 'test/core/tree/test_species.py', 'hornbeam',
             "from tree_sway import species_named; print(species_named('hornbeam').title)",
         ),
         (
@@ -87,12 +87,12 @@ def test_it_is_one_change_in_one_file(
 #: program, and what it prints with the change alone.
 CHANGES = {
     'species': (
-        'tree_sway/core/tree/species_table.py',
-        "_species('ash', 'ash', 9.5e9,", "_species('ash', 'ash', 8.5e9,",
+        'tree_sway/core/tree/species.csv',
+        'ash,ash,broadleaf,no,9.5e9', 'ash,ash,broadleaf,no,8.5e9',
         "from tree_sway import species_named; print(species_named('ash').modulus)", '8500000000.0',
     ),
     'habit': (
-        'tree_sway/core/growth/forms.py', "'ash': BroadleafForm(", "'elm': BroadleafForm(",
+        'tree_sway/core/growth/broadleaf_forms.csv', 'ash,0.2,', 'elm,0.2,',
         "from tree_sway.core.growth import forms; print('elm' in str(vars(forms)))", 'True',
     ),
     'spectrum': (
@@ -104,8 +104,8 @@ CHANGES = {
         'tree_sway/core/wind/simulated/gust_event.py',
         "    'step': _Shape(lambda x: x, lasts=True),\n",
         "    'step': _Shape(lambda x: x, lasts=True),\n    'surge': _Shape(lambda x: x * x),\n",
-        'from tree_sway.core.wind.simulated.gust_event import gust;'
-        "print(gust('surge', 1.0, 4.0, 2.0))",
+        'from tree_sway.core.wind.simulated.gust_event import GustEvent;'
+        "print(GustEvent('surge', 4.0, 2.0).at(1.0))",
         '1.0',
     ),
     'flutter': (
@@ -119,8 +119,8 @@ CHANGES = {
         'from tree_sway.core.motion.drag import AIR_DENSITY; print(AIR_DENSITY)', '1.0',
     ),
     'unit': (
-        'tree_sway/files/wind/units.py', "'mph': 0.44704,", "'mph': 0.44704, 'yd/s': 0.9144,",
-        "from tree_sway.files.wind.units import SPEED_UNITS; print(SPEED_UNITS['yd/s'])",
+        'tree_sway/files/columns.json', '"mph": 0.44704,', '"mph": 0.44704, "yd/s": 0.9144,',
+        "from tree_sway.files.table_file import UNITS; print(UNITS['speed']['yd/s'])",
         '0.9144',
     ),
     'format': (

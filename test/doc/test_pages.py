@@ -11,6 +11,7 @@ are read.
 
 from __future__ import annotations
 
+import argparse
 import os
 from pathlib import Path
 import re
@@ -133,3 +134,21 @@ def test_every_page_is_in_the_index() -> None:
         name(page) for page in PAGES[2:] if str(page.relative_to(ROOT / 'doc')) not in index
     ]
     assert missing in ([], ['doc/index.md'])
+
+
+SPAN = re.compile(r'`tree-sway ([a-z][^`]*)`')
+
+
+@pytest.mark.parametrize('page', [p for p in PAGES if SPAN.search(p.read_text('utf-8'))], ids=name)
+def test_no_sentence_names_a_command_or_an_option_that_is_not_there(page: Path) -> None:
+    for span in SPAN.findall(page.read_text(encoding='utf-8')):
+        words = shlex.split(span)
+        table, group = cli._table(words[0])
+        words = words[bool(group) :]
+        if not words:
+            continue
+        assert words[0] in table, span
+        parser = argparse.ArgumentParser()
+        cli._module(table[words[0]]).add_arguments(parser)
+        known = {'--quiet', *parser._option_string_actions}
+        assert {word.split('=')[0] for word in words if word.startswith('--')} <= known, span

@@ -53,9 +53,9 @@ def with_its_notes(text: str) -> str:
 
 @pytest.mark.parametrize('name', NODES)
 def test_what_the_file_of_a_node_offers_is_taken_by_the_node(name: str) -> None:
-    from tree_sway_ros.parameters import node_parameters
+    from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 
-    table = {each.name: each for each in getattr(node_parameters, name.upper())}
+    table = {each.name: each for each in NODE_PARAMETERS[name]}
     text = with_its_notes((ROOT / 'config' / f'{name}.yaml').read_text(encoding='utf-8'))
     offered = yaml.safe_load(text)[f'/**/{name}']['ros__parameters']
     assert offered

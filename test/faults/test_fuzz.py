@@ -152,7 +152,6 @@ def fuzz(wind, solver, n, seed):
         assert np.abs(off).max(initial=0.0) < 1e-6
         planes.clear()
     counts = asdict(wind._intake.counts)
-    assert not counts.pop('sluggish')  # damaged messages jump
     return counts
 
 

@@ -45,7 +45,7 @@ def test_a_node_that_is_told_to_end_ends_well(run, observer, tree_file, signals)
 @pytest.mark.parametrize(
     ('name', 'parameters', 'environment', 'message'),
     [
-        ('solver', ['rats:=40'], {}, "unknown parameter 'rats'; did you mean 'rate'"),
+        ('solver', ['tree:=elm', 'rats:=40'], {}, "unknown parameter 'rats'; did you mean 'rate'"),
         ('player', [], {}, 'no file to play'),
         ('wind', [], {'ROS_DOMAIN_ID': 'three'}, 'ROS_DOMAIN_ID=three is no domain'),
         ('wind', [], {'ROS_DOMAIN_ID': '300'}, 'ROS_DOMAIN_ID=300 is no domain'),

@@ -11,6 +11,8 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from geometry_msgs.msg import PoseStamped, Vector3Stamped  # noqa: E402, I100
+from rcl_interfaces.srv import SetParameters  # noqa: E402
+from rclpy.parameter import Parameter  # noqa: E402
 
 from tree_sway_ros.process.topics import (  # noqa: E402
     CAMERA,
@@ -42,6 +44,30 @@ def test_a_camera_that_comes_nearer_gets_a_better_model(compose, observer, statu
         lambda: camera.publish(near) or tolerance() < 0.01, 'the tolerance of the camera'
     )
     assert tolerance() == pytest.approx(expected, rel=0.2)
+
+
+def test_auto_starts_tuned_and_is_tuned_while_it_runs(compose, observer, statuses, tree_file):
+    given = {'stiffness_factor': 1.2, 'tolerance': 1e-4}
+    solver = compose(solver={'tree': tree_file, 'model': 'auto', **given})['solver']
+    frames = observer.listen(SEGMENT_POSES)
+    observer.until(lambda: len(frames) > 30, 'frames')
+    assert solver.simulator.check_tuning().stiffness_factor == 1.2
+    changes = {'stiffness_factor': 3.0, 'gravity': 3.7, 'damping_ratio': 0.2}
+    wanted = [Parameter(name, value=value).to_parameter_msg() for name, value in changes.items()]
+    request = SetParameters.Request(parameters=wanted)
+    results = observer.call(SetParameters, 'solver/set_parameters', request).results
+    assert [each.reason for each in results if not each.successful] == []
+
+    def is_tuned():
+        tuning = solver.simulator.check_tuning()
+        return all(getattr(tuning, name) == value for name, value in changes.items())
+
+    observer.until(is_tuned, 'the tuning')
+    n = len(frames)
+    observer.until(
+        lambda: len(frames) > n + 10 and statuses('solver: model') is not None, 'frames that go on'
+    )
+    assert told(statuses('solver: model'))['restarted'] == '0'
 
 
 @pytest.mark.parametrize('model', [0, 12, 'branch', 'full'])

@@ -67,7 +67,11 @@ def test_every_topic_may_be_said_by_somebody():
     allowed = {
         topic.text for topics in POLICY.iter('topics') if topics.get('publish') for topic in topics
     }
-    assert {topic.name for topic in TOPICS} - allowed == {'camera', '/tf_static'}  # of others
+    assert {topic.name for topic in TOPICS} - allowed == {
+        'camera',
+        '/tf',
+        '/tf_static',
+    }  # of others
 
 
 @pytest.mark.ros

@@ -19,7 +19,7 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 
 from tree_sway.core.arrays import Floats  # noqa: E402
-from tree_sway.core.state.full_scale import FULL_SCALE  # noqa: E402
+from tree_sway.core.state.state_basis import FULL_SCALE  # noqa: E402
 from tree_sway.errors import ParameterError, TransportError  # noqa: E402
 from tree_sway.page.client import StreamClient  # noqa: E402
 from tree_sway.page.controls import Control, ControlPanel  # noqa: E402

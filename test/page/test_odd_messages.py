@@ -27,6 +27,8 @@ from tree_sway.page.protocol import (  # noqa: E402
     LARGEST_DESCRIPTION,
 )
 
+pytestmark = pytest.mark.usefixtures('little_effort')
+
 DEADLINE = 20.0
 STATIC = Path(__file__).parents[2] / 'tree_sway' / 'page' / 'static'
 VECTORS = Path(__file__).parent / 'vectors'

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.state.full_scale import MARGIN
+from tree_sway.core.state.state_basis import MARGIN
 from tree_sway.errors import FormatError
 from tree_sway.page.placer import Placer
 from tree_sway.page.protocol import (

@@ -160,10 +160,10 @@ def test_what_is_changed_is_applied_or_refused_with_the_reason() -> None:
         await viewer.say(set={'name': 'wind', 'value': 12})
         assert (await viewer.text('values'))['wind'] == 12.0
         for name, value, reason in (
-            ('wind', 41.0, 'out of range; give 0 .. 40 m/s'),
+            ('wind', 41.0, 'out of range; give 0 .. 40 [m/s]'),
             ('wind', 'strong', 'is not a number'),
             ('wind', float('nan'), 'out of range'),
-            ('model', 'best', 'not among its choices; use one of: branch, full'),
+            ('model', 'best', 'not among its choices; give branch | full'),
             ('model', 'full', "leaves on model 'full'; use 'branch'"),
             ('gravity', 0.0, "nothing called 'gravity'"),
             (None, None, 'nothing called'),
@@ -215,13 +215,11 @@ def test_a_port_in_use_is_an_error_in_words(server: PageServer) -> None:
         PageServer(PageSettings(port=server.port)).start()
 
 
-def test_health_metrics_and_headers(server: PageServer) -> None:
+def test_health_and_headers(server: PageServer) -> None:
     async def script(viewer: Viewer) -> None:
         await viewer.binary()
         async with viewer.session.get(f'{server.url}healthz') as answer:
             assert (await answer.json())['status'] == 'ok'
-        async with viewer.session.get(f'{server.url}metrics') as answer:
-            assert 'tree_sway_page_clients 1' in await answer.text()
         async with viewer.session.get(server.url) as answer:
             assert answer.headers['Content-Security-Policy'].startswith("default-src 'self'")
             assert '<!doctype html>' in (await answer.text()).lower()
@@ -236,9 +234,8 @@ def test_the_page_is_sent_packed_and_not_twice(server: PageServer) -> None:
         url = f'{server.url}static/drawing/scene.js'
         async with viewer.session.get(url, headers={'Accept-Encoding': 'gzip'}) as answer:
             assert answer.headers['Content-Encoding'] == 'gzip'
-            assert answer.headers['Content-Type'].startswith('text/javascript')
-            text, sent, tag = await answer.text(), answer.content_length, answer.headers['ETag']
-            assert sent < 0.4 * len(text)
+            assert answer.content_type in ('text/javascript', 'application/javascript')
+            text, tag = await answer.text(), answer.headers['ETag']
         async with viewer.session.get(url, headers={'Accept-Encoding': 'identity'}) as answer:
             assert await answer.text() == text
         async with viewer.session.get(url, headers={'If-None-Match': tag}) as answer:

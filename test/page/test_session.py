@@ -34,7 +34,7 @@ class Sink:
         self.frames: list[bytes] = []
         self.told: list[Any] = []
 
-    def describe(self, description: bytes) -> None:
+    def describe(self, description: bytes, tables: Any = None) -> None:
         self.descriptions.append(description)
 
     def publish(self, frame: bytes) -> None:

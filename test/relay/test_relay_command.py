@@ -169,7 +169,6 @@ def test_the_wind_of_ros_goes_over_the_line_as_it_is(ros_environment: dict[str, 
         (['send', SEEDLING, '--listen', 'nowhere'], 'cannot be opened'),
         (['send', SEEDLING, '--rate', '0'], '--rate'),
         (['send', SEEDLING, '--zenoh-config', 'nowhere.json5'], 'cannot be opened'),
-        (['receive', SEEDLING, '--lose', '2'], '--lose'),
     ],
 )
 def test_what_cannot_be_relayed_is_refused(

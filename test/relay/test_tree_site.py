@@ -7,6 +7,7 @@ from __future__ import annotations
 import base64
 import json
 import math
+from pathlib import Path
 import time
 from typing import Any
 
@@ -16,14 +17,17 @@ import numpy as np
 import pytest
 
 from tree_sway.core.scene.run import LONGEST_JUMP
+from tree_sway.core.scene.scene import Scene
 from tree_sway.errors import FormatError, StateError
 from tree_sway.files.trees.source import open_scene
 from tree_sway.relay.tree_site import PATIENCE, Site
 from tree_sway.relay.wind_bytes import decode_wind, encode_wind
 
+HOSTILE = pytest.mark.usefixtures('little_effort')
 START = 1_700_000_000_123_456_789
 SECOND = 1_000_000_000
-SCENE = open_scene('goldcrest')
+SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
+SCENE = open_scene(SEEDLING, length_unit=2.0)
 
 
 def winds(seconds: float) -> list[tuple[int, Any]]:
@@ -33,8 +37,7 @@ def winds(seconds: float) -> list[tuple[int, Any]]:
     return [(START + round(t * SECOND), tuple(v)) for t, v in zip(times, vectors, strict=True)]
 
 
-def made(name: str = 'goldcrest', **options: Any) -> Site:
-    scene = SCENE if name == 'goldcrest' else open_scene(name)
+def made(scene: Scene = SCENE, **options: Any) -> Site:
     return Site(scene.simulator(model=12), **options)  # type: ignore[arg-type]
 
 
@@ -109,6 +112,7 @@ def test_a_wind_that_ends_is_held_and_dies_down() -> None:
     assert len(ends) <= 60 * 20
 
 
+@HOSTILE
 def test_a_sample_far_ahead_takes_few_steps_and_holds_nothing() -> None:
     ends: list[int] = []
     site = made(stepped=lambda stamp, _: ends.append(stamp))
@@ -123,7 +127,7 @@ def test_a_sample_far_ahead_takes_few_steps_and_holds_nothing() -> None:
 
 
 def test_another_tree_is_named_and_its_state_refused() -> None:
-    one, other = made(), made('benjamina')
+    one, other = made(), made(open_scene(SEEDLING.with_name('segments.csv')))
     assert 'tree' in one.differences(other.identity())
     assert one.differences(made().identity()) == ''
     other.add_wind(START, (5.0, 0.0, 0.0))
@@ -139,6 +143,7 @@ ODD = [
 ]
 
 
+@HOSTILE
 @pytest.mark.parametrize('odd', ODD, ids=range(len(ODD)))
 def test_what_is_no_snapshot_and_no_identity_is_refused(odd: str) -> None:
     site = FUZZED
@@ -152,6 +157,7 @@ def test_what_is_no_snapshot_and_no_identity_is_refused(odd: str) -> None:
     assert site.snapshot() == before
 
 
+@HOSTILE
 @settings(max_examples=60, deadline=None)
 @given(data=st.data())
 def test_damaged_snapshots_are_refused_or_go_on_finite(data: Any) -> None:
@@ -178,6 +184,7 @@ def test_damaged_snapshots_are_refused_or_go_on_finite(data: Any) -> None:
     site.simulator.reset()
 
 
+@HOSTILE
 @settings(max_examples=150, deadline=None)
 @given(data=st.binary(max_size=80), flip=st.integers(0, 51), by=st.integers(0, 255))
 def test_any_bytes_are_a_sample_or_are_refused(data: bytes, flip: int, by: int) -> None:
@@ -200,6 +207,7 @@ FUZZED.add_wind(START + SECOND // 20, (5.0, 0.0, 0.0))
 SNAPSHOT = FUZZED.snapshot()
 
 
+@HOSTILE
 @pytest.mark.parametrize('vector', [(math.nan, 0.0, 0.0), (math.inf, 0.0, 0.0), (1e300, 0, 0)])
 def test_a_wind_that_cannot_be_is_refused_and_counted(vector: Any) -> None:
     before = FUZZED.run.counts.refused

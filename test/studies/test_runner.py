@@ -16,7 +16,7 @@ import pytest
 
 from tree_sway.commands import cli
 from tree_sway.errors import FormatError, TreeSwayError
-from tree_sway.studies import command
+from tree_sway.studies import runner
 from tree_sway.studies.plan import Case
 from tree_sway.studies.runner import batches, compute_to_file, result_path, run_study
 from tree_sway.studies.table import write_table
@@ -42,12 +42,21 @@ def alone(tmp_path_factory):
     return run_study(cases(), folder)
 
 
+def watched(after, do):
+    """Return what stands in for the bar: it does something after a number of cases."""
+
+    def bar(items, _):
+        for done, item in enumerate(items):
+            if done == after:
+                do()
+            yield item
+
+    return bar
+
+
 def test_two_processes_give_the_same_numbers_bit_for_bit(alone, tmp_path):
-    told = []
-    rows = run_study(cases(), tmp_path, workers=2, progress=lambda *done: told.append(done))
+    rows = run_study(cases(), tmp_path, workers=2)
     assert rows == alone
-    assert told[0] == (0, 4)
-    assert told[-1] == (4, 4)
     assert {'frequency', 'tip_largest', 'base_moment_rms', 'strain_largest'} <= set(rows[0])
     assert rows[0]['tip_largest'] > 0.0
 
@@ -85,22 +94,31 @@ def workers_of(parent: int) -> list[int]:
     return found
 
 
-@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find a worker to kill')
-def test_a_killed_worker_loses_nothing(alone, tmp_path):
+def test_a_killed_worker_loses_nothing(alone, tmp_path, monkeypatch):
     killed = []
 
-    def kill_one(done, total):
-        if done == 1:
-            killed.append(workers_of(os.getpid())[0])
-            os.kill(killed[0], signal.SIGKILL)
+    def kill_one():
+        killed.append(workers_of(os.getpid())[0])
+        os.kill(killed[0], signal.SIGKILL)
 
-    rows = run_study(cases(6), tmp_path, workers=2, progress=kill_one)
+    monkeypatch.setattr(runner, 'bar', watched(1, kill_one))
+    rows = run_study(cases(6), tmp_path, workers=2)
     assert killed
     assert len(rows) == 6
     assert rows[:4] == alone
 
 
 @pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find the workers')
+@pytest.fixture
+def ctrl_c():
+    """Have Ctrl-C reach commands, also where tests run in the background of a shell."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find a worker to kill')
+@pytest.mark.usefixtures('ctrl_c')
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_whatever_ends_a_study_ends_its_workers(tmp_path, number):
     study = tmp_path / 'study.yaml'
@@ -146,23 +164,15 @@ def test_a_series_is_kept_where_it_is_asked_for(tmp_path):
     assert len(lines) == 61
 
 
-def test_a_cluster_of_two_workers_gives_the_same_and_outlives_one(alone, tmp_path):
+def test_a_cluster_of_two_workers_gives_the_same_and_outlives_one(alone, tmp_path, monkeypatch):
     import distributed
 
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
     ) as cluster:
         doomed = next(iter(cluster.workers.values())).pid
-        told = []
-
-        def progress(done, total):
-            told.append(done)
-            if done == 2:
-                os.kill(doomed, signal.SIGKILL)
-
-        rows = run_study(
-            cases(6), tmp_path, scheduler=cluster.scheduler_address, progress=progress
-        )
+        monkeypatch.setattr(runner, 'bar', watched(2, lambda: os.kill(doomed, signal.SIGKILL)))
+        rows = run_study(cases(6), tmp_path, scheduler=cluster.scheduler_address)
     assert rows[:4] == alone
     assert len(rows) == 6
 
@@ -192,16 +202,3 @@ def test_the_command_resumes_its_own_table_and_writes_over_no_other(tmp_path, ca
     assert cli.main([*words, '--force']) == 0
     assert cli.main(words) == 0
     assert len(table.read_text().splitlines()) == 2
-
-
-def test_the_time_that_is_left_is_said_at_once_and_learned_from_each_case(monkeypatch, capsys):
-    now = [100.0]
-    monkeypatch.setattr(command.time, 'monotonic', lambda: now[0])
-    progress = command.Progress(cases(20), workers=2)
-    progress(0, 20)
-    assert capsys.readouterr().err == '0 of 20 cases, about 2 s left\n'
-    now[0] += 600.0
-    progress(2, 20)
-    assert capsys.readouterr().err == '2 of 20 cases, about 90 min left\n'
-    progress(20, 20)
-    assert capsys.readouterr().err == '20 of 20 cases\n'

@@ -26,10 +26,10 @@ from tree_sway.files.trees.source import open_scene, open_tree
 from tree_sway.files.trees.yaml.species_yaml import open_species
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.wind_file import read_wind
-from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
+from tree_sway.page.wind_source import RecordedWind, SimulatedWind
 from tree_sway.parameters.sway_parameters import SWAY
 
-OUTPUT_HELP = 'file to write; its suffix names the format: .yaml, .obj, .glb, .gltf'
+OUTPUT_HELP = 'file to write; its suffix names the format: .yaml, .glb, .gltf'
 _TREE = 'benjamina, goldcrest, broadleaf, or a file'
 _DRAWN = 1500
 
@@ -161,7 +161,7 @@ def opened_record(arguments: argparse.Namespace) -> WindRecord:
     return record
 
 
-def opened_wind(arguments: argparse.Namespace) -> WindSource:
+def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
     """Open the record that arguments name, over and over, or simulated wind of their speed."""
     if arguments.wind is not None:
         record = opened_record(arguments)

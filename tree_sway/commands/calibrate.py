@@ -25,13 +25,12 @@ from tree_sway.core.identification.sway_estimate import SwayEstimate
 from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.plausibility import sway_oddity
-from tree_sway.core.tree.species import Species, species_keys, species_named
+from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.text_file import path_of
 from tree_sway.files.wind.sway_table import read_csv_sway
 
 _YAML = ('.yaml', '.yml')
-_FAR = 2.0
 _WOOD = (0.3e9, 200e9)
 """A modulus outside of this [Pa] is ten times beyond any green wood's."""
 
@@ -142,35 +141,16 @@ def _measured(arguments: argparse.Namespace) -> SwayEstimate:
 def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: bool) -> list[str]:
     """Say what changed, for people; `error` is the frequency's relative standard error."""
     after, table = fitted.species, species_named(before.key)
-    moduli = [species_named(key).modulus / 1e9 for key in species_keys()]
-    was = (
-        'could not stand'
-        if fitted.frequency_before is None
-        else f'{fitted.frequency_before:.4g} Hz'
-    )
+    was_stable = fitted.frequency_before is not None
+    was = f'{fitted.frequency_before:.4g} Hz' if was_stable else 'could not stand'
     spread = f' +- {100.0 * fitted.sensitivity * error:.1f} %' if error else ''
-    lines = [
+    season = 'damping_in_leaf' if in_leaf else 'damping_bare'
+    return [
         f"  frequency  {was} -> {fitted.frequency:.4g} Hz, most in branch '{fitted.branch}'",
         f'  modulus    {before.modulus / 1e9:.3g} -> {after.modulus / 1e9:.4g} GPa{spread}, '
         f"{after.modulus / table.modulus:.3g} times the table's for {table.title}"
-        f'{" (an estimate)" if table.is_estimate else ""}; all species there: '
-        f'{min(moduli):.3g} to {max(moduli):.3g} GPa',
+        f'{" (an estimate)" if table.is_estimate else ""}',
+        f'  damping    {getattr(before, season):.3g} -> {getattr(after, season):.3g} '
+        f'{"in leaf" if in_leaf else "bare"}; '
+        'a measured one holds that of the air, whose drag the solver adds',
     ]
-    if not min(moduli) / _FAR < after.modulus / 1e9 < max(moduli) * _FAR:
-        lines.append(
-            '  note       no green wood has such a modulus: check density, diameters and leaves, '
-            'and '
-            'whether this was the slowest sway'
-        )
-    season = 'damping_in_leaf' if in_leaf else 'damping_bare'
-    old, new = getattr(before, season), getattr(after, season)
-    if new == old:
-        lines.append(f'  damping    {old:.3g} {"in leaf" if in_leaf else "bare"}, as it was')
-    else:
-        lines += [
-            f'  damping    {old:.3g} -> {new:.3g} {"in leaf" if in_leaf else "bare"}',
-            "  note       a measured damping holds that of the air; the solver adds the air's "
-            'drag to it, '
-            'so it damps a little more than the tree in strong wind',
-        ]
-    return lines

@@ -1,6 +1,5 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-# PYTHON_ARGCOMPLETE_OK
 """
 The command line ``tree-sway``: one module per command, imported when it is asked for.
 
@@ -23,60 +22,46 @@ from typing import Any, NoReturn
 import warnings
 
 from tree_sway.commands.command import Command
-from tree_sway.errors import nearest, TreeSwayError
+from tree_sway.errors import nearest, shown, TreeSwayError
 
-COMMANDS: dict[str, Command] = {
-    'show': Command(
+_OWN = {
+    'show': (
         'a tree in wind on a page of the browser, without ROS',
         'show goldcrest --seconds 10',
-        'tree_sway.commands.show',
     ),
-    'info': Command(
-        'what a tree is: size, masses, natural frequencies',
-        'info benjamina',
-        'tree_sway.commands.info',
-    ),
-    'grow': Command(
+    'info': ('what a tree is: size, masses, natural frequencies', 'info benjamina'),
+    'grow': (
         'make a tree of a species and a height',
         'grow --species oak --height 12 -o oak.yaml',
-        'tree_sway.commands.grow',
     ),
-    'convert': Command(
-        'write a tree in another format',
-        'convert goldcrest -o goldcrest.obj',
-        'tree_sway.commands.convert',
-    ),
-    'calibrate': Command(
+    'convert': ('write a tree in another format', 'convert goldcrest -o goldcrest.glb'),
+    'calibrate': (
         'fit modulus and damping to one measured sway',
         'calibrate goldcrest --frequency 3 -o measured.yaml',
-        'tree_sway.commands.calibrate',
     ),
-    'simulate': Command(
+    'simulate': (
         'a tree through a wind: tips, base moment and strain over time, as a table',
         'simulate goldcrest --wind canopy --seconds 10 -o sway.csv',
-        'tree_sway.commands.simulate',
     ),
-    'plot': Command(
+    'plot': (
         'pictures of a tree, and of the wind and the motion of its tip',
         'plot benjamina --seconds 20 -o sway.png',
-        'tree_sway.commands.plot',
     ),
-    'render': Command(
-        'a tree in wind as a moving picture: GIF, MP4 or frames',
+    'render': (
+        'a tree in wind as a moving picture: GIF or MP4',
         'render goldcrest --speed 9 --seconds 2 -o sway.gif',
-        'tree_sway.commands.render',
     ),
-    'relay': Command(
+    'relay': (
         'one tree at several sites: send the wind, and receive it',
         'relay send goldcrest --listen tcp/127.0.0.1:0 --seconds 1',
-        'tree_sway.commands.relay',
-    ),
-    'study': Command(
-        'many trees in many winds with many settings, over all cores',
-        'study study.yaml -o study.csv',
-        'tree_sway.studies.command',
     ),
 }
+COMMANDS = {name: Command(*texts, f'tree_sway.commands.{name}') for name, texts in _OWN.items()}
+COMMANDS['study'] = Command(
+    'many trees in many winds with many settings, over all cores',
+    'study study.yaml -o study.csv',
+    'tree_sway.studies.command',
+)
 
 #: Entry points of this group are further tables of commands: those of the nodes are merged with
 #: the table above, those of the laboratory stand under the name of their entry point.
@@ -133,17 +118,16 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _main(given: list[str]) -> int:
-    words = _completed() or given
     _write_any_name()
-    table, group = _table(words[0] if words else '')
-    command = words[bool(group)] if len(words) > bool(group) else ''
+    table, group = _table(given[0] if given else '')
+    command = given[bool(group)] if len(given) > bool(group) else ''
     if not group and command in _ELSEWHERE and command not in table:
         return _fail(command, _ELSEWHERE[command])
     try:
-        parser = _parser(command, table, group)
-        _offer_completion(parser)
-        arguments = parser.parse_args(given[bool(group) :])
-        with _silence() if arguments.quiet else contextlib.nullcontext():
+        arguments = _parser(command, table, group).parse_args(given[bool(group) :])
+        # Without notes and progress: errors are printed after this ends.
+        quiet = contextlib.redirect_stderr(io.StringIO()) if arguments.quiet else None
+        with quiet or contextlib.nullcontext():
             code = int(_module(table[arguments.command]).run(arguments))
             if sys.stdout is not None:
                 sys.stdout.flush()  # a full disk is reported here, not while Python ends
@@ -159,8 +143,8 @@ def _main(given: list[str]) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
-        name = _shortened(str(error.filename))
-        return _fail(command, f'{name}: {error.strerror}' if error.filename else str(error))
+        where = f'{shown(str(error.filename))}: ' if error.filename else ''
+        return _fail(command, f'{where}{error.strerror or error}')
     except KeyboardInterrupt:
         return _INTERRUPTED
 
@@ -178,11 +162,6 @@ def _write_any_name() -> None:
             stream.reconfigure(errors='backslashreplace')
 
 
-def _silence() -> Any:
-    """Take notes and progress away; errors are printed after this ends."""
-    return contextlib.redirect_stderr(io.StringIO())
-
-
 def _fail(command: str, text: str) -> int:
     print(f'tree-sway {command}: {" ".join(text.split())}', file=sys.stderr)
     return _FAILURE
@@ -196,10 +175,6 @@ def _cure_of_missing(module: str) -> str:
     if package in EXTRAS:
         return f'install it: pip install "tree_sway_ros[{EXTRAS[package]}]"'
     return 'the installation is not whole: install tree_sway_ros again'
-
-
-def _shortened(name: str) -> str:
-    return name if len(name) <= 80 else f'{name[:60]}...{name[-17:]}'
 
 
 def _table(first: str) -> tuple[dict[str, Command], str]:
@@ -233,25 +208,11 @@ def _parser(chosen: str, table: dict[str, Command], group: str) -> _OneLineParse
             description=f'{command.summary[0].upper()}{command.summary[1:]}.',
             epilog=f'example: {program} {command.example}',
         )
-        sub.add_argument(
-            '-q', '--quiet', action='store_true', help='no notes and no progress, errors alone'
-        )
+        sub.add_argument('-q', '--quiet', action='store_true', help='no notes, errors alone')
         if name == chosen:
             _module(command).add_arguments(sub)
             parser.chosen = sub
     return parser
-
-
-def _completed() -> list[str]:
-    """Return the words whose completion the shell wants; empty when it wants none."""
-    return os.environ.get('COMP_LINE', '').split()[1:] if '_ARGCOMPLETE' in os.environ else []
-
-
-def _offer_completion(parser: argparse.ArgumentParser) -> None:
-    """Answer the shell that asks for completions, where argcomplete is installed."""
-    if '_ARGCOMPLETE' in os.environ:
-        with contextlib.suppress(ImportError):
-            importlib.import_module('argcomplete').autocomplete(parser)
 
 
 if __name__ == '__main__':

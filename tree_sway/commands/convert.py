@@ -10,6 +10,7 @@ import sys
 
 from tree_sway.commands.arguments import (
     add_leaves_argument,
+    add_model_argument,
     add_output_arguments,
     add_tree_arguments,
     drawn_leaves,
@@ -26,13 +27,15 @@ from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.files.export.tree_export import GLTF_SUFFIXES, write_gltf, write_tree
+from tree_sway.files.whole_file import write_text_whole
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
-    add_output_arguments(parser, OUTPUT_HELP)
+    add_model_argument(parser)
+    add_output_arguments(parser, f'{OUTPUT_HELP}, .html')
     parser.add_argument(
         '--sway',
         nargs='?',
@@ -56,7 +59,9 @@ def run(arguments: argparse.Namespace) -> int:
         print(f'note: {note}', file=sys.stderr)
     for oddity in scene.warnings:
         print(f'warning: {oddity}', file=sys.stderr)
-    if arguments.sway == 'morph':
+    if Path(output).suffix.lower() == '.html':
+        _write_page(scene, arguments)
+    elif arguments.sway == 'morph':
         _write_morphing(scene, arguments)
     else:
         species = scene.species if scene.is_one_tree else None
@@ -66,8 +71,19 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
+    """Write a page that sways by itself, in leaf unless leaves are off."""
+    from tree_sway.page.one_file import page_of_scene
+
+    settings = Settings(in_leaf=told_leaves(arguments) is not False)
+    with waiting('finding what sways'):
+        simulator = scene.simulator(settings, model=arguments.model)
+        page = page_of_scene(simulator)
+    write_text_whole(arguments.output, page)
+
+
 def _write_morphing(scene: Scene, arguments: argparse.Namespace) -> None:
-    """Write a tree with morph targets and say what their linear form leaves out."""
+    """Write a tree with morph targets, and an animation of a breeze."""
     if not scene.is_one_tree:
         raise ParameterError(
             'a forest by morph targets', where='--sway', cure='convert its trees one by one'
@@ -75,10 +91,5 @@ def _write_morphing(scene: Scene, arguments: argparse.Namespace) -> None:
     settings = Settings(in_leaf=told_leaves(arguments))
     with waiting('finding what sways'):
         simulator = SwaySimulator(scene.tree, scene.species, settings)
-        document, form = morphing_tree(simulator, drawn_leaves(scene, arguments))
+        document = morphing_tree(simulator, drawn_leaves(scene, arguments))
     write_gltf(arguments.output, document)
-    print(
-        f'  {len(form.names)} weights; in a breeze that moves it by {1e3 * form.motion_rms:.3g} '
-        f'mm (rms; at most {1e3 * form.motion_greatest:.3g}), the linear form is off by '
-        f'{1e3 * form.rms:.2g} mm (at most {1e3 * form.greatest:.2g})'
-    )

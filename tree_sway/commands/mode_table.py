@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -19,37 +19,26 @@ from tree_sway.core.tree.tree import Tree
 _SMALL_ANGLE = 1e-4
 
 
-@dataclass(frozen=True)
-class ModeRow:
-    """
-    A natural mode: frequency [Hz] and damping ratio of wood and leaves, both without air.
-
-    ``axis`` is the unit vector (its sign means nothing) that most of the moving mass sways along,
-    ``branch`` the one that bends most.
-    """
-
-    frequency: float
-    damping_ratio: float
-    axis: Floats
-    branch: str
-
-    @property
-    def direction(self) -> str:
-        """Describe the axis for people: degrees from east to north, and upwards if not level."""
-        x, y, z = self.axis if self.axis[np.argmax(np.abs(self.axis))] > 0.0 else -self.axis
-        level = float(np.hypot(x, y))
-        up = float(np.degrees(np.arctan2(z, level)))
-        if abs(up) > 80.0:
-            return 'up and down'
-        azimuth = float(np.degrees(np.arctan2(y, x))) % 180.0
-        side = up if y > 0.0 or (y == 0.0 and x > 0.0) else -up
-        return f'{azimuth:5.1f} deg' + (f', {side:+.0f} up' if abs(side) >= 10.0 else '')
+def direction_of(axis: Floats) -> str:
+    """Describe an axis, whose sign means nothing: degrees from east to north, and upwards."""
+    x, y, z = axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis
+    up = float(np.degrees(np.arctan2(z, np.hypot(x, y))))
+    if abs(up) > 80.0:
+        return 'up and down'
+    azimuth = float(np.degrees(np.arctan2(y, x))) % 180.0
+    side = up if y > 0.0 or (y == 0.0 and x > 0.0) else -up
+    return f'{azimuth:5.1f} deg' + (f', {side:+.0f} up' if abs(side) >= 10.0 else '')
 
 
 def mode_table(
     tree: Tree, species: Species, settings: Settings, count: int
-) -> tuple[list[ModeRow], float]:
-    """List the slowest natural modes of a tree, a number of them or all, and its mass in [kg]."""
+) -> tuple[list[dict[str, Any]], float]:
+    """
+    List the slowest natural modes of a tree, a number of them or all, and its mass in [kg].
+
+    A mode has frequency [Hz] and damping ratio of wood and leaves, both without air, the axis that
+    most of the moving mass sways along, and the branch that bends most.
+    """
     whole = CalibratedTree(tree, species, settings)
     bank = whole.bank(0)
     modes = whole.natural_modes(min(count, whole.coupled.reduction.n_coordinates))
@@ -57,8 +46,16 @@ def mode_table(
     owner = np.repeat(layer.branch, layer.branches['n_coordinates'])
     rows = []
     for frequency, shape in zip(modes.frequencies.tolist(), modes.shapes.T, strict=True):
-        branch = tree.branch_names[int(owner[np.argmax(np.abs(shape))])]
-        rows.append(ModeRow(frequency, whole.damping_ratio, _axis(tree, bank, shape), branch))
+        axis = _axis(tree, bank, shape)
+        rows.append(
+            {
+                'frequency': frequency,
+                'damping_ratio': whole.damping_ratio,
+                'axis': [round(component, 6) for component in axis.tolist()],
+                'direction': direction_of(axis),
+                'branch': tree.branch_names[int(owner[np.argmax(np.abs(shape))])],
+            }
+        )
     return rows, bank.mass
 
 

@@ -16,24 +16,28 @@ from tree_sway.commands.arguments import (
     add_output_arguments,
     add_sway_arguments,
     drawn_leaves,
-    opened_record,
     opened_scene,
+    opened_wind,
     output_path,
     told_leaves,
 )
 from tree_sway.commands.progress import bar, waiting
+from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
+from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.wind.convention import velocity_of_bearing
-from tree_sway.core.wind.frame_means import recorded_means
-from tree_sway.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway.errors import ParameterError, TreeError
+from tree_sway.page.wind_source import RecordedWind
+from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.pictures.pictures import picture_in_wind
-from tree_sway.pictures.plots import plot_wind_and_tip
+from tree_sway.pictures.plots import plot_strength, plot_wind_and_tip
 
 _SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
-_STEP = 1.0 / 60.0
+_RATE = 60.0
+_CURVES = 12
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,6 +48,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action='store_true',
         help='draw the tree at rest and, beside it, in a steady wind',
     )
+    strength = 'draw the share of its strength that each tree uses, up to --speed (30 m/s)'
+    parser.add_argument('--strength', action='store_true', help=strength)
     parser.set_defaults(speed=None)
     parser.add_argument(
         '--from',
@@ -64,10 +70,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Draw, and say where the picture is."""
     if not 0.0 < arguments.seconds <= 3600.0:
         raise ParameterError(f'{arguments.seconds:g} s', where='--seconds', cure='give 0 to 3600')
+    if arguments.speed is None:
+        arguments.speed = 30.0 if arguments.strength else 10.0 if arguments.portrait else 6.0
     _refuse_bearing(arguments)
     output = output_path(arguments, 'sway.png')
     scene = opened_scene(arguments)
-    draw = _portrait if arguments.portrait else _motion
+    draw = _strength if arguments.strength else _portrait if arguments.portrait else _motion
     draw(scene, arguments, output)
     print(output)
     return 0
@@ -83,9 +91,8 @@ def _refuse_bearing(arguments: argparse.Namespace) -> None:
 
 
 def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
-    speed = 10.0 if arguments.speed is None else arguments.speed
     simulator = _simulator(scene, arguments)
-    wind = np.array(velocity_of_bearing(speed, math.radians(arguments.bearing)))
+    wind = np.array(velocity_of_bearing(arguments.speed, math.radians(arguments.bearing)))
     for _ in bar(range(round(_SETTLING / _SETTLING_STEP)), 'settling in the wind'):
         simulator.step(wind, _SETTLING_STEP)
     picture_in_wind(
@@ -109,27 +116,35 @@ def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
         return light
 
 
+def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
+    """Draw the strength that each tree uses over wind speed, and print it."""
+    if len(scene.trees) > _CURVES:
+        raise ParameterError(
+            f'{len(scene.trees)} trees', where='--strength', cure=f'give {_CURVES} or fewer'
+        )
+    speeds, used = np.linspace(0.0, SWAY['mean_speed'].checked(arguments.speed), 7)[1:], {}
+    for each in bar(scene.trees, 'loading trees'):
+        leaf_on = told_leaves(arguments) if each.leaf_on is None else each.leaf_on
+        tree = PlacedTree(each.name, each.placed(), species=each.species)
+        rig = Rig(tree, model=arguments.model, in_leaf=leaf_on)
+        used[each.name] = rig.strength_curve(speeds, rng=np.random.default_rng(0))
+        for speed, use in zip(speeds, used[each.name], strict=True):
+            print(f'{each.name} in {speed:.3g} m/s: {use}')
+    plot_strength(speeds, used, output)
+
+
 def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
-    speed = 6.0 if arguments.speed is None else arguments.speed
-    source = f'simulated wind, mean {speed:g} m/s'
-    if arguments.wind is None:
-        model = AnemometerModel(speed, bearing_to=math.radians(arguments.bearing + 180.0))
-        ticks = range(math.ceil(arguments.seconds * model.rate) + 1)
-        time, velocity = np.array(ticks) / model.rate, np.array([*map(model.sample, ticks)])
-        if arguments.bearing != 270.0:
-            source += f' from {arguments.bearing:g} degrees'
+    wind, seconds = opened_wind(arguments), arguments.seconds
+    if isinstance(wind, RecordedWind):
+        source, seconds = Path(arguments.wind).name, min(seconds, wind.length)
     else:
-        record = opened_record(arguments)
-        time, velocity, source = record.time, record.velocity, Path(record.source).name
-    wind = np.zeros((0, 3))
-    if len(time) > 1:
-        wind = recorded_means(time, velocity, _STEP)[: round(arguments.seconds / _STEP)]
-    if len(wind) < 2:
+        source = f'simulated wind, mean {arguments.speed:g} m/s from {arguments.bearing:g} degrees'
+        wind.set('bearing_to', math.radians(arguments.bearing + 180.0))
+    if seconds < 2.0 / _RATE:
         raise ParameterError('too short a wind to draw', where=source, cure='give a longer one')
-    simulator, tip = _simulator(scene, arguments), []
-    for mean in bar(wind, 'swaying'):
-        simulator.step(mean, _STEP)
-        tip.append(simulator.tip_displacement)
+    simulator = _simulator(scene, arguments)
+    frames = swaying(simulator, wind, _RATE, seconds)
+    felt = [(simulator.wind.copy(), simulator.tip_displacement.copy()) for _ in frames]
+    winds, tips = np.swapaxes(felt, 0, 1)
     title = f'{scene.tree.name}, {arguments.model}, {source}'
-    end = _STEP * np.arange(1, len(wind) + 1)
-    plot_wind_and_tip(end, wind, np.array(tip), output, title=title)
+    plot_wind_and_tip(np.arange(1, len(tips) + 1) / _RATE, winds, tips, output, title=title)

@@ -20,17 +20,11 @@ from tree_sway.commands.arguments import (
     told_leaves,
 )
 from tree_sway.commands.progress import bar, waiting
-from tree_sway.core.arrays import Floats
+from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
-from tree_sway.core.scene.run import Run
-from tree_sway.core.simulator.protocol import Simulator
-from tree_sway.core.wind.gate import WindGate
-from tree_sway.core.wind.intake import WindIntake
-from tree_sway.core.wind.limits import FASTEST_WIND
-from tree_sway.page.wind_source import blow, WindSource
 
-_STEPS_PER_SECOND = 120.0
 _RUN_IN = 20.0
+"""Time before the film [s] in which the start from rest is forgotten."""
 _BLADES = 2800
 """Of all leaves: a frame must take less time than it shows."""
 
@@ -43,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add('--start', type=float, default=0.0, help='of the wind [s] (%(default)s)')
     add('--rate', type=float, default=20.0, help='pictures per second [Hz] (%(default)s)')
     add('--pixels', type=int, default=480, help='height of the picture (%(default)s)')
-    add_output_arguments(parser, 'file to write: .gif, .png, .mp4, or a folder for its frames')
+    add_output_arguments(parser, 'film to write: .gif or .mp4')
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -60,11 +54,15 @@ def run(arguments: argparse.Namespace) -> int:
         simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
     clusters = _BLADES // blades_per_cluster(scene.tree.species)
     began = time.monotonic()
-    frames, winds = _swayed(simulator, wind, arguments)
+    frames, winds = [], []
+    how = arguments.rate, arguments.seconds, arguments.start, _RUN_IN
+    for _ in swaying(simulator, wind, *how):
+        frames.append(simulator.place().copy())
+        winds.append(simulator.wind.copy())
     animate_poses(
         scene.tree,
         frames,
-        winds,
+        np.array(winds),
         target,
         rate=arguments.rate,
         leaves=scene.leaves(told_leaves(arguments), clusters),
@@ -77,27 +75,6 @@ def run(arguments: argparse.Namespace) -> int:
         f'in {spent:.1f} s'
     )
     return 0
-
-
-def _swayed(
-    simulator: Simulator, wind: WindSource, arguments: argparse.Namespace
-) -> tuple[list[Floats], Floats]:
-    """Poses and wind of every picture, once the start from rest is forgotten."""
-    steps = max(1, round(_STEPS_PER_SECOND / arguments.rate))
-    intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
-    run = Run(simulator, arguments.rate * steps, intake=intake)
-    first = round(1e9 * max(0.0, arguments.start - _RUN_IN)) // run.period
-    tick = round(1e9 * arguments.start) // run.period
-    for each in range(first, tick):
-        blow(run, wind, each * run.period)
-    frames, winds = [], []
-    for _ in bar(range(max(1, round(arguments.seconds * arguments.rate))), 'swaying'):
-        for _ in range(steps):
-            tick += 1
-            blow(run, wind, tick * run.period)
-        frames.append(simulator.place().copy())
-        winds.append(simulator.wind.copy())
-    return frames, np.array(winds)
 
 
 def _watched(images: Iterator[Any], count: int) -> Iterator[Any]:

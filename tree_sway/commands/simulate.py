@@ -63,6 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     print(f'{output}: {record}')
+    print(record.strength)
     return 0
 
 

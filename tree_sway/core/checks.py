@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from typing import SupportsFloat
+from typing import Any, SupportsFloat
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -47,7 +47,8 @@ def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:
     try:
         if isinstance(vector, str | bytes):
             raise ValueError
-        x, y, z = np.asarray(vector, dtype=np.float64).tolist()
+        numbers: Any = vector.tolist() if isinstance(vector, np.ndarray) else vector
+        x, y, z = numbers
         return float(x), float(y), float(z)  # lists, of a matrix, are no floats
     except (TypeError, ValueError, OverflowError):
         text = ' '.join(repr(vector).split())[:80]

@@ -48,7 +48,7 @@ def bounded_arrays(
 
     """
     command = [sys.executable, __file__, read.__module__, read.__name__, str(path.absolute())]
-    found = os.pathsep.join(filter(None, sys.path))
+    found = os.pathsep.join(filter(None, [os.environ.get('PYTHONPATH', ''), *sys.path]))
     environment = {**os.environ, 'PYTHONPATH': found, 'OPENBLAS_NUM_THREADS': '1'}
     try:
         ended = subprocess.run(

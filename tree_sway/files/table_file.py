@@ -10,11 +10,14 @@ a block at a time, as a day of wind has millions of rows.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 import csv
 from dataclasses import dataclass
 from functools import cached_property, partial
+from importlib.resources import files
+import json
 import re
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +29,16 @@ from tree_sway.files.time_stamps import seconds_of_stamps
 _MAX_COLUMNS = 10_000
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 _UNIT = re.compile(r'\[(.*)\]|\((.*)\)|')
+_KNOWN = json.loads(files('tree_sway.files').joinpath('columns.json').read_text('utf-8'))
+
+UNITS: dict[str, dict[str, float]] = _KNOWN['units']
+"""Units of each kind of quantity, and their factors to SI."""
+
+COLUMNS: dict[str, dict[str, Any]] = _KNOWN['columns']
+"""What the column of a quantity may be called, and its kind of unit."""
+
+MOTIONS = {quantity: re.compile(pattern) for quantity, pattern in _KNOWN['motions'].items()}
+"""What columns of a tree's motion may be called; each quantity is its own kind of unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,27 +95,29 @@ class TextTable:
         unit = inside[1] or inside[2] or (self.units[index] if index < len(self.units) else '')
         return column[:begin].strip().lower().replace(' ', '_'), unit.strip()
 
-    def factor(self, unit: str, units: Mapping[str, float], default: float) -> float:
-        """Factor of a unit by its name; a `FormatError` if it is not one of these units."""
-        if not unit:
+    def factor(self, index: int, kind: str, default: float = 1.0) -> float:
+        """Factor of the unit of a column, a `FormatError` if it is not one of this kind."""
+        unit, units = self.headings[index][1].lower(), UNITS.get(kind, {})
+        if not unit or not units:
             return default
-        if unit.lower() not in units:
+        if unit not in units:
             raise FormatError(
                 f"unknown unit '{unit[:20]}'",
                 where=f'{self.source}:{self.unit_line}',
                 cure=f'use {", ".join(units)}',
             )
-        return units[unit.lower()]
+        return units[unit]
 
-    def find(
-        self, names: Sequence[str], units: Mapping[str, float], default: float = 1.0
-    ) -> Column | None:
-        """Return the first column of one of these names, with a unit behind it or not, or None."""
-        for name in names:
-            for index, (heading, unit) in enumerate(self.headings):
+    def find(self, quantity: str) -> Column | None:
+        """Return the first column of a quantity of `COLUMNS`, or None."""
+        known = COLUMNS[quantity]
+        units = UNITS.get(known['unit'], {})
+        default = units.get(known.get('default', ''), 1.0)
+        for name in known['names']:
+            for index, (heading, _) in enumerate(self.headings):
                 suffix = heading.removeprefix(f'{name}_')
                 if heading == name:
-                    return Column(index, self.factor(unit, units, default) if units else 1.0)
+                    return Column(index, self.factor(index, known['unit'], default))
                 if suffix != heading and suffix in units:  # not another quantity, as u_std
                     return Column(index, units[suffix])
         return None

@@ -23,16 +23,19 @@ import aiohttp
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError, ParameterError, TransportError
+from tree_sway.page.by_wind import ByWind, STEP
 from tree_sway.page.controls import Value
 from tree_sway.page.placer import Placer
 from tree_sway.page.playout import DELAY, Moment, Playout
 from tree_sway.page.protocol import (
     decode_description,
     decode_frame,
+    decode_tables,
     Description,
     Frame,
     LARGEST_DESCRIPTION,
     MAGIC,
+    TABLES,
 )
 
 _MOST_CREDIT, _LEAST_CREDIT, _GRANT_EVERY = 24, 8, 4
@@ -59,6 +62,9 @@ class StreamClient:
         Frames per second to ask for [Hz].
     delay
         Playout delay [s].
+    by_wind
+        Whether to ask for the wind alone, 28 bytes per frame, and solve the scene here (`ByWind`);
+        ask for 60 frames per second then.
     on_frame
         Called on the client's thread with every frame and its arrival [s] by the own clock.
 
@@ -81,6 +87,7 @@ class StreamClient:
         *,
         rate: float = 30.0,
         delay: float = DELAY,
+        by_wind: bool = False,
         on_frame: Callable[[Frame, float], None] | None = None,
     ) -> None:
         try:
@@ -106,7 +113,9 @@ class StreamClient:
         """To the server and back [s]."""
         self.status: dict[str, object] = {}
         """The newest status of the server."""
-        self._rate, self._on_frame = rate, on_frame
+        self.solver: ByWind | None = None
+        """What solves the scene by its wind; None where states come."""
+        self._rate, self._on_frame, self._wants_wind = rate, on_frame, by_wind
         self._placer: Placer | None = None
         self._more = threading.Condition()
         self._loop = asyncio.new_event_loop()
@@ -213,7 +222,7 @@ class StreamClient:
 
     async def _follow(self, socket: aiohttp.ClientWebSocketResponse) -> None:
         """Take what comes until the line ends, is silent for too long or cannot be read."""
-        self._say({'rate': self._rate, 'ping': time.monotonic()})
+        self._say({'rate': self._rate, 'ping': time.monotonic(), 'wind': self._wants_wind})
         pinged = time.monotonic()
         while True:
             message = await socket.receive()
@@ -236,6 +245,11 @@ class StreamClient:
             raise FormatError(str(message.data))
         elif message.data[:4] == MAGIC:
             self._describe(decode_description(message.data))
+        elif message.data[:4] == TABLES:
+            description = self.description
+            if description is not None:
+                scene = decode_tables(message.data).scene(description, STEP)
+                self.solver = ByWind(description, scene)
         else:
             self._awaited -= 1
             self._ask()
@@ -266,7 +280,7 @@ class StreamClient:
         self.status = dict(message.get('status', self.status))
 
     def _describe(self, description: Description) -> None:
-        placer = Placer(description)
+        placer, self.solver = Placer(description), None
         with self._more:
             self._placer = placer
             self.playout.clear()
@@ -278,7 +292,10 @@ class StreamClient:
         description = self.description
         if description is None or frame.identity != description.short_identity:
             return
-        values = description.coordinates(frame)
+        solver = self.solver
+        values = solver.take(frame) if solver else description.coordinates(frame)
+        if values is None or len(values) != len(description.scale):
+            return
         with self._more:
             moment = Moment(1e-9 * frame.stamp, values, frame.wind, frame.flags)
             self.playout.push(moment, arrival)

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-import math
 
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.parameters.parameter import Parameter
@@ -69,29 +68,12 @@ class Control:
         """
         if self.is_action:
             return None
-        if isinstance(self.value, float):
-            if isinstance(value, bool) or not isinstance(value, int | float):
-                raise self._error(f'{value!r} is not a number')
-            number = float(value) if abs(value) < _GREATEST else math.inf
-            low = -math.inf if self.minimum is None else self.minimum
-            high = math.inf if self.maximum is None else self.maximum
-            if not (math.isfinite(number) and low <= number <= high):
-                raise self._error(f'{number:g} is out of range')
-            return number
-        if not (isinstance(value, bool | str) and isinstance(value, type(self.value))):
-            raise self._error(f'{value!r} is not {type(self.value).__name__}')
-        if self.choices and value not in self.choices:
-            raise self._error(f"'{value}' is not among its choices")
-        return value
-
-    def _error(self, what: str) -> ParameterError:
-        if self.choices:
-            cure = f'use one of: {", ".join(self.choices)}'
-        elif self.minimum is not None and self.maximum is not None:
-            cure = f'give {self.minimum:g} .. {self.maximum:g} {self.unit}'.rstrip()
-        else:
-            cure = f'give a {type(self.value).__name__}'
-        return ParameterError(what, where=self.name, cure=cure)
+        if isinstance(value, int | float) and not abs(value) < _GREATEST:
+            raise ParameterError('a number out of range', where=self.name)
+        limits = self.minimum, self.maximum, self.choices
+        known = Parameter(self.name, self.value, self.description, self.unit, *limits)
+        checked: Value = known.checked(value)
+        return checked
 
 
 PAUSE_AND_RESET = (

@@ -20,7 +20,7 @@ from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.motion.fill_records import turns_of_segments
-from tree_sway.core.simulator.protocol import TreeSimulator
+from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import encode_description
 from tree_sway.page.scene_kind import SceneKind
@@ -79,7 +79,7 @@ def describe_scene(
                 'species': tree.species,
                 'height': round(tree.height, 4),
                 'model': kind.simulator.model,
-                'basis_error': float(kind.basis.error.quantised_greatest),
+                'basis_error': kind.basis.error,
                 'branch_names': _names(kind.simulator),
             }
         )
@@ -99,7 +99,7 @@ def describe_scene(
     return encode_description(header, arrays)
 
 
-def _branches(simulator: TreeSimulator) -> dict[str, Array]:
+def _branches(simulator: SwaySimulator) -> dict[str, Array]:
     """Arrays of one kind: how each of its branches is placed by the key rotations."""
     tree, branches, segments = simulator.tree, _in_order(simulator), simulator.bank.segments
     keys, sizes = branches['n_coordinates'], branches['end'] - branches['first']
@@ -147,7 +147,7 @@ def _branches(simulator: TreeSimulator) -> dict[str, Array]:
     }
 
 
-def _in_order(simulator: TreeSimulator) -> Records:
+def _in_order(simulator: SwaySimulator) -> Records:
     """
     Return the branches, their segments in the order of the tree.
 
@@ -160,7 +160,7 @@ def _in_order(simulator: TreeSimulator) -> Records:
     return ordered
 
 
-def _names(simulator: TreeSimulator) -> list[str]:
+def _names(simulator: SwaySimulator) -> list[str]:
     """Names of the branches; pieces of a branch that is cut have its name."""
     tree = simulator.tree
     whole = tree.branch_of_segment[_in_order(simulator)['first']]

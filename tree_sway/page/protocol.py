@@ -10,37 +10,46 @@ size.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 import hashlib
 import json
 import math
 import struct
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.state.full_scale import FULL_SCALE, MARGIN
+from tree_sway.core.state.state_basis import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array, check_description
 
+if TYPE_CHECKING:
+    from tree_sway.core.scene.received_scene import ReceivedScene
+
 VERSION, FRAME_VERSION = 2, 1
-MAGIC = b'TSWD'
+MAGIC, TABLES = b'TSWD', b'TSWT'
+"""First bytes of a description, and of the tables by which a receiver solves it."""
+
 FRAME_KIND = 0x46
 WIND_UNIT = 0.005
 """Wind of one unit of its int16 in [m/s]."""
 
-PAUSED, BEYOND_SCALE, RESTARTED = 1, 2, 4
-"""Flags of a frame: paused, a number was clamped to its scale, the motion jumped."""
+PAUSED, BEYOND_SCALE, RESTARTED, PART = 1, 2, 4, 8
+"""Flags of a frame: paused, a number clamped to its scale, the motion jumped, some coordinates."""
 
 _TYPES = {'f32': '<f4', 'i32': '<i4', 'u8': 'u1', 'i16': '<i2'}
 _NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
 _PREFIX = struct.Struct('<4sII')
 _FRAME = struct.Struct('<BBBxIIq3hH')
 _ALIGNMENT = 8
+
+FRAME_SIZE = _FRAME.size
+"""Of a frame of the wind alone in [bytes]."""
 
 LARGEST_DESCRIPTION = 64 * 2**20
 """Of its message in [bytes]."""
@@ -71,7 +80,9 @@ class Frame(NamedTuple):
     wind
         At the anemometer, blowing to, in [m/s], (3,).
     coordinates
-        As int16, (m,): full scale is `FULL_SCALE`.
+        As int16, (m,): full scale is `FULL_SCALE`. None of them is a frame of wind alone.
+    first
+        Number of the first of them.
 
     """
 
@@ -81,6 +92,7 @@ class Frame(NamedTuple):
     flags: int
     wind: Floats
     coordinates: Array
+    first: int = 0
 
 
 @dataclass(frozen=True)
@@ -125,12 +137,7 @@ class Description:
     @cached_property
     def kinds(self) -> list[dict[str, Array]]:
         """Arrays of each kind by name."""
-        kinds: list[dict[str, Array]] = [{} for _ in self.header['kinds']]
-        for name, array in self.arrays.items():
-            number, is_of_kind, own = name.partition('/')
-            if is_of_kind:
-                kinds[int(number)][own] = array
-        return kinds
+        return of_kinds(self.arrays, len(self.header['kinds']))
 
     @cached_property
     def scale(self) -> Floats:
@@ -140,18 +147,64 @@ class Description:
 
     def coordinates(self, frame: Frame) -> Floats:
         """Coordinates of a frame in their own unit, (m,); a `FormatError` if it has others."""
-        if len(frame.coordinates) != len(self.scale):
+        count, most = len(frame.coordinates), len(self.scale)
+        part = slice(frame.first, frame.first + count)
+        if part.stop > most or (count not in (0, most) and not frame.flags & PART):
             raise FormatError(
                 f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described',
                 where='tree state',
             )
-        values: Floats = frame.coordinates * (self.scale / FULL_SCALE)
+        values: Floats = frame.coordinates * (self.scale[part] / FULL_SCALE)
         return values
 
 
-def encode_description(header: Mapping[str, object], arrays: Mapping[str, Array]) -> bytes:
+@dataclass(frozen=True)
+class Tables:
+    """What a receiver solves a scene by: a header and arrays as of `tables_of`."""
+
+    header: dict[str, Any]
+    arrays: dict[str, Array]
+
+    def scene(self, description: Description, dt: float) -> ReceivedScene:
+        """Return the scene at rest, for time steps of dt [s]; a `FormatError` for another one."""
+        # Here, as it loads the compiler, which nobody needs who only draws.
+        from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene
+
+        header = self.header
+        if header['description'] != description.identity:
+            raise FormatError('tables of another description', cure='ask for both again')
+        parts = of_kinds(self.arrays, len(header['kinds']))
+        kinds = [
+            ReceivedKind(numbers, arrays, numbers['drag_law'])
+            for numbers, arrays in zip(header['kinds'], parts, strict=True)
+        ]
+        ratio = header['convection_ratio']
+        return ReceivedScene(
+            kinds,
+            np.array([tree['kind'] for tree in description.header['trees']]),
+            description.arrays['tree_place'].astype(np.float64),
+            self.arrays['tree_speed'].astype(np.float64),
+            dt=dt,
+            anemometer=header['anemometer'],
+            convection_ratio=math.inf if ratio is None else ratio,
+        )
+
+
+def of_kinds(arrays: Mapping[str, Array], count: int) -> list[dict[str, Array]]:
+    """Arrays of each kind by name, out of those that have its number and a slash before theirs."""
+    kinds: list[dict[str, Array]] = [{} for _ in range(count)]
+    for name, array in arrays.items():
+        number, is_of_kind, own = name.partition('/')
+        if is_of_kind:
+            kinds[int(number)][own] = array
+    return kinds
+
+
+def encode_description(
+    header: Mapping[str, object], arrays: Mapping[str, Array], magic: bytes = MAGIC
+) -> bytes:
     """
-    Write a description.
+    Write a description, or tables.
 
     Parameters
     ----------
@@ -159,6 +212,8 @@ def encode_description(header: Mapping[str, object], arrays: Mapping[str, Array]
         Whatever JSON can hold; `version`, `identity` and `arrays` are added.
     arrays
         Arrays of float32, int32, int16 or uint8.
+    magic
+        `MAGIC` or `TABLES`.
 
     """
     body, table = bytearray(), {}
@@ -172,7 +227,7 @@ def encode_description(header: Mapping[str, object], arrays: Mapping[str, Array]
     digest = hashlib.sha256(_json(content) + body).hexdigest()
     text = _json({**content, 'identity': digest[:16]})
     text += b' ' * (-(_PREFIX.size + len(text)) % _ALIGNMENT)
-    return _PREFIX.pack(MAGIC, VERSION, len(text)) + text + bytes(body)
+    return _PREFIX.pack(magic, VERSION, len(text)) + text + bytes(body)
 
 
 def decode_description(data: bytes) -> Description:
@@ -186,33 +241,52 @@ def decode_description(data: bytes) -> Description:
         that points outside of another.
 
     """
-    if len(data) < _PREFIX.size or data[:4] != MAGIC:
-        raise _broken('it does not begin with TSWD')
+    with _reading('tree description'):
+        return Description(*_unpacked(data, MAGIC))
+
+
+def decode_tables(data: bytes) -> Tables:
+    """Read the tables of a description; a `FormatError` as of `decode_description`."""
+    with _reading('tables'):
+        return Tables(*_unpacked(data, TABLES)[:2])
+
+
+@contextmanager
+def _reading(what: str) -> Iterator[None]:
+    """Raise all that reading JSON or arrays of another form raises as a `FormatError`."""
+    try:
+        yield
+    except FormatError as error:
+        raise error.inside(what) from None
+    except _WRONG_JSON as error:
+        raise FormatError(
+            f'not whole: {type(error).__name__}: {error}'[:200],
+            where=what,
+            cure='ask the sender for it again',
+        ) from None
+
+
+def _unpacked(data: bytes, magic: bytes) -> tuple[dict[str, Any], dict[str, Array], str]:
+    """Header, arrays and identity of a message of some first bytes."""
+    if len(data) < _PREFIX.size or data[:4] != magic:
+        raise ValueError(f'it does not begin with {magic.decode()}')
     _, version, size = _PREFIX.unpack_from(data)
     if version != VERSION:
-        raise FormatError(
-            f'a description of version {version}',
-            where='tree description',
-            cure=f'this program reads version {VERSION}: update the older side',
-        )
+        cure = f'this program reads version {VERSION}: update the older side'
+        raise FormatError(f'a message of version {version}', cure=cure)
     begin = _PREFIX.size + size
     if size > LARGEST_HEADER:
-        raise _broken(f'a header of {size} bytes; up to {LARGEST_HEADER} are read')
+        raise ValueError(f'a header of {size} bytes; up to {LARGEST_HEADER} are read')
     body = memoryview(data)[begin:]
-    try:
-        header = json.loads(data[_PREFIX.size : begin])
-        identity, table = header.pop('identity'), header['arrays']
-        arrays = {name: _array(body, entry) for name, entry in table.items()}
-        digest = hashlib.sha256(_json(header))
-        digest.update(body)
-        if digest.hexdigest()[:16] != identity:
-            raise ValueError('its content does not match its identity')
-        del header['arrays']
-        return Description(header, arrays, identity)
-    except FormatError as error:
-        raise error.inside('tree description') from None
-    except _WRONG_JSON as error:
-        raise _broken(f'{type(error).__name__}: {error}'[:200]) from None
+    header = json.loads(data[_PREFIX.size : begin])
+    identity, table = header.pop('identity'), header['arrays']
+    arrays = {name: _array(body, entry) for name, entry in table.items()}
+    digest = hashlib.sha256(_json(header))
+    digest.update(body)
+    if digest.hexdigest()[:16] != identity:
+        raise ValueError('its content does not match its identity')
+    del header['arrays']
+    return header, arrays, identity
 
 
 def encode_frame(frame: Frame) -> bytes:
@@ -246,14 +320,29 @@ def decode_frame(data: bytes) -> Frame:
             'not a frame', where='tree state', cure='send frames of doc/streaming.md'
         )
     _, version, flags, identity, sequence, stamp, x, y, z, count = _FRAME.unpack_from(data)
-    if version != FRAME_VERSION or len(data) != _FRAME.size + 2 * count:
+    begin = _FRAME.size + 2 * bool(flags & PART)
+    if version != FRAME_VERSION or len(data) != begin + 2 * count:
         raise FormatError(
             f'a frame of version {version}, {count} coordinates and {len(data)} bytes',
             where='tree state',
-            cure=f'send version {FRAME_VERSION}, {_FRAME.size} bytes and 2 per coordinate',
+            cure=f'send version {FRAME_VERSION}, {begin} bytes and 2 per coordinate',
         )
-    coordinates = np.frombuffer(data, dtype='<i2', offset=_FRAME.size)
-    return Frame(identity, sequence, stamp, flags, WIND_UNIT * np.array([x, y, z]), coordinates)
+    coordinates = np.frombuffer(data, dtype='<i2', offset=begin)
+    first = int.from_bytes(data[begin - 2 : begin], 'little') if flags & PART else 0
+    wind = WIND_UNIT * np.array([x, y, z])
+    return Frame(identity, sequence, stamp, flags, wind, coordinates, first)
+
+
+def part_of_frame(frame: bytes, first: int, count: int) -> bytes:
+    """Return a frame of some of the coordinates of one; of the wind alone if the count is 0."""
+    head, size = bytearray(frame[: _FRAME.size]), _FRAME.size
+    count = min(count, (len(frame) - size) // 2 - first)
+    head[-2:] = count.to_bytes(2, 'little')
+    if count == 0:
+        return bytes(head)
+    head[2] |= PART
+    part = frame[size + 2 * first : size + 2 * (first + count)]
+    return bytes(head) + first.to_bytes(2, 'little') + part
 
 
 def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Array, bool]:
@@ -289,11 +378,3 @@ def _array(body: memoryview, entry: Mapping[str, Any]) -> Array:
     count = math.prod(shape)
     flat = np.frombuffer(body, dtype=_TYPES[entry['type']], count=count, offset=entry['offset'])
     return flat.reshape(shape)
-
-
-def _broken(why: str) -> FormatError:
-    return FormatError(
-        f'not a whole description: {why}',
-        where='tree description',
-        cure='ask the sender for it again',
-    )

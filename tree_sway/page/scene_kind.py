@@ -16,10 +16,10 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.scene.scene_simulator import SceneSimulator
-from tree_sway.core.simulator.protocol import Simulator, TreeSimulator
+from tree_sway.core.simulator.find_basis import state_basis
+from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.simulator.settings import USUAL
 from tree_sway.core.simulator.simulator import SwaySimulator
-from tree_sway.core.state.find_basis import state_basis
 from tree_sway.core.state.state_basis import StateBasis
 
 Place = tuple[float, float, float, float, float]
@@ -44,7 +44,7 @@ class SceneKind:
 
     """
 
-    simulator: TreeSimulator
+    simulator: SwaySimulator
     basis: StateBasis
     coordinates: Callable[[], Floats]
     numbers: list[int]
@@ -77,7 +77,7 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
     return kinds + [_alone(t, each, is_running) for t, each in simulator.own.items()]
 
 
-def _alone(number: int, simulator: TreeSimulator, is_running: bool) -> SceneKind:
+def _alone(number: int, simulator: SwaySimulator, is_running: bool) -> SceneKind:
     """Return the kind of a tree that shares nothing, described where it is."""
     basis = state_basis(_runner(simulator, is_running))
     x, y, z = simulator.tree.start[0].tolist()
@@ -91,12 +91,12 @@ def _shared(scene: SceneSimulator, numbers: Ints, per_shape: Floats) -> Floats:
     return coordinates
 
 
-def _coordinates(projection: Floats, simulator: TreeSimulator) -> Floats:
+def _coordinates(projection: Floats, simulator: SwaySimulator) -> Floats:
     """Coordinates of one tree, (1, m)."""
     return np.asarray(projection @ simulator.rotations())[None]
 
 
-def _runner(simulator: TreeSimulator, is_running: bool) -> SwaySimulator:
+def _runner(simulator: SwaySimulator, is_running: bool) -> SwaySimulator:
     """Choose the simulator to find the basis on: this one if it is at rest and no dearer."""
     is_cheap = isinstance(simulator, SwaySimulator) and simulator.model not in ('full', 'auto')
     if isinstance(simulator, SwaySimulator) and is_cheap and not is_running:

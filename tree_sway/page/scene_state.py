@@ -22,6 +22,7 @@ from tree_sway.page.protocol import (
     RESTARTED,
 )
 from tree_sway.page.scene_kind import scene_kinds, SceneKind
+from tree_sway.page.tables import tables_of
 
 FULLY_LEAVED = 4
 """Kinds of which each is described with all the clusters of leaves that are asked for."""
@@ -77,6 +78,13 @@ class SceneState:
         described = decode_description(self.description)
         self.identity, self._short = described.identity, described.short_identity
         self._sequence = 0
+        self._tables: bytes | None = None
+
+    def tables(self) -> bytes | None:
+        """Return what a receiver solves the scene by, as `tables_of`; made at the first call."""
+        if self._tables is None:
+            self._tables = tables_of(self.simulator, self.kinds, self.identity)
+        return self._tables
 
     def _lay_out(self) -> None:
         """Give the coordinates of all trees numbers, one tree after another."""

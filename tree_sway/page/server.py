@@ -16,9 +16,11 @@ from collections.abc import Callable, Mapping
 import contextlib
 from dataclasses import dataclass, field
 from html import escape
+from importlib import resources
 import json
 import logging
 import math
+from pathlib import Path
 import socket
 import ssl
 import threading
@@ -32,7 +34,7 @@ from tree_sway.errors import TransportError
 from tree_sway.page.access import given_token, is_token, read_token, refusal, require_token
 from tree_sway.page.controls import ControlPanel, Value
 from tree_sway.page.doorkeeper import Doorkeeper
-from tree_sway.page.static_files import StaticFiles
+from tree_sway.page.protocol import FRAME_SIZE, part_of_frame
 
 LARGEST_MESSAGE = 4096
 """Longest message that a client may send in [bytes]."""
@@ -47,6 +49,12 @@ IDLE_TIME = 60.0
 """A client that says nothing for this time is closed [s]; a page sends several texts a second."""
 
 STATUS_PERIOD = 0.5
+STATE_PERIOD = 5.0
+"""Time after which a client that solves by itself is sent coordinates again [s]."""
+
+MOST_IN_STATE = 600
+"""Coordinates that it is sent then; of a scene of more, others each time."""
+
 _COMPLAINT_PERIOD = 10.0
 _LARGEST_PING = 1e15
 _LONGEST_PATH = 100
@@ -58,6 +66,7 @@ _FORM = (
 _LOGGER = logging.getLogger('tree_sway.page')
 _START_TIMEOUT = 10.0
 _SEND_TIMEOUT = 5.0
+_STATIC = Path(str(resources.files('tree_sway.page'))) / 'static'
 _HEADERS = {
     'Content-Security-Policy': "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'",
     'X-Content-Type-Options': 'nosniff',
@@ -110,12 +119,28 @@ class _Client:
         self.wake = asyncio.Event()
         self.texts: deque[str] = deque(maxlen=16)
         self.description = b''
+        self.wants_wind = self.is_solving = False
+        self.states, self.next_state, self.first = 0, 0.0, 0
         self.last_heard = time.monotonic()
         self.sending_since = math.inf
 
     def is_lost(self, now: float) -> bool:
         """Whether it has been silent, or has not read, for too long by a time [s]."""
         return now - self.last_heard > IDLE_TIME or now - self.sending_since > _SEND_TIMEOUT
+
+    def thinned(self, frame: bytes, now: float) -> bytes:
+        """Return what one that solves by itself needs of a frame: the wind, now and then more."""
+        if self.states < 2:  # two to begin with, for the rates
+            self.states, self.next_state = self.states + 1, now + STATE_PERIOD
+            return frame
+        if now < self.next_state:
+            return part_of_frame(frame, 0, 0)
+        self.next_state = now + STATE_PERIOD
+        part = part_of_frame(frame, self.first, MOST_IN_STATE)
+        self.first += MOST_IN_STATE
+        if 2 * self.first >= len(frame) - FRAME_SIZE:
+            self.first = 0
+        return part
 
     def ring(self) -> None:
         """Look again at what is to be sent."""
@@ -155,7 +180,7 @@ class PageServer:
         require_token(settings.address, self._token)
         self._panel = panel or ControlPanel()
         self._status = status or dict
-        self._description = b''
+        self._description, self._tables = b'', _no_tables
         self._frame: tuple[int, bytes] = (-1, b'')
         self._clients: set[_Client] = set()
         self._loop = asyncio.new_event_loop()
@@ -163,7 +188,8 @@ class PageServer:
         self._failure: Exception | None = None
         self._ending: asyncio.Event | None = None
         self._is_woken = False
-        self._counts = dict.fromkeys(('sent', 'bytes', 'refused', 'closed_idle'), 0)
+        self.n_refused = 0
+        """Requests and messages that were refused."""
         self._complained = -_COMPLAINT_PERIOD
         self._doors = Doorkeeper(4 * settings.max_clients, self._complain)
         self._thread = threading.Thread(target=self._run, name='page', daemon=True)
@@ -216,9 +242,15 @@ class PageServer:
         """Pages that are connected."""
         return len(self._clients)
 
-    def describe(self, description: bytes) -> None:
-        """Send all pages, now and later, what the frames that follow belong to."""
-        self._description = description
+    def describe(
+        self, description: bytes, tables: Callable[[], bytes | None] | None = None
+    ) -> None:
+        """
+        Send all pages, now and later, what the frames that follow belong to.
+
+        Clients that ask for the wind alone are sent what `tables` returns, and solve by it.
+        """
+        self._description, self._tables = description, tables or _no_tables
         self._call(self._wake_all)
 
     def publish(self, frame: bytes) -> None:
@@ -275,12 +307,11 @@ class PageServer:
 
     async def _serve(self) -> None:
         self._ending = asyncio.Event()
-        files, app = StaticFiles(), web.Application(middlewares=[self._guard])
-        app.router.add_get('/', files.index)
+        app = web.Application(middlewares=[self._guard])
+        app.router.add_get('/', _index)
         app.router.add_get('/stream', self._stream)
         app.router.add_get('/healthz', self._health)
-        app.router.add_get('/metrics', self._metrics)
-        app.router.add_get('/static/{name:.+}', files.serve)
+        app.router.add_static('/static/', _STATIC)
         app.on_response_prepare.append(_add_headers)
         logger = logging.Logger('page')
         logger.addHandler(_Complaints(self._complain))
@@ -309,12 +340,11 @@ class PageServer:
 
     def _complain(self, what: str) -> None:
         """Count what was refused, and log a line now and then."""
-        self._counts['refused'] += 1
+        self.n_refused += 1
         now = time.monotonic()
         if now - self._complained >= _COMPLAINT_PERIOD:
             self._complained = now
-            count = self._counts['refused']
-            _LOGGER.warning('%s (%d refused since the start)', what[:200], count)
+            _LOGGER.warning('%s (%d refused since the start)', what[:200], self.n_refused)
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
@@ -336,6 +366,8 @@ class PageServer:
         except ValueError as error:
             return self._refused(400, f'not understood: {error}')
         response: web.StreamResponse = await handler(request)
+        if isinstance(response, web.FileResponse) and _takes_packed(request):
+            response.enable_compression(web.ContentCoding.gzip)
         return response
 
     def _refused(self, status: int, why: str, *, with_form: bool = False) -> web.Response:
@@ -349,22 +381,6 @@ class PageServer:
 
     async def _health(self, _request: web.Request) -> web.Response:
         return web.json_response({'status': 'ok', 'described': bool(self._description)})
-
-    async def _metrics(self, _request: web.Request) -> web.Response:
-        values: dict[str, object] = {
-            'clients': len(self._clients),
-            'connections': self._doors.n_open,
-            'frames_total': self._frame[0] + 1,
-            'sent_total': self._counts['sent'],
-            'sent_bytes_total': self._counts['bytes'],
-            'refused_total': self._counts['refused'],
-            'closed_total': self._counts['closed_idle'] + self._doors.n_closed,
-        }
-        lines = []
-        for name, value in values.items():
-            kind = 'counter' if name.endswith('_total') else 'gauge'
-            lines += [f'# TYPE tree_sway_page_{name} {kind}', f'tree_sway_page_{name} {value}']
-        return web.Response(text='\n'.join(lines) + '\n')
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         if len(self._clients) >= self.settings.max_clients:
@@ -414,6 +430,8 @@ class PageServer:
         if 'ping' in message:
             ping = _number(message, 'ping', -_LARGEST_PING, _LARGEST_PING)
             client.texts.append(json.dumps({'pong': ping, 'time': time.time_ns() / 1e6}))
+        if message.get('wind') is True:
+            client.wants_wind, client.description = True, b''
         if 'set' in message:
             self._change(client, message['set'])
         client.wake.set()
@@ -423,7 +441,7 @@ class PageServer:
         name = change.get('name')
         why = self._panel.set(name, change.get('value'))
         if why is not None:
-            self._counts['refused'] += 1
+            self.n_refused += 1
             refused = {'name': str(name)[:80], 'reason': why[:400]}
             client.texts.append(json.dumps({'refused': refused, 'values': self._panel.values()}))
             return
@@ -455,6 +473,8 @@ class PageServer:
         if client.description is not self._description:
             client.description = self._description
             await client.socket.send_bytes(self._description)
+            if client.wants_wind:
+                await self._send_tables(client)
         number, frame = self._frame
         if client.credit <= 0 or number == client.sent or not frame or not client.description:
             return
@@ -467,9 +487,19 @@ class PageServer:
         client.next_due = max(client.next_due + client.period, now)
         client.credit -= 1
         client.sent = number
-        self._counts['sent'] += 1
-        self._counts['bytes'] += len(frame)
+        if client.is_solving:
+            frame = client.thinned(frame, now)
         await client.socket.send_bytes(frame)
+
+    async def _send_tables(self, client: _Client) -> None:
+        """Send the tables, or say that there are none: then it is sent every state."""
+        tables = await self._loop.run_in_executor(None, self._tables)
+        client.is_solving, client.states = tables is not None, 0
+        if tables is not None:
+            await client.socket.send_bytes(tables)
+            return
+        reason = 'this scene cannot be solved elsewhere: it is sent state by state'
+        client.texts.append(json.dumps({'refused': {'name': 'wind', 'reason': reason}}))
 
     async def _send_status(self) -> None:
         assert self._ending is not None
@@ -485,10 +515,14 @@ class PageServer:
 
     def _drop(self, client: _Client) -> None:
         """Close a client that does not read, without waiting for it."""
-        self._counts['closed_idle'] += 1
         self._clients.discard(client)
         if client.transport is not None:
             client.transport.abort()
+
+
+def _no_tables() -> bytes | None:
+    """Return no tables."""
+    return None
 
 
 class _Complaints(logging.Handler):
@@ -510,6 +544,17 @@ def _number(message: dict[str, Any], name: str, low: float, high: float) -> floa
     if type(value) not in (int, float) or not low <= value <= high:
         raise ValueError(f'{name} out of {low:g} .. {high:g}')
     return float(min(value, _LARGEST_PING))
+
+
+async def _index(_request: web.Request) -> web.FileResponse:
+    return web.FileResponse(_STATIC / 'index.html')
+
+
+def _takes_packed(request: web.Request) -> bool:
+    """Whether a file may be packed; not where it may be none, as aiohttp packs that as well."""
+    headers = request.headers
+    is_sent = request.method == 'GET' and not {'If-None-Match', 'If-Modified-Since'} & {*headers}
+    return is_sent and 'gzip' in headers.get('Accept-Encoding', '')
 
 
 async def _add_headers(_request: web.Request, response: web.StreamResponse) -> None:

@@ -116,7 +116,7 @@ class Session:
 
     def serve(self, server: PageServer) -> None:
         """Publish on a server from now on; the first time, begin to step."""
-        server.describe(self._scene.description)
+        server.describe(self._scene.description, self._scene.tables)
         self._server = server
         if not self._thread.is_alive():
             self._thread.start()
@@ -227,7 +227,7 @@ class Session:
         has_restarted, self._resets = self._resets, False
         if self._next is not None:
             (self._scene, self._runtime), self._next = self._next, None
-            self._server.describe(self._scene.description)
+            self._server.describe(self._scene.description, self._scene.tables)
         if has_restarted:
             self._scene.simulator.reset()
         if not self._is_paused:

@@ -100,15 +100,15 @@ class RecordedWind:
     def __init__(self, time: Floats, velocity: Floats) -> None:
         self._time, self._velocity = time - time[0], velocity
         last = float(self._time[-1])
-        self._length = last + max(last / max(len(time) - 1, 1), 1e-3)
+        self.length = last + max(last / max(len(time) - 1, 1), 1e-3)
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
         """Give the samples after a time up to a later one, both in [s]."""
-        lap, n = max(math.floor(since / self._length), 0), len(self._time)
-        i = int(self._time.searchsorted(since - lap * self._length + 1e-9, 'right'))
+        lap, n = max(math.floor(since / self.length), 0), len(self._time)
+        i = int(self._time.searchsorted(since - lap * self.length + 1e-9, 'right'))
         while True:
             lap, i = lap + i // n, i % n
-            time = lap * self._length + float(self._time[i])
+            time = lap * self.length + float(self._time[i])
             if time > until + 1e-9:
                 return
             x, y, z = self._velocity[i].tolist()

@@ -20,11 +20,10 @@ from tree_sway.core.tree.pose_ends import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError, MissingDependencyError, ParameterError
 from tree_sway.files.whole_file import whole_file
-from tree_sway.pictures.projection import Camera
-from tree_sway.pictures.raster import Raster
-from tree_sway.pictures.tree_drawing import Frame, frame_around
+from tree_sway.pictures.painter import Painter
+from tree_sway.pictures.projection import Camera, Frame, frame_around
 
-_KINDS = {'.gif': 'GIF', '.png': 'PNG', '.apng': 'PNG', '.mp4': 'MP4'}
+_SUFFIXES = ('.gif', '.mp4')
 _GIF_COLORS = 64
 
 
@@ -41,7 +40,7 @@ def animate_poses(
     watched: Callable[[Iterator[Any], int], Iterator[Any]] | None = None,
 ) -> Path:
     """
-    Draw a moving picture: a GIF, an animated PNG, a film, or a folder of frames, by the suffix.
+    Draw a moving picture: a GIF or a film, by the suffix.
 
     Parameters
     ----------
@@ -52,8 +51,7 @@ def animate_poses(
     winds
         Wind of each frame in [m/s], (f, 3).
     path
-        File to write: ``.gif``, ``.png``, ``.apng`` or ``.mp4`` (by ffmpeg); without a suffix, a
-        folder of frames.
+        File to write: ``.gif`` or ``.mp4`` (by ffmpeg).
     rate
         Frames per second in [Hz].
     camera
@@ -74,12 +72,12 @@ def animate_poses(
 
     """
     target = Path(path)
-    kind = _KINDS.get(target.suffix.lower())
-    if kind is None and target.suffix:
+    suffix = target.suffix.lower()
+    if suffix not in _SUFFIXES:
         raise FormatError(
             f"'{target.suffix}' is no moving picture",
             where=str(target),
-            cure=f'end the name with one of: {", ".join(_KINDS)}; a folder has no ending',
+            cure=f'end the name with one of: {", ".join(_SUFFIXES)}',
         )
     blowing = np.asarray(winds, dtype=np.float64)
     if len(frames) == 0 or blowing.shape != (len(frames), 3):
@@ -89,49 +87,34 @@ def animate_poses(
         )
     camera = camera or Camera()
     blocks = [np.asarray(poses, dtype=np.float64) for poses in frames]
-    raster = Raster(tree, camera, _frame_of_all(tree, blocks, camera), pixels)
+    painter = Painter([tree], camera, _frame_of_all(tree, blocks, camera), pixels)
 
     def images() -> Iterator[Any]:
         for i, (block, wind) in enumerate(zip(blocks, blowing, strict=True)):
-            foliage = None
+            angle: ArrayLike = 0.0
             if leaves is not None:
-                before = blocks[max(i - 1, 0)]
-                foliage = _fluttering(leaves, block, before, wind, i, rate), leaves.size
-            yield raster.image(*ends_of_poses(block, tree.length), wind, foliage)
+                now, then = (
+                    leaf_poses(leaves, poses)[:, :3] for poses in (block, blocks[max(i - 1, 0)])
+                )
+                angle = flutter_angle(leaves, air_speed(now, then, 1.0 / rate, wind), i / rate)
+            yield painter.image(block, wind, leaves, angle)
 
     shown = images() if watched is None else watched(images(), len(blocks))
-    if kind is None:
-        _write_frames(target, shown)
-    elif kind == 'MP4':
-        _write_film(target, shown, raster.size, rate)
+    if suffix == '.gif':
+        _write_gif(target, shown, rate)
     else:
-        _write_picture(target, shown, kind, rate)
+        _write_film(target, shown, painter.size, rate)
     return target
 
 
-def _write_picture(target: Path, images: Iterator[Any], kind: str, rate: float) -> None:
-    first = next(images)
-    others: Any = list(images) if kind == 'PNG' else images  # Pillow goes through them twice
-    if kind == 'GIF':
-        palette = first.quantize(_GIF_COLORS)
-        # No dither: dots that dance are no motion.
-        others = (image.quantize(palette=palette, dither=0) for image in images)
-        first = palette
+def _write_gif(target: Path, images: Iterator[Any], rate: float) -> None:
+    first = next(images).quantize(_GIF_COLORS)
+    # No dither: dots that dance are no motion.
+    others = (image.quantize(palette=first, dither=0) for image in images)
     with whole_file(target) as partial:
         first.save(
-            partial, kind, save_all=True, append_images=others, duration=1000.0 / rate, loop=0
+            partial, 'GIF', save_all=True, append_images=others, duration=1000.0 / rate, loop=0
         )
-
-
-def _write_frames(target: Path, images: Iterator[Any]) -> None:
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-        for number, image in enumerate(images):
-            image.save(target / f'{number:05d}.png')
-    except OSError as error:
-        raise FormatError(
-            f'frames cannot be written ({error})', where=str(target), cure='name another folder'
-        ) from None
 
 
 def _write_film(target: Path, images: Iterator[Any], size: tuple[int, int], rate: float) -> None:
@@ -141,7 +124,7 @@ def _write_film(target: Path, images: Iterator[Any], size: tuple[int, int], rate
         raise MissingDependencyError(
             'films need ffmpeg, which is not installed',
             where=str(target),
-            cure='install ffmpeg, or name a .gif or a folder',
+            cure='install ffmpeg, or name a .gif',
         )
     wide, high = size
     given = ['-f', 'rawvideo', '-pix_fmt', 'rgb24', '-s', f'{wide}x{high}', '-r', f'{rate:g}']
@@ -161,7 +144,7 @@ def _write_film(target: Path, images: Iterator[Any], size: tuple[int, int], rate
             raise FormatError(
                 f'ffmpeg: {reason[-1] if reason else "failed"}',
                 where=str(target),
-                cure='name a .gif or a folder',
+                cure='name a .gif',
             )
 
 
@@ -176,12 +159,3 @@ def _frame_of_all(tree: Tree, blocks: list[Floats], camera: Camera) -> Frame:
 def _box(points: Floats) -> Floats:
     """Points that touch each side of the cloud, so that many clouds are framed at little cost."""
     return points[[*points.argmin(axis=0), *points.argmax(axis=0)]]
-
-
-def _fluttering(
-    leaves: LeafClusters, block: Floats, before: Floats, wind: Floats, step: int, rate: float
-) -> Floats:
-    """Pose block of the leaves in the air that passes them."""
-    now, then = (leaf_poses(leaves, poses)[:, :3] for poses in (block, before))
-    speed = air_speed(now, then, 1.0 / rate, wind)
-    return leaf_poses(leaves, block, flutter_angle(leaves, speed, step / rate))

@@ -5,41 +5,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import accumulate
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats
-from tree_sway.core.leaves.flutter import flutter_angle, leaf_poses
+from tree_sway.core.leaves.flutter import flutter_angle
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.tree.pose_ends import ends_of_poses
 from tree_sway.core.tree.tree import Tree
-from tree_sway.pictures.plotting import new_figure, save_figure
-from tree_sway.pictures.projection import Camera
-from tree_sway.pictures.tree_drawing import (
-    draw_ghost,
-    draw_scale,
-    draw_tree,
-    draw_wind,
-    Frame,
-    frame_around,
-)
+from tree_sway.pictures.painter import Painter
+from tree_sway.pictures.plotting import DOTS_PER_INCH, new_figure, save_figure, show_image
+from tree_sway.pictures.projection import Camera, frame_around
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_INCHES_HIGH = 6.0
-_INCHES_WIDE = 9.0
+_PIXELS, _WIDEST, _TITLE = 660, 990, 48
+"""Height of a tree's image, width of a wide one, and height of the title above them [px]."""
 _WIDE = 1.3
 """Width over height from which a tree in wind is drawn below what rests, not beside."""
 
 
 def picture_in_wind(
-    tree: Tree | Sequence[Tree],
+    trees: Sequence[Tree],
     poses: ArrayLike,
     wind: ArrayLike,
     path: str | Path,
@@ -53,7 +39,7 @@ def picture_in_wind(
 
     Parameters
     ----------
-    tree
+    trees
         The tree or trees.
     poses
         Pose block in wind of all of them, (n, 7): x y z [m], and the quaternion's x y z w.
@@ -70,71 +56,33 @@ def picture_in_wind(
 
     """
     camera = camera or Camera()
-    trees = _listed(tree)
-    block, blowing = (np.asarray(each, dtype=np.float64) for each in (poses, wind))
-    start, end = _nodes(trees)
-    moved = ends_of_poses(block, np.concatenate([each.length for each in trees]))
-    frame = frame_around(np.vstack([start, end, *moved]), camera, headroom=0.1)
-    figure, rest, windy = _two_axes(frame)
-    _draw(rest, trees, np.vstack([each.rest_poses for each in trees]), camera, frame, leaves)
-    for each in trees:
-        draw_ghost(windy, each, camera)
+    blowing = np.asarray(wind, dtype=np.float64)
+    rest = np.vstack([each.rest_poses for each in trees])
+    length = np.concatenate([each.length for each in trees])
+    nodes = [*ends_of_poses(rest, length), *ends_of_poses(poses, length)]
+    frame = frame_around(np.vstack(nodes), camera, headroom=0.1)
+    is_wide = frame.aspect > _WIDE
+    pixels = round(_WIDEST / frame.aspect) if is_wide else _PIXELS
+    painter = Painter(trees, camera, frame, pixels)
     angle = 0.0 if leaves is None else flutter_angle(leaves, float(np.linalg.norm(blowing)), 0.0)
-    _draw(windy, trees, block, camera, frame, leaves, angle)
-    draw_scale(rest, frame)
-    draw_wind(windy, frame, camera, blowing)
-    rest.text(0.03, 0.97, 'at rest', transform=rest.transAxes, va='top', color='#555555')
-    windy.text(
-        0.97, 0.97, 'in wind', transform=windy.transAxes, ha='right', va='top', color='#555555'
-    )
+    still = painter.image(rest, leaves=leaves, has_scale=True)
+    moved = painter.image(poses, blowing, leaves, angle, has_ghost=True)
+    width, height = painter.size
+    columns, rows = (1, 2) if is_wide else (2, 1)
+    whole = rows * height + _TITLE
+    figure = new_figure(columns * width / DOTS_PER_INCH, whole / DOTS_PER_INCH)
+    share = height / whole
+    for place, (image, text) in enumerate(((still, 'at rest'), (moved, 'in wind'))):
+        left = 0.0 if is_wide else 0.5 * place
+        low = share * (1 - place) if is_wide else 0.0
+        axes = figure.add_axes((left, low, 1.0 / columns, share))
+        show_image(axes, image)
+        axes.text(0.97, 0.97, text, transform=axes.transAxes, ha='right', va='top', color='0.33')
     figure.suptitle(title if title is not None else _caption(trees), y=0.985)
     return save_figure(figure, path)
 
 
-def _two_axes(frame: Frame) -> tuple[Figure, Axes, Axes]:
-    """Beside each other, or what is wide one above the other."""
-    if frame.aspect <= _WIDE:
-        figure = new_figure(max(2.0 * _INCHES_HIGH * frame.aspect, 6.0), _INCHES_HIGH + 0.4)
-        left, right = (figure.add_axes((x, 0.0, 0.5, 0.93)) for x in (0.0, 0.5))
-        return figure, left, right
-    figure = new_figure(_INCHES_WIDE, 2.0 * _INCHES_WIDE / frame.aspect + 0.4)
-    upper, lower = figure.add_axes((0.0, 0.47, 1.0, 0.47)), figure.add_axes((0.0, 0.0, 1.0, 0.47))
-    return figure, upper, lower
-
-
-def _draw(
-    axes: Axes,
-    trees: tuple[Tree, ...],
-    poses: Floats,
-    camera: Camera,
-    frame: Frame,
-    leaves: LeafClusters | None,
-    flutter: ArrayLike = 0.0,
-) -> None:
-    """Draw every tree in its poses, those in front last."""
-    ends = list(accumulate((each.n_segments for each in trees), initial=0))
-    blocks = None if leaves is None else (leaf_poses(leaves, poses, flutter), leaves.size)
-    far_first = sorted(range(len(trees)), key=lambda i: -float(camera.distance(trees[i].start[0])))
-    for i in far_first:
-        own = None
-        if leaves is not None and blocks is not None:
-            of_this = (leaves.segment >= ends[i]) & (leaves.segment < ends[i + 1])
-            own = blocks[0][of_this], blocks[1][of_this]
-        start, end = ends_of_poses(poses[ends[i] : ends[i + 1]], trees[i].length)
-        draw_tree(axes, trees[i], start, end, camera, frame, own)
-
-
-def _listed(tree: Tree | Sequence[Tree]) -> tuple[Tree, ...]:
-    return (tree,) if isinstance(tree, Tree) else tuple(tree)
-
-
-def _nodes(trees: tuple[Tree, ...]) -> tuple[Floats, Floats]:
-    """Root-side and tip-side nodes of all segments at rest in [m], (n, 3) each."""
-    start = np.concatenate([each.start for each in trees])
-    return start, np.concatenate([each.end for each in trees])
-
-
-def _caption(trees: tuple[Tree, ...]) -> str:
+def _caption(trees: Sequence[Tree]) -> str:
     segments = sum(each.n_segments for each in trees)
     if len(trees) > 1:
         return f'{len(trees)} trees: {segments} segments'

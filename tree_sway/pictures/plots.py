@@ -1,9 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Wind and the motion of a tree's tip over time."""
+"""Wind and the motion of a tree's tip over time; the strength a tree uses over wind speed."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.strength.strength_use import StrengthUse
 from tree_sway.errors import ParameterError
 from tree_sway.pictures.plotting import new_figure, save_figure
 
@@ -71,6 +73,38 @@ def plot_wind_and_tip(
         axes.grid(alpha=0.25)
         axes.spines[['top', 'right']].set_visible(False)
     figure.suptitle(title)
+    return save_figure(figure, path)
+
+
+def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path: str) -> Path:
+    """
+    Plot the share of strength that trees use over the mean wind speed, wood beside roots.
+
+    Parameters
+    ----------
+    speeds
+        Mean wind speeds in [m/s], (n,).
+    used
+        By the name of each tree what it uses at each speed, with the bands of the sources.
+    path
+        File to write, whose suffix names the format.
+
+    """
+    figure = new_figure(10.0, 4.6)
+    for axes, what in zip(figure.subplots(1, 2, sharey=True), ('wood', 'roots'), strict=True):
+        for name, curve in used.items():
+            share, least, most = np.array([getattr(each, what) for each in curve]).T
+            (line,) = axes.plot(speeds, 100.0 * share, label=name)
+            axes.fill_between(
+                speeds, 100.0 * least, 100.0 * most, color=line.get_color(), alpha=0.15, lw=0
+            )
+        axes.axhline(100.0, color='black', lw=0.8, ls='--')
+        axes.set(title=what, xlabel='mean wind [m/s]', ylim=(0.0, 200.0))
+        axes.grid(alpha=0.25)
+        axes.spines[['top', 'right']].set_visible(False)
+    figure.axes[0].set_ylabel('share of strength in gusts [%]')
+    figure.axes[0].legend(frameon=False)
+    figure.suptitle('left out: rot, wounds, wet or shallow soil, sheltering by neighbours')
     return save_figure(figure, path)
 
 

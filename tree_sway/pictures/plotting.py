@@ -6,13 +6,19 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any, TYPE_CHECKING
+
+import numpy as np
 
 from tree_sway.errors import FormatError, MissingDependencyError
 from tree_sway.files.whole_file import whole_file
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+DOTS_PER_INCH = 110.0
+"""Of a figure that is saved."""
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -29,8 +35,17 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
+def show_image(axes: Axes, image: Any) -> None:
+    """Show an image of Pillow on axes, which show nothing else."""
+    axes.imshow(np.asarray(image))
+    axes.axis('off')
+
+
 def save_figure(
-    figure: Figure, path: str | Path, dots_per_inch: float = 110.0, figures: Path | None = None
+    figure: Figure,
+    path: str | Path,
+    dots_per_inch: float = DOTS_PER_INCH,
+    figures: Path | None = None,
 ) -> Path:
     """
     Write a figure to a file whose suffix names the format, ``.png`` for one.

@@ -46,3 +46,35 @@ class Camera:
         """Depth [m] of points (..., 3) behind the picture plane, whatever their height."""
         level = np.array([np.cos(self.azimuth), np.sin(self.azimuth), 0.0])
         return np.asarray(np.asarray(points, dtype=np.float64) @ level)
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What part of the picture plane is shown: its limits in [m]."""
+
+    left: float
+    right: float
+    bottom: float
+    top: float
+
+    @property
+    def aspect(self) -> float:
+        """Width over height."""
+        return (self.right - self.left) / (self.top - self.bottom)
+
+
+def frame_around(
+    points: Floats, camera: Camera, margin: float = 0.06, headroom: float = 0.0
+) -> Frame:
+    """
+    Frame all points [m], (..., 3), with a margin round them and headroom above.
+
+    Both are over its height, or over what is much wider than high.
+    """
+    seen = camera.project(points).reshape(-1, 3)
+    low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
+    size = max(float(high[1] - low[1]), 0.4 * float(high[0] - low[0]))
+    middle = 0.5 * float(low[0] + high[0])
+    half = max(0.5 * float(high[0] - low[0]), 0.3 * size) + margin * size
+    top = float(high[1]) + (margin + headroom) * size
+    return Frame(middle - half, middle + half, float(low[1]) - 0.14 * size, top)

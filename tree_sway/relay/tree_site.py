@@ -19,7 +19,7 @@ from typing import Any
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.run import Run
-from tree_sway.core.simulator.protocol import TreeSimulator
+from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.state.tree_state import TreeState
 from tree_sway.core.wind.gate import LARGEST_LEAD
 from tree_sway.core.wind.intake import GoodWind
@@ -43,7 +43,7 @@ class Site:
 
     def __init__(
         self,
-        simulator: TreeSimulator,
+        simulator: SwaySimulator,
         rate: int = 60,
         stepped: Callable[[int, Floats], None] = lambda stamp, wind: None,
     ) -> None:

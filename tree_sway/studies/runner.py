@@ -10,7 +10,7 @@ missing. A worker that is killed takes its case with it, which another one then 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 import json
 from multiprocessing import resource_tracker
@@ -19,7 +19,9 @@ from pathlib import Path
 import signal
 from typing import Any
 
+from tree_sway.commands.progress import bar
 from tree_sway.errors import MissingDependencyError, TransportError, TreeSwayError
+from tree_sway.files.export.table_writing import write_columns
 from tree_sway.files.whole_file import write_text_whole
 from tree_sway.studies.plan import Case, Plain
 
@@ -33,7 +35,6 @@ def run_study(
     *,
     workers: int | None = None,
     scheduler: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, of: None,
 ) -> list[Plain]:
     """
     Compute what is missing of a study, and return all of it.
@@ -48,8 +49,6 @@ def run_study(
         Processes; one per core if None.
     scheduler
         Address of a dask scheduler whose workers compute instead; they see the same folder.
-    progress
-        Called with how many cases are done, and of how many.
 
     Returns
     -------
@@ -68,15 +67,11 @@ def run_study(
     """
     folder.mkdir(parents=True, exist_ok=True)
     missing = [case for case in cases if not result_path(folder, case).is_file()]
-    done = len(cases) - len(missing)
-    progress(done, len(cases))
+    outcomes = _outcomes(missing, folder, workers, scheduler)
     failed: TreeSwayError | None = None
-    for outcome in _outcomes(missing, folder, workers, scheduler) if missing else ():
-        if outcome is not None:
-            failed = failed or outcome
-        else:
-            done += 1
-            progress(done, len(cases))
+    for _ in bar(missing, 'cases'):
+        outcome = next(outcomes)
+        failed = failed or outcome
     if failed is not None:
         raise failed
     return [json.loads(result_path(folder, case).read_text(encoding='utf-8')) for case in cases]
@@ -95,7 +90,8 @@ def compute_to_file(case: Case, folder: Path) -> None:
         return
     row, record = compute(case)
     if case.series:
-        write_text_whole(folder / f'{case.name}.csv', record.to_csv())
+        columns = {name: each.tolist() for name, each in record.columns().items()}
+        write_columns(columns, folder / f'{case.name}.csv')
     write_text_whole(result_path(folder, case), json.dumps(row))
 
 

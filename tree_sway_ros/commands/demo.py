@@ -24,7 +24,6 @@ from tree_sway.errors import ParameterError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.parameters.parameter import Value
 from tree_sway_ros.commands.monitor import StreamMonitor
-from tree_sway_ros.commands.only_demo import only_demo
 from tree_sway_ros.commands.text import summary
 from tree_sway_ros.commands.watch import checked_seconds, watch
 from tree_sway_ros.process.composition import Composition
@@ -61,7 +60,6 @@ def run(arguments: argparse.Namespace) -> int:
     )
     with (
         Ending() as ending,
-        only_demo(),
         Composition({}) as nodes,
         StreamMonitor(nodes.context, tree) as monitor,
         ExitStack() as files,

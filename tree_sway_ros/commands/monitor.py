@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import struct
 import time
 from typing import Any
 
@@ -23,6 +22,8 @@ from tree_sway_ros.process.topics import (
     WIND,
     WIND_FILTERED,
 )
+from tree_sway_ros.wire.cdr import stamp_of
+from tree_sway_ros.wire.wind_messages import wind_from_message
 
 _POSE = 7 * 8
 _QUEUE = 50
@@ -67,23 +68,22 @@ class StreamMonitor(Listener):
 
     def _receive_poses(self, data: bytes) -> None:
         arrival = time.time()
-        # CDR: four bytes of header, the stamp, the frame's name; the poses are what it ends with.
-        second, nanosecond = struct.unpack_from('<iI', data, 4)
-        stamp, tip = second + 1e-9 * nanosecond, self._displacement(data)
+        stamp, tip = 1e-9 * stamp_of(data), self._displacement(data)
         for totals in (self.totals, self.recent):
             totals.add_poses(arrival, stamp, tip)
 
-    def _displacement(self, data: bytes) -> Floats | None:
+    def _displacement(self, data: bytes) -> Floats:
         """Displacement of the highest tip from rest in a serialised pose array in [m], (3,)."""
         if self._tree is None:
-            return None
+            return np.zeros(3)
+        # The poses are what the message ends with.
         offset = len(data) - (self._tree.n_segments - self._tip) * _POSE
-        pose = np.array(struct.unpack_from('<7d', data, offset))
+        pose = np.frombuffer(data, np.float64, 7, offset)
         _, end = ends_of_poses(pose[None], self._tree.length[self._tip, None])
         return end[0] - self._tree.end[self._tip]
 
     def _receive_wind(self, message: Any) -> None:
-        stamp, vector = message.header.stamp, message.vector
-        wind = np.array([vector.x, vector.y, vector.z])
+        sample = wind_from_message(message)
+        wind = np.array([sample.u, sample.v, sample.w])
         for totals in (self.totals, self.recent):
-            totals.add_wind(stamp.sec + 1e-9 * stamp.nanosec, wind)
+            totals.wind.add(1e-9 * sample.stamp, wind)

@@ -18,35 +18,36 @@ def status_line(recent: StreamTotals, elapsed: float) -> str:
     """One line about the last moments of a stream."""
     wind = 'no wind'
     if recent.wind.count:
-        origin, rate = _from(recent.wind.vector), recent.wind_stamps.rate
+        origin, rate = _from(recent.wind.mean), recent.wind.rate
         wind = f'wind {recent.wind.length:4.1f} m/s {origin:>7} at {rate:4.1f} Hz'
-    tip = f' tip {1e3 * recent.tip.length:6.1f} mm |' if recent.tip.count else ''
-    half, most = (1e3 * recent.latency.quantile(share) for share in (0.5, 0.95))
-    late = f'{half:.2f} ms (p95 {most:.2f})'
-    return f'{elapsed:6.1f} s | {wind} |{tip} poses {recent.arrivals.rate:5.1f} Hz, latency {late}'
+    tip = f' tip {1e3 * recent.poses.length:6.1f} mm |' if recent.poses.largest else ''
+    half, most = recent.latency(0.5, 0.95)
+    late = f'{1e3 * half:.2f} ms (p95 {1e3 * most:.2f})'
+    return f'{elapsed:6.1f} s | {wind} |{tip} poses {recent.poses.rate:5.1f} Hz, latency {late}'
 
 
 def summary(totals: StreamTotals, rate: float) -> str:
     """Several lines about a whole stream; `rate` is the one it was meant to have in [Hz]."""
-    if not totals.arrivals.count:
+    poses, wind = totals.poses, totals.wind
+    if not poses.count:
         return 'no poses'
-    late = [1e3 * totals.latency.quantile(share) for share in (0.5, 0.95, 1.0)]
+    late = [1e3 * each for each in totals.latency(0.5, 0.95, 1.0)]
     lines = [
-        f'poses    {totals.arrivals.count} at {totals.arrivals.rate:.2f} Hz (wanted {rate:g}), '
+        f'poses    {poses.count} at {poses.rate:.2f} Hz (wanted {rate:g}), '
         f'{totals.missing(rate) or "none"} missing',
         f'latency  p50 {late[0]:.2f}, p95 {late[1]:.2f}, max {late[2]:.2f} ms',
     ]
-    wind, tip = totals.wind, totals.tip
     if wind.count:
         lines.append(
-            f'wind     {wind.count} at {totals.wind_stamps.rate:.2f} Hz, mean {wind.length:.2f}, '
-            f'max {wind.largest:.2f} m/s, {_from(wind.vector)}'
+            f'wind     {wind.count} at {wind.rate:.2f} Hz, mean {wind.length:.2f}, '
+            f'max {wind.largest:.2f} m/s, {_from(wind.mean)}'
         )
-    if tip.count:
-        east, north, up = 1e3 * tip.vector
+    if poses.largest:
+        east, north, up = 1e3 * poses.mean
+        mean, most = 1e3 * poses.length, 1e3 * poses.largest
         lines.append(
-            f'tip      {1e3 * tip.length:.1f} mm from rest on average, {1e3 * tip.largest:.1f} at '
-            f'most; mean {east:+.1f} east, {north:+.1f} north, {up:+.1f} up'
+            f'tip      {mean:.1f} mm from rest on average, {most:.1f} at most; '
+            f'mean {east:+.1f} east, {north:+.1f} north, {up:+.1f} up'
         )
     return '\n'.join(lines)
 

@@ -37,7 +37,7 @@ def watch(
     `TransportError` is raised if no poses come within the ``patience`` [s].
     """
     deadline = time.monotonic() + patience
-    while not monitor.totals.arrivals.count and check():
+    while not monitor.totals.poses.count and check():
         monitor.spin(0.1)
         if time.monotonic() > deadline:
             raise TransportError(

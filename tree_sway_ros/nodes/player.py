@@ -1,25 +1,20 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The player node: a recorded wind or state, as it was, faster, or around and around."""
+"""The player node: a recorded wind, as it was, faster, or around and around."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 import time
 from typing import Any
 
 from tree_sway.errors import ParameterError
 from tree_sway.files.reader_options import reader_options
-from tree_sway.files.recording.state_record import read_state_record, restamped, StateRecord
-from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import (
     CLOCK,
     SEGMENT_POSES,
-    TREE_DESCRIPTION,
-    TREE_STATE,
     WIND,
     WIND_FILTERED,
 )
@@ -28,7 +23,6 @@ from tree_sway_ros.timing.handshake import Answers, Audience, required
 from tree_sway_ros.timing.playback import is_ros_time, LONGEST_CLOCK_STEP, Playback
 from tree_sway_ros.timing.playback_thread import PlaybackThread
 from tree_sway_ros.wire.cdr import stamp_of
-from tree_sway_ros.wire.tree_description import REPEAT_PERIOD
 from tree_sway_ros.wire.wind_messages import clock_message, WindWriter
 
 _SLACK = 100_000_000
@@ -55,10 +49,7 @@ class PlayerNode(TreeSwayNode):
         """Read the record."""
         if not self.values['file']:
             raise ParameterError('no file to play', cure='give -p file:=wind.csv')
-        if self.values['play'] == 'state':
-            self._open_state()
-        else:
-            self._open_wind()
+        self._open_wind()
         for note in self._record.notes:
             self.get_logger().info(note)
         has_clock = self.values['publish_clock']
@@ -70,8 +61,7 @@ class PlayerNode(TreeSwayNode):
                 'it starts at 1 s'
             )
             epoch = None
-        plays_state = self.values['play'] == 'state' and self.values['wait_for']
-        wanted = required(TREE_STATE.name if plays_state else self.values['wait_for'])
+        wanted = required(self.values['wait_for'])
         self._audience = Audience(wanted, self.listeners, self.get_logger().info)
         is_exact = has_clock and WIND_FILTERED.name in wanted
         self._playback = Playback(
@@ -92,23 +82,14 @@ class PlayerNode(TreeSwayNode):
         self.report_with(self._record.source, self._report)
 
     def _open_wind(self) -> None:
-        record = read_wind(self.values['file'], **self._options())
+        options: dict[str, Any] = {**reader_options(self.values['reader_options'].split())}
+        record = read_wind(self.values['file'], **options)
         writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
         wind = self.publisher(WIND, writer.message_class, alone=True)
-        self._record: WindRecord | StateRecord = record
+        self._record = record
         self._send: Callable[[int, int], None] = lambda row, stamp: wind.publish(
             writer.message(stamp, record.velocity[row])
         )
-
-    def _open_state(self) -> None:
-        topic = self._options().get('topic', TREE_STATE.name)
-        record = read_state_record(Path(self.values['file']), topic)
-        description = self.publisher(TREE_DESCRIPTION, alone=True)
-        state = self.publisher(TREE_STATE, alone=True)
-        description.publish(record.description)
-        self.create_timer(REPEAT_PERIOD, lambda: description.publish(record.description))
-        self._record = record
-        self._send = lambda row, stamp: state.publish(restamped(record.states[row], stamp))
 
     def activate(self) -> None:
         """Play from the start, once those who must listen do."""
@@ -137,9 +118,6 @@ class PlayerNode(TreeSwayNode):
                 where="parameters 'rate' and 'clock_rate'",
                 cure=f'give rate up to {longest * clock_rate:g}, or clock_rate {rate / longest:g}',
             )
-
-    def _options(self) -> dict[str, Any]:
-        return {**reader_options(self.values['reader_options'].split())}
 
     def _expect(self) -> None:
         """Begin to wait for a solver that has begun, and for the wind to come through to it."""

@@ -87,11 +87,9 @@ class SolverNode(TreeSwayNode):
         return dealt(moved, self.values['shard.index'], self.values['shard.count'])
 
     def _make(self, source: Any) -> None:
-        by_volume = self.values['volume_rule.stiffness']
-        rule = {'stiffness': 'volume_rule', 'volume_stiffness': by_volume} if by_volume else {}
         settings = Settings(
-            **rule,
             **self.values('model', 'gravity'),
+            volume_stiffness=self.values['volume_rule.stiffness'],
             volume_damping=self.values['volume_rule.damping'],
             in_leaf=LEAVES[self.values['leaves']],
             damping_ratio=self.values['damping_ratio'] or None,
@@ -151,7 +149,7 @@ class SolverNode(TreeSwayNode):
         """Refuse a change that the trees could not take while they sway."""
         if not self.is_active:
             return
-        changes = _tuning({k: v for k, v in values.items() if v != self.values[k]})
+        changes = {k: v for k, v in values.items() if k in LIVE and v != self.values[k]}
         if changes.get('damping_ratio') == 0.0:
             raise ParameterError(
                 "the species' own damping while the tree sways",
@@ -163,7 +161,7 @@ class SolverNode(TreeSwayNode):
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Take new values before the next step."""
-        changes = _tuning(values)
+        changes = {name: values[name] for name in LIVE if name in values}
         if changes and self.is_active:
             self._run.request(lambda: self.simulator.tune(**changes))
         if self.values['model'] == 'auto':
@@ -173,9 +171,7 @@ class SolverNode(TreeSwayNode):
         set_demand(
             self.simulator.simulators,
             camera=self._camera,
-            tolerance_pixels=self.values['tolerance_angle'],
-            focal_length=1.0,
-            **self.values('tolerance', 'budget'),
+            **self.values('tolerance', 'tolerance_angle', 'budget'),
         )
 
     def slip(self, error: Exception) -> None:
@@ -233,9 +229,3 @@ class SolverNode(TreeSwayNode):
             )
             statuses.append(Status('camera', WARN, text, {'refused': self._refused_cameras}))
         return statuses
-
-
-def _tuning(values: dict[str, Any]) -> dict[str, Any]:
-    """Values of parameters that may change while the tree sways, by their names in the library."""
-    named = {name.replace('volume_rule.', 'volume_'): value for name, value in values.items()}
-    return {name: named[name] for name in LIVE if name in named}

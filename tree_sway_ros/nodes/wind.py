@@ -77,7 +77,7 @@ class WindNode(TreeSwayNode):
         frame_id, turn = self.values['frame_id'], None
         if sample.frame_id not in ('', frame_id):
             self._frames = self._frames or self._listen_for_frames()
-            turn = self._frames.rotation(sample.frame_id, sample.stamp)
+            turn = self._frames.rotation(sample.frame_id)
             if self._frames.is_waiting:
                 return
         components = (sample.u, sample.v, sample.w)

@@ -4,13 +4,15 @@
 A table of parameters on a node: declared, checked by our own rules, changed while it runs.
 
 ROS kills a node that is started with ``rate:=40`` where the parameter is a double, and silently
-ignores a misspelt name. Parameters are therefore declared with dynamic typing; kinds, ranges and
-names are checked here, and a refused change keeps the old value and says why.
+ignores a misspelt name. Parameters are therefore declared with dynamic typing; kinds and ranges
+are checked here, a name that is unknown is reported with the nearest, and a refused change keeps
+the old value and says why.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 from rcl_interfaces.msg import (
@@ -30,8 +32,6 @@ from tree_sway.parameters.parameter import (
     Value,
 )
 
-_LARGEST = {float: 1e308, int: 2**62}
-
 
 class ParameterValues:
     """
@@ -49,14 +49,12 @@ class ParameterValues:
     check
         Called with all values by name, as they would be, before they are taken, at the start and
         at each change; raises where they do not go together.
-    is_own
-        Whether a name was given to this node alone. What was given to every node of a launch may
-        be unknown to this one, or out of its range: then there is a warning, and the default.
 
     Raises
     ------
     ParameterError
-        An unknown name or a refused value among what the user gave to this node.
+        A refused value among what the user gave. An unknown name is a warning alone: a launch
+        file's ``SetParameter`` and a section ``/**`` of a parameter file reach every node.
 
     """
 
@@ -64,42 +62,26 @@ class ParameterValues:
         self,
         node: Any,
         table: Table,
-        on_change: Callable[[dict[str, Value]], None] | None = None,
-        check: Callable[[dict[str, Value]], None] | None = None,
-        is_own: Callable[[str], bool] = lambda _name: True,
+        on_change: Callable[[dict[str, Value]], None] = lambda values: None,
+        check: Callable[[dict[str, Value]], None] = lambda values: None,
     ) -> None:
         self._by_name = {parameter.name: parameter for parameter in table}
-        self._values: dict[str, Value] = {}
-        self._on_change = on_change
-        self._check_all = check or (lambda _values: None)
+        self._on_change, self._check_all = on_change, check
         given = {name: item.value for name, item in node.get_parameters_by_prefix('').items()}
-        where = f"node '{node.get_name()}'"
-        for name in unknown_names(table, given):
-            error = unknown_parameter(table, name, where=where)
-            if is_own(name):
-                raise error
-            node.get_logger().warning(f'{error}; set for every node, ignored here')
-            node.undeclare_parameter(name)
-        for name in given:
-            if name.startswith(QOS_PREFIX):  # declared by the publisher or subscription it is for
+        unknown = unknown_names(table, given)
+        for name in unknown:
+            error = unknown_parameter(table, name, where=f"node '{node.get_name()}'")
+            node.get_logger().warning(f'{error}; ignored')
+        for name in given:  # publishers and subscriptions declare the quality of theirs
+            if name in unknown or name in self._by_name or name.startswith(QOS_PREFIX):
                 node.undeclare_parameter(name)
-        for parameter in table:
-            value = parameter.default
-            if parameter.name in given:
-                node.undeclare_parameter(parameter.name)
-                value = given[parameter.name]
-            try:
-                value = parameter.checked(value)
-            except ParameterError as error:
-                if is_own(parameter.name):
-                    raise
-                node.get_logger().warning(f'{error}; set for every node, ignored here')
-                value = parameter.default
-            self._values[parameter.name] = value
-            node.declare_parameter(
-                parameter.name, _shown(value), _descriptor(parameter), ignore_override=True
-            )
-        self._check_all(dict(self._values))
+        self._values = {
+            each.name: each.checked(given.get(each.name, each.default)) for each in table
+        }
+        for each in table:
+            value = _shown(self._values[each.name])
+            node.declare_parameter(each.name, value, _descriptor(each), ignore_override=True)
+        check(dict(self._values))
         node.add_pre_set_parameters_callback(self._convert)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
@@ -118,16 +100,13 @@ class ParameterValues:
 
     def _convert(self, changes: list[Any]) -> list[Any]:
         """Give each value its parameter's own kind: a double stays one when set to 1."""
-        return [self._converted(change) for change in changes]
-
-    def _converted(self, change: Any) -> Any:
-        parameter = self._by_name.get(change.name)
-        if parameter is None:
-            return change
-        try:
-            return type(change)(change.name, value=_shown(parameter.checked(change.value)))
-        except ParameterError:
-            return change  # refused next, with the reason
+        converted = []
+        for change in changes:
+            with suppress(ParameterError):  # refused next, with the reason
+                for name, value in self._checked([change]).items():
+                    change = type(change)(name, value=_shown(value))
+            converted.append(change)
+        return converted
 
     def _check(self, changes: list[Any]) -> SetParametersResult:
         try:
@@ -149,7 +128,7 @@ class ParameterValues:
     def _apply(self, changes: list[Any]) -> None:
         new = self._checked(changes)
         self._values.update(new)
-        if new and self._on_change is not None:
+        if new:
             self._on_change(new)
 
 
@@ -166,16 +145,11 @@ def _descriptor(parameter: Parameter) -> ParameterDescriptor:
         read_only=not parameter.live,
         dynamic_typing=True,
     )
-    if parameter.minimum is None and parameter.maximum is None:
+    kind, low, high = type(parameter.default), parameter.minimum, parameter.maximum
+    if low is None or high is None:
         return descriptor
-    kind = type(parameter.default)
-    largest = _LARGEST.get(kind, 0)
-    low = -largest if parameter.minimum is None else parameter.minimum
-    high = largest if parameter.maximum is None else parameter.maximum
     if kind is float:
-        descriptor.floating_point_range = [
-            FloatingPointRange(from_value=float(low), to_value=float(high))
-        ]
+        descriptor.floating_point_range = [FloatingPointRange(from_value=low, to_value=high)]
     elif kind is int:
-        descriptor.integer_range = [IntegerRange(from_value=int(low), to_value=int(high))]
+        descriptor.integer_range = [IntegerRange(from_value=low, to_value=high)]
     return descriptor

@@ -5,23 +5,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-import sys
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.lifecycle import LifecycleNodeMixin, TransitionCallbackReturn
 from rclpy.node import Node
-from rclpy.qos import qos_check_compatible, QoSCompatibility
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from tree_sway.core.wind.gate import LARGEST_LEAD
 from tree_sway.errors import TreeSwayError
 from tree_sway_ros.parameters.declaration import ParameterValues
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
-from tree_sway_ros.parameters.origin import own_names
 from tree_sway_ros.process.guard import CallbackGuard
 from tree_sway_ros.process.reporter import Reporter
-from tree_sway_ros.process.rivals import Rivals
 from tree_sway_ros.process.topics import message_class, qos_profile, Topic
 from tree_sway_ros.reports.diagnostics import Status, WARN
 
@@ -46,12 +42,6 @@ def _nobody(_message: Any) -> None:
     """Do nothing, where rclpy wants a callback."""
 
 
-def _match(offer: Any, request: Any) -> bool:
-    """Whether a subscription receives what a publisher sends."""
-    found, _reason = qos_check_compatible(offer.qos_profile, request.qos_profile)
-    return offer.topic_type == request.topic_type and found != QoSCompatibility.ERROR
-
-
 class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     """
     A node with a table of parameters, found under its name, whatever the node is remapped to.
@@ -63,23 +53,16 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     def __init__(self, name: str, **options: Any) -> None:
         # Made first: rclpy's own subscriptions and services are guarded as well.
         self.guard = CallbackGuard(lambda text: self.get_logger().error(text))
-        own = {each.name for each in options.get('parameter_overrides') or ()}
-        if options.get('use_global_arguments', True):
-            own |= own_names([*sys.argv, *(options.get('cli_args') or ())], name)
         Node.__init__(self, name, automatically_declare_parameters_from_overrides=True, **options)
         self.failure: Exception | None = None
         self.is_done = self.is_active = False
         self._refusal: Exception | None = None
-        self._alone: dict[str, Rivals] = {}
+        self._alone: set[str] = set()
+        self._said: set[str] = set()
         self._closers: list[Callable[[], None]] = []
         try:
-            self.values = ParameterValues(
-                self,
-                NODE_PARAMETERS[name],
-                self.on_change,
-                self.check_values,
-                lambda parameter: parameter in own,
-            )
+            table = NODE_PARAMETERS[name]
+            self.values = ParameterValues(self, table, self.on_change, self.check_values)
             self._be_managed()
             if self.values['autostart']:
                 self._start_by_itself()
@@ -185,7 +168,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
         if alone:
-            self._alone[made.topic_name] = Rivals()
+            self._alone.add(made.topic_name)
         return made
 
     def subscription(
@@ -194,24 +177,25 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         callback: Callable[[Any], None],
         kind: Any = None,
         *,
-        raw: bool = False,
         alone: bool = False,
+        **options: Any,
     ) -> Any:
         """
         Subscribe to a topic of the table, of a kind where a parameter chooses it.
 
-        ``raw`` gives bytes; ``alone``: a second publisher on the topic is a fault.
+        ``alone``: a second publisher on the topic is a fault; ``options`` are those of rclpy, such
+        as ``raw`` for bytes.
         """
         made = self.create_subscription(
             kind or message_class(topic),
             topic.name,
             callback,
             qos_profile(topic, is_input=True),
-            raw=raw,
+            **options,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
         if alone:
-            self._alone[made.topic_name] = Rivals()
+            self._alone.add(made.topic_name)
         return made
 
     def polled(self, topic: Topic) -> Callable[[], Iterator[Any]]:
@@ -221,14 +205,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         No executor comes between a thread that keeps time and its messages: what came before the
         clock went on is there when the tick is.
         """
-        made = self.create_subscription(
-            message_class(topic),
-            topic.name,
-            _nobody,
-            qos_profile(topic, is_input=True),
-            callback_group=_Never(),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-        )
+        made = self.subscription(topic, _nobody, callback_group=_Never())
 
         def take() -> Iterator[Any]:
             for _ in range(made.qos_profile.depth):
@@ -242,19 +219,12 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     def listeners(self, topic: str) -> int:
         """Count the subscriptions of other nodes that receive what is published on a topic."""
-        own = [
-            each for each in self.publishers if each.topic_name == self.resolve_topic_name(topic)
-        ]
-        if own:
-            return int(own[0].get_subscription_count())
-        here = self.get_subscriptions_info_by_topic(topic)
-        offers = self.get_publishers_info_by_topic(topic)
-        me = (self.get_name(), self.get_namespace())
-        return sum(
-            (each.node_name, each.node_namespace) != me
-            and (not offers or any(_match(offer, each) for offer in offers))
-            for each in here
-        )
+        name = self.resolve_topic_name(topic)
+        for each in self.publishers:
+            if each.topic_name == name:  # of its own topic, those that match
+                return int(each.get_subscription_count())
+        own = sum(each.topic_name == name for each in self.subscriptions)
+        return int(self.count_subscribers(topic)) - own
 
     @property
     def clock_lead(self) -> int:
@@ -271,15 +241,17 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         if self.guard.count:
             values = {'failed': self.guard.count, 'last': self.guard.latest}
             statuses.append(Status('callbacks', WARN, f'{self.guard.count} failed', values))
-        for topic, rivals in self._alone.items():
-            here = [
+        for topic in self._alone:
+            here = sorted(
                 f'{each.node_namespace.rstrip("/")}/{each.node_name}'
                 for each in self.get_publishers_info_by_topic(topic)
-            ]
-            if text := rivals.warning(topic, here):
+            )
+            if len(here) > 1:
+                names = ' and '.join(here)
+                text = f'{len(here)} nodes publish {topic}: {names}; what they send mixes'
                 statuses.append(Status('topics', WARN, text))
-                if text not in rivals.said:
-                    rivals.said.add(text)
+                if text not in self._said:
+                    self._said.add(text)
                     self.get_logger().warning(f'{text}; end one, or give it another namespace')
         return statuses
 

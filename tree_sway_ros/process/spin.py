@@ -21,7 +21,7 @@ from typing import Any
 from tree_sway.commands.ending import Ending
 from tree_sway.errors import MissingDependencyError, TransportError, TreeSwayError
 
-_BAD_NAMES = ('InvalidNamespaceException', 'InvalidNodeNameException')
+_REFUSALS = ('InvalidNamespaceException', 'InvalidNodeNameException', 'RCLError')
 _CHECK_PERIOD = 0.2
 _SWITCH_INTERVAL = 0.0005
 _M_MMAP_THRESHOLD, _LARGE = -3, 1 << 20
@@ -83,22 +83,10 @@ def init(
         )
     given = sys.argv if args is None else [sys.argv[0], *args]
     try:
-        rclpy.init(args=[*given, *_without_log_files()], **options)
+        rclpy.init(args=given, **options)
     except Exception as error:  # rclpy has a class an error and no common root
-        raise TransportError(f'ROS 2 cannot start: {_first_line(error)}') from error
-
-
-def _without_log_files() -> list[str]:
-    """Return arguments by which ROS starts on a machine where it can write no log."""
-    home = os.environ.get('ROS_HOME') or os.path.expanduser('~/.ros')
-    folder = Path(os.environ.get('ROS_LOG_DIR') or os.path.join(home, 'log'))
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if os.access(folder, os.W_OK):
-            return []
-    except OSError:
-        pass
-    return ['--ros-args', '--disable-external-lib-logs']
+        first_line = str(error).split('\n', 1)[0]
+        raise TransportError(f'ROS 2 cannot start: {first_line}') from error
 
 
 def create(make: Any, **options: Any) -> Any:
@@ -106,23 +94,15 @@ def create(make: Any, **options: Any) -> Any:
     try:
         return make(**options)
     except Exception as error:
-        kind, text = type(error).__name__, _first_line(error)
-        if kind in _BAD_NAMES or 'invalid node name' in text:
-            raise TransportError(
-                text.split(', at /')[0].rstrip(':'),
-                where=f"namespace '{options['namespace']}'" if options.get('namespace') else '',
-                cure='use letters, digits and _, levels parted by one /, no digit first',
-            ) from None
-        if kind != 'RCLError':
+        if type(error).__name__ not in _REFUSALS:
             raise
-        if 'security' in text:
-            cure = 'use the rclpy of a ROS machine, or unset ROS_SECURITY_ENABLE'
-            raise TransportError(text, cure=cure) from error
         domain = os.environ.get('ROS_DOMAIN_ID', '0')
         raise TransportError(
-            f'cannot join domain {domain}: {text}',
-            cure='too many processes may be in it, or no network is up: try another ROS_DOMAIN_ID',
-        ) from error
+            f'no node in domain {domain}: {" ".join(str(error).split(", at /")[0].split())}',
+            where=f"namespace '{options['namespace']}'" if options.get('namespace') else '',
+            cure='names have letters, digits and _; if yours do, too many processes may be in the '
+            'domain, no network up, or no security library installed',
+        ) from None
 
 
 def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) -> None:
@@ -149,7 +129,3 @@ def _spin(rclpy: Any, module: str, node_class: str, args: Sequence[str] | None) 
             if node is not None:
                 node.close()
             rclpy.try_shutdown()
-
-
-def _first_line(error: Exception) -> str:
-    return str(error).split('\n', 1)[0]

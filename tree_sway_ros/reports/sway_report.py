@@ -46,19 +46,7 @@ class SwayReport:
         published = (frames - self._frames) / max(1e-9, now - self._time)
         skipped = pace.skipped - self._skipped
         self._time, self._frames, self._skipped = now, frames, pace.skipped
-        values = {
-            'rate [Hz]': pace.rate,
-            'wanted [Hz]': rate,
-            'published [Hz]': published,
-            'late p50 [s]': pace.late_p50,
-            'late p95 [s]': pace.late_p95,
-            'late max [s]': pace.late_max,
-            'work [s]': pace.work_mean,
-            'frames': frames,
-            'skipped': pace.skipped,
-            'clock forward': pace.clamped,
-            'clock back': pace.restarts,
-        }
+        values = {**pace._asdict(), 'wanted': rate, 'published': published, 'frames': frames}
         if pace.silence > max(_SILENCE, 3.0 / rate) and not is_simulated:
             return Status('output', WARN, f'no frame for {pace.silence:.1f} s', values)
         if skipped > 0.01 * rate:
@@ -77,7 +65,6 @@ def _model(simulator: Simulator) -> Status:
     values = {
         'model': simulator.model,
         'branches solved': simulator.n_solved,
-        'branches copied': simulator.n_copied,
         **vars(simulator.counts),
     }
     trees = simulator.simulators
@@ -86,26 +73,24 @@ def _model(simulator: Simulator) -> Status:
     outside = sum(each.bank.oscillators.n_outside for each in trees)
     values['steps outside of the wind basis'] = outside
     adaptive = adaptive_among(trees)
-    if adaptive:
-        worst = max(adaptive, key=lambda each: float(each.choice.error / each.tolerance))
-        values['chosen'] = ', '.join(dict.fromkeys(each.choice.name for each in adaptive))
-        values['estimated error [m]'] = worst.choice.error
-        values['tolerance [m]'] = worst.tolerance
-        cost, budget = (
-            sum(each.frame_cost for each in adaptive),
-            sum(each.budget for each in adaptive),
-        )
-        values['estimated cost [us]'] = cost
-        values['budget [us]'] = budget
-        if 0.0 < budget < cost:
-            what = f'no model is within the budget; allow {cost:.3g} us for {values["chosen"]}'
-            return Status('model', WARN, what, values)
-        if worst.choice.error > worst.tolerance:
-            nearest = f'allow {worst.choice.error:.2g} m for {worst.choice.name}'
-            what = f'no model is within the tolerance; {nearest}'
-            return Status(
-                'model', WARN, what if len(trees) == 1 else f'{worst.tree.name}: {what}', values
-            )
+    if not adaptive:
+        return Status('model', OK, simulator.model, values)
+    worst = max(adaptive, key=lambda each: float(each.choice.error / each.tolerance))
+    cost, budget = sum(a.frame_cost for a in adaptive), sum(a.budget for a in adaptive)
+    values |= {
+        'chosen': ', '.join(dict.fromkeys(each.choice.name for each in adaptive)),
+        'estimated error [m]': worst.choice.error,
+        'tolerance [m]': worst.tolerance,
+        'estimated cost [us]': cost,
+        'budget [us]': budget,
+    }
+    if 0.0 < budget < cost:
+        what = f'no model is within the budget; allow {cost:.3g} us for {values["chosen"]}'
+        return Status('model', WARN, what, values)
+    if worst.choice.error > worst.tolerance:
+        nearest = f'allow {worst.choice.error:.2g} m for {worst.choice.name}'
+        what = f'{worst.tree.name}: no model is within the tolerance; {nearest}'
+        return Status('model', WARN, what, values)
     return Status('model', OK, simulator.model, values)
 
 
@@ -113,15 +98,13 @@ def _gusts(history: GustHistory) -> Status:
     """How late the trees of a forest feel the wind."""
     values = {
         'longest delay [s]': float(history.delay.max()),
-        'trees upwind of the anemometer': history.n_ahead,
+        'trees upwind': history.n_ahead,
         'trees beyond the memory': history.n_forgotten,
     }
-    if history.n_ahead:
-        what = f'{history.n_ahead} trees stand upwind of the anemometer and feel the wind at once'
-        return Status('gusts', WARN, what, values)
-    if history.n_forgotten:
+    if history.n_ahead or history.n_forgotten:
         what = (
-            f'{history.n_forgotten} trees stand too far downwind: they feel the oldest wind kept'
+            f'{history.n_ahead} trees are upwind of the anemometer and feel the wind at once, '
+            f'{history.n_forgotten} are too far downwind and feel the oldest wind kept'
         )
         return Status('gusts', WARN, what, values)
     return Status('gusts', OK, f'up to {values["longest delay [s]"]:.1f} s late', values)

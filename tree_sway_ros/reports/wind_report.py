@@ -82,7 +82,4 @@ class WindReport:
             return Status('wind', WARN, f'no wind for {age:.1f} s, its force decays', values)
         if gate.is_frozen:
             return Status('wind', WARN, 'frozen: the sensor repeats the same sample', values)
-        if gate.is_sluggish:
-            text = 'sluggish: the sensor passes slow changes alone, is its bearing free?'
-            return Status('wind', WARN, text, values)
         return Status('wind', OK, f'{self.rate:.1f} Hz', values)

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-import logging
 import threading
 import time
 from typing import Any, NamedTuple
@@ -28,7 +27,6 @@ PATIENCE = 10
 """Number of ticks that may fail one after another before the thread gives up."""
 _BACK = 100_000_000
 _WINDOW = 600
-_log = logging.getLogger(__name__)
 
 
 class Tick(NamedTuple):
@@ -126,46 +124,38 @@ class Pacer:
 
     def pace(self) -> Pace:
         """How well the pace was kept over the last 600 ticks."""
-        recent = list(self._recent)
         silence = 1e-9 * (time.monotonic_ns() - self._last_steady) if self._last_steady else 0.0
         counts = (self._ticks, self._skipped, self._clamped, self._restarts, silence)
-        if len(recent) < 2:
-            return Pace(0.0, 0.0, 0.0, 0.0, 0.0, *counts)
-        table = np.array(recent)
-        p50, p95 = np.quantile(table[:, 1], (0.5, 0.95)) * 1e-9
-        duration = table[-1, 0] - table[0, 0]
-        rate = (len(table) - 1) / duration if duration > 0.0 else 0.0
-        latest = float(table[:, 1].max() * 1e-9)
-        work = float(table[:, 2].mean())
-        return Pace(float(rate), float(p50), float(p95), latest, work, *counts)
+        begin, late, work = np.array(list(self._recent) or [(0.0, 0, 0.0)]).T
+        rate = (len(begin) - 1) / max(1e-9, begin[-1] - begin[0])
+        p50, p95, most = np.quantile(1e-9 * late, (0.5, 0.95, 1.0)).tolist()
+        return Pace(float(rate), p50, p95, most, float(work.mean()), *counts)
 
     def _run(self) -> None:
-        try:
-            while not self._stopping:
-                self._wake.clear()
-                now = self._clock.now().nanoseconds
-                tick = self._due(now)
-                if tick is None:
-                    self._wake.wait(self._until_next(now))
-                    continue
-                begin = time.perf_counter()
-                self._do(tick)
-                self._recent.append((begin, now - tick.time, time.perf_counter() - begin))
-                self._ticks += 1
-        except Exception as error:
-            _log.debug('pacer stopped', exc_info=True)
-            if not self._stopping:
-                self._on_error(error)
+        while not self._stopping:
+            try:
+                self._go_on()
+            except Exception as error:
+                self._slips += 1
+                if self._stopping:
+                    return
+                if self._slips >= PATIENCE:
+                    return self._on_error(error)
+                self._on_slip(error)
 
-    def _do(self, tick: Tick) -> None:
-        try:
-            self._work(tick)
-            self._slips = 0
-        except Exception as error:
-            self._slips += 1
-            if self._stopping or self._slips >= PATIENCE:
-                raise
-            self._on_slip(error)
+    def _go_on(self) -> None:
+        """Work if a tick is due, else sleep until one may be."""
+        self._wake.clear()
+        now = self._clock.now().nanoseconds
+        tick = self._due(now)
+        if tick is None:
+            self._wake.wait(self._until_next(now))
+            return
+        begin = time.perf_counter()
+        self._work(tick)
+        self._slips = 0
+        self._recent.append((begin, now - tick.time, time.perf_counter() - begin))
+        self._ticks += 1
 
     def _due(self, now: int) -> Tick | None:
         """Return the tick that is due, if one is."""

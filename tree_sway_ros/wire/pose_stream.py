@@ -1,10 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The tree on the wire: its description, and frame by frame its poses, markers and transforms."""
+"""The tree on the wire: its description, and frame by frame its poses and markers."""
 
 from __future__ import annotations
 
-import importlib
 import json
 import math
 from typing import Any
@@ -14,13 +13,11 @@ from std_msgs.msg import String
 
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import MissingDependencyError
-from tree_sway_ros.process.topics import MARKERS, SEGMENT_POSES, TF, TREE_DESCRIPTION
+from tree_sway_ros.process.topics import MARKERS, SEGMENT_POSES, TREE_DESCRIPTION
 from tree_sway_ros.timing.divider import Divider
 from tree_sway_ros.wire.cdr import pose_array_template
 from tree_sway_ros.wire.markers import TreeMarkers
 from tree_sway_ros.wire.tree_description import describe, REPEAT_PERIOD
-from tree_sway_ros.wire.wind_messages import fill_stamp
 
 _MARKER_RATE = 20.0
 """As many pictures per second as RViz draws of a large tree [Hz]."""
@@ -40,7 +37,6 @@ class PoseStream:
         self._marker_every = max(1, math.ceil(values['rate'] / _MARKER_RATE))
         self._markers = TreeMarkers(tree, frame_id)
         self._marker_publisher = node.publisher(MARKERS)
-        self._transforms = _Transforms(node, tree, frame_id) if values['publish_tf'] else None
         self._description = String(data=describe(tree, frame_id, leaves))
         self._description_publisher = node.publisher(TREE_DESCRIPTION)
         self._timer = node.create_timer(
@@ -64,7 +60,7 @@ class PoseStream:
         markers_due = self._marker_divider.is_due(index, self._marker_every)
         poses_due = poses_due and self._pose_publisher.get_subscription_count() > 0
         markers_due = markers_due and self._marker_publisher.get_subscription_count() > 0
-        if not (poses_due or markers_due or self._transforms):
+        if not (poses_due or markers_due):
             return
         simulator.place(self.poses)
         if poses_due:
@@ -72,37 +68,3 @@ class PoseStream:
             self.frames += 1
         if markers_due:
             self._marker_publisher.publish(self._markers.to_bytes(self.poses, stamp))
-        if self._transforms is not None:
-            self._transforms.publish(self.poses, stamp)
-
-
-class _Transforms:
-    """A frame per segment on /tf, for tools that know nothing else; RViz bears some 100."""
-
-    def __init__(self, node: Any, tree: Tree, frame_id: str) -> None:
-        try:
-            message_class = importlib.import_module('tf2_msgs.msg').TFMessage
-        except ImportError:
-            raise MissingDependencyError(
-                'publish_tf needs tf2_msgs, which is not installed',
-                cure='install ros-jazzy-tf2-msgs, or leave publish_tf false',
-            ) from None
-        from geometry_msgs.msg import TransformStamped
-
-        self._publisher = node.publisher(TF)
-        self._message = message_class()
-        # Frames are one space for all trees: what a namespace holds apart on topics, names do
-        # here.
-        prefix = '/'.join(filter(None, (node.get_namespace().strip('/'), tree.name)))
-        for name in tree.segment_names:
-            transform = TransformStamped(child_frame_id=f'{prefix}/{name}')
-            transform.header.frame_id = frame_id
-            self._message.transforms.append(transform)
-
-    def publish(self, poses: Any, stamp: int) -> None:
-        for item, pose in zip(self._message.transforms, poses.tolist(), strict=True):
-            fill_stamp(item.header.stamp, stamp)
-            to = item.transform
-            to.translation.x, to.translation.y, to.translation.z = pose[:3]
-            to.rotation.x, to.rotation.y, to.rotation.z, to.rotation.w = pose[3:]
-        self._publisher.publish(self._message)

@@ -34,6 +34,7 @@ def test_one_oscillator_alone_is_steeper_than_any_tree():
     assert -7.5 < slope_above(signal, 0.6, RATE) < -6.2
 
 
+@pytest.mark.long
 @pytest.mark.xfail(strict=True, reason='reads 1.5 since what modes lack has inertia')
 def test_the_tip_of_a_broadleaf_falls_more_steeply_than_the_strain_of_its_stem():
     slopes = response_slopes('walnut', coherence=1.0, in_leaf=False, seconds=120.0)

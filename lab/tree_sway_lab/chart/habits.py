@@ -10,12 +10,11 @@ import numpy as np
 
 from tree_sway.commands.progress import bar
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.leaves.flutter import leaf_poses
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.tree.species import species_named
-from tree_sway.pictures.plotting import new_figure, save_figure
-from tree_sway.pictures.projection import Camera
-from tree_sway.pictures.tree_drawing import draw_tree, Frame
+from tree_sway.pictures.painter import Painter
+from tree_sway.pictures.plotting import new_figure, save_figure, show_image
+from tree_sway.pictures.projection import Camera, Frame
 
 SPECIES = (
     'oak', 'beech', 'birch', 'ash', 'sycamore', 'walnut', 'spruce', 'sitka', 'pine', 'douglas_fir',
@@ -23,7 +22,7 @@ SPECIES = (
 HEIGHT = 16.0
 """Of each tree [m]; captions name it."""
 
-_CLUSTERS = 3000
+_CLUSTERS, _PIXELS = 3000, 480
 _FRAME = Frame(-0.51 * HEIGHT, 0.51 * HEIGHT, -0.07 * HEIGHT, 1.08 * HEIGHT)
 
 
@@ -46,10 +45,10 @@ def chart_habits(out_dir: str | Path) -> list[Path]:
     for i, key in enumerate(bar(list(SPECIES), 'habits')):
         tree = grow(key, HEIGHT, rng=np.random.default_rng(1))
         clusters = leaf_clusters(tree, np.random.default_rng(0), count=_CLUSTERS)
-        leaves = leaf_poses(clusters, tree.rest_poses), clusters.size
+        painter = Painter([tree], camera, _FRAME, _PIXELS)
         row, column = 2 * (i // half), i % half
-        for below, worn in enumerate((None, leaves)):
-            draw_tree(axes[row + below, column], tree, tree.start, tree.end, camera, _FRAME, worn)
+        for below, worn in enumerate((None, clusters)):
+            show_image(axes[row + below, column], painter.image(tree.rest_poses, leaves=worn))
         axes[row, column].set_title(species_named(key).title, y=0.98, fontsize=12)
     figure.subplots_adjust(0.0, 0.0, 1.0, 0.97, 0.0, 0.02)
     return [save_figure(figure, folder / 'habits.png', 80.0)]

@@ -45,7 +45,8 @@ PORTRAITS = {
 _WIND = np.array([SPEED, 0.0, 0.0])
 _CLUSTERS = 1500
 _SETTLING, _STEP = 60.0, 1.0 / 15.0
-_DRAWING = Path(pictures.__file__).parent
+_DRAWING = [p for p in Path(pictures.__file__).parent.glob('*.py') if p.name != 'plots.py']
+"""What draws trees; plots show none."""
 
 
 def chart_portraits(out_dir: str | Path) -> list[Path]:
@@ -113,7 +114,7 @@ def digest_of_file(path: Path) -> str:
 def drawing_digest(sources: Iterable[Path] | None = None) -> str:
     """Digest of the code that draws, without its comments, docstrings and line ends."""
     found = hashlib.sha256()
-    for path in sorted(_DRAWING.glob('*.py')) if sources is None else sources:
+    for path in sorted(_DRAWING if sources is None else sources):
         tree = ast.parse(path.read_text(encoding='utf-8'))
         for node in ast.walk(tree):
             body = getattr(node, 'body', None)

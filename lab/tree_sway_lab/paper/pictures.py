@@ -4,15 +4,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.pictures.plotting import new_figure, save_figure
-from tree_sway.pictures.projection import Camera
-from tree_sway.pictures.tree_drawing import draw_ghost, draw_tree, draw_wind, frame_around
+from tree_sway.pictures.painter import Painter
+from tree_sway.pictures.plotting import new_figure, save_figure, show_image
+from tree_sway.pictures.projection import Camera, frame_around
 from tree_sway_lab.paper.experiment import Experiment, RATE
 from tree_sway_lab.paper.followers import followed
 
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 
 CAMERA = Camera(elevation=0.05)
 """From the south, so that a wind from the right blows to the west."""
+
+_PIXELS = 480
+"""Height of the image of a plant [px]."""
 
 _WIND, _BARK, _PALE, _PLANE = '#1f6fb4', '#5b4632', '#b9b2a8', '#dfe9f2'
 
@@ -44,7 +48,7 @@ def draw_plants(experiments: list[Experiment], path: str | Path) -> Path:
         tree = experiment.tree
         axes = figure.add_axes((place / len(experiments), 0.0, 1.0 / len(experiments), 0.92))
         frame = frame_around(np.vstack([tree.start, tree.end]), CAMERA)
-        draw_tree(axes, tree, tree.start, tree.end, CAMERA, frame)
+        show_image(axes, Painter([tree], CAMERA, frame, _PIXELS).image(tree.rest_poses))
         axes.set_title(f'{tree.name}: {tree.n_branches} branches, {tree.n_segments} segments')
     return save_figure(figure, path)
 
@@ -56,14 +60,15 @@ def draw_sway(experiment: Experiment, path: str | Path, frames: int = 6) -> Path
     placed = [followed(tree, experiment.keys, angle[k]) for k in chosen]
     points = np.vstack([tree.start, tree.end, *(node for pair in placed for node in pair)])
     frame = frame_around(points, CAMERA, headroom=0.08)
+    painter = Painter([tree], CAMERA, frame, _PIXELS)
     columns = (frames + 1) // 2
     figure = new_figure(3.2 * columns, 7.2)
     for place, (k, (start, end)) in enumerate(zip(chosen, placed, strict=True)):
         row, column = divmod(place, columns)
         axes = figure.add_axes((column / columns, 0.5 * (1 - row), 1.0 / columns, 0.46))
-        draw_ghost(axes, tree, CAMERA)
-        draw_tree(axes, tree, start, end, CAMERA, frame)
-        draw_wind(axes, frame, CAMERA, np.array([-experiment.speed[k], 0.0, 0.0]))
+        poses = replace(tree, start=start, end=end).rest_poses
+        wind = (-experiment.speed[k], 0.0, 0.0)
+        show_image(axes, painter.image(poses, wind, has_ghost=True))
         axes.set_title(f'{k / RATE:.1f} s', fontsize=10)
     return save_figure(figure, path)
 

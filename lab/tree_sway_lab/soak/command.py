@@ -30,8 +30,8 @@ from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
 from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile
 
-_WARM = 0.2
-"""Share of the time, at its beginning, whose growth is start and not leak."""
+_WARM, _WARM_SHARE = 600.0, 0.2
+"""Time at the beginning whose growth is start and not leak [s]; its largest share of a run."""
 _HOUR = 3600.0
 _LINES = 60
 _PATIENCE = 180.0
@@ -40,7 +40,7 @@ _NODE = 'from tree_sway_ros.nodes.executables import {0}; raise SystemExit({0}()
 
 
 class Health(NamedTuple):
-    """Of a process: time since the start [s], memory [MB], open handles, threads."""
+    """Of a process: time since the start [s], memory [MiB], open handles, threads."""
 
     time: float
     memory: float
@@ -65,9 +65,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         '--slope',
         type=float,
-        default=1.0,
-        metavar='MB',
-        help='largest growth of the memory of a process per hour [MB/h] (%(default)s)',
+        default=0.1,
+        metavar='MIB',
+        help='largest growth of the memory of a process after ten minutes [MiB/h] (%(default)s)',
     )
 
 
@@ -104,7 +104,7 @@ def run(arguments: argparse.Namespace) -> int:
                     for name, process in processes.items():
                         _check(name, process)
                         seen[name].append(health(since, process.pid))
-                    print(_line(seen, monitor.take_recent().arrivals.rate), flush=True)
+                    print(_line(seen, monitor.take_recent().poses.rate), flush=True)
                     monitor.spin(min(period, seconds - since))
         code = _told(monitor, reports, seen, rate, arguments.slope)
     return code
@@ -121,10 +121,10 @@ def health(since: float, process: int | str = 'self') -> Health:
 
 
 def growth(seen: list[Health]) -> tuple[float, float]:
-    """Slope of the memory after warm-up and its standard error [MB/h]; NaN below ten looks."""
+    """Slope of the memory after warm-up and its standard error [MiB/h]; NaN below ten looks."""
     table = np.array([(each.time, each.memory) for each in seen])
     if len(table):
-        table = table[table[:, 0] >= _WARM * table[-1, 0]]
+        table = table[table[:, 0] >= min(_WARM, _WARM_SHARE * table[-1, 0])]
     if len(table) < 10:
         return float('nan'), float('nan')
     line, covariance = np.polyfit(table[:, 0] / _HOUR, table[:, 1], 1, cov=True)
@@ -220,7 +220,7 @@ def _wait_for_poses(
 ) -> None:
     deadline = time.monotonic() + _PATIENCE
     while (
-        not (monitor.totals.arrivals.count and monitor.totals.wind.count) and not ending.is_asked
+        not (monitor.totals.poses.count and monitor.totals.wind.count) and not ending.is_asked
     ):
         for name, process in processes.items():
             _check(name, process)
@@ -262,12 +262,12 @@ def _told(
     for name, looks in seen.items():
         slope, error = growth(looks)
         has_grown |= slope > limit
-        rise = (
-            f'{slope:+.2f} +- {error:.2f} MB/h' if np.isfinite(slope) else 'too short for a figure'
-        )
+        rise = 'too short for a figure'
+        if np.isfinite(slope):
+            rise = f'{slope:+.3f} +- {error:.3f} MiB/h'
         last = looks[-1]
         print(
-            f'memory   {name} {rise} after the first fifth, {last.memory:.1f} MB at the end; '
+            f'memory   {name} {rise} after warm-up, {last.memory:.2f} MiB at the end; '
             f'handles {looks[0].handles} to {last.handles}, threads {last.threads}'
         )
     print(f'failed   {reports.failed} callbacks; {reports.restarted} restarts of the motion')
@@ -275,9 +275,9 @@ def _told(
 
 
 def _line(seen: Mapping[str, list[Health]], rate: float) -> str:
-    memories = ', '.join(f'{name} {looks[-1].memory:.1f}' for name, looks in seen.items())
+    memories = ', '.join(f'{name} {looks[-1].memory:.2f}' for name, looks in seen.items())
     now = next(iter(seen.values()))[-1].time
-    return f'{now:8.1f} s | memory [MB] {memories} | poses {rate:5.1f} Hz'
+    return f'{now:8.1f} s | memory [MiB] {memories} | poses {rate:5.1f} Hz'
 
 
 def _free_port() -> int:

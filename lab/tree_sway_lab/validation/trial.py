@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.protocol import TreeSimulator
+from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.model_names import simulator_called
@@ -102,16 +102,16 @@ def tried(kind: str, wind: str, model: str, fineness: Fineness = FINE) -> Trial:
 
 
 @lru_cache(maxsize=4)
-def _simulator(kind: str, model: str) -> TreeSimulator:
+def _simulator(kind: str, model: str) -> SwaySimulator:
     return judged_simulator(model, kind_called(kind))
 
 
-def judged_simulator(model: str, tree: Tree) -> TreeSimulator:
+def judged_simulator(model: str, tree: Tree) -> SwaySimulator:
     """Make a simulator of a tree of `WOOD` on a model, as of `simulator_called`."""
     return simulator_called(model, tree, WOOD, SETTINGS)
 
 
-def frame_cost(simulator: TreeSimulator, tree: Tree, wind: Floats) -> float:
+def frame_cost(simulator: SwaySimulator, tree: Tree, wind: Floats) -> float:
     """Time to step and to place a frame in [us], the median of 200."""
     poses = np.empty((tree.n_segments, 7))
     spent = []

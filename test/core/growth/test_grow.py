@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.growth.grow import grow, HABITS
+from tree_sway.core.growth.grow import grow
 from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, SpeciesError
@@ -49,13 +49,6 @@ def test_every_species_grows_without_a_diameter(species: str) -> None:
     assert tree.n_segments <= 3000
 
 
-@pytest.mark.parametrize('habit', HABITS)
-def test_the_habit_can_be_chosen(habit: str) -> None:
-    tree = grow('oak', 2.0, habit=habit, rng=rng())  # type: ignore[arg-type]
-    assert tree.height == pytest.approx(2.0)
-    assert tree.species == 'oak'
-
-
 def test_habits_follow_the_species() -> None:
     habits = [species_named(s).habit for s in ('spruce', 'oak', 'goldcrest')]
     assert habits == ['conifer', 'broadleaf', 'pot']
@@ -67,23 +60,22 @@ def test_size_alone_does_not_change_the_shape() -> None:
 
 
 @pytest.mark.parametrize(
-    ('species', 'height', 'diameter', 'habit', 'message'),
+    ('species', 'height', 'diameter', 'message'),
     [
-        ('oak', 0.5, None, None, 'height 0.5 m is out of range .*give 1 to 50 m'),
-        ('oak', float('nan'), None, None, 'height nan m'),
-        ('benjamina', 9.0, None, None, 'give 0.2 to 4 m'),
-        ('oak', 20.0, 0.05, None, 'bend over under its own weight'),
-        ('oak', 10.0, 9.0, None, 'is no stem; give .* to 2 m'),
-        ('oak', 10.0, -0.1, None, 'diameter -0.1 m'),
-        ('oak', 10.0, float('nan'), None, 'diameter nan m'),
-        ('oak', 10.0, None, 'palm', "unknown habit 'palm'; use one of: conifer, broadleaf, pot"),
+        ('oak', 0.5, None, 'height 0.5 m is out of range .*give 1 to 50 m'),
+        ('oak', float('nan'), None, 'height nan m'),
+        ('benjamina', 9.0, None, 'give 0.2 to 4 m'),
+        ('oak', 20.0, 0.05, 'bend over under its own weight'),
+        ('oak', 10.0, 9.0, 'is no stem; give .* to 2 m'),
+        ('oak', 10.0, -0.1, 'diameter -0.1 m'),
+        ('oak', 10.0, float('nan'), 'diameter nan m'),
     ],
 )
 def test_bad_sizes_are_refused_with_the_cure(
-    species: str, height: float, diameter: float | None, habit: str | None, message: str
+    species: str, height: float, diameter: float | None, message: str
 ) -> None:
     with pytest.raises(ParameterError, match=message):
-        grow(species, height, diameter, habit, rng=rng())  # type: ignore[arg-type]
+        grow(species, height, diameter, rng=rng())
 
 
 def test_an_unknown_species_is_refused() -> None:

@@ -7,33 +7,34 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.identification.spectral_peaks import Spectrum
+from tree_sway.core.identification.spectral_peaks import spectral_peaks
 from tree_sway.errors import FormatError
 
 F = np.linspace(0.0, 10.0, 5001)
+DURATION = 500.0
 
 
-def hills(*places, duration=500.0):
+def hills(*places):
     """Hills of the same relative width on a falling slope."""
     power = 1e-3 / (0.01 + F)
     for place, height in places:
         power = power + height * np.exp(-0.5 * ((F - place) / (0.05 * place)) ** 2)
-    return Spectrum(F, power, duration)
+    return power
 
 
 def test_hills_are_found_where_they_are():
-    frequencies, levels = hills((0.7, 1.0), (3.0, 0.2)).peaks(None, 0.06)
+    frequencies, levels = spectral_peaks(F, hills((0.7, 1.0), (3.0, 0.2)), DURATION, None, 0.06)
     np.testing.assert_allclose(frequencies, [0.7, 3.0], rtol=0.03)
     assert levels[0] > levels[1]
 
 
 def test_a_band_leaves_the_others_out():
-    frequencies, _ = hills((0.7, 1.0), (3.0, 0.2)).peaks((1.0, 5.0), 0.06)
+    frequencies, _ = spectral_peaks(F, hills((0.7, 1.0), (3.0, 0.2)), DURATION, (1.0, 5.0), 0.06)
     np.testing.assert_allclose(frequencies, [3.0], rtol=0.03)
 
 
 def test_a_band_without_a_peak_gives_its_strongest_point():
-    frequencies, _ = hills().peaks((1.0, 2.0), 0.06)
+    frequencies, _ = spectral_peaks(F, hills(), DURATION, (1.0, 2.0), 0.06)
     np.testing.assert_allclose(frequencies, [1.0])
 
 
@@ -41,7 +42,7 @@ def test_one_line_does_not_make_a_peak_where_many_bins_are_averaged():
     power = np.ones_like(F)
     power[200] = 2.0
     with pytest.raises(FormatError, match='no peak'):
-        Spectrum(F, power, 500.0).peaks(None, 0.06, min_bins=8)
+        spectral_peaks(F, power, DURATION, None, 0.06, min_bins=8)
 
 
 @pytest.mark.parametrize(
@@ -54,4 +55,4 @@ def test_one_line_does_not_make_a_peak_where_many_bins_are_averaged():
 )
 def test_refusals(spectrum, band, message):
     with pytest.raises(FormatError, match=message):
-        spectrum.peaks(band, 0.06)
+        spectral_peaks(F, spectrum, DURATION, band, 0.06)

@@ -17,7 +17,6 @@ from tree_sway.core.leaves.foliage import (
     leaf_clusters,
     leafy_length,
     MAX_LEAF_AREA_INDEX,
-    no_clusters,
 )
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.leaf_traits import LeafTraits
@@ -142,15 +141,16 @@ def test_same_seed_same_leaves() -> None:
     assert not np.array_equal(one.phase, other.phase)
 
 
-def test_no_clusters_are_refused() -> None:
-    with pytest.raises(ParameterError, match='0 leaf clusters'):
-        leaf_clusters(builtin_tree('goldcrest'), rng(), count=0)
+def test_less_than_no_clusters_are_refused() -> None:
+    assert len(leaf_clusters(builtin_tree('goldcrest'), rng(), count=0).size) == 0
+    with pytest.raises(ParameterError, match='count: -1 is out of range'):
+        leaf_clusters(builtin_tree('goldcrest'), rng(), count=-1)
 
 
 def test_joined_clusters_ride_on_the_segments_of_their_own_trees(fork):
     tree = fork()
     own = leaf_clusters(tree, np.random.default_rng(0), count=12)
-    both = joined_clusters([own, no_clusters(), own], [tree.n_segments] * 3)
+    both = joined_clusters([own, leaf_clusters(tree, rng(), count=0), own], [tree.n_segments] * 3)
     assert both.segment.tolist() == [*own.segment, *(own.segment + 2 * tree.n_segments)]
     for name in ('offset', 'orientation', 'size', 'frequency', 'phase'):
         part = getattr(own, name)

@@ -12,7 +12,7 @@ from scipy.integrate import quad
 
 from tree_sway.core.motion.drag import AIR_DENSITY, pressure
 from tree_sway.core.motion.drag import drag as drag_and_slip
-from tree_sway.core.simulator.assembly import build_bank
+from tree_sway.core.simulator.assembly import CalibratedTree
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.species import species_named
@@ -29,7 +29,7 @@ def drag(record, per_speed_squared, *wind, compliance=0.0):
 
 def record_of(tree, **changes):
     chosen = Settings(model='branch', gravity=0.0, **changes)
-    return build_bank(tree, species_named('broadleaf'), chosen).branches[0]
+    return CalibratedTree(tree, species_named('broadleaf'), chosen).bank().branches[0]
 
 
 @pytest.mark.parametrize('direction', [(0, 0, 1), (1, 0, 0), (1, -2, 0.5)])

@@ -12,7 +12,7 @@ from tree_sway.core.branch.beam import cross_matrix
 from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, set_air, wind_forces
 from tree_sway.core.rotation import turned
-from tree_sway.core.simulator.assembly import build_bank, CalibratedTree
+from tree_sway.core.simulator.assembly import CalibratedTree
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 
@@ -26,7 +26,7 @@ class Loaded:
 
     def __init__(self, tree, enrich='none'):
         chosen = Settings(model='full', enrich=enrich, gravity=0.0)
-        bank = build_bank(tree, species_named('broadleaf'), chosen)
+        bank = CalibratedTree(tree, species_named('broadleaf'), chosen).bank()
         bank.oscillators.set_step(1 / 60)
         self.tree, self.branches, self.work = tree, bank.branches, bank.oscillators.work
         self.loads = load_records(self.branches)

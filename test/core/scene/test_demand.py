@@ -30,10 +30,10 @@ def test_each_tree_gets_its_share_of_the_budget(pair):
     assert not hasattr(pinned, 'tolerance')
 
 
-def test_a_camera_turns_pixels_into_metres(pair):
+def test_a_camera_turns_angles_into_metres(pair):
     far = pair[0].tree.start[0] - (50.0, 0.0, 0.0)
-    set_demand(pair, tolerance=9.0, camera=far, tolerance_pixels=2.0, focal_length=500.0)
-    assert pair[0].tolerance == pytest.approx(2.0 * 50.0 / 500.0, rel=0.05)
+    set_demand(pair, tolerance=9.0, camera=far, tolerance_angle=0.004)
+    assert pair[0].tolerance == pytest.approx(0.004 * 50.0, rel=0.05)
     assert pair[0].budget == 0.0
 
 

@@ -57,7 +57,7 @@ def test_what_a_model_does_not_know_is_refused(stem):
     with pytest.raises(ParameterError, match=r"unknown model 'best'.*auto"):
         make_simulator(stem, WOOD, model='best')
     with pytest.raises(ParameterError, match='volume rule'):
-        make_simulator(stem, WOOD, model='full', stiffness='volume_rule')
+        make_simulator(stem, WOOD, model='full', volume_stiffness=1e5)
 
 
 @pytest.mark.parametrize('model', [0, 3, 60, *MODELS])

@@ -77,7 +77,6 @@ def test_the_volume_rule_sets_stiffness_and_damping_from_volumes(fork):
     tree = fork()
     chosen = {
         'model': 'branch',
-        'stiffness': 'volume_rule',
         'volume_stiffness': 3e5,
         'volume_damping': 2e3,
     }

@@ -10,7 +10,6 @@ import sys
 
 import pytest
 
-from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.reduction.one_thread import _switches, one_thread
 
 #: Prints a digest of the poses of each model; the tree has enough branches for threads to matter.
@@ -29,25 +28,27 @@ for model in (20, "full"):
 """
 
 
-def digests(threads, cache):
-    environment = {
-        **os.environ,
-        **{'OPENBLAS_NUM_THREADS': str(threads), 'TREE_SWAY_CACHE': str(cache)},
-    }
+def digests(threads, **environment):
     done = subprocess.run(
         [sys.executable, '-c', PROGRAM],
-        env=environment, capture_output=True, text=True, check=True,
+        env={**os.environ, 'OPENBLAS_NUM_THREADS': str(threads), **environment},
+        capture_output=True, text=True, check=True,
     )  # fmt: skip
     return done.stdout
 
 
-def test_two_processes_give_the_same_bits_on_any_number_of_threads(tmp_path):
-    """The first process compiles (where there is a compiler), the second finds it done."""
-    first = digests(2, tmp_path)
+def test_two_processes_give_the_same_bits_on_any_number_of_threads():
+    first = digests(2)
     assert first.count('\n') == 2
-    assert digests(1, tmp_path) == first
-    if not WHY_PLAIN:
-        assert list(tmp_path.glob('*.kernel'))
+    assert digests(1) == first
+
+
+@pytest.mark.long
+@pytest.mark.compiled
+def test_a_process_that_compiles_gives_the_bits_of_one_that_finds_it_done(tmp_path):
+    first = digests(2, TREE_SWAY_CACHE=str(tmp_path))
+    assert list(tmp_path.glob('*.kernel'))
+    assert digests(1, TREE_SWAY_CACHE=str(tmp_path)) == first == digests(1)
 
 
 def test_what_is_within_runs_on_one_thread_and_the_number_comes_back():

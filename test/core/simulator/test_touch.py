@@ -12,8 +12,8 @@ from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.validation.truth import WOOD
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.simulator.pull import moments_of_force
 from tree_sway.core.simulator.simulator import LOAD_HELD
+from tree_sway.core.simulator.touch import Touch
 from tree_sway.errors import ParameterError
 
 DT = 1.0 / 60.0
@@ -55,14 +55,10 @@ def test_moments_are_the_derivatives_of_places(tree, name, along):
     assert np.abs(x).max() > 0.05  # it is bent
     rng = np.random.default_rng(3)
     for segment in (outer_segment(tree), 1, tree.n_segments - 1):
-        records = sim.bank.branches
-        holds = (records['first'] <= segment) & (segment < records['end'])
-        branch = int(np.flatnonzero(holds)[0])
-        force, moments = rng.normal(size=3), np.empty(len(x))
-        moments_of_force(
-            sim.bank.branches, sim.bank.segments, tree.rest_frame, poses, x, branch, segment,
-            place_of(poses, tree, segment, along), force, moments,
-        )  # fmt: skip
+        touch, force = Touch(tree, sim.bank), rng.normal(size=3)
+        touch.add(segment, force, 1.0, along)
+        push = touch._pushes[segment]
+        touch._renew(push, push.place(poses), tree.start[0], x.copy())
         by_differences = np.empty(len(x))
         for i, step in enumerate(np.eye(len(x)) * 1e-5):
             there, back = (
@@ -71,7 +67,7 @@ def test_moments_are_the_derivatives_of_places(tree, name, along):
             )
             by_differences[i] = force @ (there - back) / 2e-5
         largest = np.abs(by_differences).max()
-        np.testing.assert_allclose(moments, by_differences, atol=1e-3 * largest)
+        np.testing.assert_allclose(force @ push.lever, by_differences, atol=1e-3 * largest)
 
 
 @pytest.mark.parametrize('model', [60, 'auto', 'full'])

@@ -39,23 +39,11 @@ def test_a_simulator_goes_on_from_a_state_bit_for_bit(tree_on):
     for wind in winds(40):
         one.step(wind, DT)
     other.set_state(TreeState.from_bytes(one.state().to_bytes()))
-    assert (other.expand(one.state()) == one.place_rotations(one.rotations())).all()
+    assert (other.place() == one.place()).all()
     for wind in winds(20, seed=9):
         one.step(wind, DT)
         other.step(wind, DT)
     assert one.place().tobytes() == other.place().tobytes()
-
-
-def test_expanding_a_state_leaves_the_simulator_as_it_is(tree_on):
-    sim = tree_on()
-    early = sim.state()
-    for wind in winds(30):
-        sim.step(wind, DT)
-    before = sim.state()
-    rest = sim.expand(early)
-    assert sim.state().values.tobytes() == before.values.tobytes()
-    sim.reset()
-    assert rest == pytest.approx(sim.place(), abs=1e-12)
 
 
 def test_key_rotations_place_as_the_simulator_does(tree_on):
@@ -84,8 +72,6 @@ def test_a_foreign_state_is_refused_by_name_and_the_old_one_stays(fork):
     for name, state in foreign(before):
         with pytest.raises(StateError, match=name):
             sim.set_state(state)
-        with pytest.raises(StateError, match=name):
-            sim.expand(state)
         assert sim.state().values.tobytes() == before.values.tobytes()
 
 
@@ -95,8 +81,6 @@ def test_a_tree_that_chooses_its_model_refuses_a_foreign_state(fork):
     for state in (replace(sim.state(), model='99'), replace(sim.state(), digest='0' * 16)):
         with pytest.raises(StateError, match=r'a state of (model|settings)'):
             sim.set_state(state)
-        with pytest.raises(StateError, match=r'a state of (model|settings)'):
-            sim.expand(state)
 
 
 @pytest.mark.parametrize(
@@ -131,7 +115,9 @@ from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.state.tree_state import TreeState
 from tree_sway_lab.bench.bench_tree import bench_tree
 state = TreeState.from_bytes(sys.stdin.buffer.read())
-poses = SwaySimulator(bench_tree(), model=state.model).expand(state)
+sim = SwaySimulator(bench_tree(), model=state.model)
+sim.set_state(state)
+poses = sim.place()
 print(hashlib.sha256(poses.tobytes()).hexdigest())
 """
 

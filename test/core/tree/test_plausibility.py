@@ -105,13 +105,14 @@ def test_a_tree_whose_file_has_y_up_is_told_to_lie() -> None:
     lying = replace(lying, start=lying.start[:, [0, 2, 1]], end=lying.end[:, [0, 2, 1]])
     refuse_nonsense(lying, OAK)
     (told,) = oddities(lying, OAK)
-    assert told.startswith('it leans ')
+    assert told.startswith('a lean of 9')
     assert told.endswith('add --option up=y')
 
 
 def test_odd_sizes_are_told() -> None:
-    assert 'thick' in oddities(in_units(oak(), diameter=8.0), OAK)[0]
-    assert 'thin' in oddities(in_units(oak(), diameter=0.1), OAK)[0]
+    stout = oddities(in_units(oak(), diameter=8.0), OAK)
+    assert stout[0].startswith('a height over diameter of 5')
+    assert 'too thin' in oddities(in_units(oak(), diameter=0.1), OAK)[0]
     assert oddities(in_units(oak(), 12.0, 12.0), OAK)[0].startswith('a height of 144 m')
     small = oddities(in_units(oak(), 0.001, 0.001), OAK)
     assert small[0].startswith('a height of 0.012 m')

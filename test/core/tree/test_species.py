@@ -8,8 +8,7 @@ import dataclasses
 
 import pytest
 
-from tree_sway.core.tree.species import species_keys, species_like, species_named
-from tree_sway.core.tree.species_table import NAMES
+from tree_sway.core.tree.species import NAMES, species_keys, species_like, species_named
 from tree_sway.errors import SpeciesError
 
 
@@ -96,6 +95,6 @@ def test_a_species_of_no_table_is_one_of_its_group_and_said(name, key, guess):
 
 
 def test_every_name_is_of_one_species():
-    names = [name for each in NAMES.values() for name in each.split(', ')]
+    names = [name for each in NAMES.values() for name in each]
     assert len(names) == len(set(names))
     assert set(NAMES) == set(species_keys())

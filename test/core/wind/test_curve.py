@@ -19,7 +19,7 @@ def curve_of(knots, capacity=64):
     times, values = [], []
     for gap, *value in knots:
         time += gap
-        curve.append(time, tuple(value))
+        curve.append(time, np.array(value))
         times.append(time)
         values.append(value)
     return curve, np.array(times), np.array(values)
@@ -67,19 +67,18 @@ def test_a_cut_keeps_the_past_and_levels_the_future(knots, at, time):
 def test_memory_is_bounded_and_the_newest_stay():
     curve = WindCurve(8)
     for i in range(1000):
-        curve.append(float(i), (float(i), 0.0, 0.0))
-    assert len(curve) == 8
-    assert curve.value(995.5) == (995.5, 0.0, 0.0)
-    assert curve.value(3.0) == (992.0, 0.0, 0.0)  # level before what is left
+        curve.append(float(i), np.array([float(i), 0.0, 0.0]))
+    assert len(curve.knots) == 8
+    np.testing.assert_array_equal(curve.value(995.5), (995.5, 0.0, 0.0))
+    np.testing.assert_array_equal(curve.value(3.0), (992.0, 0.0, 0.0))  # level before what is left
 
 
 def test_a_knot_at_the_same_time_replaces_and_an_earlier_one_is_dropped():
     curve = WindCurve(8)
-    curve.append(1.0, (1.0, 0.0, 0.0))
-    curve.append(1.0, (2.0, 0.0, 0.0))
-    curve.append(0.5, (9.0, 0.0, 0.0))
-    assert len(curve) == 1
-    assert (curve.end, curve.last) == (1.0, (2.0, 0.0, 0.0))
+    for time, along in ((1.0, 1.0), (1.0, 2.0), (0.5, 9.0)):
+        curve.append(time, np.array([along, 0.0, 0.0]))
+    assert len(curve.knots) == 1
+    assert (curve.end, curve.last[0]) == (1.0, 2.0)
 
 
 def test_shift_moves_it_in_time():

@@ -47,10 +47,10 @@ def test_below_ground_there_is_no_wind(kind):
     ('given', 'message'),
     [
         ({'kind': 'cubic'}, "unknown wind profile 'cubic'; use one of: none, power, log"),
-        ({'anemometer_height': 0.0}, 'anemometer height 0.0 m'),
-        ({'anemometer_height': float('nan')}, 'anemometer height nan m'),
-        ({'kind': 'log', 'roughness': 0.0}, 'roughness length 0.0 m'),
-        ({'kind': 'log', 'roughness': 12.0}, 'below the anemometer'),
+        ({'anemometer_height': 0.0}, 'anemometer_height: 0.0 is out of range'),
+        ({'anemometer_height': float('nan')}, 'anemometer_height: nan'),
+        ({'kind': 'log', 'roughness': 0.0}, 'roughness: 0.0'),
+        ({'kind': 'log', 'roughness': 12.0}, 'roughness: 12.0 is out of range; .* up to 9.99 m'),
     ],
 )
 def test_what_has_no_wind_is_refused(given, message):

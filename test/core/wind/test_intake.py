@@ -64,7 +64,7 @@ def test_one_limit_behind_every_door():
 def test_what_is_written_is_what_is_read(velocity, sign, scale, yaw):
     convention = WindConvention(sign, scale, yaw)
     components = convention.components(velocity)
-    np.testing.assert_allclose(convention.velocity(*components), velocity, atol=1e-9)
+    np.testing.assert_allclose(convention.velocity(components), velocity, atol=1e-9)
     np.testing.assert_allclose(
-        convention.velocities(np.array([components, components])), [velocity] * 2, atol=1e-9
+        convention.velocity(np.array([components, components])), [velocity] * 2, atol=1e-9
     )

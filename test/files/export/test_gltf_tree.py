@@ -124,22 +124,20 @@ def test_pygltflib_reads_it(tmp_path, simulator):
 
 @pytest.fixture(scope='module')
 def morphing(simulator, leaves):
-    document, form = morphing_tree(simulator, leaves)
-    return *parsed(document.glb()), form
+    return parsed(morphing_tree(simulator, leaves).glb())
 
 
 def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
-    document, arrays, form = morphing
+    document, arrays = morphing
     (mesh,) = document['meshes']
-    assert mesh['extras']['targetNames'] == list(form.names)
-    assert 8 <= len(form.names) == len(mesh['weights']) <= 32
-    assert 0.0 < form.rms < 0.1 * form.motion_rms
-    # The error once more, in the file itself, at the weights of its own animation.
+    count = len(mesh['extras']['targetNames'])
+    assert 8 <= count == len(mesh['weights']) <= 32
+    # What the linear form leaves out, at the weights of the file's own animation.
     (animation,) = document['animations']
     sampler = animation['samplers'][0]
     times, weights = (
         arrays[sampler['input']],
-        arrays[sampler['output']].reshape(-1, len(form.names)),
+        arrays[sampler['output']].reshape(-1, count),
     )
     assert len(times) == len(weights) > 100
     primitive = mesh['primitives'][0]
@@ -150,19 +148,20 @@ def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
     wind = gltf_tree.simulate_turbulence(
         6.0, rate=60.0, duration=20.0, rng=np.random.default_rng(7)
     )
-    gaps = []
+    gaps, motions = [], []
     for number, each in enumerate(wind):
         simulator.step(each, 1 / 60)
         if number % 240 == 0:
             drawn = rest + np.einsum('m,mvj->vj', weights[number // 4], changes)
-            gaps.append(np.linalg.norm(drawn - ours.placed(simulator.place()), axis=1))
+            placed = ours.placed(simulator.place())
+            gaps.append(np.linalg.norm(drawn - placed, axis=1))
+            motions.append(np.linalg.norm(placed - rest, axis=1))
     simulator.reset()
-    assert np.max(gaps) <= form.greatest + 1e-5
-    assert np.sqrt(np.mean(np.square(gaps))) == pytest.approx(form.rms, rel=1.0)
+    assert 0.0 < np.sqrt(np.mean(np.square(gaps))) < 0.1 * np.sqrt(np.mean(np.square(motions)))
 
 
 def test_a_weight_is_a_coordinate_over_its_unit(simulator, morphing):
-    document, arrays, _ = morphing
+    document, arrays = morphing
     extras = document['meshes'][0]['extras']
     basis = gltf_tree.state_basis(simulator)
     assert extras['basis'] == basis.digest

@@ -8,7 +8,6 @@ import pytest
 
 from tree_sway.errors import FormatError, SpeciesError
 from tree_sway.files.export.tree_export import write_tree
-from tree_sway.files.export.tree_mesh import SIDES
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 
 DATA = Path(__file__).parents[1] / 'data'
@@ -35,26 +34,11 @@ def test_import_export_import_is_the_identity(tmp_path, name):
                 np.testing.assert_array_equal(getattr(again.tree, key), value, err_msg=key)
 
 
-def test_obj_has_an_object_per_segment(tmp_path, tree):
-    write_tree(tmp_path / 'tree.obj', tree)
-    lines = (tmp_path / 'tree.obj').read_text().splitlines()
-    assert [line[2:] for line in lines if line.startswith('o ')] == list(tree.segment_names)
-    points = np.array([line.split()[1:] for line in lines if line.startswith('v ')], dtype=float)
-    assert len(points) == 2 * SIDES * tree.n_segments
-    assert points[:, 2].max() == pytest.approx(tree.height, abs=0.05)
-    faces = np.array([line.split()[1:] for line in lines if line.startswith('f ')], dtype=int)
-    assert (faces.min(), faces.max()) == (1, len(points))
-    corners = points[faces - 1]
-    volume = np.einsum('ij,ij->i', corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
-    polygon = SIDES / (2.0 * np.pi) * np.sin(2.0 * np.pi / SIDES)
-    assert volume == pytest.approx(polygon * tree.volume.sum(), rel=1e-6)
-
-
 def test_errors(tmp_path, tree):
-    with pytest.raises(FormatError, match=r"cannot write '.stl'; use .yaml, .yml, .obj"):
+    with pytest.raises(FormatError, match=r"cannot write '.stl'; use .yaml, .yml, .glb"):
         write_tree(tmp_path / 'tree.stl', tree)
     with pytest.raises(FormatError, match='cannot be written: No such file'):
-        write_tree(tmp_path / 'none' / 'tree.obj', tree)
+        write_tree(tmp_path / 'none' / 'tree.glb', tree)
 
 
 def test_a_failure_keeps_the_file_that_was_there(tmp_path, tree):

@@ -19,13 +19,8 @@ from rosbags.typesys import get_typestore, Stores  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.recording.bag_reader import read_bag  # noqa: E402
 from tree_sway.files.recording.bag_writer import BagWriter  # noqa: E402
-from tree_sway.files.recording.state_record import (  # noqa: E402
-    DESCRIPTION_TYPE,
-    read_state_record,
-    restamped,
-    STATE_TYPE,
-)
 
+STATE_TYPE, DESCRIPTION_TYPE = 'sensor_msgs/msg/JointState', 'std_msgs/msg/String'
 TYPES = get_typestore(Stores.ROS2_JAZZY)
 SECOND = 1_000_000_000
 
@@ -59,11 +54,14 @@ def recorded(path: Path, storage: str, text: str = '{"state":{}}') -> Path:
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_state_comes_back_as_it_was_sent(tmp_path: Path, storage: str) -> None:
-    record = read_state_record(recorded(tmp_path / 'bag', storage))
-    assert record.time.tolist() == pytest.approx([0.0, 0.1, 0.3, 0.4])
-    assert (record.epoch, record.refused) == (10.0, 1)
-    assert record.states[2] == state(10 * SECOND + 300_000_000, 3.0)
-    assert record.description == description()
+    bag = read_bag(recorded(tmp_path / 'bag', storage), [STATE_TYPE])
+    assert bag.types == {
+        '/oak/tree_description': DESCRIPTION_TYPE,
+        '/oak/tree_state': STATE_TYPE,
+    }
+    messages = bag.messages['/oak/tree_state']
+    assert [stamp for stamp, _ in messages] == list(range(5))
+    assert messages[2][1] == state(10 * SECOND + 300_000_000, 3.0)
 
 
 def test_the_description_is_kept_for_who_comes_late(tmp_path: Path) -> None:
@@ -71,23 +69,14 @@ def test_the_description_is_kept_for_who_comes_late(tmp_path: Path) -> None:
     assert 'durability: transient_local' in metadata
 
 
-def test_a_stamp_is_changed_and_nothing_else() -> None:
-    assert restamped(state(5, 1.0), 7 * SECOND + 9) == state(7 * SECOND + 9, 1.0)
-
-
-def test_what_cannot_be_played_or_written_is_refused(tmp_path: Path) -> None:
-    untold = recorded(tmp_path / 'untold', 'mcap', '{}')
-    with pytest.raises(FormatError, match='record both'):
-        read_state_record(untold)
-    with pytest.raises(FormatError, match='record both'):
-        read_state_record(recorded(tmp_path / 'other', 'mcap'), 'elm/tree_state')
+def test_what_cannot_be_read_or_written_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match='no such bag'):
-        read_state_record(tmp_path / 'none')
+        read_bag(tmp_path / 'none', [STATE_TYPE])
     (tmp_path / 'wrong.mcap').write_bytes(b'\x89MCAP0\r\n' + bytes(40))
     with pytest.raises(FormatError, match='not a bag that can be read'):
-        read_state_record(tmp_path / 'wrong.mcap')
+        read_bag(tmp_path / 'wrong.mcap', [STATE_TYPE])
     with pytest.raises(FormatError, match='there already'):
-        BagWriter(untold)
+        BagWriter(tmp_path)
     with pytest.raises(ParameterError, match='use mcap or sqlite3'):
         BagWriter(tmp_path / 'new', 'csv')
 

@@ -14,7 +14,7 @@ from tree_sway.files.wind.nmea import parse_nmea
 from tree_sway.files.wind.sensor_line import checksum_of
 from tree_sway.files.wind.wind_file import read_wind
 
-N = 30
+N = 10
 SPEEDS = 4.0 + np.sin(np.arange(N))
 
 

@@ -97,7 +97,7 @@ def main() -> None:
         basis = SimpleNamespace(
             matrix=rng.normal(0.0, 0.1, size).astype(np.float32),
             scale=rng.uniform(0.5, 3.0, N_COORDINATES).astype(np.float32),
-            error=SimpleNamespace(quantised_greatest=0.001),
+            error=0.001,
         )
         kinds.append(SimpleNamespace(simulator=simulator, basis=basis, numbers=[], places=[]))
     for number, (_, kind, place) in enumerate(TREES):

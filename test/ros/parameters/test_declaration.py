@@ -29,7 +29,7 @@ TABLE = (
 def declare(context):
     nodes = []
 
-    def make(on_change=None, is_own=lambda name: True, **overrides):
+    def make(on_change=lambda values: None, **overrides):
         node = Node(
             'some',
             context=context,
@@ -37,7 +37,7 @@ def declare(context):
             parameter_overrides=[RosParameter(k, value=v) for k, v in overrides.items()],
         )
         nodes.append(node)
-        return node, ParameterValues(node, TABLE, on_change, is_own=is_own)
+        return node, ParameterValues(node, TABLE, on_change)
 
     yield make
     for node in nodes:
@@ -71,7 +71,6 @@ def test_descriptors_tell_unit_and_range(declare):
 @pytest.mark.parametrize(
     ('overrides', 'message'),
     [
-        ({'rats': 1.0}, "did you mean 'rate'"),
         ({'rate': 0.5}, '1 .. 1000'),
         ({'kind': 'fro'}, 'from'),
     ],
@@ -133,11 +132,11 @@ def test_what_is_read_at_the_start_is_read_only(declare):
     assert not node.describe_parameter('delay').read_only
 
 
-@pytest.mark.parametrize('overrides', [{'rats': 1.0}, {'rate': 0.5}, {'kind': 3}])
-def test_what_was_set_for_every_node_kills_none(declare, overrides):
-    node, values = declare(is_own=lambda name: False, **overrides)
-    assert values['rate'] == 60.0
-    assert values['kind'] == 'to'
+def test_an_unknown_name_is_a_warning_with_the_nearest(declare, capfd):
+    node, _ = declare(rats=1.0, shutter=3)
+    said = capfd.readouterr().err
+    assert "unknown parameter 'rats'; did you mean 'rate'?" in said
+    assert "unknown parameter 'shutter'; known are: rate" in said
     assert not node.has_parameter('rats')
 
 

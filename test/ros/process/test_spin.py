@@ -210,10 +210,10 @@ def test_a_start_that_fails_is_one_line(rclpy, monkeypatch):
 def test_a_domain_that_cannot_be_joined_is_named(monkeypatch):
     monkeypatch.setenv('ROS_DOMAIN_ID', '7')
     error = type('RCLError', (RuntimeError,), {})('failed to create domain participant')
-    with pytest.raises(TransportError, match='cannot join domain 7'):
+    with pytest.raises(TransportError, match='no node in domain 7: failed to create'):
         spin.create(raises(error))
     unsafe = type('RCLError', (RuntimeError,), {})('error creating node: no security libraries')
-    with pytest.raises(TransportError, match='no security libraries; use the rclpy of a ROS'):
+    with pytest.raises(TransportError, match='no security libraries; '):
         spin.create(raises(unsafe))
     with pytest.raises(RuntimeError, match='a bug'):
         spin.create(raises(RuntimeError('a bug')))
@@ -228,19 +228,7 @@ def test_a_domain_that_cannot_be_joined_is_named(monkeypatch):
 )
 def test_a_bad_namespace_is_one_line(error):
     with pytest.raises(
-        TransportError, match=r"namespace 'a b': .*use letters, digits and _"
+        TransportError, match=r"namespace 'a b': .*names have letters, digits and _"
     ) as told:
         spin.create(lambda **_: raises(error)(), namespace='a b')
     assert len(str(told.value).splitlines()) == 1
-
-
-def test_a_machine_that_is_read_only_starts_without_log_files(tmp_path, monkeypatch):
-    monkeypatch.setenv('ROS_LOG_DIR', str(tmp_path / 'log'))
-    assert spin._without_log_files() == []
-    monkeypatch.setenv('ROS_LOG_DIR', '/proc/none/log')
-    assert spin._without_log_files()
-    rclpy = pytest.importorskip('rclpy')
-    context = rclpy.context.Context()
-    spin.init(rclpy, [], context=context)
-    assert context.ok()
-    context.try_shutdown()

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import three_numbers
 from tree_sway.core.fidelity.estimate import dialled, ErrorEstimator, Estimate
 from tree_sway.core.simulator.assembly import Kept
 from tree_sway.core.simulator.settings import Settings, settings_with, USUAL
@@ -37,7 +38,7 @@ from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import ClimateTracker, WindClimate
-from tree_sway.core.wind.limits import components_of, is_wind
+from tree_sway.core.wind.limits import is_wind
 
 LEAVE_IN = 1.0
 """How long coordinates that are left out take to fade in [s]."""
@@ -75,8 +76,6 @@ class AdaptiveSimulator(SwaySimulator):
         Largest error of the tips in [m], root mean square over time and tips.
     budget
         Largest cost of a step and a placing in [us]; 0 for none.
-    expected
-        The wind to start for; a fresh breeze of 8 m/s if None.
 
     """
 
@@ -91,7 +90,6 @@ class AdaptiveSimulator(SwaySimulator):
         *,
         tolerance: float = 0.005,
         budget: float = 0.0,
-        expected: WindClimate | None = None,
         kept: Kept | None = None,
     ) -> None:
         """Make the tree on all coordinates, and judge how many the expected wind asks for."""
@@ -102,7 +100,7 @@ class AdaptiveSimulator(SwaySimulator):
         self.cost_scale = 1.0
         """Cost here over the cost that is estimated: set it once it is measured."""
         self._touched_for = 0.0
-        self._expected_wind = expected or WindClimate.steady(8.0, 0.2)
+        self._expected_wind = WindClimate.steady(8.0, 0.2)  # a fresh breeze
         self._shares = np.zeros(self.bank.oscillators.shapes.shape[1])
         self._wanted = np.zeros(1)
         self._expect()
@@ -126,7 +124,7 @@ class AdaptiveSimulator(SwaySimulator):
         return *super().memory(), self._shares, self._wanted
 
     def set_state(self, state: TreeState) -> None:
-        """Go on from a state, and from what it shows; see `KeepsState.set_state`."""
+        """Go on from a state, and from what it shows; see `SwaySimulator.set_state`."""
         super().set_state(state)
         estimates = self.estimates(self._tracker.climate)
         self.choice = next(e for e in estimates if e.n_coordinates >= self._wanted[0])
@@ -196,7 +194,7 @@ class AdaptiveSimulator(SwaySimulator):
 
     def _check_load(self, wind_mean: ArrayLike, dt: float) -> None:
         """Notice, before its step, a load beyond what the number was chosen for."""
-        x, y, z = components_of(wind_mean)
+        x, y, z = three_numbers('wind', wind_mean)
         load = x * x + y * y + z * z
         self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
         if self._gust < load and is_wind(x, y, z, self._max_wind):

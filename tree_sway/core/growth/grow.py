@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 import math
-from typing import get_args, Literal
 
 import numpy as np
 
@@ -28,12 +27,8 @@ from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
-Habit = Literal['conifer', 'broadleaf', 'pot']
-HABITS: tuple[Habit, ...] = get_args(Habit)
-"""Habits that `grow` knows."""
-
 _POT_SLENDERNESS = 58.0
-_HEIGHTS: dict[Habit, tuple[float, float]] = {
+_HEIGHTS = {
     'conifer': (1.0, 60.0),
     'broadleaf': (1.0, 50.0),
     'pot': (0.2, 4.0),
@@ -45,7 +40,6 @@ def grow(
     species: str,
     height: float,
     diameter: float | None = None,
-    habit: Habit | None = None,
     *,
     rng: np.random.Generator,
     name: str | None = None,
@@ -62,8 +56,6 @@ def grow(
     diameter
         Diameter in [m] at breast height, 1.3 m; at the base of a pot plant and of a tree below
         2.6 m. From the height if None.
-    habit
-        ``conifer``, ``broadleaf`` or ``pot``; that of the species if None.
     rng
         Source of randomness; the same state gives the same tree.
     name
@@ -79,16 +71,12 @@ def grow(
     SpeciesError
         If no table knows the species.
     ParameterError
-        If habit, height or diameter is out of range, or the stem would not stand.
+        If height or diameter is out of range, or the stem would not stand.
 
     """
     wood = species_named(species)
     species = wood.key
-    kind = habit if habit is not None else wood.habit
-    if kind not in HABITS:
-        raise ParameterError(
-            f"unknown habit '{kind}'", where='habit', cure=f'use one of: {", ".join(HABITS)}'
-        )
+    kind = wood.habit
     low, high = _HEIGHTS[kind]
     if not low <= height <= high:
         raise ParameterError(
@@ -106,7 +94,7 @@ def grow(
     return replace(generator(rng, height, diameter, species), name=name or species)
 
 
-def _slenderness(kind: Habit, species: str, height: float) -> float:
+def _slenderness(kind: str, species: str, height: float) -> float:
     if kind == 'conifer':
         return min(60.0 * (20.0 / height) ** 0.5, 90.0)
     return broadleaf_form(species).slenderness if kind == 'broadleaf' else _POT_SLENDERNESS

@@ -10,6 +10,9 @@ answer.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import signal
@@ -17,12 +20,14 @@ from scipy import signal
 from tree_sway.core.arrays import Floats
 from tree_sway.core.identification.ambient_sway import ambient_sway, AmbientSway
 from tree_sway.core.identification.free_decay import free_decay, FreeDecay
-from tree_sway.core.identification.spectral_peaks import Band, Spectrum
+from tree_sway.core.identification.spectral_peaks import Band, spectral_peaks
 from tree_sway.core.identification.sway_estimate import SwayEstimate
 from tree_sway.errors import FormatError, ParameterError
 
 KINDS = ('release', 'ambient')
 """Kinds of record."""
+
+_Sway = TypeVar('_Sway', bound=SwayEstimate)
 
 _MIN_SAMPLES = 16
 _LARGEST = 1e100
@@ -160,12 +165,23 @@ def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:
     return signal.detrend(even, axis=0), dt, float(steps.max())
 
 
-def _refuse_coarse(gap: float, rough: float) -> None:
-    if gap * rough > 0.25:
-        raise FormatError(
-            f'{gap:.3g} s between samples, for a sway of {rough:.3g} Hz',
-            cure='record at least four samples per cycle, without gaps',
-        )
+def _fitted(
+    fit: Callable[[float], _Sway], peaks: Floats, gap: float
+) -> tuple[list[_Sway], dict[int, FormatError]]:
+    """Fit a sway near each peak [Hz]; what was found, and refusals by the number of the peak."""
+    found: list[_Sway] = []
+    refusals: dict[int, FormatError] = {}
+    for number, rough in enumerate(peaks.tolist()):
+        try:
+            if gap * rough > 0.25:
+                raise FormatError(
+                    f'{gap:.3g} s between samples, for a sway of {rough:.3g} Hz',
+                    cure='record at least four samples per cycle, without gaps',
+                )
+            found.append(fit(rough))
+        except FormatError as refusal:
+            refusals[number] = refusal
+    return found, refusals
 
 
 def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
@@ -173,17 +189,9 @@ def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
     padded = 4 * len(motion)
     frequency = np.fft.rfftfreq(padded, dt).astype(np.float64)
     power = (np.abs(np.fft.rfft(motion, padded, axis=0)) ** 2).sum(axis=1) * frequency**2
-    spectrum = Spectrum(frequency, power, len(motion) * dt)
-    peaks, level = spectrum.peaks(band, width=0.06)
-    found: list[FreeDecay] = []
-    refusals: dict[int, FormatError] = {}
+    peaks, level = spectral_peaks(frequency, power, len(motion) * dt, band, width=0.06)
     strong = level > _STRONG * level.max()
-    for number, rough in enumerate(peaks[strong]):
-        try:
-            _refuse_coarse(gap, float(rough))
-            found.append(free_decay(motion, dt, float(rough)))
-        except FormatError as refusal:
-            refusals[number] = refusal
+    found, refusals = _fitted(lambda rough: free_decay(motion, dt, rough), peaks[strong], gap)
     # Where the strongest peak has too few cycles, a weaker one is another mode, or noise.
     strongest = int(np.argmax(level[strong]))
     if strongest in refusals:
@@ -201,17 +209,11 @@ def _ambient(motion: Floats, dt: float, gap: float, band: Band) -> AmbientSway:
     taper = signal.windows.hann(len(motion))
     frequency = np.fft.rfftfreq(len(motion), dt).astype(np.float64)
     power = (np.abs(np.fft.rfft(taper[:, None] * motion, axis=0)) ** 2).sum(axis=1)
-    peaks, _ = Spectrum(frequency, power, len(motion) * dt).peaks(band, width=0.08, min_bins=8)
-    found: list[AmbientSway] = []
-    refusals: list[FormatError] = []
-    for rough in peaks:
-        try:
-            _refuse_coarse(gap, float(rough))
-            found.append(ambient_sway(motion, dt, float(rough)))
-        except FormatError as refusal:
-            refusals.append(refusal)
+    duration = len(motion) * dt
+    peaks, _ = spectral_peaks(frequency, power, duration, band, width=0.08, min_bins=8)
+    found, refusals = _fitted(lambda rough: ambient_sway(motion, dt, rough), peaks, gap)
     if not found and len(refusals) > 1:
-        raise FormatError('no sway stands out of the spectrum', cure=refusals[-1].cure)
+        raise FormatError('no sway stands out of the spectrum', cure=[*refusals.values()][-1].cure)
     if not found:
         raise refusals[0]
     clearest = max(sway.gain for sway in found)

@@ -18,11 +18,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.checks import within
 from tree_sway.core.tree.leaf_traits import LeafTraits
 from tree_sway.core.tree.species import leaf_traits
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.convention import quaternion_of_axes
-from tree_sway.errors import ParameterError
+from tree_sway.core.wind.convention import quaternions_of_axes
 
 MAX_LEAF_AREA_INDEX = 6.0
 """Leaf area over ground covered that no tree exceeds in [-]."""
@@ -112,19 +112,18 @@ def leaf_clusters(
     Place a number of clusters of leaves on the outer wood of a tree at rest, evenly by its length.
 
     Together they show the tree's leaf area, with traits of its species if None. Raises a
-    `ParameterError` for a count that is not positive.
+    `ParameterError` for a count below 0.
     """
-    if count < 1:
-        raise ParameterError(f'{count} leaf clusters', where='count', cure='ask for 1 or more')
+    within('count', count, 0, 1e9)
     leaf = traits if traits is not None else leaf_traits(tree.species)
     leafy = leafy_length(tree)
     ends = np.cumsum(leafy)
-    place = (np.arange(count) + rng.uniform(0.1, 0.9, count)) / count * ends[-1]
+    place = (np.arange(count) + rng.uniform(0.1, 0.9, count)) / max(count, 1) * ends[-1]
     segment = np.minimum(np.searchsorted(ends, place, side='right'), tree.n_segments - 1)
     along = tree.length[segment] - np.clip(ends[segment] - place, 0.0, tree.length[segment])
     # Leaves overlap: clusters as wide as their share of the leaf area, but never smaller than a
     # leaf.
-    area = float(foliage_of(tree, traits=leaf).area.sum()) / count
+    area = float(foliage_of(tree, traits=leaf).area.sum()) / max(count, 1)
     size = max(np.sqrt(4.0 * area / np.pi), leaf.size) * rng.uniform(0.8, 1.2, count)
     turn = _GOLDEN_ANGLE * np.arange(count) + rng.uniform(-0.3, 0.3, count)
     away = np.stack([np.full(count, 0.5), np.cos(turn), np.sin(turn)], axis=1)
@@ -153,14 +152,6 @@ def joined_clusters(clusters: Sequence[LeafClusters], n_segments: Sequence[int])
     return LeafClusters(**{**columns, 'segment': np.concatenate(carriers)})
 
 
-def no_clusters() -> LeafClusters:
-    """Return no leaves at all."""
-    none = np.zeros(0)
-    return LeafClusters(
-        none.astype(np.int64), none.reshape(0, 3), none.reshape(0, 4), none, none, none
-    )
-
-
 def _facing_up(away: Floats, rest: Floats) -> Floats:
     """Orientations w x y z whose x runs away from the twig and whose z looks up most."""
     w, x, y, z = rest.T
@@ -170,4 +161,4 @@ def _facing_up(away: Floats, rest: Floats) -> Floats:
     # A leaf that points straight up may look any way across.
     z[size < 1e-3] = np.cross(away[size < 1e-3], [1.0, 0.0, 0.0])
     z /= np.linalg.norm(z, axis=1)[:, None]
-    return np.array([quaternion_of_axes(*axes) for axes in zip(away, z, strict=True)])
+    return quaternions_of_axes(away, z)

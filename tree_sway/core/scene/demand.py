@@ -9,21 +9,17 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
-from tree_sway.core.simulator.protocol import TreeSimulator
-from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import ParameterError
+from tree_sway.core.simulator.simulator import SwaySimulator
 
 
 def set_demand(
-    simulators: Iterable[TreeSimulator],
+    simulators: Iterable[SwaySimulator],
     *,
     tolerance: float,
     budget: float = 0.0,
     camera: ArrayLike | None = None,
-    tolerance_pixels: float = 0.5,
-    focal_length: float = 1000.0,
+    tolerance_angle: float = 5e-4,
 ) -> None:
     """
     Set what is asked of the trees that choose their model; the others do not mind.
@@ -38,21 +34,24 @@ def set_demand(
         Largest cost of a frame of all these trees in [us], shared by segments; 0 for none.
     camera
         Its position [m], (3,); None without a camera.
-    tolerance_pixels, focal_length
-        Largest error on its picture, and its focal length, both in [px].
+    tolerance_angle
+        Largest error as the camera sees it, in [rad].
 
     """
     adaptive = adaptive_among(simulators)
     total = sum(each.tree.n_segments for each in adaptive)
     for each in adaptive:
-        each.budget = budget * each.tree.n_segments / total
+        tree = each.tree
+        each.budget = budget * tree.n_segments / total
         each.tolerance = tolerance
         if camera is not None:
-            distance = distance_to(each.tree, np.asarray(camera, dtype=np.float64))
-            each.tolerance = tolerance_in_metres(tolerance_pixels, distance, focal_length)
+            # The nearest branch tip or the root is seen, from 1 cm at the nearest.
+            seen = np.vstack([tree.start[:1], tree.end[tree.branch_first[1:] - 1]])
+            away = np.linalg.norm(seen - np.asarray(camera, dtype=np.float64), axis=1)
+            each.tolerance = tolerance_angle * max(float(away.min()), 0.01)
 
 
-def set_cost_scale(simulators: Iterable[TreeSimulator], spent: float) -> None:
+def set_cost_scale(simulators: Iterable[SwaySimulator], spent: float) -> None:
     """Give the trees that choose their model what a frame of them alone takes here, in [us]."""
     adaptive = adaptive_among(simulators)
     expected = sum(each.choice.cost for each in adaptive)
@@ -65,18 +64,3 @@ def adaptive_among(simulators: Iterable[object]) -> list[AdaptiveSimulator]:
     return [each for each in simulators if isinstance(each, AdaptiveSimulator)]
 
 
-def tolerance_in_metres(pixels: float, distance: float, focal_length: float) -> float:
-    """Turn a tolerance [px] on a picture of a focal length [px] into one at a distance, in [m]."""
-    if not (pixels > 0.0 and distance > 0.0 and focal_length > 0.0):
-        raise ParameterError(
-            f'tolerance of {pixels:g} px at {distance:g} m with a focal length of '
-            f'{focal_length:g} px',
-            cure='give three numbers above 0',
-        )
-    return pixels * distance / focal_length
-
-
-def distance_to(tree: Tree, position: Floats) -> float:
-    """Distance from a camera (3,) to the nearest branch tip or the root in [m], at least 1 cm."""
-    seen = np.vstack([tree.start[:1], tree.end[tree.branch_first[1:] - 1]])
-    return max(float(np.linalg.norm(seen - position, axis=1).min()), 0.01)

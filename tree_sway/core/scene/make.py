@@ -7,7 +7,6 @@ from __future__ import annotations
 from typing import Any
 
 from tree_sway.core.simulator.assembly import Kept
-from tree_sway.core.simulator.protocol import TreeSimulator
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
@@ -24,7 +23,7 @@ def make_simulator(
     budget: float = 0.0,
     kept: Kept | None = None,
     **changes: Any,
-) -> TreeSimulator:
+) -> SwaySimulator:
     """
     Make a simulator of a tree.
 

@@ -19,7 +19,6 @@ from tree_sway.core.leaves.foliage import (
     joined_clusters,
     leaf_clusters,
     LeafClusters,
-    no_clusters,
 )
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import joined_where_placed, Kind, kinds_of, PlacedTree
@@ -241,8 +240,6 @@ class Scene:
                 count=own,
                 traits=each.species.leaves,
             )
-            if own
-            else no_clusters()
             for number, (each, own) in enumerate(zip(self.trees, counts, strict=True))
         ]
         return joined_clusters(clusters, [each.tree.n_segments for each in self.trees])

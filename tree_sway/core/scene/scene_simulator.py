@@ -11,7 +11,8 @@ simulator that is set up where the tree is, so that no wind need be turned into 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 import math
@@ -20,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.checks import array_to_fill
+from tree_sway.core.checks import array_to_fill, three_numbers
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.records import zeros_in_lines
@@ -32,10 +33,9 @@ from tree_sway.core.motion.wind_basis import (
 )
 from tree_sway.core.motion.wind_basis_force import pace_layout
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.scene.placed_tree import joined_where_placed, Kind, kinds_of, PlacedTree
+from tree_sway.core.scene.placed_tree import joined_where_placed, kinds_of, PlacedTree
 from tree_sway.core.simulator.assembly import Kept
 from tree_sway.core.simulator.live_tuning import Tuning
-from tree_sway.core.simulator.protocol import TreeSimulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import (
     Counts,
@@ -49,7 +49,7 @@ from tree_sway.core.simulator.simulator import (
 from tree_sway.core.tree.pose_ends import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.gust_travel import GustHistory
-from tree_sway.core.wind.limits import take_wind
+from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import nearest, ParameterError, TreeSwayError
 
 _NO_TABLES: Records = np.zeros(0, dtype=STANDING)
@@ -93,6 +93,7 @@ class SceneSimulator:
     ) -> None:
         """Make a table for every kind that needs one, and a simulator for every other tree."""
         self.trees, self.settings, self.name = tuple(trees), settings, name
+        self.anemometer, self.convection_ratio = anemometer, convection_ratio
         self.names = tuple(each.name for each in trees)
         models = [settings.model if each.model is None else each.model for each in trees]
         self._kinds, self._kind_numbers = kinds_of(trees)
@@ -105,8 +106,10 @@ class SceneSimulator:
         for k in used:
             those = np.flatnonzero((kind == k) & ~is_own)
             most = int(counts[those].max()) or 1
-            name = trees[those[0]].name
-            self._models.append(_model_of(name, self._kinds[k], settings, most, kept))
+            with _called(self.names[those[0]]):
+                tree, species, _ = self._kinds[k]
+                chosen = replace(self._kinds[k].settings(settings), model=most)
+                self._models.append(SwaySimulator(tree, species, chosen, kept=kept))
             progress(len(self._models))
         self._banks: list[WindBasisBank] = [_oscillators(model) for model in self._models]
         self._standing = np.zeros(len(models), dtype=STANDING)
@@ -116,10 +119,13 @@ class SceneSimulator:
         self._make_tables()
         self._numbers, self._is_shared = counts, ~is_own
         self._show()
-        self.own: dict[int, TreeSimulator] = {}
+        self.own: dict[int, SwaySimulator] = {}
         """Simulators of the trees that share no table, by their numbers."""
         for t in np.flatnonzero(is_own).tolist():
-            self.own[t] = _own_simulator(trees[t], settings, tolerance, kept)
+            with _called(self.names[t]):
+                where = trees[t].settings_where_it_stands(settings)
+                tree, species = trees[t].placed(), trees[t].species
+                self.own[t] = make_simulator(tree, species, where, tolerance=tolerance, kept=kept)
             progress(len(self._models) + len(self.own))
         sizes = np.array([each.tree.n_segments for each in self._kinds])
         self._ends = np.concatenate([[0], np.cumsum(sizes[kind])])
@@ -146,7 +152,7 @@ class SceneSimulator:
         )
 
     @property
-    def simulators(self) -> tuple[TreeSimulator, ...]:
+    def simulators(self) -> tuple[SwaySimulator, ...]:
         """Return the simulators of the trees that share no table."""
         return tuple(self.own.values())
 
@@ -160,12 +166,6 @@ class SceneSimulator:
         """Branches that are solved, of kinds once for each tree."""
         shared = sum(m.n_solved * n for m, n in self._moving())
         return shared + sum(sim.n_solved for sim in self.own.values())
-
-    @property
-    def n_copied(self) -> int:
-        """Branches that copy the motion of another."""
-        shared = sum(m.n_copied * n for m, n in self._moving())
-        return shared + sum(sim.n_copied for sim in self.own.values())
 
     def _moving(self) -> list[tuple[SwaySimulator, int]]:
         """Return each table's model, and how many trees sway on it."""
@@ -219,7 +219,10 @@ class SceneSimulator:
         refuse_time_step(dt)
         status = OK
         # The history must not remember what no tree would take.
-        if not take_wind(self._wind, wind_mean, self.settings.max_wind):
+        wind = three_numbers('wind', wind_mean)
+        if is_wind(*wind, self.settings.max_wind):
+            self._wind[:] = wind
+        else:
             status = WIND_REFUSED
             self._counts.refused += 1
         has_glided = [model.glide(dt) for model in self._models]
@@ -249,16 +252,14 @@ class SceneSimulator:
         for each in (*self._models, *self.own.values()):
             each.tune(**changes)
 
-    def place(self, out: Floats | None = None, which: ArrayLike | None = None) -> Floats:
+    def place(self, out: Floats | None = None) -> Floats:
         """
-        Place every segment of every tree, or of some trees.
+        Place every segment of every tree.
 
         Parameters
         ----------
         out
             Where to write, (n, 7) float64, to be fast; a new array if None.
-        which
-            Numbers of the trees to place; all if None. Rows of the others stay as they are.
 
         Returns
         -------
@@ -268,24 +269,15 @@ class SceneSimulator:
         Raises
         ------
         ParameterError
-            An array that cannot hold the poses, or a tree that is not there.
+            An array that cannot hold the poses.
 
         """
         shape = (self.n_segments, 7)
         poses = np.zeros(shape) if out is None else array_to_fill('out', out, shape)
-        n = len(self.names)
-        trees = np.arange(n) if which is None else np.unique(np.asarray(which, dtype=np.int64))
-        if len(trees) and not 0 <= trees[0] <= trees[-1] < n:
-            raise ParameterError(
-                f'tree {trees[-1]} of a scene of {n}', where='which', cure=f'give 0 to {n - 1}'
-            )
-        shared = trees[self._is_shared[trees]]
-        rows = np.stack([shared, self._ends[shared]], axis=1)
-        kinds = self._standing['kind'][shared]
-        for kind in range(len(self._models)):
-            self._place_kind(kind, np.ascontiguousarray(rows[kinds == kind]), poses)
-        for number in trees[~self._is_shared[trees]].tolist():
-            self.own[number].place(poses[self._ends[number] : self._ends[number + 1]])
+        for kind, (_, _, those) in enumerate(self.shared):
+            self._place_kind(kind, np.stack([those, self._ends[those]], axis=1), poses)
+        for number, simulator in self.own.items():
+            simulator.place(poses[self._ends[number] : self._ends[number + 1]])
         return poses
 
     def _make_tables(self) -> None:
@@ -309,8 +301,7 @@ class SceneSimulator:
 
     def _show(self) -> None:
         """Leave out of each tree what it has fewer coordinates than the table of its kind."""
-        for kind, bank in enumerate(self._banks):
-            those = np.flatnonzero(self._is_shared & (self._standing['kind'] == kind))
+        for _, bank, those in self.shared:
             left_out = np.maximum(bank.shapes.shape[1] - self._numbers[those], 0)
             m = self._instances['faded'].shape[1]
             last = np.arange(m) >= self._numbers[those, None]
@@ -318,16 +309,17 @@ class SceneSimulator:
             self._instances['faded'][those] = last
 
     @property
-    def held(self) -> tuple[str, ...]:
-        """Names of the trees whose load was at the edge of their table in the last step."""
-        return tuple(self.names[t] for t in np.flatnonzero(self._standing['is_held']))
-
-    @property
     def shared(self) -> list[tuple[SwaySimulator, WindBasisBank, Ints]]:
         """Each model in a frame of its own, its table, and the trees that share it."""
         kinds = np.where(self._is_shared, self._standing['kind'], -1)
         pairs = enumerate(zip(self._models, self._banks, strict=True))
         return [(model, bank, np.flatnonzero(kinds == k)) for k, (model, bank) in pairs]
+
+    @property
+    def speeds(self) -> Floats:
+        """Wind of each tree over that of its kind, (t,)."""
+        speeds: Floats = self._standing['speed']
+        return speeds
 
     def shares(self, numbers: Ints) -> Floats:
         """How much trees of one kind bend in each shape, (t, m)."""
@@ -405,25 +397,10 @@ def _oscillators(model: SwaySimulator) -> WindBasisBank:
     return oscillators
 
 
-def _model_of(
-    name: str, kind: Kind, scene: Settings, count: int, kept: Kept | None
-) -> SwaySimulator:
-    """Make the model that trees of a kind share; what is wrong with it names the first of them."""
-    settings = replace(kind.settings(scene), model=count)
+@contextmanager
+def _called(name: str) -> Iterator[None]:
+    """Name the tree in what is wrong with it."""
     try:
-        return SwaySimulator(kind.tree, kind.species, settings, kept=kept)
+        yield
     except TreeSwayError as error:
         raise error.inside(name) from error
-
-
-def _own_simulator(
-    tree: PlacedTree, scene: Settings, tolerance: float, kept: Kept | None
-) -> TreeSimulator:
-    """Make the simulator of a tree where it is; what is wrong with it names the tree."""
-    settings = tree.settings_where_it_stands(scene)
-    try:
-        return make_simulator(
-            tree.placed(), tree.species, settings, tolerance=tolerance, kept=kept
-        )
-    except TreeSwayError as error:
-        raise error.inside(tree.name) from error

@@ -11,16 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.checks import within
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.simulator.assembly import CalibratedTree
-from tree_sway.core.simulator.protocol import TreeSimulator
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.pose_ends import tips_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.frame_means import recorded_means
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
 
@@ -97,8 +99,8 @@ class Rig:
         self.tree, self.species = tree_and_species(tree)
         self.settings = settings_with(settings, changes)
         self.calibrated = CalibratedTree(self.tree, self.species, self.settings)
-        self._simulator: TreeSimulator | None = None
-        self.base = BaseMoment(self.calibrated)
+        self._simulator: SwaySimulator | None = None
+        self._per_rotation = moment_per_rotation(self.calibrated)
 
     def run(
         self,
@@ -111,16 +113,21 @@ class Rig:
     ) -> SwayRecord:
         """Sway the tree in a wind from rest, as `simulate`, whatever it went through before."""
         means, chosen = _step_means(wind, rate, seconds), _chosen(self.tree, branches)
-        simulator = self._at_rest()
+        simulator, gauge = self._at_rest(), StrengthGauge(self.calibrated)
+        strain = np.empty((len(means), len(chosen)))
         rest = tips_of_poses(self.tree, simulator.place(), chosen)
         tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
         poses, every = np.empty((self.tree.n_segments, 7)), max(len(means) // 100, 1)
         for step, mean in enumerate(means):
             simulator.step(mean, 1.0 / rate)
             tips[step] = tips_of_poses(self.tree, simulator.place(poses), chosen) - rest
-            moment[step] = self.base.of(simulator.rotations())
+            rotations = simulator.rotations()
+            moment[step] = rotations[: len(self._per_rotation)] @ self._per_rotation
+            strain[step] = gauge.read(rotations, moment[step])[chosen]
             if progress is not None and step % every == 0:
                 progress(step / len(means))
+        radius = 0.5 * float(self.tree.base_diameter[0])
+        per_moment = radius / (self.species.modulus * np.pi / 4.0 * radius**4)
         return SwayRecord(
             self.tree.name,
             simulator.model,
@@ -130,10 +137,35 @@ class Rig:
             tuple(self.tree.branch_names[branch] for branch in chosen),
             tips,
             moment,
-            self.base.strain(moment),
+            per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1),
+            strain,
+            gauge.use(),
         )
 
-    def _at_rest(self) -> TreeSimulator:
+    def strength_curve(
+        self, speeds: ArrayLike, *, rng: np.random.Generator, seconds: float = 60.0
+    ) -> list[StrengthUse]:
+        """
+        Find the shares of strength used in turbulence of each of some mean speeds.
+
+        Parameters
+        ----------
+        speeds
+            Mean speeds in [m/s], (n,).
+        rng
+            Where the turbulence comes from; all speeds have the same gusts, faster.
+        seconds
+            Length of each wind in [s].
+
+        """
+        seed, used = int(rng.integers(2**32)), []
+        for speed in np.asarray(speeds, dtype=np.float64).tolist():
+            same = np.random.default_rng(seed)
+            wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=same)
+            used.append(self.run(wind).strength)
+        return used
+
+    def _at_rest(self) -> SwaySimulator:
         """Return the simulator at rest; one that chooses its model by its winds is made again."""
         if self.settings.model == 'auto':
             return make_simulator(self.tree, self.species, self.settings)
@@ -145,42 +177,25 @@ class Rig:
         return self._simulator
 
 
-class BaseMoment:
+def moment_per_rotation(calibrated: CalibratedTree) -> Floats:
     """
-    Bending moment at the base of the stem from the curvature of its shapes there.
+    Bending moment at the base of the stem per key rotation of it, in [N m/rad], (k, 3).
 
-    What a strain gauge measures: the moment of wind and inertia together, as the wood carries it.
+    It is by the curvature of the stem's shapes there, and so what a strain gauge measures: the
+    moment of wind and inertia together, as the wood carries it.
     """
-
-    def __init__(self, calibrated: CalibratedTree) -> None:
-        """Find the moment per unit of each coordinate of the stem."""
-        tree, species, model = calibrated.tree, calibrated.species, calibrated.settings.model
-        layer = calibrated.layer(model)
-        stem = layer.models[0]
-        beam = stem.beam
-        along = beam.tangent[0]
-        self._per_unit = np.zeros((len(stem.fields), 3))
-        for k, field in enumerate(stem.fields):
-            across = field.curvature[0] - np.outer(field.curvature[0] @ along, along)
-            bending = beam.second_moment[0][:, None] * across
-            at_base = np.polyfit(beam.place[0], bending, 2)[-1]
-            self._per_unit[k] = species.modulus * at_base
-        radius = 0.5 * float(tree.base_diameter[0])
-        self._strain_per_moment = radius / (species.modulus * np.pi / 4.0 * radius**4)
-
-    def of(self, rotations: Floats) -> Floats:
-        """Moment in [N m], (3,), under the key rotations of a simulator in [rad], (N,)."""
-        return np.asarray(rotations[: len(self._per_unit)] @ self._per_unit)
-
-    def strain(self, moment: Floats) -> Floats:
-        """Strain of the east and the north fibre [-] under moments (t, 3), (t, 2)."""
-        return self._strain_per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1)
+    stem = calibrated.layer(calibrated.settings.model).models[0]
+    along, found = stem.beam.tangent[0], []
+    for field in stem.fields:
+        across = field.curvature[0] - np.outer(field.curvature[0] @ along, along)
+        bending = stem.beam.second_moment[0][:, None] * across
+        found.append(calibrated.species.modulus * np.polyfit(stem.beam.place[0], bending, 2)[-1])
+    return np.array(found)
 
 
 def _step_means(wind: WindSamples | ArrayLike, rate: float, seconds: float | None) -> Floats:
     """Mean wind of each step in [m/s], (t, 3)."""
-    if not (np.isfinite(rate) and 1.0 <= rate <= 10_000.0):
-        raise ParameterError(f'rate {rate:g} Hz', where='rate', cure='give 1 to 10000')
+    within('rate', rate, 1.0, 10_000.0, 'Hz')
     if isinstance(wind, WindSamples):
         means = recorded_means(wind.time, wind.velocity, 1.0 / rate)
     else:
@@ -195,8 +210,7 @@ def _step_means(wind: WindSamples | ArrayLike, rate: float, seconds: float | Non
         raise ParameterError('wind that is not finite', where='wind', cure='leave such rows out')
     if seconds is None:
         return np.asarray(means)
-    if not (np.isfinite(seconds) and seconds > 0.0):
-        raise ParameterError(f'{seconds:g} s', where='seconds', cure='give more than 0')
+    within('seconds', seconds, 0.0, 1e9, 's', above=True)
     return np.asarray(means[: max(round(seconds * rate), 1)])
 
 

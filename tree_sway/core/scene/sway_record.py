@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.strength.strength_use import StrengthUse
 
 _SIDES = ('east', 'north')
 
@@ -40,6 +41,10 @@ class SwayRecord:
     base_strain
         Strain of the outermost fibre at the base of the stem, beyond that at rest, on its east
         and on its north side [-], (t, 2); positive where the fibre is drawn out.
+    strain
+        Largest strain of a fibre along each of these branches, beyond that at rest [-], (t, k).
+    strength
+        The largest share of its strength that the tree used.
 
     """
 
@@ -52,6 +57,8 @@ class SwayRecord:
     tips: Floats
     base_moment: Floats
     base_strain: Floats
+    strain: Floats
+    strength: StrengthUse
 
     def columns(self) -> dict[str, Floats]:
         """
@@ -68,15 +75,8 @@ class SwayRecord:
         for name, unit, rows in vectors:
             found |= {f'{name}_{axis} [{unit}]': rows[:, i] for i, axis in enumerate('xyz')}
         found |= {f'strain_{s} [-]': self.base_strain[:, i] for i, s in enumerate(_SIDES)}
-        return found
-
-    def to_csv(self) -> str:
-        """Return the record as comma-separated values under one line of names and units."""
-        columns = self.columns()
-        head = ','.join(f'"{name}"' if ',' in name else name for name in columns)
-        table = np.stack([*columns.values()], axis=1)
-        rows = (','.join(f'{value:.9g}' for value in row) for row in table)
-        return '\n'.join((head, *rows, ''))
+        names = enumerate(self.branch_names)
+        return found | {f'{name} largest strain [-]': self.strain[:, k] for k, name in names}
 
     def __repr__(self) -> str:
         """Name tree, model, length and the largest motion of the first tip on one line."""

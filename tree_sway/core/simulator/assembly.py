@@ -83,11 +83,6 @@ class Kept(Protocol):
         """Keep arrays, or leave it."""
 
 
-def build_bank(tree: Tree, species: Species, settings: Settings) -> Bank:
-    """Calibrate a tree for the model of its settings; see `CalibratedTree.bank`."""
-    return CalibratedTree(tree, species, settings).bank(settings.model)
-
-
 @dataclass(frozen=True)
 class Layer:
     """
@@ -140,28 +135,26 @@ class CalibratedTree:
         return species.damping(bool(settings.in_leaf))
 
     @cached_property
-    def _crown_drag(self) -> tuple[DragLaw, Floats | None]:
-        """Law of the tree, and the area of bare wood that the leaves of each branch amount to."""
-        species, given = self.species, self.settings.leaf_area
-        if not self.settings.in_leaf or given is None:
-            return DragLaw(*species.drag_law(bool(self.settings.in_leaf))), None
-        tree = self.tree
-        area = one_of_each('leaf_area', given, tree.n_branches, 'branch')
-        wood = float(tree.length @ (tree.base_diameter + tree.tip_diameter)) / 2.0
-        laws = species.drag_law(in_leaf=False)[0], species.drag_law(in_leaf=True)
-        from tree_sway.core.leaves.foliage import clad_wood
-
-        return crown_drag(wood, area, clad_wood(tree, species.leaves), *laws)
-
-    @property
     def drag_law(self) -> DragLaw:
         """Of the whole tree, wood and leaves."""
         return self._crown_drag[0]
 
-    @property
+    @cached_property
     def leaf_load_area(self) -> Floats | None:
         """Area of bare wood that the leaves of each branch are equivalent to in [m^2], (b,)."""
         return self._crown_drag[1]
+
+    @cached_property
+    def _crown_drag(self) -> tuple[DragLaw, Floats | None]:
+        tree, species, given = self.tree, self.species, self.settings.leaf_area
+        if not self.settings.in_leaf or given is None:
+            return DragLaw(*species.drag_law(bool(self.settings.in_leaf))), None
+        laws = species.drag_law(in_leaf=False)[0], species.drag_law(in_leaf=True)
+        area = one_of_each('leaf_area', given, tree.n_branches, 'branch')
+        wood = float(tree.length @ (tree.base_diameter + tree.tip_diameter)) / 2.0
+        from tree_sway.core.leaves.foliage import clad_wood
+
+        return crown_drag(wood, area, clad_wood(tree, species.leaves), *laws)
 
     def crown_delays(self, model: int | str) -> CrownDelays:
         """When each branch of a model meets a gust."""
@@ -170,9 +163,11 @@ class CalibratedTree:
         whole = delays_of(self.tree, self.leaf_load_area)
         return whole._replace(of_branch=whole.of_branch[self.layer(model).branch])
 
-    def bank(self, model: int | str) -> Bank:
+    def bank(self, model: int | str | None = None) -> Bank:
         """
         Build the oscillators of a model: a number of coordinates, ``branch`` or ``full``.
+
+        It is that of the settings if None.
 
         Raises
         ------
@@ -182,6 +177,7 @@ class CalibratedTree:
             A model that has no oscillators of its own.
 
         """
+        model = self.settings.model if model is None else model
         if model == 'auto':
             raise ParameterError(
                 "model 'auto' has no oscillators of its own",
@@ -416,7 +412,7 @@ class CalibratedTree:
         stiffness = np.asarray(layer.reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
         weight = np.asarray(layer.reduction.gravity.diagonal()).reshape(-1, 2).mean(axis=1)
         damping = 2.0 * self.damping_ratio * np.sqrt(stiffness * inertia)
-        if settings.stiffness == 'volume_rule':
+        if settings.volume_stiffness:
             volume = np.add.reduceat(tree.volume, tree.branch_first[:-1])
             parent = volume[np.maximum(tree.branch_parent, 0)]
             rule = np.sqrt(volume * parent)

@@ -10,7 +10,7 @@ quotient, which errs by the square of what the shapes would change by.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import astuple, dataclass, replace
 import math
 
 import numpy as np
@@ -23,6 +23,15 @@ from tree_sway.errors import ParameterError
 
 GLIDE = 0.5
 """Time in [s] over which a change is taken on."""
+
+_RANGES = {
+    'damping_ratio': (0.0, 1.0, ''),
+    'stiffness_factor': (0.1, 10.0, ''),
+    'gravity': (0.0, 30.0, 'm/s^2'),
+}
+
+LIVE = tuple(_RANGES)
+"""What may change while a tree sways."""
 
 
 @dataclass(frozen=True)
@@ -38,60 +47,12 @@ class Tuning:
         Elastic stiffness over that which the tree was made with in [-], 0.1 to 10.
     gravity
         In [m/s^2], 0 to 30.
-    volume_stiffness, volume_damping
-        The two constants of the volume rule in [N m/rad/m^3] and [N m s/rad/m^3], above 0 to 1e9.
 
     """
 
     damping_ratio: float
     stiffness_factor: float
     gravity: float
-    volume_stiffness: float
-    volume_damping: float
-
-    @staticmethod
-    def of(settings: Settings, damping_ratio: float) -> Tuning:
-        """Return what a tree is made with."""
-        constants = settings.volume_stiffness, settings.volume_damping
-        return Tuning(damping_ratio, 1.0, settings.gravity, *constants)
-
-    def changed(self, **changes: float) -> Tuning:
-        """
-        Return this with some values changed.
-
-        A `ParameterError` names what may not change, or a value out of its range.
-        """
-        for name, value in changes.items():
-            if name not in _RANGES:
-                raise ParameterError(
-                    f"'{name}' cannot change while the tree sways",
-                    where='tune',
-                    cure=f'use one of: {", ".join(_RANGES)}; or make the simulator again',
-                )
-            low, high, unit, above = _RANGES[name]
-            within(name, value, low, high, unit, above=above)
-        return replace(self, **changes)
-
-    def towards(self, goal: Tuning, share: float) -> Tuning:
-        """Return the mix of this and another."""
-        here = {one.name: getattr(self, one.name) for one in fields(self)}
-        return Tuning(**{k: v + share * (getattr(goal, k) - v) for k, v in here.items()})
-
-
-_OF_VOLUMES: tuple[str, ...] = ('volume_stiffness', 'volume_damping')
-_OF_BEAMS: tuple[str, ...] = ('damping_ratio', 'stiffness_factor', 'gravity')
-
-_RANGES: dict[str, tuple[float, float, str, bool]] = {
-    'damping_ratio': (0.0, 1.0, '', False),
-    'stiffness_factor': (0.1, 10.0, '', False),
-    'gravity': (0.0, 30.0, 'm/s^2', False),
-    'volume_stiffness': (0.0, 1e9, 'N m/rad/m^3', True),
-    'volume_damping': (0.0, 1e9, 'N m s/rad/m^3', True),
-}
-
-
-LIVE = tuple(_RANGES)
-"""What may change while a tree sways."""
 
 
 class LiveTuning:
@@ -99,13 +60,14 @@ class LiveTuning:
 
     def __init__(self, tunable: Tunable, settings: Settings, damping_ratio: float) -> None:
         """Split the stiffness into that of the wood and that of the weight."""
-        self._of, self._settings = tunable, settings
-        self._made = self._now = self.goal = Tuning.of(settings, damping_ratio)
+        self._tunable, gravity = tunable, settings.gravity
+        self._has_volume_rule = settings.volume_stiffness > 0.0
+        self._made = self._now = self.goal = Tuning(damping_ratio, 1.0, gravity)
         self._left = 0.0
-        self._stiffness, self._damping = tunable.stiffness.copy(), tunable.damping.copy()
-        self._others = [array.copy() for array, _ in tunable.others]
-        weight, gravity = tunable.weight, settings.gravity
+        weight = tunable.weight
         self._per_gravity = weight / gravity if gravity > 0.0 else 0.0 * weight
+        self._elastic = tunable.stiffness - weight
+        self._others = [array.copy() for array, _ in tunable.others]
 
     @property
     def changes(self) -> tuple[Tuning, ...]:
@@ -117,34 +79,43 @@ class LiveTuning:
         """Return whether the next step changes something."""
         return self._left > 0.0
 
-    def check(self, goal: Tuning) -> None:
+    def changed(self, **changes: float) -> Tuning:
         """
-        Refuse a tuning that this tree cannot take, with a `ParameterError`.
+        Return the goal with some values changed.
 
-        That is a tree that would buckle, weight on one that was made without, or a value that the
-        rule of stiffness in use does not have.
+        A `ParameterError` names what may not change, a value out of its range, or what this tree
+        cannot take: to buckle, weight on one that was made without, or any change of the volume
+        rule.
         """
-        rule = self._settings.stiffness
-        for name in _OF_BEAMS if rule == 'volume_rule' else _OF_VOLUMES:
-            if getattr(goal, name) != getattr(self._made, name):
+        for name, value in changes.items():
+            if name not in _RANGES:
                 raise ParameterError(
-                    f"another {name} with stiffness '{rule}'",
-                    where=name,
-                    cure='the volume rule takes its two constants, beams take the others',
+                    f"'{name}' cannot change while the tree sways",
+                    where='tune',
+                    cure=f'use one of: {", ".join(_RANGES)}; or make the simulator again',
                 )
-        if goal.gravity > 0.0 and not self._settings.gravity > 0.0:
+            within(name, value, *_RANGES[name])
+        goal = replace(self.goal, **changes)
+        if self._has_volume_rule and goal != self._made:
+            raise ParameterError(
+                f'another {next(iter(changes))} with the volume rule',
+                where='tune',
+                cure='make the simulator again with other constants of the rule',
+            )
+        if goal.gravity > 0.0 and not self._made.gravity > 0.0:
             raise ParameterError(
                 f'gravity {goal.gravity:g} m/s^2 on a tree made without weight',
                 where='gravity',
                 cure='make the tree with its gravity, then change it',
             )
-        if not (self._of_tuning(goal) > 0.0).all():
+        if not (self._stiffness(goal) > 0.0).all():
             raise ParameterError(
                 f'a tree that buckles at {goal.stiffness_factor:g} of its stiffness under '
                 f'{goal.gravity:g} m/s^2',
                 where='stiffness_factor',
                 cure='give more stiffness, or less gravity',
             )
+        return goal
 
     def go_to(self, goal: Tuning) -> None:
         """Take on a tuning that was checked, from the next step on."""
@@ -156,25 +127,21 @@ class LiveTuning:
             return False
         share = min(dt / self._left, 1.0)
         self._left -= dt
-        self._now = self.goal if share == 1.0 else self._now.towards(self.goal, share)
+        pairs = zip(astuple(self._now), astuple(self.goal), strict=True)
+        mix = Tuning(*(now + share * (goal - now) for now, goal in pairs))
+        self._now = self.goal if share == 1.0 else mix
         self._apply(self._now)
         return True
 
-    def _of_tuning(self, tuning: Tuning) -> Floats:
+    def _stiffness(self, tuning: Tuning) -> Floats:
         """Stiffness of each oscillator."""
-        made = self._made
-        if self._settings.stiffness == 'volume_rule':
-            return np.asarray(self._stiffness * (tuning.volume_stiffness / made.volume_stiffness))
-        elastic = self._stiffness - made.gravity * self._per_gravity
-        return np.asarray(tuning.stiffness_factor * elastic + tuning.gravity * self._per_gravity)
+        weight = tuning.gravity * self._per_gravity
+        return np.asarray(tuning.stiffness_factor * self._elastic + weight)
 
     def _apply(self, tuning: Tuning) -> None:
-        stiffness, of = self._of_tuning(tuning), self._of
-        if self._settings.stiffness == 'volume_rule':
-            of.damping[:] = self._damping * (tuning.volume_damping / self._made.volume_damping)
-        else:
-            critical = 2.0 * np.sqrt(stiffness * of.inertia)
-            of.damping[:] = tuning.damping_ratio * of.loss * critical
-        of.stiffness[:] = stiffness
-        for (array, power), made in zip(of.others, self._others, strict=True):
+        stiffness, tunable = self._stiffness(tuning), self._tunable
+        critical = 2.0 * np.sqrt(stiffness * tunable.inertia)
+        tunable.damping[:] = tuning.damping_ratio * tunable.loss * critical
+        tunable.stiffness[:] = stiffness
+        for (array, power), made in zip(tunable.others, self._others, strict=True):
             array[:] = made * math.pow(tuning.stiffness_factor, power)

@@ -8,13 +8,10 @@ from typing import Protocol
 
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.simulator.bank import Bank
+from tree_sway.core.arrays import Floats
 from tree_sway.core.simulator.live_tuning import Tuning
 from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import Counts
-from tree_sway.core.state.tree_state import TreeState
-from tree_sway.core.tree.species import Species
+from tree_sway.core.simulator.simulator import Counts, SwaySimulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.gust_travel import GustHistory
 
@@ -43,10 +40,6 @@ class Simulator(Protocol):
         """Branches that are solved."""
 
     @property
-    def n_copied(self) -> int:
-        """Branches that copy the motion of another."""
-
-    @property
     def wind(self) -> Floats:
         """Wind of the last step in [m/s], (3,)."""
 
@@ -55,7 +48,7 @@ class Simulator(Protocol):
         """Displacement of the highest tip from rest in [m], (3,)."""
 
     @property
-    def simulators(self) -> tuple[TreeSimulator, ...]:
+    def simulators(self) -> tuple[SwaySimulator, ...]:
         """Return the simulator of each tree."""
 
     @property
@@ -76,35 +69,3 @@ class Simulator(Protocol):
 
     def reset(self) -> None:
         """Go back to rest."""
-
-
-class TreeSimulator(Simulator, Protocol):
-    """A simulator of one tree: its state can be read, kept and set."""
-
-    species: Species
-
-    @property
-    def bank(self) -> Bank:
-        """Return the records of the tree and the oscillators, as `Bank`."""
-
-    @property
-    def joints(self) -> Records:
-        """Return the records of `BRANCH` in the order of the rotations, (b,)."""
-
-    def digest(self) -> str:
-        """Return a name of all that a state must agree with."""
-
-    def rotations(self) -> Floats:
-        """Key rotations in [rad], (N,)."""
-
-    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
-        """Place every segment by key rotations (N,), (n, 7)."""
-
-    def state(self) -> TreeState:
-        """Return all that is carried from one step to the next."""
-
-    def set_state(self, state: TreeState) -> None:
-        """Go on from a state."""
-
-    def expand(self, state: TreeState, out: Floats | None = None) -> Floats:
-        """Place every segment as in a state, (n, 7)."""

@@ -25,8 +25,19 @@ MODELS = ('auto', 'branch', 'full')
 MOST = 1000
 """Coordinates that may be asked for."""
 
-STIFFNESS_RULES = ('beam', 'volume_rule')
-"""Ways to set the stiffness of a branch."""
+ENRICHED = ('none', 'stem', 'needed', 'carriers', 'all')
+"""Which branches may get further shapes."""
+
+_RANGES = {
+    'volume_stiffness': (0.0, 1e9, 'N m/rad/m^3', False),
+    'volume_damping': (0.0, 1e9, 'N m s/rad/m^3', True),
+    'damping_ratio': (0.0, 1e3, '', False),
+    'gravity': (0.0, 1e3, 'm/s^2', False),
+    'crown_coherence': (0.0, 1.0, '', False),
+    'root_stiffness': (0.0, math.inf, 'N m/rad', True),
+    'max_wind': (0.0, FASTEST_WIND, 'm/s', True),
+}
+"""Least and largest value, unit, and whether the least itself is refused."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,10 +53,10 @@ class Settings:
         of every branch; or ``auto``, which takes as many coordinates as the scene needs.
     degree
         Of the harmonics of the wind's direction: 1, 3 or 5.
-    stiffness
-        ``beam``, or ``volume_rule`` (the paper's, for the model ``branch``).
     volume_stiffness, volume_damping
-        The two constants of the volume rule in [N m/rad/m^3] and [N m s/rad/m^3].
+        The two constants of the paper's rule for the model ``branch``, stiffness and damping of a
+        branch over its volume in [N m/rad/m^3] and [N m s/rad/m^3]; a stiffness of 0 for that of
+        its beam.
     damping_ratio
         In [-]; that of the species if None.
     in_leaf
@@ -75,8 +86,7 @@ class Settings:
 
     model: int | str = USUAL
     degree: int = 5
-    stiffness: str = 'beam'
-    volume_stiffness: float = 2.0e5
+    volume_stiffness: float = 0.0
     volume_damping: float = 2.0e3
     damping_ratio: float | None = None
     in_leaf: bool | None = None
@@ -93,36 +103,24 @@ class Settings:
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
         object.__setattr__(self, 'model', model_of(self.model))
-        _one_of('stiffness', self.stiffness, STIFFNESS_RULES)
-        _one_of('enrich', self.enrich, ('none', 'stem', 'needed', 'carriers', 'all'))
-        if self.stiffness == 'volume_rule' and self.model != 'branch':
+        for name, (low, high, unit, above) in _RANGES.items():
+            value = getattr(self, name)
+            if value is not None:
+                within(name, value, low, high, unit, above=above)
+        for name, known in (('enrich', ENRICHED), ('degree', (1, 3, 5))):
+            if getattr(self, name) not in known:
+                cure = f'use one of: {", ".join(map(str, known))}'
+                raise ParameterError(f'unknown {name} {getattr(self, name)!r}', cure=cure)
+        if self.volume_stiffness and self.model != 'branch':
             raise ParameterError(
                 f"the volume rule on model '{self.model}'",
-                where='stiffness',
-                cure="use it on model 'branch', or stiffness 'beam'",
+                where='volume_stiffness',
+                cure="use it on model 'branch', or 0 for the stiffness of beams",
             )
         if self.in_leaf is False and (self.leaf_mass is not None or self.leaf_area is not None):
             raise ParameterError(
                 'leaves on a bare tree', where='in_leaf', cure='leave in_leaf out, or the leaves'
             )
-        if self.damping_ratio is not None and not 0.0 <= self.damping_ratio < 1.0e3:
-            raise ParameterError(f'damping ratio {self.damping_ratio}', cure='give 0 or more')
-        if self.root_stiffness is not None and not self.root_stiffness > 0.0:
-            raise ParameterError(
-                f'{self.root_stiffness} N m/rad',
-                where='root_stiffness',
-                cure='give a stiffness above 0, infinite for rigid roots',
-            )
-        if self.degree not in (1, 3, 5):
-            raise ParameterError(f'degree {self.degree}', where='degree', cure='use 1, 3 or 5')
-        within('crown_coherence', self.crown_coherence, 0.0, 1.0)
-        within('max_wind', self.max_wind, 0.0, FASTEST_WIND, 'm/s', above=True)
-        for name in ('volume_stiffness', 'volume_damping'):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
-                raise ParameterError(f'{name} {value}', cure='give a finite number above 0')
-        if not (math.isfinite(self.gravity) and self.gravity >= 0.0):
-            raise ParameterError(f'gravity {self.gravity} m/s^2', cure='give 0 or more')
 
     def __eq__(self, other: object) -> bool:
         """Compare every field, arrays by their numbers."""
@@ -173,8 +171,3 @@ def model_of(given: object) -> int | str:
         cure=f'{near + ", or " if near else ""}use one of: {", ".join(MODELS)}, or a number of '
         f'coordinates from 0 to {MOST}',
     )
-
-
-def _one_of(what: str, value: str, known: tuple[str, ...]) -> None:
-    if value not in known:
-        raise ParameterError(f"unknown {what} '{value}'", cure=f'use one of: {", ".join(known)}')

@@ -13,19 +13,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.checks import array_to_fill, array_to_read
+from tree_sway.core.checks import array_to_fill, array_to_read, three_numbers
 from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.simulator.assembly import CalibratedTree, Kept
 from tree_sway.core.simulator.bank import Bank
 from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings, settings_with
-from tree_sway.core.state.tree_state import digest_of, KeepsState
+from tree_sway.core.state.tree_state import digest_of, refuse_version, TreeState
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
+from tree_sway.core.tree.pose_ends import ends_of_poses
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.limits import components_of, is_wind
-from tree_sway.errors import ParameterError
+from tree_sway.core.wind.limits import is_wind
+from tree_sway.errors import ParameterError, StateError
 
 if TYPE_CHECKING:
     from tree_sway.core.simulator.crown_gusts import CrownGusts
@@ -54,7 +55,7 @@ class Counts:
     refused_pushes: int = 0
 
 
-class SwaySimulator(KeepsState):
+class SwaySimulator:
     """
     A tree that sways.
 
@@ -135,7 +136,6 @@ class SwaySimulator(KeepsState):
         self._filled = self._poses
         self._origin = tree.start[0].copy()
         self._highest = int(np.argmax(tree.end[:, 2]))
-        self._rest_tip = tree.end[self._highest].copy()
 
     @property
     def model(self) -> str:
@@ -151,11 +151,6 @@ class SwaySimulator(KeepsState):
     def n_solved(self) -> int:
         """Branches that are solved; the others copy."""
         return self.bank.n_solved
-
-    @property
-    def n_copied(self) -> int:
-        """Branches that copy the motion of another."""
-        return self.tree.n_branches - self.bank.n_solved
 
     @property
     def wind(self) -> Floats:
@@ -194,6 +189,40 @@ class SwaySimulator(KeepsState):
         crown = () if self._gusts is None else self._gusts.wind.memory()
         return self._wind, *self.bank.oscillators.memory(), *crown
 
+    def state(self) -> TreeState:
+        """Return a copy of all that is carried from one step to the next."""
+        values = np.concatenate([np.ravel(array) for array in self.memory()])
+        return TreeState(self.tree.name, self.digest(), self.model, values)
+
+    def set_state(self, state: TreeState) -> None:
+        """
+        Go on from a state.
+
+        Raises a `StateError` for another tree, model or version, or what is not finite; what was
+        before stays.
+        """
+        refuse_version(state.version)
+        arrays = self.memory()
+        n_values = sum(array.size for array in arrays)
+        for what, theirs, own in (
+            ('tree', state.tree, self.tree.name),
+            ('model', state.model, self.model),
+            ('settings', state.digest, self.digest()),
+            ('number of values', len(state.values), n_values),
+        ):
+            if theirs != own:
+                raise StateError(
+                    f"a state of {what} '{theirs}', and this is '{own}'",
+                    where=self.tree.name,
+                    cure='set a state of the same tree with the same species, settings and model',
+                )
+        if not np.isfinite(state.values).all():
+            raise StateError('a state that is not finite', where=self.tree.name)
+        first = 0
+        for array in arrays:
+            array[...] = state.values[first : first + array.size].reshape(array.shape)
+            first += array.size
+
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,), in the order of `joints`; the same array each time."""
         return self.bank.oscillators.rotations()
@@ -231,7 +260,7 @@ class SwaySimulator(KeepsState):
 
         """
         counts = self.counts
-        x, y, z = components_of(wind_mean)
+        x, y, z = three_numbers('wind', wind_mean)
         if dt != self._dt or self.glide(dt):
             self._set_step(dt)
         counts.steps += 1
@@ -352,13 +381,9 @@ class SwaySimulator(KeepsState):
     @property
     def tip_displacement(self) -> Floats:
         """Displacement of the highest tip from rest in [m], (3,)."""
-        x, y, z, qx, qy, qz, qw = self.place(self._poses)[self._highest]
-        length = self.tree.length[self._highest]
-        along = np.array(
-            [1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qz * qw), 2 * (qx * qz - qy * qw)]
-        )
-        displacement: Floats = np.array([x, y, z]) + length * along - self._rest_tip
-        return displacement
+        top = slice(self._highest, self._highest + 1)
+        tip = ends_of_poses(self.place(self._poses)[top], self.tree.length[top])[1][0]
+        return np.asarray(tip - self.tree.end[self._highest])
 
     @property
     def base_moment(self) -> Floats:
@@ -382,9 +407,7 @@ class SwaySimulator(KeepsState):
         if self._tuning is None:
             tunable, ratio = self.bank.oscillators.tunable, self._calibrated.damping_ratio
             self._tuning = LiveTuning(tunable, self.settings, ratio)
-        goal = self._tuning.goal.changed(**changes)
-        self._tuning.check(goal)
-        return goal
+        return self._tuning.changed(**changes)
 
     def tune(self, **changes: float) -> None:
         """
@@ -393,8 +416,8 @@ class SwaySimulator(KeepsState):
         Parameters
         ----------
         **changes
-            ``damping_ratio``, ``stiffness_factor``, ``gravity``, ``volume_stiffness`` or
-            ``volume_damping``, as of `Tuning`. What is not named stays.
+            ``damping_ratio``, ``stiffness_factor`` or ``gravity``, as of `Tuning`. What is not
+            named stays.
 
         Raises
         ------

@@ -1,6 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Forces that people and machines put on a tree for a while."""
+"""
+Forces that people and machines put on a tree for a while.
+
+A force f at a place p does ``J^T f`` to the key rotations x, ``J = dp/dx`` as the tree is bent
+now. Only the branches between the place and the root move it, so that J is found by placing the
+tree once for each of their coordinates.
+"""
 
 from __future__ import annotations
 
@@ -8,99 +14,107 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import array_to_read, within
 from tree_sway.core.simulator.bank import Bank
-from tree_sway.core.simulator.pull import moments_of_force
+from tree_sway.core.tree.pose_ends import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
 LONGEST_PUSH = 3600.0
 """A push ends at the latest after this time [s], should nobody end it."""
 
+_RENEWED = 0.1
+"""Time in [s] after which the lever of a push is found again, as the tree has moved."""
+
+_TURN = 1e-6
+"""Turn in [rad] by which derivatives are found."""
+
 
 @dataclass
-class _Push:
-    """A force [N], where on its segment it acts as a share of the length, and time left [s]."""
+class Push:
+    """
+    A force [N] on a segment at a distance from its root side [m], for a time left [s].
 
+    ``lever`` is J, (3, N), found again after the time ``renewed_in``.
+    """
+
+    segment: int
+    away: float
     force: Floats
-    along: float
     left: float
+    lever: Floats
+    renewed_in: float = 0.0
 
-
-def force_of(given: ArrayLike) -> Floats | None:
-    """Return three finite numbers as an array; None for anything else."""
-    try:
-        force = np.array(given, dtype=np.float64)
-    except (ValueError, TypeError):
-        return None
-    return force if force.shape == (3,) and np.isfinite(force).all() else None
+    def place(self, poses: Floats) -> Floats:
+        """Return where it acts in a pose block (n, 7), in [m], (3,)."""
+        on = slice(self.segment, self.segment + 1)
+        return ends_of_poses(poses[on], [self.away])[1][0]
 
 
 class Touch:
-    """
-    Pushes on one tree, one per segment.
-
-    Each acts at a place that moves with the tree, and is found as moments on the key rotations in
-    the pose before the step.
-    """
+    """Pushes on one tree, one per segment."""
 
     def __init__(self, tree: Tree, bank: Bank) -> None:
         """Begin without a push; a `ParameterError` on a model that cannot be pushed."""
         self._tree, self._bank = tree, bank
-        self._pushes: dict[int, _Push] = {}
-        self._moments, self._all = np.zeros((2, *bank.oscillators.rotations().shape))
-        bank.oscillators.push(self._all)
+        self._pushes: dict[int, Push] = {}
+        self._poses = np.zeros((tree.n_segments, 7))
+        self._n_rotations = len(bank.oscillators.rotations())
+        bank.oscillators.push(np.zeros(self._n_rotations))
         self.load = np.zeros(6)
         """Force [N] and moment about the root node [N m] of the last step's pushes."""
-
-    def add(self, segment: int, force: ArrayLike, seconds: float, along: float) -> None:
-        """Begin a push, or change that on the same segment; a `ParameterError` as of `push`."""
-        given = force_of(force)
-        if not (isinstance(segment, int | np.integer) and 0 <= segment < self._tree.n_segments):
-            cure = f'name one of 0 .. {self._tree.n_segments - 1}'
-            raise ParameterError(f'no segment {segment}', where='push', cure=cure)
-        if given is None:
-            raise ParameterError(f'a force of {force!r}', where='push', cure='give x, y, z in N')
-        if not (0.0 <= along <= 1.0 and 0.0 < seconds <= LONGEST_PUSH):
-            raise ParameterError(
-                f'{seconds} s at {along} of a segment',
-                where='push',
-                cure=f'give up to {LONGEST_PUSH:g} s and a share of 0 .. 1',
-            )
-        self._pushes[int(segment)] = _Push(given, along, seconds)
-
-    def step(self, poses: Floats, origin: Floats, dt: float) -> int:
-        """Push for a step [s] in a pose block (n, 7); how many moments were clamped."""
-        self._all[:], self.load[:] = 0.0, 0.0
-        bank, tree = self._bank, self._tree
-        for segment, push in list(self._pushes.items()):
-            force = push.force * min(1.0, push.left / dt)
-            away = push.along * tree.length[segment]
-            place = poses[segment, :3] + Rotation.from_quat(poses[segment, 3:]).apply(
-                (away, 0.0, 0.0)
-            )
-            # A branch that is cut has a record per piece.
-            first, end = bank.branches['first'], bank.branches['end']
-            branch = int(np.flatnonzero((first <= segment) & (segment < end))[0])
-            moments_of_force(
-                bank.branches, bank.segments, tree.rest_frame, poses, bank.oscillators.rotations(),
-                branch, segment, place, force, self._moments,
-            )  # fmt: skip
-            self._all += self._moments
-            self.load += [*force, *np.cross(place - origin, force)]
-            push.left -= dt
-            if push.left <= 1e-9 * dt:
-                del self._pushes[segment]
-        return bank.oscillators.push(self._all)
 
     @property
     def is_active(self) -> bool:
         """Whether anybody pushes."""
         return bool(self._pushes)
 
-    def clear(self) -> None:
-        """End every push."""
-        self._pushes.clear()
+    def add(self, segment: int, force: ArrayLike, seconds: float, along: float) -> None:
+        """Begin a push, or change that on the same segment; a `ParameterError` as of `push`."""
+        if not (isinstance(segment, int | np.integer) and 0 <= segment < self._tree.n_segments):
+            cure = f'name one of 0 .. {self._tree.n_segments - 1}'
+            raise ParameterError(f'no segment {segment}', where='push', cure=cure)
+        given = array_to_read('push', force, (3,)).copy()
+        if not np.isfinite(given).all():
+            raise ParameterError(f'a force of {force!r}', where='push', cure='give x, y, z in N')
+        left = within('push: seconds', seconds, 0.0, LONGEST_PUSH, 's', above=True)
+        away = within('push: along', along, 0.0, 1.0) * float(self._tree.length[segment])
+        push = Push(int(segment), away, given, left, np.zeros((3, self._n_rotations)))
+        before = self._pushes.get(push.segment)
+        if before is not None and before.away == away:
+            push.lever, push.renewed_in = before.lever, before.renewed_in
+        self._pushes[push.segment] = push
+
+    def step(self, poses: Floats, origin: Floats, dt: float) -> int:
+        """Push for a step [s] in a pose block (n, 7); how many moments were clamped."""
+        moments = np.zeros(self._n_rotations)
         self.load[:] = 0.0
+        for push in list(self._pushes.values()):
+            place, force = push.place(poses), push.force * min(1.0, push.left / dt)
+            if push.renewed_in <= 0.0:
+                self._renew(push, place, origin, self._bank.oscillators.rotations().copy())
+            moments += force @ push.lever
+            self.load += [*force, *np.cross(place - origin, force)]
+            push.left -= dt
+            push.renewed_in -= dt
+            if push.left <= 1e-9 * dt:
+                del self._pushes[push.segment]
+        return self._bank.oscillators.push(moments)
+
+    def _renew(self, push: Push, place: Floats, origin: Floats, x: Floats) -> None:
+        """Find how a place (3,) of the tree moves as it is bent, by key rotations x (N,)."""
+        branches = self._bank.branches
+        # A branch that is cut has a record per piece.
+        holds = (branches['first'] <= push.segment) & (push.segment < branches['end'])
+        branch = int(np.flatnonzero(holds)[0])
+        while branch >= 0:
+            first = int(branches['coordinate'][branch])
+            for i in range(first, first + int(branches['n_coordinates'][branch])):
+                x[i] += _TURN
+                self._bank.place(x, origin, self._poses)
+                push.lever[:, i] = (push.place(self._poses) - place) / _TURN
+                x[i] -= _TURN
+            branch = int(branches['parent'][branch])
+        push.renewed_in = _RENEWED

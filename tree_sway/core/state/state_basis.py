@@ -16,28 +16,18 @@ from dataclasses import dataclass
 import hashlib
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import fused
-from tree_sway.core.state.full_scale import FULL_SCALE
 
+FULL_SCALE = 32767
+"""Greatest int16 that a coordinate is sent as."""
 
-@dataclass(frozen=True)
-class BasisError:
-    """
-    How far segments are from where the model has them, over a run the basis was not made from.
+MARGIN = 5.0
+"""
+Full scale of a coordinate over its greatest value in the runs that a basis was made from: beyond
+that the error of the basis is not known.
 
-    Of all segments and times in [m]: what the basis leaves out, the same with coordinates as
-    int16, and the motion of the segments from rest.
-    """
-
-    rms: float
-    greatest: float
-    quantised_rms: float
-    quantised_greatest: float
-    motion_rms: float
-    motion_greatest: float
+"""
 
 
 @dataclass(frozen=True)
@@ -45,15 +35,24 @@ class StateBasis:
     """
     Coordinates that hold the shape of one tree on one model.
 
-    The matrix is key rotations per unit of each in [rad], (N, m), the projection its inverse, (m,
-    N), the scale the value of each at `FULL_SCALE`, (m,), the error what is left out, on a run of
-    its own.
+    Parameters
+    ----------
+    matrix
+        Key rotations per unit of each in [rad], (N, m).
+    projection
+        Its inverse, (m, N).
+    scale
+        Value of each coordinate at `FULL_SCALE`, (m,).
+    error
+        Farthest that a segment was from where the model has it in [m], with coordinates as int16,
+        over a run that the basis was not made from.
+
     """
 
     matrix: Floats
     projection: Floats
     scale: Floats
-    error: BasisError
+    error: float
 
     @property
     def n_coordinates(self) -> int:
@@ -68,31 +67,13 @@ class StateBasis:
 
     def coordinates(self, rotations: Floats) -> Floats:
         """Coordinates (m,) that come nearest to key rotations (N,) in [rad]."""
-        out = np.empty(self.n_coordinates)
-        _products(self.projection, rotations, out)
-        return out
+        return np.asarray(self.projection @ rotations)
 
     def rotations(self, coordinates: Floats) -> Floats:
-        """Key rotations in [rad], (N,), of coordinates (m,); the same bits on machines alike."""
-        out = np.empty(len(self.matrix))
-        _products(self.matrix, coordinates, out)
-        return out
+        """Key rotations in [rad], (N,), of coordinates (m,)."""
+        return np.asarray(self.matrix @ coordinates)
 
-    def quantised(self, coordinates: Floats) -> tuple[NDArray[np.int16], int]:
-        """Coordinates (m,) as int16, and how many were held at full scale."""
+    def rounded(self, coordinates: Floats) -> Floats:
+        """Coordinates (m,) as they are once sent as int16."""
         steps = np.rint(coordinates * (FULL_SCALE / self.scale))
-        held = np.clip(steps, -FULL_SCALE, FULL_SCALE)
-        return held.astype(np.int16), int((held != steps).sum())
-
-    def from_quantised(self, steps: NDArray[np.int16]) -> Floats:
-        """Coordinates (m,) that int16 encode."""
-        return steps * (self.scale / FULL_SCALE)
-
-
-@fused
-def _products(matrix: Floats, vector: Floats, out: Floats) -> None:
-    for i in range(len(matrix)):
-        total = 0.0
-        for k in range(len(vector)):
-            total += matrix[i, k] * vector[k]
-        out[i] = total
+        return np.clip(steps, -FULL_SCALE, FULL_SCALE) * (self.scale / FULL_SCALE)

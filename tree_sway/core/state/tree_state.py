@@ -9,7 +9,6 @@ tree, settings and model it belongs to, by a digest of all of them, and is refus
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, fields
 import hashlib
 import json
@@ -18,7 +17,6 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import StateError
 
 VERSION = 1
@@ -85,77 +83,3 @@ def digest_of(*header: Any) -> str:
             is_array = isinstance(value, np.ndarray)
             digest.update(value.tobytes() if is_array else repr(value).encode())
     return digest.hexdigest()[:16]
-
-
-class KeepsState:
-    """A simulator whose state can be kept, set and placed, for classes that give what it asks."""
-
-    tree: Tree
-
-    @property
-    def told_as(self) -> str:
-        """Name that its states bear."""
-        return self.tree.name
-
-    @property
-    def model(self) -> str:
-        """Model in use."""
-        raise NotImplementedError
-
-    def digest(self) -> str:
-        """Digest of tree, species and settings."""
-        raise NotImplementedError
-
-    def memory(self) -> Sequence[Floats]:
-        """Return views of all arrays that are carried from one step to the next."""
-        raise NotImplementedError
-
-    def rotations(self) -> Floats:
-        """Key rotations in [rad], (N,)."""
-        raise NotImplementedError
-
-    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
-        """Place every segment by key rotations (N,), (n, 7)."""
-        raise NotImplementedError
-
-    def state(self) -> TreeState:
-        """Return a copy of all that is carried from one step to the next."""
-        values = np.concatenate([np.ravel(array) for array in self.memory()])
-        return TreeState(self.told_as, self.digest(), self.model, values)
-
-    def set_state(self, state: TreeState) -> None:
-        """
-        Go on from a state.
-
-        Raises a `StateError` for another tree, model or version, or what is not finite; what was
-        before stays.
-        """
-        refuse_version(state.version)
-        arrays = self.memory()
-        n_values = sum(array.size for array in arrays)
-        for what, theirs, own in (
-            ('tree', state.tree, self.told_as),
-            ('model', state.model, self.model),
-            ('settings', state.digest, self.digest()),
-            ('number of values', len(state.values), n_values),
-        ):
-            if theirs != own:
-                raise StateError(
-                    f"a state of {what} '{theirs}', and this is '{own}'",
-                    where=self.told_as,
-                    cure='set a state of the same tree with the same species, settings and model',
-                )
-        if not np.isfinite(state.values).all():
-            raise StateError('a state that is not finite', where=self.told_as)
-        first = 0
-        for array in arrays:
-            array[...] = state.values[first : first + array.size].reshape(array.shape)
-            first += array.size
-
-    def expand(self, state: TreeState, out: Floats | None = None) -> Floats:
-        """Poses of a state, (n, 7), as `place` gives them; the simulator stays as it is."""
-        own = self.state()
-        self.set_state(state)
-        rotations = self.rotations().copy()
-        self.set_state(own)
-        return self.place_rotations(rotations, out)

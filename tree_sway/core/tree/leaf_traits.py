@@ -19,7 +19,7 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class LeafTraits:
     """
-    Leaves of a species.
+    Leaves of a species; the defaults are those of an average broadleaf.
 
     Parameters
     ----------
@@ -40,17 +40,10 @@ class LeafTraits:
 
     """
 
-    size: float
-    area_per_section: float
-    fresh_mass: float
-    flutter_frequency: float
+    size: float = 0.07
+    area_per_section: float = 2500.0
+    fresh_mass: float = 0.20
+    flutter_frequency: float = 4.0
     is_evergreen: bool = False
     are_needles: bool = False
     green: tuple[float, float, float] = (0.30, 0.50, 0.20)
-
-
-BROAD_LEAVES = LeafTraits(0.07, 2500.0, 0.20, 4.0)
-"""Leaves of an average broadleaf."""
-
-NEEDLES = LeafTraits(0.08, 3000.0, 0.45, 6.0, is_evergreen=True, are_needles=True)
-"""Leaves of an average conifer."""

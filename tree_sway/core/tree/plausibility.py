@@ -13,7 +13,7 @@ is that of 602 measured conifers, ``f = 0.0766 + 3.1219 D / H^2`` in [Hz], D in 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable
 import math
 
 import numpy as np
@@ -22,11 +22,13 @@ from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 
-_MODULUS, _DENSITY = (3e9, 20e9), (400.0, 1300.0)
-_MODULUS_LIMIT, _DENSITY_LIMIT = (1e7, 5e11), (40.0, 10_000.0)
-_HEIGHT, _HEIGHT_LIMIT = (0.05, 116.0), 250.0
-_DIAMETER, _DIAMETER_LIMIT = 5.0, 20.0
-_SLENDERNESS, _SLENDERNESS_LIMIT = (8.0, 200.0), (2.0, 2000.0)
+_WOOD = {
+    'modulus': ('Pa', (1e7, 5e11), {1e9: 'GPa', 1e6: 'MPa'}),
+    'density': ('kg/m^3', (40.0, 10_000.0), {1e3: 'g/cm^3'}),
+}
+"""Unit, what wood has at the very most, and other units by their factors."""
+
+_HEIGHT_LIMIT, _DIAMETER_LIMIT, _SLENDERNESS_LIMIT = 250.0, 20.0, (2.0, 2000.0)
 _USUAL_HEIGHT, _USUAL_SLENDERNESS = 12.0, 50.0
 _LEAN = 60.0
 _SWAY_FACTOR = 5.0
@@ -40,19 +42,26 @@ def refuse_nonsense(tree: Tree, species: Species) -> None:
     Raises a `ParameterError` for modulus or density of the wood, a `TreeError` for height or
     diameter.
     """
-    _refuse_wood('modulus', species.modulus, 'Pa', _MODULUS_LIMIT, {1e9: 'GPa', 1e6: 'MPa'})
-    _refuse_wood('density', species.density, 'kg/m^3', _DENSITY_LIMIT, {1e3: 'g/cm^3'})
+    for name, (unit, (low, high), others) in _WOOD.items():
+        value = getattr(species, name)
+        if not low <= value <= high:
+            likely = [factor for factor in others if low <= value * factor <= high]
+            cure = f'give {low:g} to {high:g} {unit}'
+            if likely:
+                factor = _nearest(likely, value, math.sqrt(low * high))
+                cure = f'give {unit}: {value:g} {others[factor]} are --{name} {value * factor:g}'
+            raise ParameterError(f'{value:g} {unit}, which no wood has', where=name, cure=cure)
     height, diameter, slenderness = _size(tree)
     size = f'a height of {height:.4g} m and a diameter of {diameter:.4g} m at the ground'
     low, high = _SLENDERNESS_LIMIT
     if slenderness > high:
-        factor = _nearest(slenderness, _USUAL_SLENDERNESS)
+        factor = _nearest(_LENGTHS, slenderness, _USUAL_SLENDERNESS)
         unit = f'positions are in {_LENGTHS[factor]}: add --option length_unit={factor:g}'
     elif slenderness < low and diameter > 1.0:
-        factor = _nearest(1.0 / slenderness, 1.0 / _USUAL_SLENDERNESS)
+        factor = _nearest(_LENGTHS, 1.0 / slenderness, 1.0 / _USUAL_SLENDERNESS)
         unit = f'diameters are in {_LENGTHS[factor]}: add --option diameter_unit={factor:g}'
     elif height > _HEIGHT_LIMIT or diameter > _DIAMETER_LIMIT:
-        factor = _nearest(height, _USUAL_HEIGHT)
+        factor = _nearest(_LENGTHS, height, _USUAL_HEIGHT)
         unit = f'lengths are in {_LENGTHS[factor]}: add --option length_unit={factor:g}'
         unit += f' --option diameter_unit={factor:g}'
     else:
@@ -62,7 +71,26 @@ def refuse_nonsense(tree: Tree, species: Species) -> None:
 
 def oddities(tree: Tree, species: Species) -> tuple[str, ...]:
     """Report what is odd about a tree and its wood against others, one sentence each."""
-    return tuple(_doubts(tree, species))
+    height, diameter, slenderness = _size(tree)
+    rows = (
+        ('modulus', species.modulus / 1e9, ' GPa', 'green wood has', (3.0, 20.0),
+         'check --modulus'),
+        ('density', species.density, ' kg/m^3', 'green wood has', (400.0, 1300.0),
+         'check --density'),
+        ('height', height, ' m', 'trees have', (0.05, 116.0),
+         'if the file is not in metres, add --option length_unit=0.01 for cm, or what it is'),
+        ('diameter at the ground', diameter, ' m', 'trees have', (0.0, 5.0),
+         'if diameters are in cm, add --option diameter_unit=0.01'),
+        ('height over diameter', slenderness, '', 'stems have', (8.0, 200.0),
+         'its diameters may be too thick or too thin; --option diameter_unit says their unit'),
+        ('lean', _lean(tree), ' degrees', 'trees have', (0.0, _LEAN),
+         'if the y axis of its file points up, add --option up=y'),
+    )  # fmt: skip
+    return tuple(
+        f'a {what} of {value:.3g}{unit}, where {whose} {low:g} to {high:g}{unit}: {cure}'
+        for what, value, unit, whose, (low, high), cure in rows
+        if not low <= value <= high
+    )
 
 
 def sway_oddity(tree: Tree, species: Species, frequency: float) -> str:
@@ -77,60 +105,6 @@ def sway_oddity(tree: Tree, species: Species, frequency: float) -> str:
         f'its slowest sway has {frequency:.3g} Hz, where conifers of its size have some '
         f'{usual:.2g} Hz: check --modulus, --density and the diameters (--option twig_diameter)'
     )
-
-
-def _doubts(tree: Tree, species: Species) -> Iterator[str]:
-    wood = (
-        ('modulus', species.modulus / 1e9, 'GPa', [each / 1e9 for each in _MODULUS]),
-        ('density', species.density, 'kg/m^3', list(_DENSITY)),
-    )
-    for name, value, unit, (low, high) in wood:
-        if not low <= value <= high:
-            yield (
-                f'a {name} of {value:.3g} {unit}, where green wood has {low:g} to {high:g} {unit}'
-                f': check --{name}'
-            )
-    height, diameter, slenderness = _size(tree)
-    low, high = _HEIGHT
-    if not low <= height <= high:
-        yield (
-            f'a height of {height:.3g} m, where trees have {low:g} to {high:g} m: if the file is '
-            'not in metres, add --option length_unit=0.01 for cm, or what it is'
-        )
-    if diameter > _DIAMETER:
-        yield (
-            f'a diameter of {diameter:.3g} m at the ground: if diameters are in cm, add '
-            '--option diameter_unit=0.01'
-        )
-    low, high = _SLENDERNESS
-    if not low <= slenderness <= high:
-        much = 'thick' if slenderness < low else 'thin'
-        yield (
-            f'{slenderness:.3g} times as high as thick at the ground, where stems have {low:g} to '
-            f'{high:g}: its diameters may be too {much}; --option diameter_unit says their unit'
-        )
-    lean = _lean(tree)
-    if lean > _LEAN:
-        yield (
-            f'it leans {lean:.0f} degrees from the vertical: if the y axis of its file points up, '
-            'add --option up=y'
-        )
-
-
-def _refuse_wood(
-    name: str, value: float, unit: str, limits: tuple[float, float], others: dict[float, str]
-) -> None:
-    low, high = limits
-    if low <= value <= high:
-        return
-    likely = [(each, factor) for factor, each in others.items() if low <= value * factor <= high]
-    usual = {'modulus': _MODULUS, 'density': _DENSITY}[name]
-    likely.sort(key=lambda each: not usual[0] <= value * each[1] <= usual[1])
-    cure = f'give {low:g} to {high:g} {unit}'
-    if likely:
-        other, factor = likely[0]
-        cure = f'give {unit}: {value:g} {other} are --{name} {value * factor:g}'
-    raise ParameterError(f'{value:g} {unit}, which no wood has', where=name, cure=cure)
 
 
 def _size(tree: Tree) -> tuple[float, float, float]:
@@ -148,6 +122,6 @@ def _lean(tree: Tree) -> float:
     return math.degrees(math.atan2(math.hypot(x, y), z))
 
 
-def _nearest(value: float, usual: float) -> float:
-    """Return the unit in [m] that brings a value nearest to the usual one."""
-    return min(_LENGTHS, key=lambda factor: abs(math.log(value * factor / usual)))
+def _nearest(factors: Iterable[float], value: float, usual: float) -> float:
+    """Return the factor that brings a value nearest to the usual one."""
+    return min(factors, key=lambda factor: abs(math.log(value * factor / usual)))

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 import math
 
-from tree_sway.core.tree.leaf_traits import BROAD_LEAVES, LeafTraits
+from tree_sway.core.tree.leaf_traits import LeafTraits
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,8 @@ class Species:
         give way. Belongs to one tree; `typical_root_stiffness` gives that of a size.
     leaves
         Its leaves; evergreen ones are there unless a simulator is set otherwise.
+    rupture
+        Modulus of rupture of green wood in [Pa]: small clear specimens in bending.
     bark
         Colour of its bark in pictures, red, green and blue from 0 to 1.
     habit
@@ -61,7 +63,8 @@ class Species:
     bare_drag_coefficient: float = 1.2
     shear_ratio: float = 1.0 / 14.0
     root_stiffness: float = math.inf
-    leaves: LeafTraits = BROAD_LEAVES
+    leaves: LeafTraits = field(default_factory=LeafTraits)
+    rupture: float = 50.0e6
     bark: tuple[float, float, float] = (0.36, 0.28, 0.22)
     habit: str = 'broadleaf'
     is_estimate: bool = False

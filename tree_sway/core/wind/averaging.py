@@ -20,16 +20,14 @@ from collections.abc import Sequence
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import three_numbers, within
-from tree_sway.core.wind.curve import Vector, WindCurve
-from tree_sway.core.wind.fade import Fade
+from tree_sway.core.wind.curve import WindCurve
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway.errors import ParameterError
-
-Floats = NDArray[np.float64]
 
 CLOCK_RESET = 1.0
 """
@@ -37,8 +35,17 @@ Backward step in [s] that is a clock set back, not a sample out of order or a lo
 
 """
 
-_CALM: Vector = (0.0, 0.0, 0.0)
-_NO_FADE = Fade(_CALM, -math.inf, -math.inf)
+BLEND = 0.5
+"""
+Longest time in [s] over which the first sample after a dropout is faded in; a dropout shorter than
+that fades in over its own length.
+
+"""
+
+CAPACITY = 512
+"""Number of samples kept. A step must not span more."""
+
+_CALM = np.zeros(3)
 _STALE_DECAYS = 5.0  # decay times after which the wind counts as gone
 
 
@@ -52,11 +59,6 @@ class WindAverage:
         Age of the newest sample in [s] up to which it is held; at least three sensor periods.
     decay
         Time constant in [s] with which the wind then dies down.
-    blend
-        Longest time in [s] over which the first sample after a dropout is faded in; a dropout
-        shorter than that fades in over its own length.
-    capacity
-        Number of samples kept. A step must not span more.
 
     Raises
     ------
@@ -65,29 +67,20 @@ class WindAverage:
 
     """
 
-    def __init__(
-        self,
-        timeout: float = 2.0,
-        decay: float = 3.0,
-        *,
-        blend: float = 0.5,
-        capacity: int = 512,
-    ) -> None:
+    def __init__(self, timeout: float = 2.0, decay: float = 3.0) -> None:
         """Start without a sample."""
         self._timeout = within('timeout', timeout, 0.0, 3600.0, 's', above=True)
         self._decay = within('decay', decay, 0.0, 3600.0, 's', above=True)
-        self._blend = min(within('blend', blend, 0.0, 60.0, 's', above=True), self._timeout)
-        self._curve = WindCurve(int(within('capacity', capacity, 8, 1e6)))
         self.refused = 0
         self.reset()
 
     def reset(self) -> None:
         """Forget every sample and every step; keep the count of the refused ones."""
-        self._curve.clear()
-        self._fade = _NO_FADE
+        self._curve = WindCurve(CAPACITY)
+        self._before, self._fade_start, self._fade_end = _CALM, -math.inf, -math.inf
         self._timing = SensorTiming(self._timeout)
-        self._newest: float | None = None  # time of the newest sample
-        self._passed: float | None = None  # end of the latest step: before it nothing may change
+        self._newest = -math.inf  # time of the newest sample
+        self._passed = -math.inf  # end of the latest step: before it nothing may change
         self._is_new_clock = False  # the clock has jumped since the newest sample
 
     @property
@@ -117,31 +110,28 @@ class WindAverage:
             If the sample is not three numbers.
 
         """
-        x, y, z = three_numbers('wind', vector)
-        if not all(map(math.isfinite, (time, x, y, z))):
+        value = np.array(three_numbers('wind', vector))
+        if not (math.isfinite(time) and np.isfinite(value).all()):
             self.refused += 1
             return False
-        if self._newest is not None and time <= self._newest:
+        if time <= self._newest:
             if time > self._newest - CLOCK_RESET:
                 self.refused += 1
                 return False
             self._set_clock_back(time)
         self._clamp_clock(time)
-        passed = -math.inf if self._passed is None else self._passed
-        if self._newest is None or self._is_new_clock:
-            gap = silence = math.inf
-        else:
+        gap = silence = math.inf
+        if self._newest > -math.inf and not self._is_new_clock:
             gap = time - self._newest
-            silence = max(gap, passed - self._newest - self._timing.lateness)
+            silence = max(gap, self._passed - self._newest - self._timing.lateness)
         if self._timing.is_dropout(silence):
-            self._start_anew(time, (x, y, z), silence)
+            self._begin_curve(time, value, silence)
         elif self._timing.period is None:
-            self._curve.append(
-                max(time, passed), self._curve.last
-            )  # the first holds to the second
+            # The first holds to the second.
+            self._curve.append(max(time, self._passed), self._curve.last)
         self._timing.note_interval(gap)
-        self._timing.note_lateness(max(0.0, passed - time), gap)
-        self._draw_to(time, passed, (x, y, z))
+        self._timing.note_lateness(max(0.0, self._passed - time), gap)
+        self._draw_to(time, value)
         self._newest = time
         self._is_new_clock = False
         return True
@@ -168,12 +158,12 @@ class WindAverage:
         """
         if not (math.isfinite(start) and start <= end < math.inf):
             raise ParameterError(f'no step from {start} to {end}', where='wind average')
-        if self._passed is not None and end < self._passed - CLOCK_RESET:
+        if end < self._passed - CLOCK_RESET:
             self._set_clock_back(start)
         self._clamp_clock(start)
-        mean = self._mean(start, end)
-        self._passed = end if self._passed is None else max(end, self._passed)
-        return np.array(mean)
+        mean = np.array(self._mean(start, end))
+        self._passed = max(end, self._passed)
+        return mean
 
     def state(self, time: float) -> str:
         """
@@ -188,7 +178,7 @@ class WindAverage:
         """
         # Another thread may ask: what changes under it is read once.
         newest, timing = self._newest, self._timing
-        if newest is None:
+        if newest == -math.inf:
             return 'none'
         if time - newest <= timing.longest_live + timing.lateness:
             return 'live'
@@ -199,23 +189,23 @@ class WindAverage:
 
     def memory(self) -> list[float]:
         """Return all that is carried from step to step as numbers, NaN for what is not yet."""
-        times = (self._newest, self._passed, self._timing.period)
-        fade, timing = self._fade, self._timing
+        times = self._newest, self._passed, self._timing.period or math.nan
+        fade = self._fade_start, self._fade_end, *self._before.tolist()
         return [
-            *(math.nan if time is None else time for time in times),
-            *(float(self._is_new_clock), timing.lateness, fade.start, fade.end, *fade.before),
-            *(number for time, value in self._curve.knots for number in (time, *value)),
+            *(time if math.isfinite(time) else math.nan for time in times),
+            *(float(self._is_new_clock), self._timing.lateness, *fade),
+            *(number for time, value in self._curve.knots for number in (time, *value.tolist())),
         ]
 
     def recall(self, memory: Sequence[float]) -> None:
         """Go on from the memory of another; a `ParameterError` for numbers that are none."""
         try:
             numbers = np.array(memory, dtype=np.float64).reshape(-1)
-            head, knots = numbers[:10].tolist(), numbers[10:].reshape(-1, 4)
-            newest, passed, period, is_new, lateness, start, end, *before = head
-            is_sound = all(is_wind(*value) for value in (before, *knots[:, 1:].tolist()))
+            newest, passed, period, is_new, lateness, start, end = numbers[:7].tolist()
+            before, knots = numbers[7:10], numbers[10:].reshape(-1, 4)
+            is_sound = all(is_wind(*value) for value in (before, *knots[:, 1:]))
             is_sound &= bool(np.isfinite(knots[:, 0]).all() and (np.diff(knots[:, 0]) > 0.0).all())
-            is_sound &= len(before) == 3 and 0.0 <= lateness < math.inf and not period <= 0.0
+            is_sound &= 0.0 <= lateness < math.inf and not period <= 0.0
             is_sound &= start <= end < math.inf and len(knots) > 0 and math.isfinite(newest)
         except (ValueError, TypeError, OverflowError) as error:
             raise ParameterError('numbers that are no wind', where='wind average') from error
@@ -223,61 +213,54 @@ class WindAverage:
             raise ParameterError('a wind that cannot be', where='wind average')
         self.reset()
         for time, *value in knots.tolist():
-            self._curve.append(time, (value[0], value[1], value[2]))
-        self._fade = Fade((before[0], before[1], before[2]), start, end)
+            self._curve.append(time, np.array(value))
+        self._before, self._fade_start, self._fade_end = before, start, end
         self._timing.period = None if math.isnan(period) else period
         self._timing.lateness, self._is_new_clock = lateness, bool(is_new)
-        self._newest, self._passed = newest, None if math.isnan(passed) else passed
+        self._newest, self._passed = newest, -math.inf if math.isnan(passed) else passed
 
-    @property
-    def _decay_start(self) -> float:
-        return (self._newest or 0.0) + self._timing.lateness + self._timing.longest_hold
-
-    def _draw_to(self, time: float, passed: float, value: Vector) -> None:
+    def _draw_to(self, time: float, value: Floats) -> None:
         """Draw the curve on to a new sample, from where the solver has passed at the earliest."""
         knot = time + (self._timing.period or 0.0) + self._timing.lateness
-        if self._curve.end < passed:
-            self._curve.append(passed, self._curve.last)
+        if self._curve.end < self._passed:
+            self._curve.append(self._passed, self._curve.last)
         elif self._curve.end >= knot:
-            self._curve.cut(max(passed, time))
-        self._curve.append(knot, value)
+            self._curve.cut(max(self._passed, time))
+        if knot < self._fade_end:
+            share = (knot - self._fade_start) / (self._fade_end - self._fade_start)
+            self._curve.append(knot, (1.0 - share) * self._before + share * value)
+        self._curve.append(max(knot, self._fade_end), value)
 
-    def _start_anew(self, time: float, value: Vector, silence: float) -> None:
-        """Start a new curve at a value; what there was until now fades over into it."""
+    def _begin_curve(self, time: float, value: Floats, silence: float) -> None:
+        """Start a new curve; what there was until now fades over into the samples to come."""
         since = self._passed
-        before = _CALM if since is None else self._mean(since, since)
-        self._curve.clear()
-        self._fade = _NO_FADE
-        self._curve.append(time if since is None else since, value)
-        if since is not None:
-            self._fade = Fade(before, since, since + min(silence, self._blend))
+        before = self._mean(since, since)
+        self._curve = WindCurve(CAPACITY)
+        self._before, self._fade_start = before, since
+        self._fade_end = since + min(silence, BLEND, self._timeout)
+        if since > -math.inf:
+            self._curve.append(since, before)
+        self._curve.append(max(time, self._fade_end), value)
 
-    def _mean(self, start: float, end: float) -> Vector:
-        if self._newest is None:
+    def _mean(self, start: float, end: float) -> Floats:
+        if self._newest == -math.inf:
             return _CALM
-        calm = self._decay_start
-        if start == end:
-            left = math.exp(min(0.0, (calm - start) / self._decay))
-            x, y, z = self._fade.value(self._curve, start)
-            return left * x, left * y, left * z
+        calm = self._newest + self._timing.lateness + self._timing.longest_hold
         if end <= calm:
-            return self._fade.mean(self._curve, start, end)
-        level = self._fade.value(self._curve, end)
-        since = max(start, calm)
-        decayed = self._decay * (
-            math.exp((calm - since) / self._decay) - math.exp((calm - end) / self._decay)
-        )
-        x, y, z = (v * decayed / (end - start) for v in level)
-        if start >= calm:
-            return x, y, z
-        held = self._mean(start, calm)
-        part = (calm - start) / (end - start)
-        return x + part * held[0], y + part * held[1], z + part * held[2]
+            return self._curve.mean(start, end)
+        since, level = max(start, calm), self._curve.value(end)
+        if since == end:
+            return math.exp((calm - end) / self._decay) * level
+        left = math.exp((calm - since) / self._decay) - math.exp((calm - end) / self._decay)
+        total = self._decay * left * level
+        if start < calm:
+            total += (calm - start) * self._curve.mean(start, calm)
+        return total / (end - start)
 
     def _set_clock_back(self, time: float) -> None:
         """Begin again at a time, from the wind there is."""
-        held = _CALM if self._passed is None else self._mean(self._passed, self._passed)
-        had_wind, period = self._newest is not None, self._timing.period
+        held = self._mean(self._passed, self._passed)
+        had_wind, period = self._newest > -math.inf, self._timing.period
         self.reset()
         if had_wind:
             self._timing.period = period
@@ -288,14 +271,11 @@ class WindAverage:
 
     def _clamp_clock(self, time: float) -> None:
         """Take a clock that jumps forward for one that was paused."""
-        if self._passed is None:
-            return
-        now = self._passed if self._newest is None else max(self._passed, self._newest)
-        jump = time - now
-        if jump > self._timing.longest_hold:
+        jump = time - max(self._passed, self._newest)
+        if self._passed > -math.inf and jump > self._timing.longest_hold:
             self._curve.shift(jump)
-            self._fade = self._fade.later(jump)
+            self._fade_start += jump
+            self._fade_end += jump
             self._passed += jump
-            if self._newest is not None:
-                self._newest += jump
+            self._newest += jump
             self._is_new_clock = True

@@ -108,24 +108,21 @@ class ClimateTracker:
         self._memory = memory
         self._cells = np.zeros((round(memory * _RATE), 4))
         self._count = 0
-        self._x = self._y = self._z = self._way = self._open = 0.0
+        self._sum, self._open = np.zeros(4), 0.0
 
     def add(self, wind: Floats, dt: float) -> None:
-        """Take in the wind [m/s] of a step of dt [s]; plain numbers, as it is done every step."""
-        u, v, w = wind.tolist()
-        speed, left = math.sqrt(u * u + v * v + w * w), min(dt, self._memory)
+        """Take in the wind [m/s] of a step of dt [s]."""
+        speed, left = float(np.linalg.norm(wind)), min(dt, self._memory)
+        load = speed * np.append(wind, 1.0)
         while left > 0.0:
             part = min(left, 1.0 / _RATE - self._open)
-            self._x += part * speed * u
-            self._y += part * speed * v
-            self._z += part * speed * w
-            self._way += part * speed
+            self._sum += part * load
             self._open += part
             left -= part
             if self._open > (1.0 - 1e-9) / _RATE:
                 self._cells[self._count % len(self._cells)] = self._cell
                 self._count += 1
-                self._x = self._y = self._z = self._way = self._open = 0.0
+                self._sum[:], self._open = 0.0, 0.0
 
     @property
     def climate(self) -> WindClimate:
@@ -142,10 +139,9 @@ class ClimateTracker:
         return float(np.linalg.norm(self._cells[:, :3], axis=1).max())
 
     @property
-    def _cell(self) -> tuple[float, float, float, float]:
-        """Means of the cell that is open."""
-        time = max(self._open, 1e-12)
-        return self._x / time, self._y / time, self._z / time, self._way / time
+    def _cell(self) -> Floats:
+        """Means of the cell that is open, (4,)."""
+        return np.asarray(self._sum / max(self._open, 1e-12))
 
 
 _RATE = 20.0

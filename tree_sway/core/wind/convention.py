@@ -10,18 +10,17 @@ round.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError
-
-Floats = NDArray[np.float64]
 
 CALM_SPEED = 0.05
 """Speed in [m/s] below which no direction is computed: sonics repeat their last one there."""
@@ -96,23 +95,16 @@ class WindConvention:
         return np.asarray(normal / np.linalg.norm(normal))
 
     @cached_property
-    def _unit_normal(self) -> tuple[float, float, float]:
-        x, y, z = self.normal.tolist()
-        return x, y, z
-
-    def _enu(self, u: float, v: float, w: float, scale: float) -> Floats:
-        # Scalars, not a matrix: infinities turn into NaN without a warning, for the gate to
-        # refuse.
-        sine, cosine = math.sin(self.yaw_offset), math.cos(self.yaw_offset)
-        u, v, w = scale * float(u), scale * float(v), scale * float(w)
-        return np.array([cosine * u - sine * v, sine * u + cosine * v, w])
-
-    @property
     def sign(self) -> float:
         """Of a component that points where the wind blows to."""
         return 1.0 if self.direction_convention == 'to' else -1.0
 
-    def velocity(self, u: float, v: float, w: float = 0.0) -> Floats:
+    @cached_property
+    def _enu_from_source(self) -> Floats:
+        c, s = math.cos(self.yaw_offset), math.sin(self.yaw_offset)
+        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    def velocity(self, components: ArrayLike) -> Floats:
         """
         Return what a source says as the velocity of the air, before any projection.
 
@@ -120,22 +112,18 @@ class WindConvention:
 
         Parameters
         ----------
-        u, v, w
-            Components along the source's x, y, z axes, in its unit.
+        components
+            Along the source's x, y, z axes, in its unit, (3,), or of many samples, (n, 3).
 
         Returns
         -------
         Floats
-            Wind velocity, blowing to, ENU in [m/s], (3,).
+            Wind velocity, blowing to, ENU in [m/s], of the same shape.
 
         """
-        return self._enu(u, v, w, self.sign * self.speed_scale)
-
-    def velocities(self, components: Floats) -> Floats:
-        """Return `velocity` of many samples at once, (n, 3)."""
-        c, s = math.cos(self.yaw_offset), math.sin(self.yaw_offset)
-        turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        return np.asarray(self.sign * self.speed_scale * components @ turn, dtype=np.float64)
+        with np.errstate(invalid='ignore', over='ignore'):  # for the gate to refuse
+            scaled = self.sign * self.speed_scale * np.asarray(components, dtype=np.float64)
+            return np.asarray(scaled @ self._enu_from_source.T)
 
     def components(self, velocity: ArrayLike) -> tuple[float, float, float]:
         """
@@ -147,20 +135,13 @@ class WindConvention:
             Where the wind blows to, ENU in [m/s], (3,).
 
         """
-        (u, v, w), scale = np.asarray(velocity).tolist(), self.sign / self.speed_scale
-        c, s = math.cos(self.yaw_offset), math.sin(self.yaw_offset)
-        return scale * (c * u + s * v), scale * (c * v - s * u), scale * w
+        scale = self.sign / self.speed_scale
+        u, v, w = (scale * np.asarray(velocity) @ self._enu_from_source).tolist()
+        return u, v, w
 
     def project(self, velocity: Floats) -> Floats:
         """Return a velocity in [m/s] projected on the force plane, (3,)."""
-        nx, ny, nz = self._unit_normal
-        x, y, z = velocity.tolist()
-        across = x * nx + y * ny + z * nz
-        return np.array([x - across * nx, y - across * ny, z - across * nz])
-
-    def vector(self, u: float, v: float, w: float = 0.0) -> Floats:
-        """Return `velocity`, projected on the force plane: blowing to, ENU in [m/s], (3,)."""
-        return self.project(self.velocity(u, v, w))
+        return velocity - (velocity @ self.normal) * self.normal
 
     def force_plane_quaternion(self, vector: Floats, previous: Floats | None = None) -> Floats:
         """
@@ -186,7 +167,7 @@ class WindConvention:
                 return previous
             east, north = self.project(np.eye(3)[0]), self.project(np.eye(3)[1])
             along = east if np.linalg.norm(east) > 0.1 else north
-        return quaternion_of_axes(along / math.hypot(*along), self._unit_normal)
+        return quaternions_of_axes(along / math.hypot(*along), self.normal)
 
     def describe(self) -> str:
         """Return one line that says how the wind is read."""
@@ -200,16 +181,10 @@ class WindConvention:
         return text
 
 
-def quaternion_of_axes(along: Floats, normal: Iterable[float]) -> Floats:
-    """Return the unit quaternion w, x, y, z that turns x and z into these unit vectors, (3,)."""
-    (xx, xy, xz), (zx, zy, zz) = along.tolist(), normal
-    yx, yy, yz = zy * xz - zz * xy, zz * xx - zx * xz, zx * xy - zy * xx
-    # Four times its product with itself: each row is the quaternion times one of its components.
-    rows = (
-        (1.0 + xx + yy + zz, yz - zy, zx - xz, xy - yx),
-        (yz - zy, 1.0 + xx - yy - zz, xy + yx, xz + zx),
-        (zx - xz, xy + yx, 1.0 - xx + yy - zz, yz + zy),
-        (xy - yx, xz + zx, yz + zy, 1.0 - xx - yy + zz),
-    )
-    row = rows[max(range(4), key=lambda i: rows[i][i])]
-    return np.array(row) / math.hypot(*row)
+def quaternions_of_axes(along: Floats, normal: Floats) -> Floats:
+    """Return unit quaternions w, x, y, z (..., 4) that turn x and z into unit vectors (..., 3)."""
+    from scipy.spatial.transform import Rotation  # it takes long to load, and few need it
+
+    axes = np.stack([along, np.cross(normal, along), normal], axis=-1)
+    quaternions = Rotation.from_matrix(axes).as_quat()[..., [3, 0, 1, 2]]
+    return np.asarray(quaternions)

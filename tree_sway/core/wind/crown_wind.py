@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import within
 from tree_sway.core.kernel import entry_of, kernel
-from tree_sway.core.wind.gust_travel import follow_mean, LARGEST_STRETCH, remember
+from tree_sway.core.wind.gust_travel import feel, follow_mean, remember
 
 DECAY = 8.0
 """Davenport's C in [-], for places across the wind and over each other."""
@@ -60,14 +60,14 @@ _LAYOUT = np.dtype(
         ('run', 'f8', (_CAPACITY, 4)),  # time and run of the wind, as `remember` has them
         ('at', 'i8', (2,)),
         ('mean', 'f8', (3,)),
-        ('delay', 'f8'),  # the longest [s]
-        ('behind', 'f8', (N_DELAYS, 3)),  # run of each delay behind the wind's [m]
+        ('wanted', 'f8', (N_DELAYS,)),  # delays by the mean wind [s]
+        ('delay', 'f8', (N_DELAYS,)),  # delays in use [s]
         ('apart', 'f8', (N_DELAYS, 3)),  # wind of each delay less the wind [m/s]
         ('spread', 'f8'),
         ('coherence', 'f8'),
     ]
 )
-_CARRIED = 'run', 'at', 'mean', 'delay', 'behind'
+_CARRIED = 'run', 'at', 'mean', 'delay'
 
 
 class CrownDelays(NamedTuple):
@@ -107,32 +107,6 @@ def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
     return CrownDelays(of_branch, share / max(float(share.sum()), 1e-12), spread)
 
 
-def shared_power(coherence: float, spread: float, speed: float, frequencies: Floats) -> Floats:
-    """
-    Shares of a gust's power that limbs feel alike and each by itself, in the mean over delays.
-
-    Parameters
-    ----------
-    coherence, spread
-        As of `CrownWind`.
-    speed
-        Mean wind speed in [m/s].
-    frequencies
-        In [Hz], (f,).
-
-    Returns
-    -------
-    Floats
-        In [-], (2, f): 1 and 0 for the slowest gusts.
-
-    """
-    longest = min(spread / max(speed, _SLOWEST), LONGEST_DELAY)
-    turned = np.sinc(frequencies * longest) * np.exp(-1j * np.pi * frequencies * longest)
-    rest = 1.0 - coherence
-    alike = np.abs(coherence + rest * turned) ** 2
-    return np.stack([alike, rest**2 * (1.0 - np.abs(turned) ** 2)])
-
-
 class CrownWind:
     """
     The wind of the last seconds, and what of it each limb feels now.
@@ -164,11 +138,6 @@ class CrownWind:
         """Return views of what is carried from one step to the next."""
         return tuple(self.record[name] for name in _CARRIED)
 
-    def follow(self, other: CrownWind) -> None:
-        """Go on with the wind that another has felt."""
-        for own, theirs in zip(self.memory(), other.memory(), strict=True):
-            own[...] = theirs
-
     def reset(self) -> None:
         """Forget the wind."""
         for array in self.memory():
@@ -181,45 +150,15 @@ def push_wind(crowns: Records, x: float, y: float, z: float, dt: float) -> None:
     """Do what `CrownWind.push` does, for the first record of an array."""
     here = crowns[0]
     run, at, mean = here['run'], here['at'], here['mean']
-    behind, apart = here['behind'], here['apart']
-    is_first = at[1] == 0
+    wanted, apart = here['wanted'], here['apart']
     remember(run, at, 2.0 * LONGEST_DELAY / (len(run) - 4), x, y, z, dt)
     follow_mean(mean, x, y, dt, _AVERAGING)
-    speed = max(math.hypot(mean[0], mean[1]), _SLOWEST)
-    goal, most = min(here['spread'] / speed, LONGEST_DELAY), LARGEST_STRETCH * dt
-    before = goal if is_first else here['delay']
-    delay = min(max(goal, before - most), before + most)
-    here['delay'] = delay
-    head, cell, rest = run[at[0]], at[0] - 1, 1.0 - here['coherence']
-    for j in range(1, len(apart)):
-        share = j / (len(apart) - 1)
-        if is_first:
-            lag = share * before
-            behind[j, 0], behind[j, 1], behind[j, 2] = lag * x, lag * y, lag * z
-        late = share * delay
-        cell = _cell_before(run, at, cell, head[0] - late)
-        bx, by, bz = _run_in(run, cell, head[0] - late)
-        per_span = rest / (dt + share * (before - delay))
-        bx, by, bz = head[1] - bx, head[2] - by, head[3] - bz
-        apart[j, 0] = per_span * (x * dt + behind[j, 0] - bx) - rest * x
-        apart[j, 1] = per_span * (y * dt + behind[j, 1] - by) - rest * y
-        apart[j, 2] = per_span * (z * dt + behind[j, 2] - bz) - rest * z
-        behind[j, 0], behind[j, 1], behind[j, 2] = bx, by, bz
-
-
-@kernel
-def _cell_before(run: Floats, at: Ints, cell: int, time: float) -> int:
-    """Find the last row of the history that is not after a time, from a later one on backwards."""
-    size, oldest = len(run), at[0] - at[1] + 1
-    while cell > oldest and run[cell + size if cell < 0 else cell, 0] > time:
-        cell -= 1
-    return cell
-
-
-@kernel
-def _run_in(run: Floats, cell: int, time: float) -> tuple[float, float, float]:
-    """Run of the wind at a time, by a straight line through a row of the history and the next."""
-    size, after = len(run), cell + 1
-    a, b = run[cell + size if cell < 0 else cell], run[after + size if after < 0 else after]
-    u = (time - a[0]) / (b[0] - a[0])
-    return a[1] + u * (b[1] - a[1]), a[2] + u * (b[2] - a[2]), a[3] + u * (b[3] - a[3])
+    longest = min(here['spread'] / max(math.hypot(mean[0], mean[1]), _SLOWEST), LONGEST_DELAY)
+    for j in range(len(wanted)):
+        wanted[j] = longest * j / (len(wanted) - 1)
+    feel(run, at, wanted, here['delay'], LONGEST_DELAY, x, y, z, dt, apart)
+    rest = 1.0 - here['coherence']
+    for j in range(len(apart)):
+        apart[j, 0] = rest * (apart[j, 0] - x)
+        apart[j, 1] = rest * (apart[j, 1] - y)
+        apart[j, 2] = rest * (apart[j, 2] - z)

@@ -28,7 +28,6 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.checks import three_numbers, within
 from tree_sway.core.wind.limits import FASTEST_WIND, is_wind
-from tree_sway.core.wind.response import ResponseWatch
 
 # What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
 # 0x8000, which is 327.68 where the count is 0.01 m/s.
@@ -54,8 +53,14 @@ LEAD_GROWTH = 60 * SECOND // 1000
 """How much more a stamp may be ahead of its arrival in [ns] than the sample before."""
 LONGEST_TRANSPORT = 2 * SECOND
 """Age in [ns] at which a stamp is of another clock, or of a recording, and no longer believed."""
+_NEVER = -(2**62)
 CLOCK_RESET = SECOND
 """Backward step in [ns] that is a clock set back (a bag that loops), not samples out of order."""
+
+JUMP_FLOOR = 1.0
+"""Change between two samples that is always believed in [m/s]: resolution and small eddies."""
+JUMP_FRACTION = 0.25
+"""Such a change, in addition, as a fraction of the speed in [-]; eddies grow with the wind."""
 
 
 class Reason(str, Enum):
@@ -106,8 +111,8 @@ class GateCounts:
         before.
     clock_back
         Times the clock was set back.
-    frozen, sluggish
-        Times the sensor began to repeat one reading, and to pass slow changes alone.
+    frozen
+        Times the sensor began to repeat one reading.
 
     """
 
@@ -128,7 +133,6 @@ class GateCounts:
     overtaken_stamp: int = 0
     clock_back: int = 0
     frozen: int = 0
-    sluggish: int = 0
 
     @property
     def refused(self) -> int:
@@ -150,10 +154,6 @@ class WindGate:
         Time in [s] after which a change is believed, however sudden.
     frozen_after
         Time in [s] of equal samples, other than zero, after which the sensor counts as frozen.
-    jump_floor
-        Change between two samples that is always believed in [m/s]: resolution and small eddies.
-    jump_fraction
-        Such a change, in addition, as a fraction of the speed in [-]; eddies grow with the wind.
 
     Raises
     ------
@@ -168,9 +168,6 @@ class WindGate:
         max_rate: float = 20.0,
         longest_refusal: float = 0.5,
         frozen_after: float = 10.0,
-        *,
-        jump_floor: float = 1.0,
-        jump_fraction: float = 0.25,
     ) -> None:
         """Open the gate with no sample seen."""
         self._max_speed = within('max_speed', max_speed, 0.0, FASTEST_WIND, 'm/s', above=True)
@@ -178,31 +175,20 @@ class WindGate:
         refusal = within('longest_refusal', longest_refusal, 0.0, 60.0, 's')
         frozen = within('frozen_after', frozen_after, 0.0, 1e5, 's', above=True)
         self._longest_refusal, self._frozen_after = round(SECOND * refusal), round(SECOND * frozen)
-        self._jump_floor = within('jump_floor', jump_floor, 0.0, 100.0, 'm/s')
-        self._jump_fraction = within('jump_fraction', jump_fraction, 0.0, 10.0)
         self.counts = GateCounts()
         self.reset()
 
     def reset(self) -> None:
         """Forget the samples seen; keep the counts."""
-        self._time: int | None = None  # given to the last sample
-        self._arrival: int | None = None
-        self._stamp: int | None = None  # last one believed
-        self._last_stamp: int | None = None  # last one, believed or not
+        self._time = self._arrival = _NEVER  # given to the last sample, and when it arrived
+        self._stamp = self._last_stamp = _NEVER  # last one believed; last one, believed or not
         self._seen = (math.nan, math.nan, math.nan)  # last sample offered
         self._good = (0.0, 0.0, 0.0)  # last one accepted, at _good_time
         self._given = (0.0, 0.0, 0.0)  # what was given out for it
         self._before: tuple[float, float, float] | None = None  # left while a level fades in
-        self._good_time: int | None = None
-        self._refused_since: int | None = None
+        self._good_time = self._refused_since = _NEVER
         self._equal_since = 0
         self._is_frozen = False
-        self._response = ResponseWatch()
-
-    @property
-    def is_sluggish(self) -> bool:
-        """Whether the sensor passes slow changes alone (`response`)."""
-        return self._response.is_sluggish
 
     @property
     def is_frozen(self) -> bool:
@@ -243,10 +229,10 @@ class WindGate:
         x, y, z = three_numbers('wind', vector)
         is_repeated = 0 < stamp == self._last_stamp and (x, y, z) == self._seen
         time = self._time_of(stamp, arrival, lead)
-        since = math.inf if self._time is None else 1e-9 * (time - self._time)
+        since = 1e-9 * (time - self._time)
         if is_repeated:
             reason = Reason.REPEATED
-        elif self._time is not None and time <= self._time:
+        elif time <= self._time:
             reason = Reason.NO_TIME
         else:
             reason = self._judge(time, x, y, z)
@@ -257,9 +243,8 @@ class WindGate:
         setattr(self.counts, name, getattr(self.counts, name) + 1)
         if reason is Reason.ACCEPTED:
             self._good, self._good_time = (x, y, z), time
-            self._refused_since = None
+            self._refused_since = _NEVER
             self._fade_in(since)
-            self.counts.sluggish += self._response.add(time, self._good)
         return Verdict(reason is Reason.ACCEPTED, reason, time, self._given)
 
     def _fade_in(self, since: float) -> None:
@@ -277,7 +262,7 @@ class WindGate:
     def _time_of(self, stamp: int, given: int | None, lead: int) -> int:
         """Return the stamp if it can be believed, or else the time to use in its place."""
         arrival = stamp if given is None else given
-        if self._arrival is not None and arrival < self._arrival - CLOCK_RESET:
+        if arrival < self._arrival - CLOCK_RESET:
             self.counts.clock_back += 1
             self.reset()
         fault = self._fault(stamp, arrival, lead)
@@ -285,7 +270,7 @@ class WindGate:
             self._stamp = stamp
             return stamp
         setattr(self.counts, fault, getattr(self.counts, fault) + 1)
-        if given is None or self._time is None or self._arrival is None:
+        if given is None or self._time == _NEVER:
             return arrival
         usual = min(arrival, self._time + arrival - self._arrival)
         # A stamp that was believed may have been ahead of what arrives now.
@@ -297,16 +282,15 @@ class WindGate:
             return 'zero_stamp'
         if stamp > arrival + LARGEST_LEAD:
             return 'future_stamp'
-        usual = 0 if self._time is None or self._arrival is None else self._time - self._arrival
-        if stamp > arrival + max(lead, max(usual, 0) + LEAD_GROWTH):
+        if stamp > arrival + max(lead, max(self._time - self._arrival, 0) + LEAD_GROWTH):
             return 'ahead_stamp'
         if stamp < arrival - LONGEST_TRANSPORT:
             return 'old_stamp'
         if stamp == self._last_stamp:
             return 'duplicate_stamp'
-        if self._stamp is not None and stamp <= self._stamp:
+        if stamp <= self._stamp:
             return 'out_of_order'
-        return 'overtaken_stamp' if self._time is not None and stamp <= self._time else ''
+        return 'overtaken_stamp' if stamp <= self._time else ''
 
     def _judge(self, time: int, x: float, y: float, z: float) -> Reason:
         if not is_wind(x, y, z, self._max_speed):
@@ -314,13 +298,13 @@ class WindGate:
                 return Reason.NOT_FINITE
             is_code = any(abs(abs(c) - code) < 0.006 for c in (x, y, z) for code in SENTINELS)
             return Reason.SENTINEL if is_code else Reason.TOO_FAST
-        since = math.inf if self._good_time is None else 1e-9 * (time - self._good_time)
+        since = 1e-9 * (time - self._good_time)
         # While a new level fades in, its end is a return to the level before.
         for level in (self._good, self._before or self._good):
-            allowed = self._max_rate * since + self._jump_floor
-            if math.dist((x, y, z), level) <= allowed + self._jump_fraction * math.hypot(*level):
+            allowed = self._max_rate * since + JUMP_FLOOR
+            if math.dist((x, y, z), level) <= allowed + JUMP_FRACTION * math.hypot(*level):
                 return Reason.ACCEPTED
-        if self._refused_since is None:
+        if self._refused_since == _NEVER:
             self._refused_since = time
         if time - self._refused_since < self._longest_refusal:
             return Reason.SPIKE

@@ -128,11 +128,13 @@ class GustHistory:
             )
         remember(self._run, self._at, self._finest, x, y, z, dt)
         follow_mean(self._mean, x, y, dt, self._averaging)
-        _feel(
-            self._run, self._at, self._along, self._from_first, self._mean, self._ratio,
-            self._memory,
-            x, y, z, dt, self._wanted, self._delay, self._felt,
-        )  # fmt: skip
+        east, north, _ = self._mean.tolist()
+        speed = max(math.hypot(east, north), SLOWEST_GUST)
+        along = self._along[:, 0] * east + self._along[:, 1] * north
+        self._wanted = along / (self._ratio * speed * speed)
+        if self._from_first:
+            self._wanted -= self._wanted.min()
+        feel(self._run, self._at, self._wanted, self._delay, self._memory, x, y, z, dt, self._felt)
         return self._felt
 
     def reset(self) -> None:
@@ -183,30 +185,18 @@ def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -
 
 
 @kernel
-def _feel(
-    run: Floats, at: NDArray[np.int64], along: Floats, from_first: bool, mean: Floats,
-    ratio: float,
-    memory: float, x: float, y: float, z: float, dt: float, wanted: Floats, delay: Floats,
-    felt: Floats,
+def feel(
+    run: Floats, at: NDArray[np.int64], wanted: Floats, delay: Floats, longest: float,
+    x: float, y: float, z: float, dt: float, felt: Floats,
 ) -> None:  # fmt: skip
-    """Let delays follow the mean wind; average the history over each place's own step."""
-    now = run[at[0], 0]
-    speed = max(math.hypot(mean[0], mean[1]), SLOWEST_GUST)
-    first = math.inf if from_first else 0.0
-    for i in range(len(along)):
-        wanted[i] = (along[i, 0] * mean[0] + along[i, 1] * mean[1]) / (ratio * speed * speed)
-        if from_first:
-            first = min(first, wanted[i])
-    for i in range(len(along)):
-        wanted[i] -= first
-        before = delay[i]
-        most = LARGEST_STRETCH * dt
-        goal = min(max(wanted[i], 0.0), memory)
+    """Let delays [s], (t,), follow those wanted; average the history over the step of each."""
+    now, most = run[at[0], 0], LARGEST_STRETCH * dt
+    for i in range(len(delay)):
+        goal, before = min(max(wanted[i], 0.0), longest), delay[i]
         if at[1] == 2:
             # The first step: nothing to be gentle with.
-            before = delay[i] = goal
-        else:
-            delay[i] = min(max(goal, before - most), before + most)
+            before = goal
+        delay[i] = min(max(goal, before - most), before + most)
         if before == 0.0 and delay[i] == 0.0:
             felt[i, 0], felt[i, 1], felt[i, 2] = x, y, z
             continue

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import within
 from tree_sway.errors import ParameterError
 
 PROFILES = ('none', 'power', 'log')
@@ -49,16 +50,10 @@ class WindProfile:
             raise ParameterError(
                 f"unknown wind profile '{self.kind}'", cure=f'use one of: {", ".join(PROFILES)}'
             )
-        if not self.anemometer_height > 0.0:
-            raise ParameterError(
-                f'anemometer height {self.anemometer_height} m', cure='give one above 0'
-            )
-        if self.kind == 'log' and not 0.0 < self.roughness < self.anemometer_height:
-            raise ParameterError(
-                f'roughness length {self.roughness} m with an anemometer at '
-                f'{self.anemometer_height} m',
-                cure='give one above 0 and below the anemometer',
-            )
+        within('anemometer_height', self.anemometer_height, 0.0, 1e4, 'm', above=True)
+        if self.kind == 'log':
+            highest = 0.999 * self.anemometer_height
+            within('roughness', self.roughness, 0.0, highest, 'm', above=True)
 
     def over_anemometer(self, z: Floats) -> Floats:
         """

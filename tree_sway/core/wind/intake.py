@@ -65,7 +65,7 @@ class WindIntake:
         trees'.
         """
         reads = self.convention
-        velocity = np.array(components) if reads is None else reads.velocity(*components)
+        velocity = np.array(components) if reads is None else reads.velocity(components)
         if rotation is not None and np.abs(velocity).max() <= FASTEST_WIND:  # else it is refused
             velocity = rotation @ velocity
         verdict = self.gate.offer(stamp, velocity, arrival, lead=lead)

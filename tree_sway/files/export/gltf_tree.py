@@ -6,14 +6,12 @@ A tree as glTF 2.0, ready to sway: one mesh, by a skin or by morph targets.
 With a skin, each segment is a node named as in `Tree.segment_names`, flat below the node of the
 tree: a node's translation and rotation are the segment's pose, at rest and in every frame of
 ``segment_poses``. With morph targets, each is what one coordinate of the tree's state does to the
-vertices, so that some twenty weights play the tree; the targets are linear, and `LinearForm`
-reports what that leaves out. glTF has y up by its specification, which the node of the tree turns:
-all inside it keeps our frame.
+vertices, so that some twenty weights play the tree; the targets are linear. glTF has y up by its
+specification, which the node of the tree turns: all inside it keeps our frame.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,9 +19,9 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.state.find_basis import state_basis, Swaying
-from tree_sway.core.state.full_scale import MARGIN
-from tree_sway.core.state.state_basis import StateBasis
+from tree_sway.core.simulator.find_basis import state_basis
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.state.state_basis import MARGIN, StateBasis
 from tree_sway.core.tree.species import bark_color, leaf_traits
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
@@ -41,22 +39,6 @@ _MAX_JOINTS = 65536
 _SWING = 0.5
 """Part of a coordinate's unit at which a target has the slope: between a breeze and a storm."""
 _BREEZE, _SECONDS, _RATE, _DT = 6.0, 20.0, 15, 1.0 / 60.0
-
-
-@dataclass(frozen=True)
-class LinearForm:
-    """
-    How far the tree of morph targets is from the solver's, over the breeze that the file plays.
-
-    ``names`` are those of the targets, (m,). Distances of the segments' vertices and, in
-    ``motion_*``, their motions from rest are in [m].
-    """
-
-    names: tuple[str, ...]
-    rms: float
-    greatest: float
-    motion_rms: float
-    motion_greatest: float
 
 
 def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument:
@@ -97,9 +79,7 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     return document
 
 
-def morphing_tree(
-    simulator: Swaying, leaves: LeafClusters | None = None
-) -> tuple[GltfDocument, LinearForm]:
+def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) -> GltfDocument:
     """
     Return a tree on any model of a simulator as a mesh with a morph target per coordinate.
 
@@ -129,9 +109,8 @@ def morphing_tree(
     shown = document.add('nodes', name=tree.name, mesh=body, rotation=_Y_UP)
     document.add('scenes', nodes=[shown])
     document.set(scene=0)
-    weights, poses = _breeze(simulator, basis, unit)
-    _add_animation(document, shown, weights)
-    return document, _linear_form(names, wood_mesh(tree), rest, steps, weights, poses)
+    _add_animation(document, shown, _breeze(simulator, basis, unit))
+    return document
 
 
 def _meshes(tree: Tree, leaves: LeafClusters | None) -> list[tuple[str, TreeMesh]]:
@@ -178,7 +157,9 @@ def _inverse_matrices(poses: Floats) -> Any:
     return columns.astype(np.float32)
 
 
-def _swung(simulator: Swaying, basis: StateBasis, k: int, size: float) -> tuple[Floats, Floats]:
+def _swung(
+    simulator: SwaySimulator, basis: StateBasis, k: int, size: float
+) -> tuple[Floats, Floats]:
     """Poses with one coordinate at a part of its unit, to one side and to the other."""
     coordinates = np.zeros(basis.n_coordinates)
     coordinates[k] = _SWING * size
@@ -191,20 +172,18 @@ def _change(mesh: TreeMesh, step: tuple[Floats, Floats]) -> Floats:
     return (0.5 / _SWING) * (mesh.placed(step[0]) - mesh.placed(step[1]))
 
 
-def _breeze(simulator: Swaying, basis: StateBasis, unit: Floats) -> tuple[Floats, list[Floats]]:
-    """Weights (f, m) and poses of the frames of a gusty wind."""
+def _breeze(simulator: SwaySimulator, basis: StateBasis, unit: Floats) -> Floats:
+    """Weights of the frames of a gusty wind, (f, m)."""
     before = simulator.state()
     rng = np.random.default_rng(7)
     wind = simulate_turbulence(_BREEZE, rate=1.0 / _DT, duration=_SECONDS, rng=rng)
-    weights, poses = [], []
+    weights = []
     for number, each in enumerate(wind):
         simulator.step(each, _DT)
         if number % round(1.0 / (_DT * _RATE)) == 0:
-            rotations = simulator.rotations()
-            weights.append(basis.coordinates(rotations) / unit)
-            poses.append(simulator.place_rotations(rotations).copy())
+            weights.append(basis.coordinates(simulator.rotations()) / unit)
     simulator.set_state(before)
-    return np.array(weights), poses
+    return np.array(weights)
 
 
 def _add_animation(document: GltfDocument, node: int, weights: Floats) -> None:
@@ -216,29 +195,3 @@ def _add_animation(document: GltfDocument, node: int, weights: Floats) -> None:
     }
     channel = {'sampler': 0, 'target': {'node': node, 'path': 'weights'}}
     document.add('animations', name='breeze', samplers=[sampler], channels=[channel])
-
-
-def _linear_form(
-    names: tuple[str, ...],
-    mesh: TreeMesh,
-    rest: Floats,
-    steps: list[tuple[Floats, Floats]],
-    weights: Floats,
-    poses: list[Floats],
-) -> LinearForm:
-    """Set the vertices that weights give against those of the poses."""
-    at_rest = mesh.placed(rest)
-    changes = np.array([_change(mesh, step).ravel() for step in steps])
-    gaps, displacements = [], []
-    for weight, pose in zip(weights, poses, strict=True):
-        displacement = mesh.placed(pose) - at_rest
-        gaps.append(np.linalg.norm((weight @ changes).reshape(-1, 3) - displacement, axis=1))
-        displacements.append(np.linalg.norm(displacement, axis=1))
-    gap, motion = np.array(gaps), np.array(displacements)
-    return LinearForm(
-        names,
-        float(np.sqrt(np.mean(gap**2))),
-        float(gap.max()),
-        float(np.sqrt(np.mean(motion**2))),
-        float(motion.max()),
-    )

@@ -1,10 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Write a tree for other programs: our YAML, Wavefront OBJ, glTF.
+Write a tree for other programs: our YAML and glTF.
 
-YAML is exact and reads back. OBJ holds the shape at rest, one object per segment, named as in
-`Tree.segment_names`, z up as the tree. glTF sways by a skin or by morph targets; see `gltf_tree`.
+YAML is exact and reads back. glTF sways by a skin or by morph targets; see `gltf_tree`.
 """
 
 from __future__ import annotations
@@ -18,12 +17,11 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError
 from tree_sway.files.export.gltf_document import GltfDocument
 from tree_sway.files.export.gltf_tree import skinned_tree
-from tree_sway.files.export.tree_mesh import SIDES, wood_mesh
 from tree_sway.files.export.yaml_writing import yaml_of_tree
 from tree_sway.files.whole_file import whole_file, write_text_whole
 
 GLTF_SUFFIXES = ('.glb', '.gltf')
-_SUFFIXES = ('.yaml', '.yml', '.obj', *GLTF_SUFFIXES)
+_SUFFIXES = ('.yaml', '.yml', *GLTF_SUFFIXES)
 
 
 def write_tree(
@@ -38,7 +36,7 @@ def write_tree(
     Parameters
     ----------
     path
-        The file: ``.yaml``, ``.yml``, ``.obj``, ``.glb`` or ``.gltf``; overwritten if it exists.
+        The file: ``.yaml``, ``.yml``, ``.glb`` or ``.gltf``; overwritten if it exists.
     tree
         The tree, alone or with its species.
     species
@@ -66,8 +64,7 @@ def write_tree(
     if suffix in GLTF_SUFFIXES:
         write_gltf(path, skinned_tree(tree, leaves))
     else:
-        text = obj_of_tree(tree) if suffix == '.obj' else yaml_of_tree(tree, species)
-        write_text_whole(path, text)
+        write_text_whole(path, yaml_of_tree(tree, species))
 
 
 def write_gltf(path: str | Path, document: GltfDocument) -> None:
@@ -75,19 +72,3 @@ def write_gltf(path: str | Path, document: GltfDocument) -> None:
     binary = Path(path).suffix.lower() == '.glb'
     with whole_file(path) as partial:
         partial.write_bytes(document.glb() if binary else document.gltf())
-
-
-def obj_of_tree(tree: Tree) -> str:
-    """Return the shape at rest as Wavefront OBJ, one object per segment, z up, in metres."""
-    mesh, name = wood_mesh(tree), ' '.join(tree.name.split())
-    # The two rings of the side; those of the ends, which differ in their normals, are the same.
-    size = 4 * SIDES
-    points = mesh.placed(tree.rest_poses).reshape(tree.n_segments, size, 3)[:, : 2 * SIDES]
-    triangles = mesh.triangles[: size - 4] % (2 * SIDES)
-    lines, first = [f'# {name}: z up, metres'], 1
-    for segment, rings in zip(tree.segment_names, points.tolist(), strict=True):
-        lines.append(f'o {"_".join(segment.split())}')
-        lines += [f'v {x:.9g} {y:.9g} {z:.9g}' for x, y, z in rings]
-        lines += [f'f {a} {b} {c}' for a, b, c in (triangles + first).tolist()]
-        first += len(rings)
-    return '\n'.join(lines) + '\n'

@@ -28,19 +28,10 @@ from tree_sway.core.tree.grown_tree import GrownTree, rooted
 from tree_sway.core.tree.species import Species, species_like
 from tree_sway.errors import FormatError, ParameterError, TreeSwayError
 from tree_sway.files.scenes.tree_names import refuse_same_names
-from tree_sway.files.table_file import Column, parse_table, TextTable
+from tree_sway.files.table_file import Column, COLUMNS, parse_table, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.imported_tree import TreeFile
 
-_LENGTHS = {'m': 1.0, 'cm': 0.01, 'mm': 0.001, 'ft': 0.3048, 'feet': 0.3048, 'in': 0.0254}
-_X, _Y = ('x', 'easting', 'east', 'utm_x', 'rechtswert'), ('y', 'northing', 'north', 'utm_y',
-                                                          'hochwert')  # fmt: skip
-_LATITUDE, _LONGITUDE = ('latitude', 'lat'), ('longitude', 'lon', 'lng', 'long')
-_SPECIES = ('species', 'scientific_name', 'species_name', 'taxon', 'baumart', 'spp', 'art')
-_HEIGHT = ('height', 'tree_height', 'total_height', 'ht', 'h', 'hoehe', 'höhe', 'baumhoehe')
-_DBH = ('dbh', 'diameter', 'bhd', 'diameter_at_breast_height', 'stem_diameter', 'd')
-_GIRTH = ('girth', 'circumference', 'gbh', 'stammumfang', 'umfang')
-_NAME = ('name', 'tree_id', 'treeid', 'tree', 'id', 'baumnummer', 'number', 'no')
 _EARTH = 6.371e6
 _FAR = 1e5
 _HEIGHTS, _SLENDERNESSES = 3.0, 1.3
@@ -52,8 +43,8 @@ def is_stand_table(head: str) -> bool:
         table = parse_table(head.splitlines()[:20], '')
     except FormatError:
         return False
-    here = _find(table, _X, _Y) or _find(table, _LATITUDE, _LONGITUDE)
-    return here is not None and _find(table, _SPECIES, _HEIGHT) is not None
+    here = _find(table, 'x', 'y') or _find(table, 'latitude', 'longitude')
+    return here is not None and _find(table, 'species', 'height') is not None
 
 
 def read_stand_table(
@@ -78,8 +69,8 @@ def read_stand_table(
     rng = np.random.default_rng(seed)
     yaw = stand.optional('yaw', rng.uniform(0.0, 2.0 * np.pi, len(stand.height)))
     z = stand.optional('z', np.zeros(len(yaw)))
-    models: Sequence[str | None] = stand.texts(('model',)) or [None] * len(yaw)
-    names = stand.texts(_NAME) or [f'tree{row + 1}' for row in range(len(yaw))]
+    models: Sequence[str | None] = stand.texts('model') or [None] * len(yaw)
+    names = stand.texts('tree_name') or [f'tree{row + 1}' for row in range(len(yaw))]
     refuse_same_names(names, table.where)
     wood = {each: species_like(each) for each in dict.fromkeys(stand.species) if each not in given}
     stand.note(*(note for _, note in wood.values() if note))
@@ -122,15 +113,15 @@ class _Inventory:
     def __init__(self, table: TextTable) -> None:
         self._table = table
         self.used, self.notes = set[int](), list[str]()
-        place = _find(table, _X, _Y)
+        place = _find(table, 'x', 'y')
         self.x, self.y = self._degrees() if place is None else self._values(*place)
         # As x and y of a map have too many digits for single precision, in pictures as well.
         if max(np.abs(self.x).max(), np.abs(self.y).max()) > _FAR:
             east, north = float(np.floor(self.x.min())), float(np.floor(self.y.min()))
             self.x, self.y = self.x - east, self.y - north
             self.note(f'moved by {-east:.0f}, {-north:.0f} m to be near the origin')
-        self.species = self.texts(_SPECIES) or table.cells(table.index_of('species'), ())
-        height = table.find(_HEIGHT, _LENGTHS) or Column(table.index_of('height'), 1.0)
+        self.species = self.texts('species') or table.cells(table.index_of('species'), ())
+        height = table.find('height') or Column(table.index_of('height'), 1.0)
         (self.height,) = self._values(height)
         self.diameter = self._diameter()
 
@@ -138,9 +129,9 @@ class _Inventory:
         """Remember what was assumed."""
         self.notes += notes
 
-    def texts(self, names: tuple[str, ...]) -> list[str]:
+    def texts(self, quantity: str) -> list[str]:
         """Texts of a column; an empty list if it is missing, an error for empty cells."""
-        column = self._table.find(names, {})
+        column = self._table.find(quantity)
         if column is None:
             return []
         self.used.add(column.index)
@@ -148,12 +139,12 @@ class _Inventory:
         for row, text in enumerate(texts):
             if not text:
                 where = self._table.where(row)
-                raise FormatError(f'no {names[0]}', where=where, cure='fill the cell')
+                raise FormatError(f'no {quantity}', where=where, cure='fill the cell')
         return texts
 
     def optional(self, name: str, otherwise: Floats) -> Floats:
         """Numbers of a column, or others where the column is missing."""
-        found = self._table.find([name], _LENGTHS)
+        found = self._table.find(name)
         return otherwise if found is None else self._values(found)[0]
 
     def _values(self, *columns: Column) -> list[Floats]:
@@ -163,7 +154,7 @@ class _Inventory:
 
     def _degrees(self) -> list[Floats]:
         """East and north of the first tree [m], from degrees on a sphere."""
-        found = _find(self._table, _LATITUDE, _LONGITUDE)
+        found = _find(self._table, 'latitude', 'longitude')
         if found is None:
             return list(self._table.strict(['x', 'y']).T)
         north, east = (np.radians(each) for each in self._values(*found))
@@ -172,13 +163,13 @@ class _Inventory:
 
     def _diameter(self) -> Floats | None:
         """Diameters at breast height [m]; None if the table has none."""
-        for names, over in ((_DBH, 1.0), (_GIRTH, math.pi)):
-            found = self._table.find(names, _LENGTHS)
+        for quantity, over in (('diameter', 1.0), ('girth', math.pi)):
+            found = self._table.find(quantity)
             if found is None:
                 continue
             (values,) = self._values(found)
             heading, unit = self._table.headings[found.index]
-            if not unit and heading in names:
+            if not unit and heading in COLUMNS[quantity]['names']:
                 is_cm = float(np.median(values)) / over > 3.0
                 values = values * (0.01 if is_cm else 1.0)
                 self.note(f'{heading} is taken as {"cm" if is_cm else "m"}')
@@ -205,9 +196,9 @@ class _Inventory:
         return sizes, slender
 
 
-def _find(table: TextTable, *names: tuple[str, ...]) -> list[Column] | None:
-    """Columns by their names; None if one is missing."""
-    found = [table.find(each, _LENGTHS) for each in names]
+def _find(table: TextTable, *quantities: str) -> list[Column] | None:
+    """Columns of quantities; None if one is missing."""
+    found = [table.find(each) for each in quantities]
     return None if None in found else [each for each in found if each is not None]
 
 

@@ -133,7 +133,7 @@ class WindRows:
         """
         time = np.array(self.time, dtype=np.float64)
         velocity = np.array(self.velocity, dtype=np.float64).reshape(-1, 3)
-        velocity = WindConvention(direction_convention, yaw_offset=yaw).velocities(velocity)
+        velocity = WindConvention(direction_convention, yaw_offset=yaw).velocity(velocity)
         speed = np.sqrt(np.einsum('ij,ij->i', velocity, velocity))
         good = np.isfinite(time) & (speed <= FASTEST_WIND)
         for index in np.flatnonzero(~good):

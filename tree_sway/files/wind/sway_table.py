@@ -15,40 +15,15 @@ and never filled in.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
 from pathlib import Path
-import re
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
-from tree_sway.files.table_file import parse_table, TextTable
+from tree_sway.files.table_file import COLUMNS, MOTIONS, parse_table, TextTable
 from tree_sway.files.text_file import read_lines
-from tree_sway.files.wind.table import TIME_NAMES
-from tree_sway.files.wind.units import TIME_UNITS
 
-_QUANTITY = {
-    'displacement': re.compile(
-        r'(displacement|disp|deflection|position|pos|d|u)(_?[xyz123])?|[xyz]'
-    ),
-    'tilt': re.compile(r'(tilt|inclination|angle|rotation|r)(_?[xyz123])?|roll|pitch|yaw'),
-    'rate': re.compile(r'(gyro|rate|angular_velocity|angular_rate|omega|w|g)_?[xyz123]|gyro|rate'),
-    'acceleration': re.compile(
-        r'(lineare?_)?(acceleration|accel|acc|a|beschleunigung)(_?[xyz123])?|gf_?[xyz]'
-    ),
-    'strain': re.compile(r'(strain|dehnung|eps)(_?[xyz123])?'),
-}
-_UNITS = {
-    'displacement': {'m': 1.0, 'cm': 0.01, 'mm': 0.001},
-    'tilt': {'rad': 1.0, 'mrad': 1e-3, 'deg': pi / 180.0, 'degrees': pi / 180.0, '°': pi / 180.0},
-    'rate': {'rad/s': 1.0, 'deg/s': pi / 180.0, '°/s': pi / 180.0, 'dps': pi / 180.0},
-    'acceleration': {
-        **{'m/s^2': 1.0, 'm/s2': 1.0, 'm/s²': 1.0, 'm s-2': 1.0, 'mm/s^2': 1e-3},
-        **{'g': 9.80665, 'mg': 9.80665e-3},
-    },
-    'strain': {'1': 1.0, '-': 1.0, 'ustrain': 1e-6, 'um/m': 1e-6, 'µm/m': 1e-6, 'mm/m': 1e-3},
-}
 MAX_VALUE = 1e12
 """Larger times and motions are no measured ones, in whichever unit."""
 
@@ -94,7 +69,7 @@ def read_csv_sway(path: Path) -> SwayRecord:
     source = str(path)
     table = parse_table(read_lines(path), source)
     names = [name for name, _ in table.headings]
-    clock = next((names.index(each) for each in TIME_NAMES if each in names), None)
+    clock = next((names.index(each) for each in COLUMNS['time']['names'] if each in names), None)
     motion = [(i, q) for i, (name, _) in enumerate(table.headings) if (q := _quantity(name))]
     if clock is None or not motion:
         raise FormatError(
@@ -111,8 +86,7 @@ def read_csv_sway(path: Path) -> SwayRecord:
             where=table.where(),
             cure='keep the columns of one quantity',
         )
-    units = _UNITS[quantities[0]]
-    factors = [table.factor(table.headings[i][1], units, 1.0) for i, _ in motion]
+    factors = [table.factor(i, quantities[0]) for i, _ in motion]
     columns = [table.columns[i] for i, _ in motion]
     values = table.strict(columns)
     for row, column in np.argwhere(~(np.abs(values) * factors <= MAX_VALUE))[:1]:
@@ -126,13 +100,13 @@ def read_csv_sway(path: Path) -> SwayRecord:
 
 
 def _quantity(name: str) -> str | None:
-    return next((q for q, pattern in _QUANTITY.items() if pattern.fullmatch(name)), None)
+    return next((q for q, pattern in MOTIONS.items() if pattern.fullmatch(name)), None)
 
 
 def _times(table: TextTable, clock: int) -> Floats:
     """Seconds of each row, from numbers or from dates."""
     stamps = table.cells(clock, range(len(table.texts)))
-    times, _ = table.seconds(stamps, table.factor(table.headings[clock][1], TIME_UNITS, 1.0))
+    times, _ = table.seconds(stamps, table.factor(clock, 'time'))
     for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
         raise FormatError(
             f"time is '{stamps[row][:40]}', neither seconds nor a date",

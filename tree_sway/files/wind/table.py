@@ -31,36 +31,15 @@ import numpy as np
 
 from tree_sway.core.wind.convention import WindConvention
 from tree_sway.errors import FormatError
-from tree_sway.files.table_file import Column, parse_table, split_row, TextTable
+from tree_sway.files.table_file import Column, COLUMNS, parse_table, split_row, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.station_means import filled_means
-from tree_sway.files.wind.units import ANGLE_UNITS, SPEED_UNITS, TIME_UNITS
 
-TIME_NAMES = (
-    *('seconds_elapsed', 'time', 't', 'timestamp', 'stamp', 'datetime', 'date_time', 'seconds'),
-    *('secs', 'elapsed', 'valid_time', 'valid', 'zeit', 'mess_datum', 'date'),
-)
-"""What a column of times may be called."""
-_CLOCK = re.compile(rf'(?i)(^|[,;\t])\s*"?({"|".join(TIME_NAMES)})\b[^\n]*[,;\t]')
-
-_COMPONENTS = (
-    ('u', 'x', 'ux', 'ux_avg', 'east', 'vx', 'velocity_x', 'wind_u', 'wind_x', 'u10', '10u'),
-    ('v', 'y', 'uy', 'uy_avg', 'north', 'vy', 'velocity_y', 'wind_v', 'wind_y', 'v10', '10v'),
-    ('w', 'z', 'uz', 'uz_avg', 'up', 'vz', 'velocity_z', 'wind_w', 'wind_z'),
-)
-_SPEED = (
-    *('speed', 'wind_speed', 'windspeed', 'ws', 'wspd', 'wind_speed_10m', 'ff_10', 'ff', 'f'),
-    *('sknt', 'si10', 'ws_avg', 'wind'),
-)
-_DIRECTION = (
-    *('direction', 'dir', 'wind_direction', 'winddirection', 'wind_dir', 'winddir', 'wd', 'wdir'),
-    *('wind_direction_10m', 'dd_10', 'dd', 'd', 'drct', 'wd_avg'),
-)
-_GUST = (
-    *('gust', 'wind_gust', 'gusts', 'windgust', 'gust_speed', 'gustspeed', 'wpgt', 'fx_10', 'fx'),
-    *('wind_gusts_10m', 'i10fg', 'fg10', '10fg', 'ws_max', 'max_speed'),
-)
+_TIMES = '|'.join(COLUMNS['time']['names'])
+_CLOCK = re.compile(rf'(?i)(^|[,;\t])\s*"?({_TIMES})\b[^\n]*[,;\t]')
+LOOKS_LIKE_WIND = rf'(?i)^(?!#)([^\n]*[,;\t])?\s*"?({_TIMES})\b[^\n]*[,;\t]'
+"""What the header of a table of wind has."""
 _LOGGER = re.compile(r'(\d{4})(\d\d)(\d\d)(\d\d)(\d\d)?', re.ASCII)
 
 
@@ -121,17 +100,14 @@ def _wind(
     seed: float,
 ) -> WindRecord:
     """Wind of a table, from the columns chosen or those of the usual names."""
-    clock = table.find(TIME_NAMES, {**TIME_UNITS, 'ts': 1.0})
+    clock = table.find('time')
     if chosen is None:
-        found = [table.find(names, SPEED_UNITS) for names in _COMPONENTS]
+        found = [table.find(each) for each in ('wind_x', 'wind_y', 'wind_z')]
     else:
-        found = [
-            Column(index, table.factor(table.headings[index][1], SPEED_UNITS, 1.0))
-            for index in chosen
-        ]
+        found = [Column(index, table.factor(index, 'speed')) for index in chosen]
     has_components = found[0] is not None and found[1] is not None
     if not has_components:
-        found = [table.find(_SPEED, SPEED_UNITS), table.find(_DIRECTION, ANGLE_UNITS, pi / 180.0)]
+        found = [table.find('wind_speed'), table.find('wind_direction')]
     if clock is None or None in found[:2]:
         raise FormatError(
             'no time with u and v, or with speed and direction, among '
@@ -166,7 +142,7 @@ def _wind(
     seconds, epoch = table.seconds(_stamps(table, clock, kept.tolist()), clock.factor)
     rows.add_block(np.array(table.numbers, dtype=np.int64)[kept], velocity[kept])
     rows.time = array('d', seconds.tolist())
-    gust = table.find(_GUST, SPEED_UNITS)
+    gust = table.find('gust')
     if gust is not None:
         rows.gust = table.values([gust.index])[kept, 0] * gust.factor
     record = rows.record(epoch=epoch, yaw=yaw, direction_convention=convention or 'to')

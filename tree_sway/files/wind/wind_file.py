@@ -18,7 +18,7 @@ from tree_sway.files.wind.bag import read_bag_wind
 from tree_sway.files.wind.nmea import read_nmea_wind
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sonic_ascii import read_sonic_wind
-from tree_sway.files.wind.table import read_csv_wind, read_toa5_wind, TIME_NAMES
+from tree_sway.files.wind.table import LOOKS_LIKE_WIND, read_csv_wind, read_toa5_wind
 
 WIND_FORMATS = (
     FileFormat('toa5', ('.dat', '.toa5'), contains(r'\A"?TOA5"?,'), read_toa5_wind),
@@ -32,12 +32,7 @@ WIND_FORMATS = (
     FileFormat(
         'bag', ('.db3', '.mcap'), contains(r'\A(SQLite format 3\0|\ufffdMCAP0\r\n)'), read_bag_wind
     ),
-    FileFormat(
-        'csv',
-        ('.csv', '.tsv', '.txt'),
-        contains(rf'(?i)^(?!#)([^\n]*[,;\t])?\s*"?({"|".join(TIME_NAMES)})\b[^\n]*[,;\t]'),
-        read_csv_wind,
-    ),
+    FileFormat('csv', ('.csv', '.tsv', '.txt'), contains(LOOKS_LIKE_WIND), read_csv_wind),
 )
 
 EXAMPLES = ('canopy',)

@@ -6,6 +6,7 @@ import { TreeStream } from "./client.js";
 import { DAYLIGHT } from "./drawing/backdrop.js";
 import { Scene } from "./drawing/scene.js";
 import { readLink, savePicture, viewLink } from "./keepsake.js";
+import { keptScene, OwnLine } from "./own_line.js";
 import { Panel } from "./panel.js";
 import { Trace } from "./trace.js";
 import { language, setLanguage, windFrom, word } from "./words.js";
@@ -62,6 +63,11 @@ try {
   notice(word("blind"), word("cure", error instanceof Error ? error.message : String(error)), false);
 }
 
+const kept = await keptScene().catch((error) => {
+  scene = null;
+  notice(word("damaged"), word("write_again", error.message), false);
+  return null;
+});
 const stream = new TreeStream(location.href, {
   onState(state, retryIn) {
     line = state;
@@ -104,7 +110,7 @@ const stream = new TreeStream(location.href, {
     }
     if (message.status) status = message.status;
   },
-});
+}, { kept, byWind: new URLSearchParams(location.search).has("solve") });
 
 const { connection, playout } = stream;
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
@@ -166,6 +172,8 @@ function showFacts() {
   element("drawn").textContent = `${Math.round(fps)} fps${leftOut ? ` · ${leftOut.leaves} % ❧` : ""}`;
   element("drawn").title = leftOut ? word("left_out", leftOut.pixels, leftOut.leaves) : "";
   element("stream").textContent = `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`;
+  const { corrections = 0, largest = 0 } = stream.byWind ?? {};
+  element("stream").title = stream.byWind ? word("corrected", corrections, (100 * largest).toFixed(2)) : "";
   const half = connection.roundTrip / 2;
   const latency = Number.isFinite(half) ? half + Math.max(0, playout.lateness) : NaN;
   element("latency").textContent = Number.isFinite(latency)
@@ -340,6 +348,13 @@ element("keys").addEventListener("click", (event) => {
   if (event.target === element("keys")) actions.close();
 });
 
+document.addEventListener("dragover", (event) => event.preventDefault());
+document.addEventListener("drop", (event) => {
+  event.preventDefault();
+  const file = event.dataTransfer?.files[0];
+  if (file && connection instanceof OwnLine) connection.take(file).catch((error) => toast(error.message));
+});
+
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 const { settings } = link;
@@ -354,7 +369,7 @@ if (settings.shown === "strain") shown.value = "strain";
 speak(settings.lang ?? navigator.language.slice(0, 2));
 /** @type {HTMLDetailsElement} */ (element("panel")).open = window.innerWidth > 700;
 scene?.camera.listen(canvas);
-stream.open();
+if (kept || !document.getElementById("scene")) stream.open();
 requestAnimationFrame(draw);
 
 /** For tests and for the curious at the console. */

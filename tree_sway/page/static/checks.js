@@ -57,18 +57,19 @@ const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREAT
 
 /** Refuse a kind whose arrays do not fit each other, and find its sizes.
  * @param {import("./protocol.js").Kind} kind with its arrays
- * @param {Record<string, number[]>} shapes of its arrays */
-export function checkKind(kind, shapes) {
+ * @param {import("./protocol.js").Arrays} parts its arrays with their shapes */
+export function checkKind(kind, parts) {
   const { arrays } = kind;
   /** @type {Record<string, number>} */
   const size = {};
   const forms = arrays.leaf_segment ? { ...ARRAYS, ...LEAVES } : ARRAYS;
   for (const [name, [type, ...axes]] of Object.entries(forms)) {
     need(arrays[name]?.constructor === type, name);
-    need(shapes[name].length === axes.length, name);
+    const { shape } = parts[name];
+    need(shape.length === axes.length, name);
     axes.forEach((axis, i) => {
-      if (typeof axis === "string") size[axis] ??= shapes[name][i];
-      need(shapes[name][i] === (typeof axis === "string" ? size[axis] : axis), name);
+      if (typeof axis === "string") size[axis] ??= shape[i];
+      need(shape[i] === (typeof axis === "string" ? size[axis] : axis), name);
     });
     if (type === Float32Array) need(arrays[name].every(Number.isFinite), name);
   }
@@ -109,9 +110,9 @@ export function checkKind(kind, shapes) {
 
 /** Refuse trees that do not fit their kinds.
  * @param {Record<string, any>} header @param {import("./protocol.js").Kind[]} kinds
- * @param {import("./protocol.js").NumberArray | undefined} places
- * @param {number[] | undefined} shape of the places */
-export function checkTrees(header, kinds, places, shape) {
+ * @param {{values: import("./protocol.js").NumberArray, shape: number[]} | undefined} placed */
+export function checkTrees(header, kinds, placed) {
+  const { values: places, shape } = placed ?? {};
   const { trees } = header;
   need(typeof header.name === "string" && typeof header.frame_id === "string", "name");
   need(/^[0-9a-f]{16}$/.test(header.identity), "identity");

@@ -5,9 +5,12 @@
  * now. No dependency; three.js, Babylon or WebXR draw what it says.
  */
 
+import { ByWind } from "./by_wind.js";
 import { Connection } from "./connection.js";
+import { OwnLine } from "./own_line.js";
 import { Placer } from "./placing.js";
 import { DELAY, Playout } from "./playout.js";
+import { Stand } from "./sway.js";
 
 /**
  * @typedef {Partial<import("./connection.js").Listeners>} StreamListeners
@@ -15,32 +18,48 @@ import { DELAY, Playout } from "./playout.js";
  * @typedef {object} StreamOptions
  * @property {number} [rate] frames per second that are asked for
  * @property {number} [delay] of the playout [ms]
+ * @property {boolean} [byWind] whether the wind alone is asked for, and the scene solved here
+ * @property {import("./own_line.js").Kept | null} [kept] scene that is solved here, of no server
  */
+
+/** Playout delay of a scene that is solved here [ms]. */
+const OWN_DELAY = 40;
 
 export class TreeStream {
   /** @param {string} page address of the page, with its token if it has one
    * @param {StreamListeners} [listeners] @param {StreamOptions} [options] */
   constructor(page, listeners = {}, options = {}) {
-    this.playout = new Playout(options.delay ?? DELAY);
+    const { kept = null, byWind = false, delay = kept ? OWN_DELAY : DELAY } = options;
+    this.playout = new Playout(delay);
     /** @type {Placer | null} */
     this.placer = null;
-    this.connection = new Connection(
-      streamUrl(page),
-      {
-        onState: (state, retryIn) => listeners.onState?.(state, retryIn),
-        onDescription: (description) => {
-          this.playout.clear();
-          this.placer = null;
-          listeners.onDescription?.(description);
-        },
-        onFrame: (frame, arrival, size) => {
-          this.playout.push(frame, arrival);
-          listeners.onFrame?.(frame, arrival, size);
-        },
-        onMessage: (message) => listeners.onMessage?.(message),
+    /** What solves the scene by its wind; null where states come. @type {ByWind | null} */
+    this.byWind = null;
+    /** @type {import("./connection.js").Listeners} */
+    const taking = {
+      onState: (state, retryIn) => listeners.onState?.(state, retryIn),
+      onDescription: (description) => {
+        this.playout.clear();
+        this.placer = null;
+        this.byWind = null;
+        listeners.onDescription?.(description);
       },
-      options.rate,
-    );
+      onFrame: (frame, arrival, size) => {
+        const whole = this.byWind ? this.byWind.take(frame) : frame;
+        if (whole?.coordinates.length === this.description?.nCoordinates && whole) this.playout.push(whole, arrival);
+        listeners.onFrame?.(frame, arrival, size);
+      },
+      onMessage: (message) => listeners.onMessage?.(message),
+      ...(byWind && { onTables: (tables) => this._solve(tables) }),
+    };
+    this.connection = kept
+      ? new OwnLine(kept, taking, new URL(page).searchParams.get("wind"))
+      : new Connection(streamUrl(page), taking, options.rate ?? (byWind ? 60 : undefined));
+  }
+
+  /** @param {import("./sway.js").Tables} tables */
+  _solve(tables) {
+    if (this.description) this.byWind = new ByWind(new Stand(tables, this.description));
   }
 
   /** Open the line now, whatever the wait. */

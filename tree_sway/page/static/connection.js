@@ -10,9 +10,11 @@ import {
   decodeFrame,
   frameSize,
   isFrame,
+  isTables,
   LARGEST_DESCRIPTION,
   ProtocolError,
 } from "./protocol.js";
+import { decodeTables } from "./sway.js";
 
 /** Frames that may be on their way at most, and at least where they are large. */
 const MOST_CREDIT = 24;
@@ -33,6 +35,7 @@ const LARGEST_TEXT = 2 ** 20;
  * @typedef {object} Listeners
  * @property {(state: LineState, retryIn: number) => void} onState
  * @property {(description: import("./protocol.js").Description) => void} onDescription
+ * @property {(tables: import("./sway.js").Tables) => void} [onTables] after a description, by which to solve it
  * @property {(frame: import("./protocol.js").Frame, arrival: number, size: number) => void} onFrame
  * @property {(message: Record<string, any>) => void} onMessage
  */
@@ -73,7 +76,7 @@ export class Connection {
     this.listeners.onState("connecting", 0);
     socket.onopen = () => {
       this._awaited = 0;
-      this.send({ rate: this.rate, ping: performance.now() });
+      this.send({ rate: this.rate, ping: performance.now(), wind: Boolean(this.listeners.onTables) });
       this.listeners.onState("open", 0);
     };
     socket.onmessage = (event) => {
@@ -159,6 +162,10 @@ export class Connection {
   _binary(data, arrival) {
     const size = data.byteLength;
     if (size > LARGEST_DESCRIPTION) throw new ProtocolError(`a message of ${size} bytes`);
+    if (isTables(data)) {
+      const tables = decodeTables(data);
+      return () => this.listeners.onTables?.(tables);
+    }
     if (!isFrame(data)) {
       const description = decodeDescription(data);
       this.description = description;

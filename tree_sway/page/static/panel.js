@@ -49,7 +49,7 @@ class Scale {
 
   /** @param {number} value */
   text(value) {
-    if (this.isBearing) return windFrom(Math.cos(value), Math.sin(value));
+    if (this.isBearing) return windFrom(Math.sin(value), Math.cos(value));
     if (this.isAngle) return `${Math.round((value * 180) / Math.PI)}°`;
     if (this.unit === "m" && value < 0.1) return `${Number((1000 * value).toPrecision(2))} mm`;
     return `${Number(value.toPrecision(2))} ${this.unit}`.trim();

@@ -18,8 +18,10 @@ export const WIND_UNIT = 0.005;
 export const PAUSED = 1;
 export const BEYOND_SCALE = 2;
 export const RESTARTED = 4;
+export const PART = 8;
 
-const MAGIC = 0x44575354; // "TSWD"
+/** First bytes of what is sent once. */
+const MAGIC = { description: "TSWD", tables: "TSWT" };
 const FRAME_KIND = 0x46;
 const FRAME_SIZE = 28;
 
@@ -64,7 +66,8 @@ const FRAME_SIZE = 28;
  * @property {number} stamp [ms], of the sender's clock
  * @property {number} flags
  * @property {[number, number, number]} wind blowing to [m/s]
- * @property {Float32Array} coordinates in their own unit
+ * @property {Float32Array} coordinates in their own unit; none in a frame of the wind alone
+ * @property {number} first number of the first of them
  */
 
 /** Largest message with a description, and header in it [bytes]. */
@@ -84,24 +87,38 @@ export function decodeDescription(data) {
   }
 }
 
-/** @param {ArrayBuffer} data @returns {Description} */
-function decoded(data) {
+/**
+ * Take a message of a header and arrays apart; a `ProtocolError` if it is none.
+ * @typedef {Record<string, {values: NumberArray, shape: number[]}>} Arrays
+ * @param {ArrayBuffer} data @param {keyof typeof MAGIC} what
+ * @returns {{header: Record<string, any>, kinds: Arrays[], own: Arrays}} own arrays are those of no kind
+ */
+export function unpack(data, what) {
+  try {
+    return unpacked(data, what);
+  } catch (error) {
+    if (error instanceof ProtocolError) throw error;
+    throw new ProtocolError(`not a whole message of ${what} (${String(error).slice(0, 200)})`);
+  }
+}
+
+/** @param {ArrayBuffer} data @param {keyof typeof MAGIC} what */
+function unpacked(data, what) {
   const view = new DataView(data);
-  if (data.byteLength < 12 || view.getUint32(0, true) !== MAGIC) {
-    throw new ProtocolError("not a description: it does not begin with TSWD");
+  const begins = new TextDecoder().decode(new Uint8Array(data, 0, Math.min(4, data.byteLength)));
+  if (data.byteLength < 12 || begins !== MAGIC[what]) {
+    throw new ProtocolError(`no message of ${what}: it does not begin with ${MAGIC[what]}`);
   }
   const version = view.getUint32(4, true);
   if (version !== VERSION) {
-    throw new ProtocolError(`a description of version ${version}: this page reads ${VERSION}`);
+    throw new ProtocolError(`a message of version ${version}: this page reads ${VERSION}`);
   }
   const begin = 12 + view.getUint32(8, true);
   need(begin <= Math.min(data.byteLength, LARGEST_HEADER), "size of the header");
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, begin - 12)));
-  /** @type {Kind[]} */
-  const kinds = header.kinds.map((/** @type {Kind} */ kind) => ({ ...kind, arrays: {} }));
-  /** @type {Record<string, number[]>[]} */
-  const shapes = kinds.map(() => ({}));
-  /** @type {Record<string, NumberArray>} */
+  /** @type {Arrays[]} */
+  const kinds = header.kinds.map(() => ({}));
+  /** @type {Arrays} */
   const own = {};
   for (const [name, { type, shape, offset }] of Object.entries(header.arrays)) {
     const kind = TYPES[/** @type {keyof typeof TYPES} */ (type)];
@@ -110,12 +127,22 @@ function decoded(data) {
     const from = begin + offset;
     need(from >= begin && from + count * kind.BYTES_PER_ELEMENT <= data.byteLength, name);
     const [number, field] = name.split("/");
-    (field ? kinds[Number(number)].arrays : own)[field ?? name] = new kind(data, from, count);
-    if (field) shapes[Number(number)][field] = shape;
+    (field ? kinds[Number(number)] : own)[field ?? name] = { values: new kind(data, from, count), shape };
   }
-  kinds.forEach((kind, number) => checkKind(kind, shapes[number]));
-  checkTrees(header, kinds, own.tree_place, header.arrays.tree_place?.shape);
-  const places = own.tree_place;
+  return { header, kinds, own };
+}
+
+/** @param {ArrayBuffer} data @returns {Description} */
+function decoded(data) {
+  const { header, kinds: parts, own } = unpack(data, "description");
+  /** @type {Kind[]} */
+  const kinds = header.kinds.map((/** @type {Kind} */ kind, /** @type {number} */ number) => {
+    const named = Object.entries(parts[number]).map(([name, { values }]) => [name, values]);
+    return { ...kind, arrays: Object.fromEntries(named) };
+  });
+  kinds.forEach((kind, number) => checkKind(kind, parts[number]));
+  checkTrees(header, kinds, own.tree_place);
+  const places = own.tree_place.values;
   let nSegments = 0;
   let nCoordinates = 0;
   const trees = header.trees.map((/** @type {Tree} */ tree, /** @type {number} */ number) => {
@@ -142,6 +169,11 @@ function decoded(data) {
   };
 }
 
+/** Whether a message is one of tables. @param {ArrayBuffer} data */
+export function isTables(data) {
+  return data.byteLength >= 12 && new TextDecoder().decode(new Uint8Array(data, 0, 4)) === MAGIC.tables;
+}
+
 /** Whether a message is a frame. @param {ArrayBuffer} data */
 export function isFrame(data) {
   return data.byteLength >= FRAME_SIZE && new Uint8Array(data, 0, 1)[0] === FRAME_KIND;
@@ -158,23 +190,27 @@ export function decodeFrame(data, description) {
   const view = new DataView(data);
   if (!isFrame(data)) throw new ProtocolError("not a frame");
   const count = view.getUint16(26, true);
-  if (view.getUint8(1) !== FRAME_VERSION || data.byteLength !== FRAME_SIZE + 2 * count) {
+  const flags = view.getUint8(2);
+  const begin = flags & PART ? FRAME_SIZE + 2 : FRAME_SIZE;
+  if (view.getUint8(1) !== FRAME_VERSION || data.byteLength !== begin + 2 * count) {
     throw new ProtocolError(`a frame of ${data.byteLength} bytes for ${count} coordinates`);
   }
   const identity = view.getUint32(4, true);
   if (identity !== description?.shortIdentity) return null;
-  if (count !== description.nCoordinates) {
-    throw new ProtocolError(`a frame of ${count} coordinates, described are ${description.nCoordinates}`);
+  const { scale, nCoordinates } = description;
+  const first = flags & PART ? view.getUint16(FRAME_SIZE, true) : 0;
+  if (first + count > nCoordinates || (count !== nCoordinates && count && !(flags & PART))) {
+    throw new ProtocolError(`a frame of ${count} coordinates, described are ${nCoordinates}`);
   }
-  const { scale } = description;
-  const steps = new Int16Array(data, FRAME_SIZE, count);
+  const steps = new Int16Array(data, begin, count);
   const coordinates = new Float32Array(count);
-  for (let i = 0; i < count; i++) coordinates[i] = (steps[i] / FULL_SCALE) * scale[i];
+  for (let i = 0; i < count; i++) coordinates[i] = (steps[i] / FULL_SCALE) * scale[first + i];
   return {
     identity,
     sequence: view.getUint32(8, true),
     stamp: Number(view.getBigInt64(12, true)) / 1e6,
-    flags: view.getUint8(2),
+    flags,
+    first,
     wind: [
       view.getInt16(20, true) * WIND_UNIT,
       view.getInt16(22, true) * WIND_UNIT,

@@ -68,6 +68,19 @@ const WORDS = {
     "{0}. Activez l’accélération matérielle du navigateur, ou prenez Chrome 56, Firefox 51, Safari 15 ou plus récent ; sans carte graphique, lancez Chrome avec --enable-unsafe-swiftshader.",
     "{0}。ブラウザー設定でハードウェアアクセラレーションを有効にするか、Chrome 56、Firefox 51、Safari 15 以降を使ってください。GPU がない場合は Chrome を --enable-unsafe-swiftshader 付きで起動してください。",
   ],
+  corrected: [
+    "Solved here by the wind: {0} corrections, of {1} % of full scale at most",
+    "Hier gerechnet, nur Wind kommt: {0} Korrekturen, höchstens {1} % des Endwerts",
+    "Calculé ici à partir du vent : {0} corrections, au plus {1} % de la pleine échelle",
+    "風だけを受信して計算：補正 {0} 回、最大 {1} %",
+  ],
+  damaged: ["This file is damaged", "Diese Datei ist beschädigt", "Ce fichier est endommagé", "ファイルが壊れています"],
+  write_again: [
+    "{0}. Get it again from where it came, or write it again with tree-sway convert.",
+    "{0}. Bitte erneut herunterladen oder mit tree-sway convert neu schreiben.",
+    "{0}. Téléchargez-le à nouveau, ou réécrivez-le avec tree-sway convert.",
+    "{0}。もう一度入手するか、tree-sway convert で書き直してください。",
+  ],
   left_out: [
     "Without a graphics unit: {0} % of the pixels, {1} % of the leaves",
     "Ohne Grafikeinheit: {0} % der Bildpunkte, {1} % der Blätter",

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from tree_sway.core.wind.simulated.gust_event import gust
+from tree_sway.core.wind.simulated.gust_event import GustEvent
 from tree_sway.errors import ParameterError
 
 TIME = np.linspace(-5.0, 30.0, 7001)
@@ -17,6 +17,11 @@ TIME = np.linspace(-5.0, 30.0, 7001)
 amplitudes = st.floats(-30.0, 30.0)
 durations = st.floats(0.1, 60.0)
 starts = st.floats(-10.0, 20.0)
+
+
+def gust(kind, time, amplitude, duration, start=0.0):
+    return GustEvent(kind, amplitude, duration, start).at(time)
+
 
 PASSING = [partial(gust, kind) for kind in ('one_minus_cos', 'extreme_operating_gust')]
 LASTING = [partial(gust, kind) for kind in ('step', 'direction_change', 'turn')]

@@ -7,19 +7,11 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.wind.simulated.gust_event import EVENT_KINDS, gust, GustEvent, with_events
+from tree_sway.core.wind.simulated.gust_event import EVENT_KINDS, GustEvent, with_events
 from tree_sway.errors import ParameterError
 
 TIME = np.linspace(-5.0, 60.0, 6501)
 EAST = 0.5 * math.pi
-
-
-@pytest.mark.parametrize('kind', EVENT_KINDS)
-def test_an_event_is_the_shape_of_its_name(kind):
-    event = GustEvent(kind, 2.0, 5.0, start=10.0)
-    expected = gust(kind, TIME, 2.0, 5.0, 10.0)
-    np.testing.assert_allclose(event.at(TIME), expected, atol=1e-13)
-    assert event.is_turn == (kind in ('direction_change', 'turn'))
 
 
 @pytest.mark.parametrize('kind', ['one_minus_cos', 'extreme_operating_gust'])

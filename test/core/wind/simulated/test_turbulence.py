@@ -121,7 +121,7 @@ class TestAgainstPyConTurb:
 
     def test_closed_form(self, table):
         frequency, closed, _ = table
-        ours = Turbulence(7.0, 'kaimal', 10.0, reference_intensity=0.14).spectrum(frequency)
+        ours = Turbulence(7.0, 'kaimal', 10.0).spectrum(frequency)
         # Theirs is the mean over a band, ours the value at its middle.
         np.testing.assert_allclose(ours, closed, rtol=0.03)
 
@@ -159,8 +159,8 @@ class TestClosedForms:
 
     def test_deviations(self):
         np.testing.assert_allclose(
-            Turbulence(10.0, reference_intensity=0.16).deviations,
-            0.16 * 13.1 * np.array([1, 0.8, 0.5]),
+            Turbulence(10.0).deviations,
+            0.14 * 13.1 * np.array([1, 0.8, 0.5]),
         )
         np.testing.assert_allclose(Turbulence(10.0, intensity=0.2).deviations, (2.0, 1.6, 1.0))
 
@@ -242,7 +242,6 @@ class TestBearing:
         ({'mean_speed': math.nan}, 'mean_speed'),
         ({'height': 0.0}, 'height'),
         ({'intensity': -0.1}, 'intensity'),
-        ({'reference_intensity': 3.0}, 'reference_intensity'),
         ({'rate': 0.0}, 'rate'),
         ({'duration': -1.0}, 'duration'),
         ({'bearing_to': math.inf}, 'bearing_to'),

@@ -63,49 +63,45 @@ def test_two_trees_are_not_one():
 
 
 @pytest.mark.parametrize(
-    ('rows', 'continues', 'n', 'dropped', 'parents'),
+    ('rows', 'continues', 'n', 'parents'),
     [
         # In the middle of a branch: goes to the one before, and what it bears with it.
         ([*STEM, ((0, 0, 2), (0, 0, 2), 0.1, 1), ((0, 0, 2), (0, 0, 3), 0.1, 2),
-          ((0, 0, 2), (1, 0, 2), 0.05, 2)], [0, 1, 1, 1, 0], 4, 0, [-1, 0, 1, 1]),
-        # First of a branch: goes to the one after.
+          ((0, 0, 2), (1, 0, 2), 0.05, 2)], [0, 1, 1, 1, 0], 4, [-1, 0, 1, 1]),
+        # First of a branch: what it bears sits on its parent.
         ([*STEM, ((0, 0, 1), (0, 0, 1), 0.05, 0), ((0, 0, 1), (1, 0, 1), 0.05, 2),
-          ((0, 0, 1), (0, 1, 1), 0.04, 2)], [0, 1, 0, 1, 0], 4, 0, [-1, 0, 0, 2]),
-        # A branch of nothing else is left out; what it bears sits on its parent.
+          ((0, 0, 1), (0, 1, 1), 0.04, 2)], [0, 1, 0, 1, 0], 4, [-1, 0, 0, 0]),
+        # A branch of nothing else.
         ([*STEM, ((0, 0, 1), (0, 0, 1), 0.05, 0), ((0, 0, 1), (1, 0, 1), 0.05, 2)],
-         [0, 1, 0, 0], 3, 1, [-1, 0, 0]),
+         [0, 1, 0, 0], 3, [-1, 0, 0]),
         # The root itself.
         ([((0, 0, 0), (0, 0, 0), 0.2, -1), ((0, 0, 0), (0, 0, 1), 0.2, 0),
-          ((0, 0, 1), (0, 0, 2), 0.1, 1)], [0, 1, 1], 2, 0, [-1, 0]),
+          ((0, 0, 1), (0, 0, 2), 0.1, 1)], [0, 1, 1], 2, [-1, 0]),
         # Two in a row at the base of a branch.
         ([*STEM, ((0, 0, 1), (0, 0, 1), 0.05, 0), ((0, 0, 1), (0, 0, 1), 0.05, 2),
           ((0, 0, 1), (1, 0, 1), 0.05, 3), ((0, 0, 1), (0, 1, 1), 0.04, 2)],
-         [0, 1, 0, 1, 1, 0], 4, 0, [-1, 0, 0, 2]),
+         [0, 1, 0, 1, 1, 0], 4, [-1, 0, 0, 0]),
     ],
 )  # fmt: skip
-def test_zero_cylinders_are_merged(rows, continues, n, dropped, parents):
+def test_cylinders_of_no_length_are_left_out(rows, continues, n, parents):
     tree_file = built(rows, continues)
     assert tree_file.tree.n_segments == n
     assert list(tree_file.tree.segment_parent) == parents
-    gone = len(rows) - n
-    assert tree_file.notes == (
-        f'{gone} cylinders shorter than 1e-06 m were merged, '
-        f'{dropped} of them branches of nothing else, left out',
-    )
+    assert tree_file.notes == (f'{len(rows) - n} cylinders of no length were left out',)
 
 
 @settings(deadline=None, max_examples=30)
-@given(seed=st.integers(0, 2**32 - 1), below=st.sampled_from([1e-6, 0.05, 0.3]))
-def test_merging_keeps_volume_and_reach(seed, below):
+@given(seed=st.integers(0, 2**32 - 1))
+def test_leaving_out_keeps_volume_and_reach(seed):
     rng = np.random.default_rng(seed)
     n = 20
-    reach = np.where(rng.random(n) < 0.3, rng.uniform(0, 0.2, n), rng.uniform(0.3, 1.0, n))
+    reach = np.where(rng.random(n) < 0.3, 0.0, rng.uniform(0.3, 1.0, n))
     reach[0] = 1.0
     z = np.concatenate([[0.0], np.cumsum(reach)])
     width = rng.uniform(0.05, 0.2, n)
     rows = [((0, 0, z[i]), (0, 0, z[i + 1]), width[i], i - 1) for i in range(n)]
-    tree = built(rows, [i > 0 for i in range(n)], merge_below=below).tree
-    assert tree.n_segments == 1 + np.count_nonzero(reach[1:] >= below)
+    tree = built(rows, [i > 0 for i in range(n)]).tree
+    assert tree.n_segments == np.count_nonzero(reach)
     assert tree.height == pytest.approx(z[-1], abs=1e-9)
     assert tree.volume.sum() == pytest.approx((np.pi / 4 * width**2 * reach).sum(), rel=1e-9)
 
@@ -127,7 +123,7 @@ def test_what_cannot_be(rows, message):
         built(rows)
 
 
-@pytest.mark.parametrize('options', [{'merge_below': -1.0}, {'twig_diameter': float('nan')}])
+@pytest.mark.parametrize('options', [{'trusted_diameter': -1.0}, {'twig_diameter': float('nan')}])
 def test_options_are_checked(options):
     with pytest.raises(ParameterError, match=next(iter(options))):
         CylinderOptions(**options)

@@ -47,7 +47,7 @@ def test_mtg():
     tree = tree_file.tree
     assert (tree.n_segments, tree.n_branches) == (5, 3)
     assert tree_file.notes[0] == '10 vertices with a position, 2 without; 7 of them segments'
-    assert tree_file.notes[1].startswith('2 cylinders shorter than 1e-06 m were merged, 0 of them')
+    assert tree_file.notes[1].startswith('2 cylinders of no length were left out')
     assert tree.height == pytest.approx(2.3)
     np.testing.assert_allclose(tree.base_diameter[:2], [0.2, 0.18])
     np.testing.assert_allclose(tree.tip_diameter[:2], [0.18, 0.16])

@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.wind.simulated.turbulence import Turbulence
+from tree_sway.core.wind.simulated.turbulence import REFERENCE_INTENSITY, Turbulence
 
 RATE = 10.0
 """Largest rate of the wind in [Hz]."""
@@ -57,7 +57,7 @@ def turbulence_about_means(
     rate = min(RATE, _MOST / duration)
     fine = time[0] + np.arange(math.floor(duration * rate) + 1) / rate
     level = np.hypot(mean[:, 0], mean[:, 1])
-    deviation = 0.14 * (0.75 * level + 5.6) * np.minimum(level, 1.0)
+    deviation = REFERENCE_INTENSITY * (0.75 * level + 5.6) * np.minimum(level, 1.0)
     between = np.stack([np.interp(fine, time, column) for column in mean.T], axis=1)
     typical = min(max(float(level.mean()), 1.0), 40.0)
     whole = max(len(fine), math.ceil(600.0 * rate))

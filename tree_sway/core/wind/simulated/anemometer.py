@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from tree_sway.core.checks import within
 from tree_sway.core.wind.simulated.gust_event import GustEvent, with_events
-from tree_sway.core.wind.simulated.spectra import SPECTRA
 from tree_sway.core.wind.simulated.turbulence import along_bearing, Turbulence
 from tree_sway.core.wind.simulated.turbulence_stream import TurbulenceStream
-from tree_sway.errors import ParameterError
 
 Floats = NDArray[np.float64]
 
@@ -31,7 +29,7 @@ class AnemometerModel:
         Where the mean wind blows to, clockwise from north in [rad]; the default is a westerly.
     turbulence
         ``kaimal``, ``von_karman`` or ``none``.
-    height, intensity, reference_intensity
+    height, intensity
         As in `Turbulence`.
     rate
         Samples per second in [Hz], 1 to 100.
@@ -56,27 +54,22 @@ class AnemometerModel:
         turbulence: str = 'kaimal',
         height: float = 10.0,
         intensity: float | None = None,
-        reference_intensity: float = 0.14,
         rate: float = 20.0,
         events: Sequence[GustEvent] = (),
         seed: int = 0,
     ) -> None:
         """Check the parameters."""
         within('mean_speed', mean_speed, 0.0, 40.0, 'm/s')
-        if turbulence not in (*SPECTRA, 'none'):
-            raise ParameterError(
-                f"unknown spectrum '{turbulence}'",
-                where='turbulence',
-                cure=f'use one of: {", ".join((*SPECTRA, "none"))}',
-            )
         self._rate = within('rate', rate, 1.0, 100.0, 'Hz')
         self._bearing_to = within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
         self._events = tuple(events)
         self._mean = np.array([mean_speed, 0.0, 0.0])
         self._stream: TurbulenceStream | None = None
-        if turbulence != 'none' and mean_speed > 0.0:
-            parameters = Turbulence(mean_speed, turbulence, height, intensity, reference_intensity)
-            self._stream = TurbulenceStream(parameters, self._rate, seed)
+        if turbulence != 'none':
+            level = mean_speed or 1.0
+            parameters = Turbulence(level, turbulence, height, intensity)
+            if mean_speed > 0.0:
+                self._stream = TurbulenceStream(parameters, self._rate, seed)
 
     @property
     def rate(self) -> float:

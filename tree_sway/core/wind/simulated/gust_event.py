@@ -47,54 +47,6 @@ _SHAPES = {
 EVENT_KINDS = tuple(_SHAPES)
 
 
-def gust(
-    kind: str, time: ArrayLike, amplitude: float, duration: float, start: float = 0.0
-) -> Floats:
-    """
-    Return the speed that a gust adds in [m/s], or the angle that a turn turns by in [rad].
-
-    Parameters
-    ----------
-    kind
-        One of `EVENT_KINDS`.
-    time
-        Times in [s], any shape.
-    amplitude
-        Speed in [m/s], negative for a lull, or angle in [rad]; more than 2 pi goes round.
-    duration
-        Duration in [s]; of a step the time over which it rises, linearly, which may be 0.
-    start
-        Time it begins in [s].
-
-    Returns
-    -------
-    Floats
-        The shape of `time`.
-
-    Raises
-    ------
-    ParameterError
-        If the kind is unknown or a value is out of its range.
-
-    """
-    if kind not in _SHAPES:
-        raise ParameterError(
-            f"unknown event '{kind}'",
-            where='gust event',
-            cure=f'use one of: {", ".join(EVENT_KINDS)}',
-        )
-    shape = _SHAPES[kind]
-    largest, unit = (_LARGEST_ANGLE, 'rad') if shape.is_turn else (_LARGEST_SPEED, 'm/s')
-    name = 'angle' if shape.is_turn else 'amplitude'
-    size = within(name, amplitude, -largest, largest, unit)
-    span = within('duration', duration, 0.0, _LONGEST, 's', above=kind != 'step')
-    begin = within('start', start, -_LONGEST, _LONGEST, 's')
-    elapsed = np.asarray(time, dtype=np.float64) - begin
-    if span == 0.0:
-        return np.where(elapsed >= 0.0, size, 0.0)
-    return np.asarray(size * shape.share(np.clip(elapsed / span, 0.0, 1.0)))
-
-
 @dataclass(frozen=True)
 class GustEvent:
     """
@@ -105,8 +57,12 @@ class GustEvent:
     kind
         ``one_minus_cos``, ``extreme_operating_gust``, ``step`` (speeds), ``direction_change`` or
         ``turn`` (angles).
-    amplitude, duration, start
-        As of `gust`.
+    amplitude
+        Speed in [m/s], negative for a lull, or angle in [rad]; more than 2 pi goes round.
+    duration
+        Duration in [s]; of a step the time over which it rises, linearly, which may be 0.
+    start
+        Time it begins in [s].
     every
         Time after which it happens again in [s], at least `duration`; 0 for once. What lasts
         (step, direction change, turn) goes back every second time.
@@ -125,10 +81,19 @@ class GustEvent:
     every: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse what the shape itself refuses, and repeats that overlap."""
-        gust(self.kind, 0.0, self.amplitude, self.duration, self.start)
+        """Refuse what is out of range, and repeats that overlap."""
+        if self.kind not in _SHAPES:
+            raise ParameterError(
+                f"unknown event '{self.kind}'",
+                where='gust event',
+                cure=f'use one of: {", ".join(EVENT_KINDS)}',
+            )
+        largest, unit = (_LARGEST_ANGLE, 'rad') if self.is_turn else (_LARGEST_SPEED, 'm/s')
+        within('angle' if self.is_turn else 'amplitude', self.amplitude, -largest, largest, unit)
+        within('duration', self.duration, 0.0, _LONGEST, 's', above=self.kind != 'step')
+        within('start', self.start, -_LONGEST, _LONGEST, 's')
         if self.every != 0.0:
-            within('every', self.every, self.duration, 1e6, 's', above=self.duration == 0.0)
+            within('every', self.every, self.duration, _LONGEST, 's', above=self.duration == 0.0)
 
     @property
     def is_turn(self) -> bool:
@@ -137,14 +102,15 @@ class GustEvent:
 
     def at(self, time: ArrayLike) -> Floats:
         """Return the speed to add in [m/s], or the angle to turn by in [rad], at times in [s]."""
-        elapsed = np.asarray(time, dtype=np.float64) - self.start
-        if self.every == 0.0:
-            return gust(self.kind, elapsed, self.amplitude, self.duration)
-        cycle = np.maximum(np.floor(elapsed / self.every), 0.0)
-        value = gust(self.kind, elapsed - cycle * self.every, self.amplitude, self.duration)
-        if _SHAPES[self.kind].lasts:
-            value = np.where(cycle % 2 == 1, self.amplitude - value, value)
-        return value
+        shape, elapsed = _SHAPES[self.kind], np.asarray(time, dtype=np.float64) - self.start
+        cycle = np.maximum(np.floor(elapsed / self.every), 0.0) if self.every else 0.0 * elapsed
+        elapsed = elapsed - cycle * self.every
+        if self.duration == 0.0:
+            share = np.where(elapsed >= 0.0, 1.0, 0.0)
+        else:
+            share = shape.share(np.clip(elapsed / self.duration, 0.0, 1.0))
+        goes_back = shape.lasts & (cycle % 2 == 1)
+        return np.asarray(self.amplitude * np.where(goes_back, 1.0 - share, share))
 
 
 def with_events(

@@ -10,7 +10,7 @@ again.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +22,12 @@ from tree_sway.errors import ParameterError
 Floats = NDArray[np.float64]
 _SPIKE = 20.0
 _NO_READING = 999.99
+_KINDS = (
+    *('dropout', 'spike', 'freeze', 'nan', 'no_reading', 'delay', 'reorder', 'duplicate'),
+    *('zero_stamp', 'future_stamp', 'restart'),
+)
+FAULTS = ('none', *_KINDS, 'all')
+"""Kinds of fault, none of them, and each in its turn."""
 
 
 class Sample(NamedTuple):
@@ -61,8 +67,8 @@ class SensorFaults:
         self._every = within('every', every, 0.0, 1e6, 's', above=True)
         self._duration = within('duration', duration, 0.0, every, 's', above=True)
         self._held: list[Sample] = []
-        self._frozen: Floats | None = None
-        self._is_restarting = False
+        self._before = 'none'
+        self._last = np.zeros(3)
 
     def at(self, time: float) -> str:
         """Return the fault at a time in [s] since the sensor's start, ``none`` between them."""
@@ -73,81 +79,38 @@ class SensorFaults:
 
     def sent(self, time: float, stamp: int, vector: Floats) -> Iterator[Sample]:
         """Return what is sent for a sample at a time [s], of a stamp [ns] and wind [m/s]."""
-        fault = self.at(time)
-        if fault != 'freeze':
-            self._frozen = None
-        if fault not in _HOLDING:
+        fault, before = self.at(time), self._before
+        self._before = fault
+        if fault not in ('delay', 'reorder'):
             yield from self._held
             self._held = []
-        if self._is_restarting and fault != 'restart':
+        if before == 'restart' and fault != 'restart':
             yield Sample(stamp, np.zeros(3))  # the first line after it has started
-            self._is_restarting = False
             return
-        self._is_restarting = fault == 'restart'
-        yield from _SENDS.get(fault, _as_it_is)(self, Sample(stamp, vector))
-
-    def _hold(self, sample: Sample) -> Iterator[Sample]:
-        self._held.append(sample)
-        yield from ()
-
-    def _swap(self, sample: Sample) -> Iterator[Sample]:
-        if self._held:
-            yield sample
+        match fault:
+            case 'dropout' | 'restart':
+                return
+            case 'delay':
+                self._held.append(Sample(stamp, vector))
+                return
+            case 'reorder' if not self._held:
+                self._held.append(Sample(stamp, vector))
+                return
+            case 'spike':
+                vector = vector + np.array([_SPIKE, -_SPIKE, 0.0])
+            case 'nan':
+                vector = np.full(3, np.nan)
+            case 'no_reading':
+                vector = np.full(3, _NO_READING)
+            case 'freeze' if before == 'freeze':
+                vector = self._last
+            case 'duplicate':
+                yield Sample(stamp, vector)
+            case 'zero_stamp':
+                stamp = 0
+            case 'future_stamp':
+                stamp += 3_600_000_000_000
+        self._last = vector
+        yield Sample(stamp, vector)
+        if fault == 'reorder':
             yield self._held.pop()
-        else:
-            self._held.append(sample)
-
-    def _freeze(self, sample: Sample) -> Iterator[Sample]:
-        if self._frozen is None:
-            self._frozen = sample.vector
-        yield Sample(sample.stamp, self._frozen)
-
-
-def _as_it_is(_faults: SensorFaults, sample: Sample) -> Iterator[Sample]:
-    yield sample
-
-
-def _nothing(_faults: SensorFaults, _sample: Sample) -> Iterator[Sample]:
-    yield from ()
-
-
-def _spike(_faults: SensorFaults, sample: Sample) -> Iterator[Sample]:
-    yield Sample(sample.stamp, sample.vector + np.array([_SPIKE, -_SPIKE, 0.0]))
-
-
-def _reading(value: float) -> Callable[[SensorFaults, Sample], Iterator[Sample]]:
-    def send(_faults: SensorFaults, sample: Sample) -> Iterator[Sample]:
-        yield Sample(sample.stamp, np.full(3, value))
-
-    return send
-
-
-def _twice(_faults: SensorFaults, sample: Sample) -> Iterator[Sample]:
-    yield sample
-    yield sample
-
-
-def _unstamped(_faults: SensorFaults, sample: Sample) -> Iterator[Sample]:
-    yield Sample(0, sample.vector)
-
-
-def _from_the_future(_faults: SensorFaults, sample: Sample) -> Iterator[Sample]:
-    yield Sample(sample.stamp + 3_600_000_000_000, sample.vector)
-
-
-_SENDS: dict[str, Callable[[SensorFaults, Sample], Iterator[Sample]]] = {
-    'dropout': _nothing,
-    'spike': _spike,
-    'freeze': SensorFaults._freeze,
-    'nan': _reading(float('nan')),
-    'no_reading': _reading(_NO_READING),
-    'delay': SensorFaults._hold,
-    'reorder': SensorFaults._swap,
-    'duplicate': _twice,
-    'zero_stamp': _unstamped,
-    'future_stamp': _from_the_future,
-    'restart': _nothing,
-}
-_HOLDING = ('delay', 'reorder')
-_KINDS = tuple(_SENDS)
-FAULTS = ('none', *_KINDS, 'all')

@@ -9,8 +9,9 @@ its node and the command line offer what stands there.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import MappingProxyType
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,29 +19,15 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 
 
-class ComponentSpectrum(Protocol):
-    """Spectrum of one component of the wind."""
-
-    def __call__(
-        self,
-        frequency: ArrayLike,
-        mean_speed: float,
-        deviation: float,
-        scale: float,
-        *,
-        across: bool,
-    ) -> Floats:
-        """Power spectral density, one-sided, of integral ``deviation**2``, as by von Karman."""
-
-
 class Spectrum(NamedTuple):
     """
     A model of turbulence: the spectrum of a component, and integral scales of u, v, w, (3,).
 
-    These are over the turbulence scale Lambda1 of IEC 61400-1.
+    The spectrum is a function as `kaimal_spectrum`; the scales are over the turbulence scale
+    Lambda1 of IEC 61400-1.
     """
 
-    of_component: ComponentSpectrum
+    of_component: Callable[..., Floats]
     scales: tuple[float, float, float]
 
 

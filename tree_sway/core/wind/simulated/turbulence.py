@@ -43,6 +43,9 @@ ground (Kaimal & Finnigan 1994, chapter 1).
 
 """
 
+REFERENCE_INTENSITY = 0.14
+"""I_ref of IEC 61400-1 in [-], of its class B."""
+
 SHORTEST_PERIOD = 600.0
 """Shortest period of a record in [s]: the ten minutes over which IEC defines the deviations."""
 
@@ -61,9 +64,7 @@ class Turbulence:
     height
         Height above the ground in [m]; sets the integral scales.
     intensity
-        Turbulence intensity s_u/U in [-]; None takes the deviation from `reference_intensity`.
-    reference_intensity
-        I_ref of IEC 61400-1 in [-]: 0.16, 0.14, 0.12 for its classes A, B, C.
+        Turbulence intensity s_u/U in [-]; None takes the deviation of IEC's class B.
 
     Raises
     ------
@@ -76,7 +77,6 @@ class Turbulence:
     model: str = 'kaimal'
     height: float = 10.0
     intensity: float | None = None
-    reference_intensity: float = 0.14
 
     def __post_init__(self) -> None:
         """Refuse what no wind can be."""
@@ -90,7 +90,6 @@ class Turbulence:
         within('height', self.height, 0.0, 1000.0, 'm', above=True)
         if self.intensity is not None:
             within('intensity', self.intensity, 0.0, 2.0)
-        within('reference_intensity', self.reference_intensity, 0.0, 2.0)
 
     @cached_property
     def deviations(self) -> Floats:
@@ -98,7 +97,7 @@ class Turbulence:
         if self.intensity is not None:
             along = self.intensity * self.mean_speed
         else:
-            along = self.reference_intensity * (0.75 * self.mean_speed + 5.6)
+            along = REFERENCE_INTENSITY * (0.75 * self.mean_speed + 5.6)
         return along * _DEVIATION_RATIOS
 
     @cached_property
@@ -191,7 +190,6 @@ def simulate_turbulence(
     model: str = 'kaimal',
     height: float = 10.0,
     intensity: float | None = None,
-    reference_intensity: float = 0.14,
     bearing_to: float = 0.5 * np.pi,
 ) -> Floats:
     """
@@ -199,7 +197,7 @@ def simulate_turbulence(
 
     Parameters
     ----------
-    mean_speed, model, height, intensity, reference_intensity
+    mean_speed, model, height, intensity
         As in `Turbulence`.
     rate
         Samples per second in [Hz], up to 1000.
@@ -222,7 +220,7 @@ def simulate_turbulence(
         If a value is out of its range.
 
     """
-    turbulence = Turbulence(mean_speed, model, height, intensity, reference_intensity)
+    turbulence = Turbulence(mean_speed, model, height, intensity)
     within('rate', rate, 0.0, 1000.0, 'Hz', above=True)
     within('duration', duration, 0.0, 1e6, 's', above=True)
     within('bearing_to', bearing_to, -1e3, 1e3, 'rad')

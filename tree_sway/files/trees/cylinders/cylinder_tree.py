@@ -4,9 +4,9 @@
 Cylinders of a scanned or digitised tree to a tree.
 
 A format's own file only parses; what follows is the same for all: branches that lost their parent
-are set on the nearest cylinder, tiny cylinders are merged, chains of extensions become branches,
-thin twigs are corrected if asked for, and the base is moved to the origin. Each step says what it
-did in a note.
+are set on the nearest cylinder, cylinders of no length are left out, chains of extensions become
+branches, thin twigs are corrected if asked for, and the base is moved to the origin. Each step
+says what it did in a note.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
 from tree_sway.files.trees.cylinders.joining import branch_keys, join_loose_branches
-from tree_sway.files.trees.cylinders.merging import merge_tiny
+from tree_sway.files.trees.cylinders.zero_length import without_zero_length
 from tree_sway.files.trees.imported_tree import TreeFile
 
-_LONGEST = {'merge_below': 10.0, 'twig_diameter': 0.1, 'trusted_diameter': 2.0}
+_LONGEST = {'twig_diameter': 0.1, 'trusted_diameter': 2.0}
 """Largest value of each option in [m]."""
 
 
@@ -40,8 +40,6 @@ class CylinderOptions:
     ----------
     species
         Key of the wood.
-    merge_below
-        Cylinders shorter than this are merged with their neighbour in [m].
     twig_diameter
         Measured diameter of a twig's tip in [m], to which what is thinner than `trusted_diameter`
         is made to taper; None to leave the twigs as thick as the scan has them.
@@ -53,7 +51,6 @@ class CylinderOptions:
     """
 
     species: str = 'broadleaf'
-    merge_below: float = 1e-6
     twig_diameter: float | None = None
     trusted_diameter: float = 0.05
     to_origin: bool = True
@@ -88,13 +85,10 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path, options: CylinderOptions
             f'{joined.loose} branches had no parent and were set on the nearest cylinder, '
             f'at most {joined.distance:.3g} m away'
         )
-    merged = merge_tiny(cylinders, order.tolist(), options.merge_below)
-    cylinders = merged.cylinders
-    if merged.tiny:
-        notes.append(
-            f'{merged.tiny} cylinders shorter than {options.merge_below:g} m were merged, '
-            f'{merged.dropped} of them branches of nothing else, left out'
-        )
+    count = len(cylinders.start)
+    cylinders = without_zero_length(cylinders, order)
+    if len(cylinders.start) < count:
+        notes.append(f'{count - len(cylinders.start)} cylinders of no length were left out')
     tree = built_tree(
         source,
         cylinders.start,

@@ -12,11 +12,10 @@ import pytest
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.motion.response import tip_motion
+from tree_sway.core.simulator.find_basis import state_basis, tip_moments
 from tree_sway.core.simulator.simulator import SwaySimulator
-from tree_sway.core.state.find_basis import state_basis, tip_moments
-from tree_sway.core.state.full_scale import FULL_SCALE
+from tree_sway.core.state.state_basis import FULL_SCALE
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.errors import ParameterError
 from tree_sway.page.protocol import quantised
 
 DT = 1.0 / 60.0
@@ -29,7 +28,7 @@ def benjamina():
 
 @pytest.fixture(scope='module')
 def basis(benjamina):
-    return state_basis(benjamina, 16)
+    return state_basis(benjamina)
 
 
 def gaps(sim, basis, speed, steps=600):
@@ -42,9 +41,7 @@ def gaps(sim, basis, speed, steps=600):
     ):
         sim.step(wind, DT)
         if number % 10 == 9:
-            steps16, held = basis.quantised(basis.coordinates(sim.rotations()))
-            assert not held
-            x = basis.rotations(basis.from_quantised(steps16))
+            x = basis.rotations(basis.rounded(basis.coordinates(sim.rotations())))
             placed.append(sim.place()[:, :3].copy())
             through.append(sim.place_rotations(x)[:, :3])
     placed, through = np.array(placed), np.array(through)
@@ -57,8 +54,7 @@ def test_no_segment_is_farther_off_than_the_error_that_is_reported(name, speed):
     sim = SwaySimulator(builtin_tree(name))
     basis = state_basis(sim)
     gap, motion = gaps(sim, basis, speed)
-    assert gap.max() <= basis.error.quantised_greatest
-    assert np.sqrt(np.square(gap).mean()) <= basis.error.quantised_rms
+    assert gap.max() <= basis.error
     assert np.sqrt(np.square(motion).sum(axis=2).mean()) > 5.0 * np.sqrt(np.square(gap).mean())
 
 
@@ -78,11 +74,13 @@ def test_coordinates_of_a_shape_in_the_basis_are_its_own(basis):
     assert again == pytest.approx(coordinates, rel=1e-9, abs=1e-9 * basis.scale.max())
 
 
-def test_what_is_beyond_full_scale_is_held_and_counted(basis):
-    steps, held = basis.quantised(basis.scale * np.linspace(-2.0, 2.0, basis.n_coordinates))
-    assert held == basis.n_coordinates // 2
-    assert (steps[0], steps[-1]) == (-FULL_SCALE, FULL_SCALE)
-    assert basis.from_quantised(steps)[0] == pytest.approx(-basis.scale[0])
+def test_what_is_beyond_full_scale_is_held(basis):
+    coordinates = basis.scale * np.linspace(-2.0, 2.0, basis.n_coordinates)
+    sent = basis.rounded(coordinates)
+    held = np.abs(coordinates) > basis.scale
+    np.testing.assert_allclose(np.abs(sent[held]), basis.scale[held])
+    finest = basis.scale.max() / FULL_SCALE
+    np.testing.assert_allclose(sent[~held], coordinates[~held], atol=finest)
 
 
 def test_forces_on_tips_do_the_work_that_moments_do(fork):
@@ -107,20 +105,15 @@ def test_the_simulator_is_left_as_it_was(fork):
     assert sim.state().values.tobytes() == before
 
 
-def test_no_coordinates_are_refused(fork):
-    with pytest.raises(ParameterError, match='0 coordinates'):
-        state_basis(SwaySimulator(fork()), 0)
-
-
 PROGRAM = """
 import hashlib
 import numpy as np
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.simulator.simulator import SwaySimulator
-from tree_sway.core.state.find_basis import state_basis
+from tree_sway.core.simulator.find_basis import state_basis
 sim = SwaySimulator(builtin_tree("goldcrest"), model=60)
-basis = state_basis(sim, 16)
-coordinates = np.linspace(-0.1, 0.1, 16) * basis.scale
+basis = state_basis(sim)
+coordinates = np.linspace(-0.1, 0.1, basis.n_coordinates) * basis.scale
 poses = sim.place_rotations(basis.rotations(coordinates))
 print(basis.digest, hashlib.sha256(poses.tobytes()).hexdigest())
 """

@@ -1,0 +1,67 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Strain along branches and the share of strength used, beside what a beam's statics say."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.simulate import Rig
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.strength.strength_use import ROOT_MOMENT, WOOD_BAND
+from tree_sway.core.strength.wood_strain import WoodStrain
+from tree_sway.core.tree.species import species_named
+
+STEADY = np.tile([3.0, 0.0, 0.0], (1200, 1))
+STILL = Settings(gravity=0.0, damping_ratio=0.5, in_leaf=False)
+
+
+@pytest.mark.parametrize('model', [20, 'full'])
+def test_a_pole_strains_as_a_beam_under_an_even_load(stem, model):
+    """M(s) = q (L - s)^2 / 2, and the fibre's strain is M r / (E I)."""
+    tree = stem(base=0.02, tip=0.02, cuts=12)
+    rig = Rig(tree, STILL, model=model)
+    record = rig.run(STEADY)
+    strain = WoodStrain(rig.calibrated)
+    found = strain.of(rig._at_rest().rotations())
+    assert (found == 0.0).all()  # at rest
+    simulator = rig._at_rest()
+    for wind in STEADY:
+        simulator.step(wind, 1 / 60)
+    found, along = strain.of(simulator.rotations()), strain.height / tree.height
+    half = 1.0 / 24.0
+    beyond = ((1.0 - along + half) ** 3 - (1.0 - along - half) ** 3) / (6.0 * half)
+    assert np.abs(found - found[0] * beyond / beyond[0]).max() < 0.02 * found[0]
+    assert found[0] == pytest.approx(record.base_strain[-1, 0] * -1.0 * beyond[0], rel=0.03)
+    assert record.strain[-1, 0] == pytest.approx(found[0])
+
+
+def test_strength_used_is_stress_over_that_of_rupture(stem):
+    tree, oak = stem(base=0.03, tip=0.015, cuts=8), species_named('oak')
+    rig = Rig(PlacedTree('a', tree, species=oak), STILL)
+    record = rig.run(STEADY)
+    used = record.strength
+    assert used.wood[0] == pytest.approx(oak.modulus * record.strain.max() / oak.rupture)
+    assert used.wood[1] == pytest.approx(used.wood[0] / WOOD_BAND[1])
+    assert used.wood[1] < used.wood[0] < used.wood[2]
+    moment = np.linalg.norm(record.base_moment, axis=1).max()
+    held = ROOT_MOMENT * oak.density * tree.volume.sum()
+    assert used.roots[0] == pytest.approx(moment / held)
+    assert used.branch in str(used)
+    assert 'roots' in str(used)
+
+
+def test_a_pot_has_no_root_strength(stem):
+    pot = species_named('benjamina')
+    used = Rig(PlacedTree('a', stem(), species=pot), STILL).run(STEADY[:10]).strength
+    assert np.isnan(used.roots).all()
+    assert 'unknown in a pot' in str(used)
+
+
+def test_more_wind_uses_more_strength(stem):
+    rig = Rig(PlacedTree('a', stem(), species=species_named('oak')), STILL, model=6)
+    curve = rig.strength_curve([2.0, 4.0, 8.0], rng=np.random.default_rng(1), seconds=5.0)
+    shares = [each.wood[0] for each in curve]
+    assert shares[0] < 0.4 * shares[1] < 0.16 * shares[2]

@@ -1,0 +1,32 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+// Steps the tables of a folder in its wind, and prints how far the states are from the expected ones:
+// `node test/page/sway_vectors.mjs FOLDER`.
+import { readFileSync } from "node:fs";
+import { decodeDescription } from "../../tree_sway/page/static/protocol.js";
+import { decodeTables, Stand } from "../../tree_sway/page/static/sway.js";
+
+const read = (name) => {
+  const bytes = readFileSync(`${process.argv[2]}/${name}`);
+  return bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
+};
+const stand = new Stand(decodeTables(read("tables.bin")), decodeDescription(read("description.bin")));
+const winds = new Float64Array(read("winds.bin"));
+const expected = new Float64Array(read("expected.bin"));
+const size = stand.trees.reduce((sum, { state }) => sum + state.eta.length, 0);
+const every = winds.length / 3 / (expected.length / size);
+let [wrong, greatest, held, at] = [0, 0, 0, 0];
+const begin = performance.now();
+for (let step = 0; step < winds.length / 3; step++) {
+  stand.step(winds[3 * step], winds[3 * step + 1], winds[3 * step + 2]);
+  held += stand.held;
+  if ((step + 1) % every) continue;
+  for (const { state } of stand.trees) {
+    for (const value of state.eta) {
+      wrong = Math.max(wrong, Math.abs(value - expected[at]));
+      greatest = Math.max(greatest, Math.abs(expected[at++]));
+    }
+  }
+}
+const micros = (1000 * (performance.now() - begin)) / (winds.length / 3) / stand.trees.length;
+console.log(JSON.stringify({ wrong, greatest, held, steps: winds.length / 3, compared: at, micros }));

@@ -1,0 +1,139 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The solver in JavaScript against the one in Python, on the tables that both are given."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+import shutil
+import subprocess
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip('aiohttp', reason='aiohttp is not installed')
+pytest.importorskip('numba', reason='numba is not installed')
+
+from tree_sway.core.growth.builtin import BUILTIN_TREES  # noqa: E402
+from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
+from tree_sway.core.scene.scene import Scene  # noqa: E402
+from tree_sway.core.simulator.protocol import Simulator  # noqa: E402
+from tree_sway.core.simulator.settings import Settings  # noqa: E402
+from tree_sway.errors import FormatError  # noqa: E402
+from tree_sway.files.trees.source import open_scene  # noqa: E402
+from tree_sway.page.protocol import decode_description, decode_tables  # noqa: E402
+from tree_sway.page.scene_state import SceneState  # noqa: E402
+from tree_sway.page.tables import tables_of  # noqa: E402
+
+HERE = Path(__file__).parent
+SCAN = HERE.parent / 'files' / 'data'
+DT, STEPS, EVERY = 1.0 / 60.0, 1200, 50
+
+
+def gusty(steps: int = STEPS) -> Any:
+    """Gusts that turn once around, rise and fall, and go beyond the table for a while."""
+    time = DT * np.arange(steps)
+    speed = 7.0 + 5.0 * np.sin(1.3 * time) + 3.0 * np.sin(5.1 * time)
+    speed[800:860] = 60.0
+    turn = 0.35 * time + 0.3 * np.sin(3.0 * time)
+    up = 0.3 * np.sin(2.2 * time) + 0.7 * (np.abs(time - 5.0) < 0.5)
+    return speed[:, None] * np.stack([np.cos(turn), np.sin(turn), up], axis=1)
+
+
+def doubled(records: Any) -> Any:
+    """Return records whose numbers of single precision are in double precision."""
+    fields = []
+    for name in records.dtype.names:
+        kind, shape = records.dtype[name].base, records.dtype[name].shape
+        fields.append((name, 'f8' if kind == 'f4' else kind, shape))
+    return records.astype(np.dtype(fields))
+
+
+def exported(simulator: Simulator, folder: Path) -> Any:
+    """Write what a receiver is given, and return the Python receiver of it."""
+    scene = SceneState(simulator, is_running=False)
+    tables = tables_of(simulator, scene.kinds, scene.identity)
+    assert tables is not None
+    (folder / 'description.bin').write_bytes(scene.description)
+    (folder / 'tables.bin').write_bytes(tables)
+    return decode_tables(tables).scene(decode_description(scene.description), DT)
+
+
+def compared(simulator: Simulator, folder: Path) -> dict[str, float]:
+    """Step both in gusts; what node prints of the differences."""
+    node = shutil.which('node')
+    if node is None:
+        pytest.skip('node is not installed here')
+    received, winds, held = exported(simulator, folder), gusty(), 0
+    received.tables, received.instances = doubled(received.tables), doubled(received.instances)
+    expected = []
+    for step, wind in enumerate(winds):
+        held += received.step(wind)
+        if (step + 1) % EVERY == 0:
+            trees = range(len(received.instances))
+            expected += [received.coordinates(tree).copy() for tree in trees]
+    (folder / 'winds.bin').write_bytes(winds.tobytes())
+    (folder / 'expected.bin').write_bytes(np.concatenate(expected).tobytes())
+    command = [node, str(HERE / 'sway_vectors.mjs'), str(folder)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 0, done.stderr
+    found: dict[str, float] = json.loads(done.stdout)
+    assert found['compared'] == sum(map(len, expected))
+    assert held > 0
+    print(found)
+    return found
+
+
+@pytest.mark.parametrize('model', [60, 20])
+@pytest.mark.parametrize('name', BUILTIN_TREES)
+def test_a_built_in_tree_sways_as_in_python(name: str, model: int, tmp_path: Path) -> None:
+    simulator = open_scene(name).simulator(Settings(in_leaf=True), model=model)
+    found = compared(simulator, tmp_path)
+    assert found['wrong'] <= 1e-12 * max(1.0, found['greatest'])
+    assert found['held'] > 0
+
+
+def test_a_stand_sways_as_in_python(tmp_path: Path) -> None:
+    tree = open_scene('goldcrest').trees[0]
+    trees = [
+        PlacedTree(f'tree {i}', tree.tree, x=9.0 * i, y=-4.0 * (i % 2), yaw=0.8 * i,
+                   scale=1.0 + 0.2 * i, species=tree.species)
+        for i in range(4)
+    ]  # fmt: skip
+    found = compared(Scene(trees, 'row').simulator(Settings(), model=20), tmp_path)
+    assert found['wrong'] <= 1e-12 * max(1.0, found['greatest'])
+
+
+def test_a_scan_sways_as_in_python(tmp_path: Path) -> None:
+    scan = open_scene(str(SCAN / 'fork.treeqsm24.txt'))
+    found = compared(scan.simulator(Settings()), tmp_path)
+    assert found['wrong'] <= 1e-12 * max(1.0, found['greatest'])
+
+
+def test_what_the_factors_leave_out_is_not_seen(tmp_path: Path) -> None:
+    simulator = open_scene('goldcrest').simulator(Settings(), model=20)
+    received, farthest, left_out = exported(simulator, tmp_path), 0.0, 0.0
+    for wind in gusty(600):
+        simulator.step(wind, DT)
+        received.step(wind)
+        eta = simulator.memory()[1][0, :20]
+        farthest = max(farthest, float(np.abs(eta).max()))
+        left_out = max(left_out, float(np.abs(received.coordinates(0) - eta).max()))
+    assert left_out <= 1e-3 * farthest
+
+
+@pytest.mark.parametrize('cut', [0, 3, 11, 500, -9])
+def test_damaged_tables_are_refused_in_a_sentence(cut: int, tmp_path: Path) -> None:
+    simulator = open_scene('goldcrest').simulator(Settings(), model=6)
+    compared(simulator, tmp_path)
+    whole = (tmp_path / 'tables.bin').read_bytes()
+    (tmp_path / 'tables.bin').write_bytes(whole[:cut])
+    node = str(shutil.which('node'))
+    command = [node, str(HERE / 'sway_vectors.mjs'), str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode != 0
+    assert 'ProtocolError' in done.stderr
+    with pytest.raises(FormatError, match='tables'):
+        decode_tables(whole[:cut])

@@ -1,0 +1,55 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A scene in a wind, frame by frame, for commands that draw it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tree_sway.commands.progress import bar
+from tree_sway.core.scene.run import Run
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.wind.gate import WindGate
+from tree_sway.core.wind.intake import WindIntake
+from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.page.wind_source import blow, WindSource
+
+_STEPS_PER_SECOND = 60.0
+
+
+def swaying(
+    simulator: Simulator,
+    wind: WindSource,
+    rate: float,
+    seconds: float,
+    start: float = 0.0,
+    run_in: float = 0.0,
+) -> Iterator[None]:
+    """
+    Sway a scene, at least 60 steps per second, and yield after each frame.
+
+    Parameters
+    ----------
+    simulator, wind
+        The scene at rest, and the samples of its wind.
+    rate
+        Frames per second [Hz].
+    seconds
+        Length of all frames [s].
+    start
+        Time of the wind at which the frames begin [s].
+    run_in
+        Time before that from which on the scene sways [s], as far as there is wind.
+
+    """
+    steps = max(1, round(_STEPS_PER_SECOND / rate))
+    intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
+    run = Run(simulator, rate * steps, intake=intake)
+    tick = round(1e9 * start) // run.period
+    for each in range(round(1e9 * max(0.0, start - run_in)) // run.period, tick):
+        blow(run, wind, each * run.period)
+    for _ in bar(range(max(1, round(seconds * rate))), 'swaying'):
+        for _ in range(steps):
+            tick += 1
+            blow(run, wind, tick * run.period)
+        yield

@@ -1,0 +1,102 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The table of a tree as it leaves the program, for a receiver that solves the tree by itself.
+
+Over azimuths and levels the slopes of the load have a low rank: they are exported as factors,
+``slopes = sqrt(k_i k_j) rows @ shapes``, with the stiffness k of the coordinates in the weight so
+that the share that is left out counts as it bends the tree. Shapes are integers of one step.
+What was exported is a table again by `table_of`, which is what every receiver solves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.motion.harmonics import COUNT
+from tree_sway.core.motion.wind_basis import WindBasisBank
+from tree_sway.core.motion.wind_basis_force import table_layout
+
+LEFT_OUT = 1e-2
+"""
+Share of the slopes that their factors leave out, root mean square.
+
+A ten thousandth of the motion of benjamina at 14 m/s: slopes are what turns and damps a lean that
+the table has exactly.
+"""
+
+SLOPES = ('turning', 'damping', 'lean', 'steep_turning', 'steep_damping')
+"""Fields of a table that are exported as factors."""
+
+PLAIN = ('stiffness', 'levels', 'motion', 'harmonics', 'standing', 'amount', 'load')
+"""Fields that are exported as they are, in single precision."""
+
+NUMBERS = ('degree', 'most_pressure', 'most_energy')
+
+_LARGEST_STEP = 32767
+_QUANTISED = 12.0**-0.5
+"""Root mean square of what rounding leaves out, over its step."""
+
+
+def exported_table(bank: WindBasisBank) -> tuple[dict[str, float], dict[str, NDArray[Any]]]:
+    """
+    Return numbers by name, and arrays of float32 and int16, that describe a table.
+
+    Beside the `PLAIN` fields of m coordinates, as `table_layout` lists them, there are
+    ``own_damping`` (m,) and of each field of `SLOPES` its ``_rows`` and ``_shapes``.
+    """
+    table, m = bank.table.record[0], bank.modal.shapes.shape[1]
+    numbers = {name: float(table[name]) for name in NUMBERS}
+    width = len(table['stiffness'])
+    arrays = {
+        name: np.asarray(table[name][..., :m] if table[name].shape[-1] == width else table[name])
+        for name in PLAIN
+    }
+    arrays = {name: array.astype(np.float32) for name, array in arrays.items()}
+    arrays['own_damping'] = bank.modal.damping.astype(np.float32)
+    root = np.sqrt(arrays['stiffness'].astype(np.float64))
+    for name in SLOPES:
+        slopes = table[name][..., :m, :m] / (root[:, None] * root)
+        arrays[f'{name}_rows'], arrays[f'{name}_shapes'] = _factors(slopes.reshape(-1, m * m))
+    return numbers, arrays
+
+
+def table_of(
+    numbers: Mapping[str, float], arrays: Mapping[str, NDArray[Any]], room: int = 0
+) -> Records:
+    """Return the record of `table_layout`, (1,), of an exported table, with room for more."""
+    m = len(arrays['stiffness'])
+    record = np.zeros(1, dtype=table_layout(max(m, room), COUNT[int(numbers['degree'])]))
+    table = record[0]
+    table['n_modes'], table['stiffness'] = m, 1.0
+    for name in NUMBERS:
+        table[name] = numbers[name]
+    for name in PLAIN:
+        values = arrays[name]
+        table[name][tuple(map(slice, values.shape))] = values
+    root = np.sqrt(arrays['stiffness'].astype(np.float64))
+    for name in SLOPES:
+        rows, shapes = arrays[f'{name}_rows'], arrays[f'{name}_shapes']
+        slopes = np.zeros((len(rows), m * m))
+        # One product after another, as receivers in other languages add them up.
+        for row, shape in zip(rows.T.astype(np.float64), shapes, strict=True):
+            slopes += row[:, None] * shape
+        slopes *= (root[:, None] * root).ravel()
+        table[name][..., :m, :m] = slopes.reshape(*table[name].shape[:-2], m, m)
+    return record
+
+
+def _factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Rows (k, r) and shapes (r, m^2) whose product is the slopes (k, m^2) but for `LEFT_OUT`."""
+    rows, sizes, shapes = np.linalg.svd(slopes, full_matrices=False)
+    left = np.sqrt(np.maximum(1.0 - np.cumsum(sizes**2) / max(np.sum(sizes**2), 1e-300), 0.0))
+    rank = int(np.argmax(left < LEFT_OUT / 2.0)) + 1
+    scaled = sizes[:rank, None] * shapes[:rank]
+    step = LEFT_OUT / 2.0 * float(np.linalg.norm(sizes)) / (_QUANTISED * scaled.size**0.5)
+    step = max(step, float(np.abs(scaled).max()) / _LARGEST_STEP, 1e-300)
+    return (step * rows[:, :rank]).astype(np.float32), np.rint(scaled / step).astype('<i2')

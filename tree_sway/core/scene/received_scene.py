@@ -1,0 +1,137 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A scene that is solved where it was received: exported tables, and where the trees are.
+
+It is the solver of ``static/sway.js`` in Python, and what holds that one to this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.motion.exported_table import table_of
+from tree_sway.core.motion.standing import STANDING, step_standing
+from tree_sway.core.motion.wind_basis import instance_layout
+from tree_sway.core.motion.wind_basis_force import pace_layout
+from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.wind.gust_travel import GustHistory
+
+FINEST_SCALE = 0.01
+"""Trees whose scales differ by less than this share have one time step."""
+
+
+@dataclass(frozen=True)
+class ReceivedKind:
+    """Trees of one table: numbers and arrays of `exported_table`, and their `DragLaw`."""
+
+    numbers: Mapping[str, float]
+    arrays: Mapping[str, NDArray[Any]]
+    drag_law: Sequence[float]
+
+
+class ReceivedScene:
+    """
+    Trees on exported tables in one wind.
+
+    Parameters
+    ----------
+    kinds
+        The tables.
+    kind_of
+        The table of each tree, (t,).
+    places
+        x, y, z [m], turn about the vertical [rad] and scale of each tree, (t, 5).
+    speeds
+        Wind of each tree over that of its kind, (t,).
+    anemometer, convection_ratio
+        As of `GustHistory`.
+    dt
+        Time step in [s].
+
+    """
+
+    def __init__(
+        self,
+        kinds: Sequence[ReceivedKind],
+        kind_of: Ints,
+        places: Floats,
+        speeds: Floats,
+        *,
+        dt: float,
+        anemometer: ArrayLike | None = None,
+        convection_ratio: float = 1.0,
+    ) -> None:
+        """Stand at rest."""
+        self._dt, self._sizes = dt, [len(kind.arrays['stiffness']) for kind in kinds]
+        n_harmonics = max(len(kind.arrays['harmonics']) for kind in kinds)
+        m = max(self._sizes)
+        self.tables = np.concatenate([table_of(k.numbers, k.arrays, m) for k in kinds])
+        self.instances = np.zeros(len(places), dtype=instance_layout(m, n_harmonics))
+        self._laws = np.array([kind.drag_law for kind in kinds])
+        self._kind_of = np.asarray(kind_of)
+        steps = np.rint(np.log(places[:, 4]) / FINEST_SCALE)
+        pairs = np.stack([self._kind_of, steps], axis=1)
+        found, pace = np.unique(pairs, axis=0, return_inverse=True)
+        self._paces = np.zeros(len(found), dtype=pace_layout(m))
+        for own, (number, step) in zip(self._paces, found.tolist(), strict=True):
+            arrays, size = kinds[int(number)].arrays, self._sizes[int(number)]
+            own_dt = dt / math.exp(step * FINEST_SCALE)
+            for name, span in (('whole', own_dt), ('half', 0.5 * own_dt)):
+                rows = propagator(1.0, arrays['own_damping'], arrays['stiffness'], span).T
+                if name == 'half':
+                    rows = np.stack(
+                        [rows[0], rows[1], rows[2] + rows[3], rows[4], rows[5], rows[6] + rows[7]]
+                    )
+                own[name][:, :size] = rows
+        standing = self._standing = np.zeros(len(places), dtype=STANDING)
+        standing['kind'], standing['pace'] = self._kind_of, pace.ravel()
+        standing['at'] = places[:, :3]
+        standing['scale'], standing['speed'] = places[:, 4], speeds
+        half = 0.5 * places[:, 3]
+        standing['cosine'], standing['sine'] = np.cos(half), np.sin(half)
+        self._gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
+        self._states = [kind.arrays['state'].astype(np.float64) for kind in kinds]
+        self._corrections = [kind.arrays['correction'].astype(np.float64) for kind in kinds]
+        described = np.array([len(kind.arrays['correction']) for kind in kinds])
+        self._first = np.concatenate([[0], np.cumsum(described[self._kind_of])])
+
+    def step(self, wind: ArrayLike) -> int:
+        """Advance by a step of mean wind (3,) in [m/s]; how many trees are held at their edge."""
+        felt = self._gusts.push(wind, self._dt)
+        arrays = self.tables, self._paces, self._standing, self.instances, self._laws
+        return step_standing(*arrays, felt)[0]
+
+    def coordinates(self, tree: int) -> Floats:
+        """Modal coordinates of a tree, (m,)."""
+        size = self._sizes[int(self._kind_of[tree])]
+        found: Floats = self.instances['eta'][tree, :size]
+        return found
+
+    def state(self, name: str = 'eta') -> Floats:
+        """Coordinates by which all trees are described, or their ``rate``, (M,)."""
+        states = []
+        for own, kind in zip(self.instances[name], self._kind_of.tolist(), strict=True):
+            states.append(own[: self._sizes[kind]] @ self._states[kind])
+        return np.concatenate(states)
+
+    def correct(self, values: Floats, first: int = 0, name: str = 'eta') -> None:
+        """Bring described coordinates, or their ``rate``, from the first on to values (c,)."""
+        change = np.zeros(self._first[-1])
+        part = slice(first, first + len(values))
+        change[part] = values - self.state(name)[part]
+        for tree, kind in enumerate(self._kind_of.tolist()):
+            own = change[self._first[tree] : self._first[tree + 1]]
+            self.instances[name][tree, : self._sizes[kind]] += own @ self._corrections[kind]
+
+    def reset(self) -> None:
+        """Go back to rest, without wind."""
+        self.instances[:] = np.zeros((), dtype=self.instances.dtype)
+        self._gusts.reset()

@@ -1,0 +1,113 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The largest share of its strength that a tree has used.
+
+Wood breaks where its stress, Young's modulus times strain, reaches its modulus of rupture. Small
+clear specimens scatter by 16 % (Forest Products Laboratory, Wood Handbook, 2010, table 5-6), and
+knots take 15 % off a stem's (Gardiner et al. 2000, Ecological Modelling 129, 1-23). Roots give way
+at a moment of 77 to 146 N m for each kg of the stem, by species and soil (Byrne 2005; winching
+tests of near 2,000 conifers: Nicoll et al. 2006).
+
+Left out: rot, wounds and forks, a soil that is wet or shallow, the stress of growth and of the
+tree's own weight, fatigue, sheltering by neighbours. It is no verdict on a tree's safety.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.strength.wood_strain import WoodStrain
+
+WOOD_BAND = (0.85 * (1.0 - 0.16), 1.0 + 0.16)
+"""Modulus of rupture of a tree's wood over that of its species' mean [-]."""
+
+ROOT_MOMENT, ROOT_BAND = 110.0, (77.0, 146.0)
+"""Moment that roots hold per mass of the stem, the middle and the band in [N m/kg]."""
+
+
+@dataclass(frozen=True)
+class StrengthUse:
+    """
+    The largest shares of strength that a tree used.
+
+    Parameters
+    ----------
+    wood
+        Largest share of the modulus of rupture [-], its least and its most by `WOOD_BAND`, (3,).
+    branch, height
+        Branch it was reached in, and how high above the foot of the tree in [m].
+    roots
+        Largest share of the moment that roots hold [-], its least and its most, (3,); nan in a
+        pot.
+
+    """
+
+    wood: Floats
+    branch: str
+    height: float
+    roots: Floats
+
+    def __str__(self) -> str:
+        """Say both with their bands on one line."""
+        wood, roots = (
+            '{:.3g} % ({:.3g} to {:.3g} %)'.format(*100.0 * share)
+            for share in (self.wood, self.roots)
+        )
+        roots = roots if np.isfinite(self.roots).all() else 'unknown in a pot'
+        place = f'{self.branch}, {self.height:.2g} m up'
+        return f'strength used: wood {wood} in {place}; roots {roots}'
+
+
+class StrengthGauge:
+    """The largest strain of each segment and the largest moment at the foot, as a tree sways."""
+
+    def __init__(self, calibrated: CalibratedTree) -> None:
+        """Begin at rest."""
+        self._calibrated = calibrated
+        self._strain = WoodStrain(calibrated)
+        self._largest, self._moment = np.zeros(len(self._strain.branch)), 0.0
+
+    def read(self, rotations: Floats, base_moment: Floats) -> Floats:
+        """
+        Take in one step.
+
+        Parameters
+        ----------
+        rotations
+            Key rotations in [rad], (N,).
+        base_moment
+            At the foot of the stem in [N m], (3,).
+
+        Returns
+        -------
+        Floats
+            Largest strain along each branch [-], (b,).
+
+        """
+        strain = self._strain.of(rotations)
+        np.maximum(self._largest, strain, out=self._largest)
+        self._moment = max(self._moment, float(np.linalg.norm(base_moment)))
+        of_branch = np.zeros(self._calibrated.tree.n_branches)
+        np.maximum.at(of_branch, self._strain.branch, strain)
+        return of_branch
+
+    def use(self) -> StrengthUse:
+        """Return what was used since the beginning."""
+        tree, species = self._calibrated.tree, self._calibrated.species
+        at = int(np.argmax(self._largest))
+        stem_mass = species.density * float(tree.volume[tree.segments_of(0)].sum())
+        held = np.nan if species.habit == 'pot' else ROOT_MOMENT * stem_mass
+        least, most = WOOD_BAND
+        wood = species.modulus * self._largest[at] / species.rupture
+        roots = self._moment / held
+        return StrengthUse(
+            wood * np.array([1.0, 1.0 / most, 1.0 / least]),
+            tree.branch_names[int(self._strain.branch[at])],
+            float(self._strain.height[at]),
+            roots * np.array([1.0, ROOT_MOMENT / ROOT_BAND[1], ROOT_MOMENT / ROOT_BAND[0]]),
+        )

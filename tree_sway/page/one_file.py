@@ -1,0 +1,118 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A scene as one HTML file that sways by itself: the page, its modules, a description, its tables.
+
+``static/boot.js`` unpacks the modules and gives them their names: no other file is asked for.
+`doc/tree_as_a_file.md` is for its users.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable
+import gzip
+from importlib import resources
+import json
+import math
+from pathlib import Path, PurePosixPath
+import re
+import struct
+
+import numpy as np
+
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.errors import ParameterError
+from tree_sway.page.scene_state import SceneState
+from tree_sway.page.tables import tables_of
+
+_IMPORT = re.compile(r'(\bfrom\s+|\bimport\s+)"(\.[^"]+)"')
+_LEAVES = 1000
+_BOOT = 'boot.js'
+_BITS = 14
+"""Of the fraction of each number; what is drawn is right to some hundredths of a millimetre."""
+
+
+
+def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
+    """
+    Return the HTML of a scene at rest that sways in wind.
+
+    Parameters
+    ----------
+    simulator
+        A tree or a scene on a number of coordinates; it is run to find the basis of its state.
+    n_leaves
+        As of `SceneState`.
+
+    Raises
+    ------
+    ParameterError
+        A tree on another model.
+
+    """
+    scene = SceneState(simulator, n_leaves, is_running=False)
+    tables = tables_of(simulator, scene.kinds, scene.identity)
+    if tables is None:
+        raise ParameterError(
+            f"model '{simulator.model}' has no table to solve it by",
+            where='--model',
+            cure='give a number of coordinates, such as 60',
+        )
+    planes = [_in_planes(message) for message in (scene.description, tables)]
+    packed = _packed(struct.pack('<I', len(planes[0])) + b''.join(planes))
+    folder = Path(str(resources.files('tree_sway.page') / 'static'))
+    page = (folder / 'index.html').read_text(encoding='utf-8')
+    style = (folder / 'style.css').read_text(encoding='utf-8')
+    boot = (folder / _BOOT).read_text(encoding='utf-8')
+    parts: dict[str, Callable[[], str]] = {
+        '<link rel="stylesheet" href="static/style.css" />': lambda: f'<style>\n{style}</style>',
+        '<script type="module" src="static/app.js"></script>': lambda: (
+            f'<script type="text/plain" id="modules">{_packed(_modules(folder))}</script>\n'
+            f'    <script type="text/plain" id="scene">{packed}</script>'
+        ),
+        '</body>': lambda: f'<script>\n{boot}</script>\n  </body>',
+    }
+    for place, part in parts.items():
+        page = page.replace(place, part())
+    return page
+
+
+def _packed(data: bytes) -> str:
+    return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode()
+
+
+def _in_planes(message: bytes) -> bytes:
+    """Round the numbers of a message; put the first bytes of each array together, and so on."""
+    begin = 12 + int.from_bytes(message[8:12], 'little')
+    header, body = json.loads(message[12:begin]), bytearray(message[begin:])
+    is_table = header['format'] == 'tree_sway tables'
+    for entry in header['arrays'].values():
+        size = {'f32': 4, 'i32': 4, 'i16': 2, 'u8': 1}[entry['type']]
+        first = entry['offset']
+        part = slice(first, first + size * math.prod(entry['shape']))
+        values = np.frombuffer(bytes(body[part]), dtype=np.uint8).reshape(-1, size)
+        if entry['type'] == 'f32' and not is_table:
+            lost = 1 << (23 - _BITS)
+            bits = values.view('<u4').astype(np.uint64) + lost // 2
+            values = (bits // lost * lost).astype('<u4').view(np.uint8).reshape(-1, size)
+        body[part] = values.T.tobytes()
+    return message[:begin] + bytes(body)
+
+
+def _modules(folder: Path) -> bytes:
+    """Every module by its name, as JSON; what they import are names too."""
+    modules = {}
+    for path in sorted(folder.rglob('*.js')):
+        name = path.relative_to(folder).as_posix()
+        if name == _BOOT:
+            continue
+
+        def named(found: re.Match[str], name: str = name) -> str:
+            parts: list[str] = []
+            for part in (PurePosixPath(name).parent / found[2]).parts:
+                parts = parts[:-1] if part == '..' else [*parts, part]
+            return f'{found[1]}"tree-sway/{"/".join(parts)}"'
+
+        modules[f'tree-sway/{name}'] = _IMPORT.sub(named, path.read_text(encoding='utf-8'))
+    return json.dumps(modules).encode()

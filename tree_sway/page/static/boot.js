@@ -1,0 +1,22 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** Starts a page that is one file: unpacks its modules, and gives them the names they import. */
+
+(async () => {
+  const text = document.getElementById("modules")?.textContent ?? "";
+  const packed = new Blob([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))]);
+  const stream = packed.stream().pipeThrough(new DecompressionStream("gzip"));
+  const modules = Object.entries(JSON.parse(await new Response(stream).text()));
+  const imports = modules.map(([name, source]) =>
+    [name, `data:text/javascript;charset=utf-8,${encodeURIComponent(source)}`]);
+  const map = document.createElement("script");
+  map.type = "importmap";
+  map.textContent = JSON.stringify({ imports: Object.fromEntries(imports) });
+  document.head.append(map);
+  await import(/** @type {any} */ ("tree-sway/app.js"));
+})().catch((error) => {
+  const notice = /** @type {HTMLElement} */ (document.getElementById("notice"));
+  notice.hidden = false;
+  notice.textContent = `This file is damaged, or this browser is older than Chrome 89, Safari 16.4 and Firefox 113 `
+    + `(${error}). Get the file again from where it came, or take a newer browser.`;
+});

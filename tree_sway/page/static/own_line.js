@@ -1,0 +1,149 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** The line of a page that solves by itself: it gives the states that a server would send. */
+
+import { Connection } from "./connection.js";
+import { decodeDescription, PAUSED, ProtocolError, RESTARTED } from "./protocol.js";
+import { decodeTables, Stand } from "./sway.js";
+import { readWind, Turbulence } from "./wind.js";
+
+/** A page that was slow or hidden catches up no more than this [ms]. */
+const LATEST = 250;
+const STATUS_EVERY = 500;
+
+/** @typedef {{description: import("./protocol.js").Description, stand: Stand}} Kept */
+
+/** What the page itself holds; null on one that is served. A `ProtocolError` if it is damaged.
+ * @returns {Promise<Kept | null>} */
+export async function keptScene() {
+  const text = document.getElementById("scene")?.textContent;
+  if (text === undefined || text === null) return null;
+  try {
+    const packed = new Blob([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))]);
+    const stream = packed.stream().pipeThrough(new DecompressionStream("gzip"));
+    const data = await new Response(stream).arrayBuffer();
+    const from = 4 + new DataView(data).getUint32(0, true);
+    const description = decodeDescription(outOfPlanes(data.slice(4, from)));
+    const tables = decodeTables(outOfPlanes(data.slice(from)));
+    return { description, stand: new Stand(tables, description) };
+  } catch (error) {
+    throw error instanceof ProtocolError ? error : new ProtocolError(String(error));
+  }
+}
+
+/** A message whose arrays have their first bytes together, their second bytes and so on; files are
+ * packed better so. @param {ArrayBuffer} data */
+function outOfPlanes(data) {
+  const begin = 12 + new DataView(data).getUint32(8, true);
+  const whole = new Uint8Array(data.slice(0));
+  const { arrays } = JSON.parse(new TextDecoder().decode(whole.subarray(12, begin)));
+  for (const { type, shape, offset } of Object.values(arrays)) {
+    const size = type === "u8" ? 1 : type === "i16" ? 2 : 4;
+    const count = shape.reduce((/** @type {number} */ a, /** @type {number} */ b) => a * b, 1);
+    const planes = new Uint8Array(data, begin + offset, size * count);
+    planes.forEach((byte, i) => (whole[begin + offset + size * (i % count) + Math.floor(i / count)] = byte));
+  }
+  return whole.buffer;
+}
+
+/** Used as a `Connection`: the same listeners, messages and frames. */
+export class OwnLine {
+  /** @param {Kept} kept @param {import("./connection.js").Listeners} listeners
+   * @param {string | null} [address] of a live wind, `wss://...` */
+  constructor({ description, stand }, listeners, address = null) {
+    this.description = description;
+    this.stand = stand;
+    this.listeners = listeners;
+    this.roundTrip = NaN;
+    this._turbulence = new Turbulence();
+    /** @type {{next: (dt: number) => number[]}} */
+    this._wind = this._turbulence;
+    /** @type {import("./protocol.js").Frame | null} newest of a live wind */
+    this._live = null;
+    this._isPaused = false;
+    this._hasRestarted = false;
+    this._sequence = 0;
+    this._time = 0;
+    this._told = 0;
+    this._work = 0;
+    /** @type {ReturnType<typeof setInterval> | undefined} */
+    this._timer = undefined;
+    const unheard = () => this.listeners.onMessage({ unreadable: `no live wind from ${address}: the simulated one blows `
+      + "until it comes. See whether tree-sway show runs there, with --origin null if this page is a file." });
+    this._line = address === null ? null : new Connection(address, {
+      onState: (state) => {
+        if (state === "lost" && (this._live || this._line?.description === null)) unheard();
+        if (state === "lost") this._live = null;
+      },
+      onDescription: () => undefined,
+      onFrame: (frame) => (this._live = frame),
+      onMessage: () => undefined,
+    }, 60);
+  }
+
+  open() {
+    this.close();
+    this.listeners.onState("open", 0);
+    this.listeners.onDescription(this.description);
+    this.listeners.onMessage({ hello: { controls: controlsOf(this._turbulence.values) } });
+    this._time = Date.now();
+    this._timer = setInterval(() => this._go(), 1000 * this.stand.dt / 2);
+    this._line?.open();
+  }
+
+  close() {
+    clearInterval(this._timer);
+  }
+
+  /** Take a change of a control. @param {Record<string, any>} message */
+  send({ set }) {
+    if (!set) return;
+    const { name, value } = set;
+    if (name === "reset") {
+      this.stand.reset();
+      this._hasRestarted = true;
+    } else if (name === "pause") this._isPaused = value;
+    else [this._turbulence.values[name], this._wind] = [value, this._turbulence];
+    const values = { ...this._turbulence.values, pause: this._isPaused };
+    this.listeners.onMessage({ values });
+  }
+
+  /** Let a recorded wind blow; a `ProtocolError` if the file is none. @param {File} file */
+  async take(file) {
+    this._wind = readWind(await file.text(), file.name);
+  }
+
+  _go() {
+    const [now, step] = [Date.now(), 1000 * this.stand.dt];
+    if (now - this._time > LATEST) this._time = now - step;
+    for (; this._time + step <= now; this._time += step) this._step();
+    if (now - this._told < STATUS_EVERY) return;
+    this._told = now;
+    const { trees, held, dt } = this.stand;
+    this.listeners.onMessage({ status: {
+      model: trees[0].state.table.m.toString(), trees: trees.length, rate: 1 / dt, work_us: 1000 * this._work, held,
+    } });
+  }
+
+  _step() {
+    const begin = performance.now();
+    const { wind: live } = this._live ?? {};
+    const [x, y, z] = live ?? this._wind.next(this.stand.dt);
+    if (!this._isPaused) this.stand.step(x, y, z);
+    this._work += 0.05 * (performance.now() - begin - this._work);
+    const flags = (this._isPaused ? PAUSED : 0) + (this._hasRestarted ? RESTARTED : 0);
+    this._hasRestarted = false;
+    const coordinates = this.stand.write(new Float32Array(this.description.nCoordinates));
+    const { shortIdentity: identity } = this.description;
+    const frame = { identity, sequence: this._sequence++, stamp: this._time, flags, coordinates, first: 0 };
+    this.listeners.onFrame({ ...frame, wind: [x, y, z] }, this._time, 0);
+  }
+}
+
+/** @param {Record<string, number>} values */
+function controlsOf({ mean_speed: speed, intensity, bearing_to: bearing }) {
+  const control = (/** @type {string} */ name, /** @type {any} */ value, unit = "", minimum = 0, maximum = 1) =>
+    ({ name, label: name, description: "", value, unit, minimum, maximum, choices: [], is_action: value === null });
+  return [control("mean_speed", speed, "m/s", 0, 40), control("intensity", intensity),
+    control("bearing_to", bearing, "rad", -6.3, 6.3), control("pause", false), control("reset", null)];
+}

@@ -1,0 +1,518 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * The solver in JavaScript: trees in wind by the tables that this program exports.
+ *
+ * A tree is m coordinates; a table has what every even wind does to them; each goes on by its exact
+ * propagator. Outside of the table the load of its edge is used, which `Stand.held` counts. The law
+ * is that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it.
+ *
+ *     import { decodeDescription } from "./protocol.js";
+ *     import { decodeTables, Stand } from "./sway.js";
+ *
+ *     const description = decodeDescription(await bytesOf("oak.description"));
+ *     const stand = new Stand(decodeTables(await bytesOf("oak.tables")), description);
+ *     stand.step(6, 0, 0);                        // mean wind of a step [m/s], east, north, up
+ *     placer.place(stand.write(coordinates));     // coordinates of the description, then poses
+ */
+
+import { need, ProtocolError } from "./checks.js";
+import { unpack } from "./protocol.js";
+
+/** Time step of a stand unless it is given another [s]. */
+export const STEP = 1 / 60;
+
+const AZIMUTHS = 24;
+const LEVELS = 5;
+/** Sine of the elevation from which on a wind goes over to one straight up or down. */
+const STEEP = Math.sin(Math.PI / 4);
+const MOST_COORDINATES = 1000;
+const HALF_AIR_DENSITY = 0.5 * 1.225; // [kg/m^3]
+/** Speeds between which leaves streamline [m/s]. */
+const [STREAMLINING_FROM, STREAMLINING_TO] = [4, 20];
+/** Share by which scales may differ that have one time step. */
+const FINEST_SCALE = 0.01;
+/** Of gusts: least mean wind that carries them [m/s], change of a delay per second, the time [s] over
+ * which the mean is taken, and the longest delay [s]. */
+const [SLOWEST_GUST, LARGEST_STRETCH, AVERAGING, MEMORY] = [0.5, 0.5, 60, 60];
+
+/** Functions up to each degree of the harmonics. @type {Record<number, number>} */
+const HARMONICS = { 1: 3, 3: 10, 5: 21 };
+const [A, N] = [AZIMUTHS, LEVELS];
+/** Type and axes of each array of a kind; of slopes as of rows of m x m.
+ * @type {Record<string, [Function, ...(string | number)[]]>} */
+const ARRAYS = {
+  stiffness: [Float32Array, "m"],
+  own_damping: [Float32Array, "m"],
+  motion: [Float32Array, "m"],
+  levels: [Float32Array, A, N],
+  harmonics: [Float32Array, "h", "m"],
+  standing: [Float32Array, A, N, "m"],
+  amount: [Float32Array, A, "m"],
+  load: [Float32Array, A, N, "m"],
+  state: [Float32Array, "m", "n"],
+  correction: [Float32Array, "n", "m"],
+};
+/** @type {Record<string, number>} */
+const SLOPES = { turning: A * N, damping: A * N, lean: A, steep_turning: 2, steep_damping: 2 };
+for (const [name, rows] of Object.entries(SLOPES)) {
+  ARRAYS[`${name}_rows`] = [Float32Array, rows, `${name} rank`];
+  ARRAYS[`${name}_shapes`] = [Int16Array, `${name} rank`, "m m"];
+}
+
+/**
+ * @typedef {object} Tables
+ * @property {string} description identity of what they belong to
+ * @property {number[] | null} anemometer where the wind is measured [m]; upwind of all if null
+ * @property {number} ratio speed of gusts over that of the mean wind
+ * @property {Table[]} kinds
+ * @property {ArrayLike<number>} speeds wind of each tree over that of its kind
+ */
+
+/** Read tables; a `ProtocolError` with a sentence if they are damaged.
+ * @param {ArrayBuffer} data @returns {Tables} */
+export function decodeTables(data) {
+  const { header, kinds, own } = unpack(data, "tables");
+  const { description, anemometer, convection_ratio: ratio } = header;
+  need(typeof description === "string", "description");
+  need(anemometer === null || (anemometer.length === 3 && anemometer.every(Number.isFinite)), "anemometer");
+  need(ratio === null || ratio > 0, "convection_ratio");
+  const speeds = own.tree_speed?.values;
+  need(speeds instanceof Float32Array && speeds.every((each) => each >= 0 && each < 1e6), "tree_speed");
+  const tables = kinds.map((arrays, number) => new Table(header.kinds[number], arrays));
+  return { description, anemometer, ratio: ratio ?? Infinity, kinds: tables, speeds: Float64Array.from(speeds) };
+}
+
+/** What an even wind does to the coordinates of a kind of tree. */
+export class Table {
+  /** @param {Record<string, any>} numbers @param {import("./protocol.js").Arrays} arrays */
+  constructor(numbers, arrays) {
+    /** @type {Record<string, number>} */
+    const size = {};
+    for (const [name, [type, ...axes]] of Object.entries(ARRAYS)) {
+      const { values, shape } = arrays[name] ?? {};
+      need(values?.constructor === type && shape.length === axes.length, name);
+      axes.forEach((axis, i) => {
+        const wanted = typeof axis === "number" ? axis : (size[axis] ??= shape[i]);
+        need(shape[i] === wanted, name);
+      });
+      need(values.every(Number.isFinite), name);
+    }
+    const { m, n } = size;
+    const { degree, most_pressure: mostPressure, most_energy: mostEnergy, drag_law: law } = numbers;
+    need(m > 0 && m <= MOST_COORDINATES && size["m m"] === m * m, "stiffness");
+    need(HARMONICS[degree] === size.h, "harmonics");
+    need(mostPressure > 0 && mostEnergy > 0, "most_pressure");
+    need(law?.length === 3 && law.every(Number.isFinite), "drag_law");
+    need(arrays.stiffness.values.every((each) => each > 0), "stiffness");
+    need(arrays.own_damping.values.every((each) => each >= 0), "own_damping");
+    /** Coordinates, and those of the description. */
+    this.m = m;
+    this.n = n;
+    /** @type {number} */
+    this.degree = degree;
+    /** Dynamic pressure [kg/m/s^2] and twice the energy [J] up to which the table holds. */
+    this.mostPressure = /** @type {number} */ (mostPressure);
+    this.mostEnergy = /** @type {number} */ (mostEnergy);
+    /** C, N and C0 of the drag, C U^-N + C0. @type {number[]} */
+    this.law = law;
+    const of = (/** @type {string} */ name) => Float64Array.from(arrays[name].values);
+    this.stiffness = of("stiffness");
+    this.ownDamping = of("own_damping");
+    this.motion = of("motion");
+    this.levels = of("levels");
+    this.harmonics = of("harmonics");
+    this.standing = of("standing");
+    this.amount = of("amount");
+    this.load = of("load");
+    this.state = of("state");
+    this.correction = of("correction");
+    const slopes = (/** @type {string} */ name) => this._slopes(arrays, name, size[`${name} rank`]);
+    // Turning and damping side by side: they are read together.
+    this.slopes = paired(slopes("turning"), slopes("damping"));
+    this.steep = paired(slopes("steep_turning"), slopes("steep_damping"));
+    this.lean = slopes("lean");
+    /** What is worked in. */
+    this.scratch = Array.from({ length: 8 }, () => new Float64Array(m));
+    this.values = new Float64Array(size.h);
+  }
+
+  /** Slopes from their factors, by the coordinate that is loaded and then the one that moves.
+   * @param {import("./protocol.js").Arrays} arrays @param {string} name @param {number} rank */
+  _slopes(arrays, name, rank) {
+    const { m, stiffness } = this;
+    const [rows, shapes] = [arrays[`${name}_rows`].values, arrays[`${name}_shapes`].values];
+    const root = stiffness.map(Math.sqrt);
+    const all = new Float32Array(SLOPES[name] * m * m);
+    for (let row = 0; row < SLOPES[name]; row++) {
+      for (let moved = 0; moved < m; moved++) {
+        for (let loaded = 0; loaded < m; loaded++) {
+          let sum = 0;
+          for (let r = 0, at = moved * m + loaded; r < rank; r++, at += m * m) {
+            sum += rows[row * rank + r] * shapes[at];
+          }
+          all[(row * m + loaded) * m + moved] = sum * (root[moved] * root[loaded]);
+        }
+      }
+    }
+    return all;
+  }
+
+  /** Drag per area and speed squared [kg/m^3]. @param {number} speed [m/s] */
+  pressure(speed) {
+    const [coefficient, exponent, steady] = this.law;
+    if (exponent === 0) return HALF_AIR_DENSITY * (coefficient + steady);
+    const streamlined = Math.min(Math.max(speed, STREAMLINING_FROM), STREAMLINING_TO);
+    return HALF_AIR_DENSITY * (coefficient * streamlined ** -exponent + steady);
+  }
+}
+
+/** @param {Float32Array} a @param {Float32Array} b */
+function paired(a, b) {
+  const both = new Float64Array(2 * a.length);
+  for (let i = 0; i < a.length; i++) [both[2 * i], both[2 * i + 1]] = [a[i], b[i]];
+  return both;
+}
+
+/**
+ * How oscillators of unit inertia go on exactly in a time under a constant force, per coordinate:
+ * position from position, rate and force, then the rate from them.
+ * @param {Float64Array} stiffness @param {Float64Array} damping @param {number} time [s]
+ */
+export function propagator(stiffness, damping, time) {
+  const out = new Float64Array(6 * stiffness.length);
+  stiffness.forEach((k, i) => {
+    const [alpha, kappa] = [(damping[i] * time) / 2, k * time * time];
+    const square = alpha * alpha - kappa;
+    const root = Math.sqrt(Math.abs(square));
+    const [slow, fast] = [-kappa / (alpha + root), -alpha - root];
+    const even = square > 0 ? Math.exp(slow) : Math.exp(-alpha) * Math.cos(root);
+    let s = Math.exp(-alpha) * (1 + square / 6);
+    if (root > 1e-3) {
+      s = square > 0 ? (Math.exp(slow) - Math.exp(fast)) / (2 * root) : (Math.exp(-alpha) * Math.sin(root)) / root;
+    }
+    const stays = square > 0 ? even - slow * s : even + alpha * s;
+    const keeps = square > 0 ? Math.exp(fast) + slow * s : even - alpha * s;
+    let [pushed, before, term] = [0, 0, 0.5];
+    // The power series where 1 - stays would cancel.
+    for (let power = 2; power < 24; power++) {
+      pushed += term;
+      [before, term] = [term, (-2 * alpha * power * term - kappa * before) / (power * (power + 1))];
+    }
+    if (kappa + alpha > 0.5) pushed = (1 - stays) / kappa;
+    out.set([stays, time * s, time * time * pushed, (-kappa * s) / time, keeps, time * s], 6 * i);
+  });
+  return out;
+}
+
+/** A tree on a table: its modal coordinates, their rates and the forces on them. */
+export class TreeState {
+  /** @param {Table} table */
+  constructor(table) {
+    this.table = table;
+    this.eta = new Float64Array(table.m);
+    this.rate = new Float64Array(table.m);
+    this.force = new Float64Array(table.m);
+  }
+
+  /** Go on a step.
+   * @param {Float64Array} half `propagator` of half a step @param {Float64Array} whole
+   * @param {number} wx mean wind in the frame of the kind [m/s] @param {number} wy @param {number} wz
+   * @returns {boolean} whether the load was that of the table's edge */
+  step(half, whole, wx, wy, wz) {
+    const { table, eta, rate, force } = this;
+    const { m, mostPressure, mostEnergy, stiffness } = table;
+    const [middle, paced, wanted, diagonal] = table.scratch;
+    const speed = Math.sqrt(wx * wx + wy * wy + wz * wz);
+    const drag = table.pressure(speed);
+    let isHeld = drag * speed * speed > mostPressure;
+    let before = 0;
+    for (let i = 0, at = 0; i < m; i++, at += 6) {
+      before += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
+      middle[i] = half[at] * eta[i] + half[at + 1] * rate[i] + half[at + 2] * force[i];
+      paced[i] = half[at + 3] * eta[i] + half[at + 4] * rate[i] + half[at + 5] * force[i];
+    }
+    const push = Math.min(drag * speed * speed, mostPressure);
+    windForce(table, speed > 0 ? [wx / speed, wy / speed, wz / speed] : [1, 0, 0], push, drag);
+    let energy = 0;
+    for (let i = 0, at = 0; i < m; i++, at += 6) {
+      // Implicit in the coordinate's own damping: stable for any wind and step.
+      const own = diagonal[i] * half[at + 5];
+      const f = (wanted[i] - own * force[i]) / (1 - own);
+      const [q, v] = [eta[i], rate[i]];
+      eta[i] = whole[at] * q + whole[at + 1] * v + whole[at + 2] * f;
+      rate[i] = whole[at + 3] * q + whole[at + 4] * v + whole[at + 5] * f;
+      force[i] = f;
+      energy += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
+    }
+    const most = Math.max(before, mostEnergy);
+    if (!(energy <= most)) {
+      // No wind takes it further; from rest again where it is not a number.
+      const share = energy < Infinity ? Math.sqrt(most / energy) : 0;
+      for (const each of share ? [eta, rate] : [eta, rate, force]) {
+        for (let i = 0; i < m; i++) each[i] = share ? share * each[i] : 0;
+      }
+      isHeld = true;
+    }
+    return isHeld;
+  }
+}
+
+/** Modal forces of an even wind on a tree half a step on, and the diagonal of their slope by the
+ * rates, into the scratch of its table.
+ * @param {Table} table @param {number[]} way where the wind goes, a unit vector
+ * @param {number} push dynamic pressure [kg/m/s^2] @param {number} drag the same over speed squared */
+function windForce(table, [x, y, z], push, drag) {
+  const { m, load, standing, slopes, lean, steep: poles, harmonics, values } = table;
+  const [eta, rate, force, diagonal, off, leaning, leaned] = table.scratch;
+  fillHarmonics(x, y, z, table.degree, values);
+  const { first, second, level: j, share, up } = corners(table, x, y);
+  const steep = Math.max(0, (Math.abs(z) - STEEP) / (1 - STEEP));
+  const slant = Math.min(Math.max(z, -STEEP), STEEP);
+  const [e, f] = [(1 - steep) * (1 - share), (1 - steep) * share];
+  const [a, b, c, d] = [e * (1 - up), e * up, f * (1 - up), f * up];
+  const [ia, ic] = [(first * LEVELS + j) * m, (second * LEVELS + j) * m];
+  let moving = drag > 0 ? push / drag : 0;
+  // Slopes are in single precision, and so are their weights.
+  const [a4, b4, c4, d4, e4, f4] = [a, b, c, d, e * slant, f * slant].map(Math.fround);
+  for (let i = 0; i < m; i++) {
+    off[i] = eta[i]
+      - (1 - share) * ((1 - up) * standing[ia + i] + up * standing[ia + m + i])
+      - share * ((1 - up) * standing[ic + i] + up * standing[ic + m + i]);
+    moving += table.motion[i] * rate[i] * rate[i];
+    let sum = a * load[ia + i] + b * load[ia + m + i] + c * load[ic + i] + d * load[ic + m + i];
+    for (let k = 0, at = i; k < values.length; k++, at += m) sum += values[k] * harmonics[at];
+    force[i] = sum;
+    leaning[i] = Math.fround(e4 * Math.fround(eta[i]));
+    leaned[i] = Math.fround(f4 * Math.fround(eta[i]));
+  }
+  const dragged = drag * Math.sqrt(moving);
+  const [s4, pole] = [Math.fround(steep), z > 0 ? 2 * m * m : 0];
+  const row = 2 * m;
+  for (let i = 0; i < m; i++) {
+    const [pa, pb] = [2 * m * (ia + i), 2 * m * (ia + m + i)];
+    const [pc, pd] = [2 * m * (ic + i), 2 * m * (ic + m + i)];
+    const own = 2 * i + 1;
+    diagonal[i] = dragged
+      * (a * slopes[pa + own] + b * slopes[pb + own] + c * slopes[pc + own] + d * slopes[pd + own]);
+    let [ta, tb, tc, td, va, vb, vc, vd] = [0, 0, 0, 0, 0, 0, 0, 0];
+    for (let k = 0, at = 0; k < m; k++, at += 2) {
+      const o = off[k];
+      const r = rate[k];
+      ta += o * slopes[pa + at];
+      va += r * slopes[pa + at + 1];
+      tb += o * slopes[pb + at];
+      vb += r * slopes[pb + at + 1];
+      tc += o * slopes[pc + at];
+      vc += r * slopes[pc + at + 1];
+      td += o * slopes[pd + at];
+      vd += r * slopes[pd + at + 1];
+    }
+    let turned = a4 * ta + b4 * tb + c4 * tc + d4 * td;
+    let damped = a4 * va + b4 * vb + c4 * vc + d4 * vd;
+    if (slant !== 0) {
+      const [p, q] = [(first * m + i) * m, (second * m + i) * m];
+      for (let k = 0; k < m; k++) turned += leaning[k] * lean[p + k] + leaned[k] * lean[q + k];
+    }
+    if (steep > 0) {
+      let p = pole + row * i;
+      diagonal[i] += dragged * steep * poles[p + own];
+      for (let k = 0; k < m; k++) {
+        turned += Math.fround(s4 * Math.fround(eta[k])) * poles[p++];
+        damped += s4 * rate[k] * poles[p++];
+      }
+    }
+    force[i] = push * (force[i] + turned) + dragged * damped;
+  }
+}
+
+/** Where a wind and a lean are in a table: azimuths, the level below, shares of the way to the next.
+ * @param {Table} table @param {number} x @param {number} y */
+function corners(table, x, y) {
+  const { m, amount, levels } = table;
+  const [eta] = table.scratch;
+  const turn = Math.atan2(y, x) * (0.5 / Math.PI) * AZIMUTHS;
+  const whole = Math.floor(turn);
+  const share = turn - whole;
+  const first = ((whole % AZIMUTHS) + AZIMUTHS) % AZIMUTHS;
+  const second = (first + 1) % AZIMUTHS;
+  let lean = 0;
+  for (let i = 0; i < m; i++) {
+    lean += ((1 - share) * amount[first * m + i] + share * amount[second * m + i]) * eta[i];
+  }
+  const at = (/** @type {number} */ j) =>
+    (1 - share) * levels[first * LEVELS + j] + share * levels[second * LEVELS + j];
+  let level = 0;
+  while (level < LEVELS - 2 && lean > at(level + 1)) level++;
+  const [below, above] = [at(level), at(level + 1)];
+  return { first, second, level, share, up: Math.min(Math.max((lean - below) / (above - below), 0), 1) };
+}
+
+const root = Math.sqrt;
+
+/** Real spherical harmonics of odd degree up to 1, 3 or 5, as of tree_sway/core/motion/harmonics.py.
+ * @param {number} x @param {number} y @param {number} z a unit vector @param {number} degree
+ * @param {Float64Array} out */
+function fillHarmonics(x, y, z, degree, out) {
+  [out[0], out[1], out[2]] = [root(3) * y, root(3) * z, root(3) * x];
+  if (degree < 3) return;
+  const [xx, yy, zz] = [x * x, y * y, z * z];
+  const [u, v] = [xx - yy, 2 * x * y];
+  const [s3, c3] = [y * (3 * xx - yy), x * (xx - 3 * yy)];
+  [out[3], out[9]] = [root(35 / 8) * s3, root(35 / 8) * c3];
+  [out[4], out[8]] = [0.5 * root(105) * v * z, 0.5 * root(105) * u * z];
+  [out[5], out[7]] = [root(21 / 8) * y * (5 * zz - 1), root(21 / 8) * x * (5 * zz - 1)];
+  out[6] = (root(7) / 2) * z * (5 * zz - 3);
+  if (degree < 5) return;
+  const [s4, c4] = [2 * u * v, u * u - v * v];
+  const [s5, c5] = [x * s4 + y * c4, x * c4 - y * s4];
+  const ring = 21 * zz * zz - 14 * zz + 1;
+  [out[10], out[20]] = [3 * root(77 / 128) * s5, 3 * root(77 / 128) * c5];
+  [out[11], out[19]] = [1.5 * root(385 / 16) * z * s4, 1.5 * root(385 / 16) * z * c4];
+  [out[12], out[18]] = [root(385 / 128) * s3 * (9 * zz - 1), root(385 / 128) * c3 * (9 * zz - 1)];
+  [out[13], out[17]] = [root(1155 / 16) * z * v * (3 * zz - 1), root(1155 / 16) * z * u * (3 * zz - 1)];
+  [out[14], out[16]] = [root(165 / 64) * y * ring, root(165 / 64) * x * ring];
+  out[15] = (root(11) / 8) * z * (63 * zz * zz - 70 * zz + 15);
+}
+
+/** The wind of the last minute, and what of it each place feels: gusts travel with the mean wind. */
+class Gusts {
+  /** @param {number[][]} places @param {Tables} tables @param {number} dt [s] */
+  constructor(places, { anemometer, ratio }, dt) {
+    const [ox, oy] = anemometer ?? [0, 0];
+    this._along = places.map(([x, y]) => [x - ox, y - oy]);
+    this._fromFirst = !anemometer;
+    this._ratio = ratio;
+    this._dt = dt;
+    this.felt = places.map(() => [0, 0, 0]);
+    /** Time, and run of the wind since the start, at the end of each step. */
+    this._run = [[0, 0, 0, 0]];
+    /** Mean wind, and the time that it is the mean of. */
+    this._mean = [0, 0, 0];
+    this._delay = places.map(() => 0);
+  }
+
+  /** @param {number} x mean wind of a step [m/s] @param {number} y @param {number} z */
+  push(x, y, z) {
+    const { _run: run, _mean: mean, _dt: dt, _delay: delay } = this;
+    const last = run[run.length - 1];
+    run.push([last[0] + dt, last[1] + x * dt, last[2] + y * dt, last[3] + z * dt]);
+    if (run.length > (2 * MEMORY) / dt) run.splice(0, MEMORY / dt - 4);
+    mean[2] = Math.min(mean[2] + dt, AVERAGING);
+    mean[0] += (dt / mean[2]) * (x - mean[0]);
+    mean[1] += (dt / mean[2]) * (y - mean[1]);
+    const speed = Math.max(Math.hypot(mean[0], mean[1]), SLOWEST_GUST);
+    const wanted = this._along.map(([u, v]) => (u * mean[0] + v * mean[1]) / (this._ratio * speed * speed));
+    const first = this._fromFirst ? wanted.reduce((a, b) => Math.min(a, b), Infinity) : 0;
+    const now = last[0] + dt;
+    wanted.forEach((each, i) => {
+      const goal = Math.min(Math.max(each - first, 0), MEMORY);
+      const before = run.length === 2 ? goal : delay[i];
+      const most = LARGEST_STRETCH * dt;
+      delay[i] = Math.min(Math.max(goal, before - most), before + most);
+      if (before === 0 && delay[i] === 0) return (this.felt[i] = [x, y, z]);
+      const [begin, end] = [now - dt - before, now - delay[i]];
+      const [from, to] = [this._until(begin), this._until(end)];
+      this.felt[i] = from.map((each, c) => (to[c] - each) / (end - begin));
+    });
+  }
+
+  /** Run of the wind at a time; before the history begins it blew as in its first step.
+   * @param {number} time [s] */
+  _until(time) {
+    const run = this._run;
+    const most = run.length - 2;
+    let cell = Math.min(Math.max(Math.floor((time - run[0][0]) / this._dt), 0), most);
+    while (cell < most && run[cell + 1][0] <= time) cell++;
+    while (cell > 0 && run[cell][0] > time) cell--;
+    const [a, b] = [run[cell], run[cell + 1]];
+    const u = (time - a[0]) / (b[0] - a[0]);
+    return [1, 2, 3].map((c) => a[c] + u * (b[c] - a[c]));
+  }
+}
+
+/** Described trees that sway in one wind. */
+export class Stand {
+  /** @param {Tables} tables @param {import("./protocol.js").Description} description
+   * @param {number} [dt] time step [s] */
+  constructor(tables, description, dt = STEP) {
+    const { kinds, trees, identity } = description;
+    need(tables.description === identity && tables.speeds.length === trees.length, "description");
+    need(tables.kinds.every((table, k) => table.n === kinds[k]?.nCoordinates), "state");
+    this.dt = dt;
+    this.description = description;
+    this._newGusts = () => new Gusts(trees.map(({ place }) => place), tables, dt);
+    this._gusts = this._newGusts();
+    /** Trees whose load was at the edge of their table in the last step. */
+    this.held = 0;
+    /** @type {Map<string, Float64Array>} */
+    const paces = new Map();
+    this.trees = trees.map(({ kind, place, firstCoordinate }, number) => {
+      const table = tables.kinds[kind];
+      const step = Math.round(Math.log(place[4]) / FINEST_SCALE);
+      // A tree of k times the size swings k times slower: it goes on by 1 / k of the time.
+      const own = dt / Math.exp(step * FINEST_SCALE);
+      const [half, whole] = [own / 2, own].map((time) => {
+        const key = `${kind} ${time}`;
+        const found = paces.get(key) ?? propagator(table.stiffness, table.ownDamping, time);
+        paces.set(key, found);
+        return found;
+      });
+      const speed = tables.speeds[number];
+      const turn = [speed * Math.cos(place[3]), speed * Math.sin(place[3])];
+      return { state: new TreeState(table), half, whole, speed, turn, firstCoordinate };
+    });
+  }
+
+  /** Go on a step. @param {number} x mean wind over it [m/s], where it blows to @param {number} y
+   * @param {number} z */
+  step(x, y, z) {
+    if (!Number.isFinite(x + y + z)) throw new ProtocolError("a wind that is not finite");
+    this._gusts.push(x, y, z);
+    this.held = 0;
+    this.trees.forEach(({ state, half, whole, speed, turn: [c, s] }, i) => {
+      const [u, v, w] = this._gusts.felt[i];
+      if (state.step(half, whole, c * u + s * v, c * v - s * u, speed * w)) this.held++;
+    });
+  }
+
+  /** Write the coordinates of the description that hold the state, or their rates.
+   * @template {Float32Array | Float64Array} T @param {T} out @param {"eta" | "rate"} [what]
+   * @returns {T} */
+  write(out, what = "eta") {
+    for (const { state, firstCoordinate } of this.trees) {
+      const { m, n, state: matrix } = state.table;
+      for (let k = 0; k < n; k++) {
+        let sum = 0;
+        for (let i = 0; i < m; i++) sum += state[what][i] * matrix[i * n + k];
+        out[firstCoordinate + k] = sum;
+      }
+    }
+    return out;
+  }
+
+  /** Bring coordinates of the description, or their rates, to values that came from elsewhere.
+   * @param {Float32Array} values @param {number} [from] the first of them
+   * @param {"eta" | "rate"} [what] @returns {number} the largest change over full scale */
+  correct(values, from = 0, what = "eta") {
+    const { nCoordinates, scale } = this.description;
+    const now = this.write(new Float64Array(nCoordinates), what);
+    let largest = 0;
+    for (const { state, firstCoordinate: first } of this.trees) {
+      const { m, n, correction } = state.table;
+      for (let k = 0; k < n; k++) {
+        const by = values[first + k - from] - now[first + k];
+        if (first + k < from || first + k - from >= values.length) continue;
+        for (let i = 0; i < m; i++) state[what][i] += by * correction[k * m + i];
+        largest = Math.max(largest, Math.abs(by) / scale[first + k]);
+      }
+    }
+    return largest;
+  }
+
+  /** Back to rest, without wind. */
+  reset() {
+    for (const { state } of this.trees) for (const each of [state.eta, state.rate, state.force]) each.fill(0);
+    this._gusts = this._newGusts();
+  }
+}

@@ -1,0 +1,126 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** Wind for a page that solves by itself: simulated turbulence, or a table of a recorded one. */
+
+import { ProtocolError } from "./checks.js";
+
+/** Of the wind along, across and up: standard deviation over that along, and integral scale [m] at a
+ * height of 10 m (IEC 61400-1, Kaimal). */
+const SPREAD = [1, 0.8, 0.5];
+const LENGTH = [56.7, 18.9, 4.6];
+/** Processes that make up a component; each is so much quicker than the one before. */
+const PROCESSES = 4;
+const QUICKER = 4;
+const SLOWEST = 0.5;
+/** Nothing faster is wind [m/s]. */
+const FASTEST = 150;
+
+/** A number of the standard normal distribution (Box and Muller 1958). */
+const normal = () => Math.sqrt(-2 * Math.log(1 - Math.random())) * Math.cos(2 * Math.PI * Math.random());
+
+/**
+ * Turbulence whose mean can be changed while it blows. Each component is a sum of first-order
+ * processes; variances that go with their time scales to 2/3 give the slope of -5/3 of the inertial
+ * range (Kolmogorov 1941).
+ */
+export class Turbulence {
+  constructor() {
+    /** Mean [m/s], standard deviation over it, and where it blows to, clockwise from north [rad].
+     * @type {Record<string, number>} */
+    this.values = { mean_speed: 6, intensity: 0.2, bearing_to: Math.PI / 2 };
+    this._state = SPREAD.map(() => Array.from({ length: PROCESSES }, normal));
+    const powers = Array.from({ length: PROCESSES }, (_, n) => QUICKER ** ((-2 / 3) * n));
+    const all = powers.reduce((a, b) => a + b);
+    this._weights = powers.map((power) => Math.sqrt(power / all));
+  }
+
+  /** Mean wind of the next step. @param {number} dt [s] */
+  next(dt) {
+    const { mean_speed: mean, intensity, bearing_to: bearing } = this.values;
+    const [along, across, up] = this._state.map((state, c) => {
+      let sum = 0;
+      state.forEach((value, n) => {
+        const scale = LENGTH[c] / Math.max(mean, SLOWEST) / QUICKER ** n;
+        const stays = Math.exp(-dt / scale);
+        state[n] = stays * value + Math.sqrt(1 - stays * stays) * normal();
+        sum += this._weights[n] * state[n];
+      });
+      return SPREAD[c] * intensity * mean * sum;
+    });
+    const [s, c] = [Math.sin(bearing), Math.cos(bearing)];
+    return [s * (mean + along) - c * across, c * (mean + along) + s * across, up];
+  }
+}
+
+/** A recorded wind, again from its beginning after its end. */
+export class Recorded {
+  /** @param {number[]} times [s] @param {number[][]} winds blowing to [m/s] */
+  constructor(times, winds) {
+    this.times = times;
+    this.winds = winds;
+    this._time = times[0];
+    this._row = 0;
+  }
+
+  /** Mean wind of the next step. @param {number} dt [s] */
+  next(dt) {
+    const { times, winds } = this;
+    this._time += dt;
+    if (this._time > times[times.length - 1]) [this._time, this._row] = [times[0], 0];
+    while (times[this._row + 1] < this._time) this._row++;
+    const [a, b] = [this._row, this._row + 1];
+    const u = (this._time - times[a]) / (times[b] - times[a]);
+    return winds[a].map((each, c) => each + u * (winds[b][c] - each));
+  }
+}
+
+const NAMES = {
+  time: ["time", "t", "timestamp", "stamp", "seconds"],
+  u: ["u", "x", "east"],
+  v: ["v", "y", "north"],
+  w: ["w", "z", "up"],
+  speed: ["speed", "wind_speed", "ws"],
+  direction: ["direction", "wind_direction", "dir", "wd"],
+};
+const UNITS = { "km/h": 1 / 3.6, kt: 0.514444, kn: 0.514444, mph: 0.44704 };
+
+/**
+ * Read a table with a header: `time` [s, or a date], and `u`, `v` and maybe `w` [m/s], where the wind
+ * blows to, or `speed` and `direction` [degrees], where it comes from. A unit may follow a name.
+ * @param {string} text @param {string} file its name @returns {Recorded}
+ */
+export function readWind(text, file) {
+  const rows = text.split(/\r?\n/).map((line) => line.split(/[,;\t]/).map((cell) => cell.trim()));
+  const head = rows.findIndex((row) => row.some((cell) => NAMES.time.includes(nameOf(cell))));
+  const names = rows[head]?.map(nameOf) ?? [];
+  const at = (/** @type {keyof typeof NAMES} */ what) => names.findIndex((name) => NAMES[what].includes(name));
+  const [time, u, v, w, speed, direction] = /** @type {(keyof typeof NAMES)[]} */ (Object.keys(NAMES)).map(at);
+  if (time < 0 || ((u < 0 || v < 0) && (speed < 0 || direction < 0))) {
+    throw new ProtocolError(`${file} is no table of wind: its first line must name a column "time", and "u" and "v"`
+      + ` (m/s, blowing to) or "speed" and "direction" (m/s, degrees it comes from). Drop another file.`);
+  }
+  const isVector = u >= 0 && v >= 0;
+  const unit = Object.entries(UNITS).find(([name]) => rows[head][isVector ? u : speed].includes(name))?.[1] ?? 1;
+  /** @type {number[]} */
+  const times = [];
+  /** @type {number[][]} */
+  const winds = [];
+  for (const row of rows.slice(head + 1)) {
+    const number = (/** @type {number} */ column) => (row[column] ? Number(row[column]) : NaN);
+    const when = Number.isFinite(number(time)) ? number(time) : Date.parse(row[time]) / 1000;
+    const angle = (number(direction) * Math.PI) / 180;
+    const wind = isVector
+      ? [number(u), number(v), w < 0 ? 0 : number(w)].map((each) => unit * each)
+      : [-unit * number(speed) * Math.sin(angle), -unit * number(speed) * Math.cos(angle), 0];
+    if (!(Math.hypot(...wind) <= FASTEST && when > (times[times.length - 1] ?? -Infinity))) continue;
+    times.push(when);
+    winds.push(wind);
+  }
+  if (times.length < 2) throw new ProtocolError(`${file} has fewer than two rows of a time and a wind. Drop another file.`);
+  return new Recorded(times, winds);
+}
+
+/** @param {string} cell */
+function nameOf(cell) {
+  return cell.toLowerCase().replace(/["']/g, "").replace(/[[(].*/, "").trim();
+}

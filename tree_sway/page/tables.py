@@ -1,0 +1,49 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What a receiver needs to solve a described scene by itself: a table of each of its kinds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tree_sway.core.motion.exported_table import exported_table
+from tree_sway.core.motion.wind_basis import WindBasisBank
+from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.page.check_description import Array
+from tree_sway.page.protocol import encode_description, TABLES
+from tree_sway.page.scene_kind import SceneKind
+
+
+def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> bytes | None:
+    """
+    Write the tables of a scene that is described with an identity.
+
+    Returns None where a tree is on no table: on ``branch``, ``full`` or ``auto``.
+    """
+    entries, arrays = [], dict[str, Array]()
+    for number, kind in enumerate(kinds):
+        model = kind.simulator
+        bank = model.bank.oscillators
+        if not isinstance(model, SwaySimulator) or not isinstance(bank, WindBasisBank):
+            return None
+        numbers, own = exported_table(bank)
+        state = bank.all_shapes @ kind.basis.projection.T
+        # What a correction of the coordinates does with the least energy.
+        root = np.sqrt(bank.modal.stiffness)
+        own['state'] = state.astype(np.float32)
+        own['correction'] = (np.linalg.pinv(state / root[:, None]) / root).astype(np.float32)
+        arrays |= {f'{number}/{name}': array for name, array in own.items()}
+        entries.append({**numbers, 'drag_law': list(model.drag_law)})
+    count = sum(len(kind.numbers) for kind in kinds)
+    arrays['tree_speed'] = np.ones(count, dtype=np.float32)
+    header: dict[str, object] = {'format': 'tree_sway tables', 'description': identity}
+    header |= {'kinds': entries, 'anemometer': None, 'convection_ratio': 1.0}
+    if isinstance(simulator, SceneSimulator):
+        arrays['tree_speed'][:] = simulator.speeds
+        ratio = simulator.convection_ratio
+        anemometer = simulator.anemometer
+        header['anemometer'] = None if anemometer is None else np.asarray(anemometer).tolist()
+        header['convection_ratio'] = ratio if np.isfinite(ratio) else None
+    return encode_description(header, arrays, TABLES)
