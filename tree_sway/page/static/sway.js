@@ -16,7 +16,7 @@
  *     placer.place(stand.write(coordinates));     // coordinates of the description, then poses
  */
 
-import { need, ProtocolError } from "./checks.js";
+import { need, ProtocolError, sizesOf } from "./checks.js";
 import { unpack } from "./protocol.js";
 
 /** Time step of a stand unless it is given another [s]. */
@@ -87,17 +87,7 @@ export function decodeTables(data) {
 export class Table {
   /** @param {Record<string, any>} numbers @param {import("./protocol.js").Arrays} arrays */
   constructor(numbers, arrays) {
-    /** @type {Record<string, number>} */
-    const size = {};
-    for (const [name, [type, ...axes]] of Object.entries(ARRAYS)) {
-      const { values, shape } = arrays[name] ?? {};
-      need(values?.constructor === type && shape.length === axes.length, name);
-      axes.forEach((axis, i) => {
-        const wanted = typeof axis === "number" ? axis : (size[axis] ??= shape[i]);
-        need(shape[i] === wanted, name);
-      });
-      need(values.every(Number.isFinite), name);
-    }
+    const size = sizesOf(arrays, ARRAYS);
     const { m, n } = size;
     const { degree, most_pressure: mostPressure, most_energy: mostEnergy, drag_law: law } = numbers;
     need(m > 0 && m <= MOST_COORDINATES && size["m m"] === m * m, "stiffness");

@@ -18,7 +18,9 @@ import {
   use,
 } from "./gl.js";
 import { Impostor } from "./impostors.js";
-import { barkMesh, boxOf, branchOrder, highestOf, leafMesh, shadeOf } from "./mesh.js";
+import {
+  barkMesh, boxOf, branchOrder, conjugate, highestOf, leafMesh, multiply, quaternion, shadeOf,
+} from "./mesh.js";
 import { Pace } from "./pace.js";
 import { arrowMesh, personMesh, potMesh } from "./props.js";
 import * as shaders from "./shaders.js";
@@ -310,9 +312,9 @@ export class Scene {
     const { branch_first: first, segment_length: length, segment_radius: radius } = kind.arrays;
     const base = first[Math.max(0, this.picked)];
     if (first[Math.max(0, this.picked) + 1] - base < 2) return 0;
-    const at = (/** @type {number} */ s) => STRIDE * (detail.start[this._watched] + placer.slots[s]) + 4;
+    const at = (/** @type {number} */ s) => detail.start[this._watched] + placer.slots[s];
     const now = apart(this._texels, at(base), at(base + 1));
-    const before = apart(rest, STRIDE * base + 4, STRIDE * (base + 1) + 4);
+    const before = apart(rest, base, base + 1);
     const bend = 2 * Math.hypot(now[0] - before[0], now[1] - before[1], now[2] - before[2]);
     return (bend * radius[2 * (base + 1)]) / (0.5 * (length[base] + length[base + 1]));
   }
@@ -483,8 +485,7 @@ export class Scene {
     this._time = time;
     for (const c of [0, 1]) this._calmWind[c] += (passed / CALM) * (this.wind[c] - this._calmWind[c]);
     // The eye takes a shadow that is some frames old for one that is not.
-    const isCrowd = (this.detail?.trees.length ?? 0) > CROWD;
-    const every = this.isSlow ? (isCrowd ? 3 : 1) * SHADOW_EVERY : 1;
+    const every = this.isSlow ? (this.isCrowd ? 3 : 1) * SHADOW_EVERY : 1;
     if (this.detail && this._frame % every === 0) this._castShadow(matrix, time);
     if (this.isSlow && !isPaused) this.pace.count(performance.now(), this._hasCards);
     this._frame++;
@@ -583,7 +584,7 @@ export class Scene {
       this._eachLevel((level, kind) => this._drawLeaves(kind, level, density));
     }
     this._begin(impostor, matrix, isShadow);
-    const shade = description.trees.length > CROWD ? 0.35 : 0.9;
+    const shade = this.isCrowd ? 0.35 : 0.9;
     this._eachLevel((level) => level.impostor?.draw(impostor, shade));
   }
 
@@ -757,12 +758,9 @@ function poseTexture(gl, texture, rows, texels) {
     texels);
 }
 
-/** Vector of the rotation from one quaternion x y z w of an array to another.
- * @param {Float32Array} poses @param {number} i @param {number} j */
-function apart(poses, i, j) {
-  const [x, y, z, w] = poses.subarray(i, i + 4);
-  const [a, b, c, d] = poses.subarray(j, j + 4);
-  const sign = w * d + x * a + y * b + z * c < 0 ? -1 : 1;
-  return [sign * (w * a - x * d - y * c + z * b), sign * (w * b + x * c - y * d - z * a),
-    sign * (w * c - x * b + y * a - z * d)];
+/** Vector of the rotation from one segment to another. @param {Float32Array} poses
+ * @param {number} from row of its pose @param {number} to */
+function apart(poses, from, to) {
+  const [w, ...vector] = multiply(conjugate(quaternion(poses, from)), quaternion(poses, to));
+  return vector.map((each) => (w < 0 ? -each : each));
 }
