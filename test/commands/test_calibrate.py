@@ -177,7 +177,7 @@ def sample(path: Path, motion: str) -> str:
         (None, ['--frequency', '-1'], '--frequency: -1.0 is out of range'),
         (None, ['--frequency', 'nan'], '--frequency: nan is out of range'),
         (None, ['--frequency', '1', '--damping', '2'], '--damping: 2.0 is out of range'),
-        (None, ['--frequency', '1', '--kind', 'release'], '--kind: no record; give --record too'),
+        (None, ['--frequency', '1', '--band', '1', '2'], '--band: no record; give --record too'),
         (None, ['--frequency', '1e-6'], 'out of reach: the tree sways at'),
         ('rng.normal(size=1200)', [], 'rec.csv: neither a release ('),
         (
@@ -185,7 +185,7 @@ def sample(path: Path, motion: str) -> str:
             [],
             "rec.csv:62: x is 'nan'",
         ),
-        ('np.sin(t[:100])*np.exp(-.1*t[:100])', ['--kind', 'release'], 'rec.csv: '),
+        ('np.sin(t[:100])*np.exp(-.1*t[:100])', [], 'rec.csv: '),
         ('np.sin(t)', ['--band', '3', '2'], 'band 3 to 2 Hz; give two rising'),
         ('0*t', [], 'rec.csv: nothing moves'),
     ],

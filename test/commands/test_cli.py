@@ -52,7 +52,7 @@ def one_line(text: str) -> str:
         (['info', 'benjamina', '--modulus', '-1'], '--modulus: -1 is not positive'),
         (['info', 'benjamina', '--density', 'nan'], '--density: nan is not positive'),
         (['info', 'benjamina', '--count', '0'], '--count: 0 frequencies'),
-        (['info', 'benjamina', '--seed', '-1'], 'seed -1 is negative'),
+        (['info', 'benjamina', '--seed', '-1'], 'seed: -1 is out of range'),
         (['plot', '--seconds', '0'], '--seconds: 0 s'),
         (['plot', '--wind', '/no/such.csv'], '/no/such.csv: no such file'),
         (

@@ -15,6 +15,7 @@ import pytest
 from tree_sway.studies.plan import read_study
 
 ROOT = Path(__file__).resolve().parents[2]
+SEEDLING = ROOT / 'test' / 'files' / 'data' / 'seedling.yaml'
 SCRIPTS = sorted((ROOT / 'examples').glob('*.py'))
 
 
@@ -36,11 +37,12 @@ def test_every_example_is_tried_here() -> None:
 
 def test_a_tree_sways_most_at_its_own_frequency(tmp_path: Path) -> None:
     pytest.importorskip('matplotlib', reason='needs matplotlib')
-    from tree_sway import make_simulator, open_tree
+    from tree_sway import make_simulator, open_tree, write_tree
 
-    tree = open_tree('goldcrest')
+    tree = open_tree(SEEDLING, length_unit=2.0)
+    write_tree(tmp_path / 'tall.yaml', tree)
     slowest = make_simulator(tree).frequencies(1)[0]
-    text = output_of('response_spectra.py', 'goldcrest', 'spectra.png', folder=tmp_path)
+    text = output_of('response_spectra.py', 'tall.yaml', 'spectra.png', folder=tmp_path)
     found = re.search(r'sways most at ([\d.]+) Hz, (\d+) times', text)
     assert found
     assert float(found[1]) == pytest.approx(slowest, rel=0.2)
@@ -49,7 +51,7 @@ def test_a_tree_sways_most_at_its_own_frequency(tmp_path: Path) -> None:
 
 
 def test_strain_grows_with_the_wind_up_to_the_critical_one(tmp_path: Path) -> None:
-    text = output_of('critical_wind_speed.py', folder=tmp_path)
+    text = output_of('critical_wind_speed.py', str(SEEDLING), folder=tmp_path)
     strains = [float(each) for each in re.findall(r'strain +([\d.]+) permille', text)]
     assert len(strains) == 5
     assert strains == sorted(strains)

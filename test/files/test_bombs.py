@@ -174,7 +174,7 @@ def test_cells_of_a_file_are_cut_and_escaped_in_messages(text: str, tmp_path: Pa
     from tree_sway.files.trees.tree_file import read_tree
 
     path = tmp_path / 'a.yaml'
-    path.write_text('species: "' + text.encode('unicode_escape').decode() + '"\nsegments: []\n')
+    path.write_text('species: "' + text.encode('unicode_escape').decode() + '"\nbranches: []\n')
     with pytest.raises(TreeSwayError) as raised:
         read_tree(path)
     assert str(raised.value).isprintable()

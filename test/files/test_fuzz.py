@@ -13,7 +13,7 @@ import pytest
 from scipy.io import savemat
 
 from tree_sway.errors import TreeSwayError
-from tree_sway.files.scenes.forest_yaml import parse_forest
+from tree_sway.files.scenes.scene_yaml import parse_scene
 from tree_sway.files.trees.formats.treeqsm import read_treeqsm_text
 from tree_sway.files.trees.source import open_tree
 from tree_sway.files.trees.tree_file import read_trees, TREE_FORMATS
@@ -158,9 +158,8 @@ def check(path: Path, name: str, content: bytes, kind: str | None) -> None:
             assert_sound_wind(read_wind(path, format=kind))
         else:
             if name == 'glade.yaml':
-                trees = parse_forest(
-                    path.read_text(errors='replace'), lambda *_: SEEDLING, name
-                ).trees
+                text = path.read_text(errors='replace')
+                trees = parse_scene(text, lambda *_: SEEDLING, Path(name)).trees
             else:
                 trees = read_trees(path, format=kind)
             for tree_file in trees:
@@ -213,7 +212,9 @@ def test_ten_thousand_damaged_files(samples, tmp_path):
         ('.yaml', b'branches:\n' + b'- ' * 200_000),
         (
             '.yaml',
-            b'segments: [' + b'{start: [0, 0, 0], end: [0, 0, 1], diameter: 1},' * 5_000 + b']',
+            b'branches: [{name: a, segments: ['
+            + b'{start: [0, 0, 0], end: [0, 0, 1], diameter: 1},' * 5_000
+            + b']}]',
         ),
         ('.csv', b'segment,parent,x0,y0,z0,x1,y1,z1,d0\n' + b'0,-1,"' + b'0' * 1_000_000),
         ('.swc', b'\n'.join(b'%d 1 0 0 %d 1 %d' % (i, i, i - 1 or -1) for i in range(1, 20_000))),

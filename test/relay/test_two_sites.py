@@ -19,6 +19,8 @@ pytest.importorskip('zenoh', reason='eclipse-zenoh is not installed')
 
 ROOT = Path(__file__).resolve().parents[2]
 SECONDS = 8.0
+SEEDLING = str(ROOT / 'test' / 'files' / 'data' / 'seedling.yaml')
+TALL = ('--option', 'length_unit=3')
 
 
 def free_port() -> int:
@@ -28,9 +30,9 @@ def free_port() -> int:
 
 
 def relay(role: str, output: Path, *given: str) -> subprocess.Popen[str]:
-    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'relay', role, 'goldcrest']
+    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'relay', role, SEEDLING]
     return subprocess.Popen(
-        [*command, '-o', str(output), *given],
+        [*command, *TALL, '-o', str(output), *given],
         cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
 

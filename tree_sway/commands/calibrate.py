@@ -20,7 +20,7 @@ from tree_sway.commands.arguments import (
 from tree_sway.commands.progress import waiting
 from tree_sway.core.checks import within
 from tree_sway.core.identification.calibration import calibrate, Calibration
-from tree_sway.core.identification.measured_sway import estimate_sway, KINDS
+from tree_sway.core.identification.measured_sway import estimate_sway
 from tree_sway.core.identification.sway_estimate import SwayEstimate
 from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.core.simulator.settings import Settings
@@ -55,7 +55,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         '--branch', metavar='NAME', help='branch that was measured, such as stem; the slowest sway'
     )
-    add('--kind', choices=KINDS, help='of the record; found from it if left out')
     add(
         '--band',
         type=float,
@@ -106,9 +105,8 @@ def _check(arguments: argparse.Namespace) -> None:
     if (arguments.frequency is None) == (arguments.record is None):
         given = 'both' if arguments.record is not None else 'neither'
         raise ParameterError(f'{given} of --frequency and --record', cure='give one of the two')
-    for name in ('kind', 'band'):
-        if arguments.record is None and getattr(arguments, name) is not None:
-            raise ParameterError('no record', where=f'--{name}', cure='give --record too')
+    if arguments.record is None and arguments.band is not None:
+        raise ParameterError('no record', where='--band', cure='give --record too')
     if arguments.frequency is not None:
         within('--frequency', arguments.frequency, 0.0, 1e3, 'Hz', above=True)
     if arguments.damping is not None:
@@ -124,7 +122,7 @@ def _measured(arguments: argparse.Namespace) -> SwayEstimate:
     record = read_csv_sway(path_of(arguments.record))
     band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
     try:
-        found = estimate_sway(record.time, record.motion, arguments.kind, band)
+        found = estimate_sway(record.time, record.motion, band=band)
     except FormatError as error:
         raise error.inside(record.source) from None
     print(

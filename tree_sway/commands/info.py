@@ -19,7 +19,7 @@ from tree_sway.commands.arguments import (
     told_leaves,
 )
 from tree_sway.commands.mode_table import mode_table
-from tree_sway.commands.progress import bar, waiting
+from tree_sway.commands.progress import bar
 from tree_sway.core.scene.placed_tree import Kind
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.simulator.season import in_season
@@ -61,8 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     kinds = scene.kinds
     if scene.is_one_tree:
         kinds = [kinds[0]._replace(tree=scene.tree)]
-    with waiting('working out the modes'):
-        found = [_kind_facts(kind, arguments) for kind in bar(kinds, 'kinds of trees')]
+    found = [_kind_facts(kind, arguments) for kind in bar(kinds, 'working out the modes')]
     facts = {'name': scene.name, 'source': scene.source} | (
         found[0] if scene.is_one_tree else _sums(scene, found)
     )

@@ -42,8 +42,8 @@ def mode_table(
     whole = CalibratedTree(tree, species, settings)
     bank = whole.bank(0)
     modes = whole.natural_modes(min(count, whole.coupled.reduction.n_coordinates))
-    layer = whole.coupled
-    owner = np.repeat(layer.branch, layer.branches['n_coordinates'])
+    reduced = whole.coupled
+    owner = np.repeat(reduced.branch, reduced.branches['n_coordinates'])
     rows = []
     for frequency, shape in zip(modes.frequencies.tolist(), modes.shapes.T, strict=True):
         axis = _axis(tree, bank, shape)

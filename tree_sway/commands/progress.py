@@ -3,17 +3,16 @@
 """
 What a command shows while it works: a bar for what is counted, a line for what is not.
 
-Everything goes to standard error. Bars are tqdm's and stand on terminals alone; without tqdm, and
-where there is no terminal, a line says now and then how far the work is.
+Everything goes to standard error. Bars are tqdm's, on terminals alone; without tqdm, and where
+there is no terminal, a line says what is done.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 import sys
 import threading
-import time
 from typing import TypeVar
 
 T = TypeVar('T')
@@ -21,25 +20,17 @@ T = TypeVar('T')
 PATIENCE = 2.0
 """A wait as long as this is reported [s]."""
 
-_LINES_EVERY = 10.0
-
 
 def bar(items: Collection[T], what: str) -> Iterator[T]:
     """Yield the items, and show how many of them are done, and of what: "MuJoCo", "settling"."""
     if sys.stderr is not None and sys.stderr.isatty():
-        try:
+        with suppress(ImportError):
             from tqdm import tqdm
-        except ImportError:
-            pass
-        else:
+
             yield from tqdm(items, desc=what, delay=PATIENCE, leave=False, file=sys.stderr)
             return
-    said = time.monotonic() + PATIENCE - _LINES_EVERY
-    for done, item in enumerate(items):
-        if time.monotonic() >= said + _LINES_EVERY:
-            said = time.monotonic()
-            _tell(f'{what}: {done} of {len(items)}')
-        yield item
+    with waiting(what):
+        yield from items
 
 
 @contextmanager

@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 import math
 from typing import Any, SupportsFloat
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tree_sway.errors import ParameterError
+from tree_sway.errors import nearest, ParameterError
 
 
 def within(
@@ -36,6 +37,14 @@ def within(
         cure = f'use {lower} {high:g} {unit}'.rstrip()
         raise ParameterError(f'{value!r} is out of range', where=name, cure=cure)
     return number
+
+
+def one_of(name: str, value: object, known: Collection[object]) -> None:
+    """Refuse a value that is not known; a `ParameterError` names those that are."""
+    if value not in known:
+        near = nearest(str(value), [str(each) for each in known])
+        cure = f'{near} use one of: {", ".join(map(str, known))}'.lstrip()
+        raise ParameterError(f"unknown {name} '{value}'", cure=cure)
 
 
 def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:

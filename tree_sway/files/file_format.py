@@ -106,11 +106,10 @@ def format_of(
         raise FormatError(
             'numbers with a decimal comma', where=str(path), cure='export it with decimal points'
         )
-    for known in formats:
-        if path.suffix.lower() in known.suffixes:
-            return known
-    raise FormatError(
-        f'a file of no known {kind} format',
-        where=str(path),
-        cure=f'give one of {names}, or say its format',
-    )
+    of_suffix = [known for known in formats if path.suffix.lower() in known.suffixes]
+    if len(of_suffix) == 1:
+        return of_suffix[0]
+    cure = f'give one of {names}, or say its format'
+    if kind == 'tree':
+        cure += '; an inventory has columns for the place, the species, and the height or dbh'
+    raise FormatError(f'a file of no known {kind} format', where=str(path), cure=cure)

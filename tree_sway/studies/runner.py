@@ -21,7 +21,6 @@ from typing import Any
 
 from tree_sway.commands.progress import bar
 from tree_sway.errors import MissingDependencyError, TransportError, TreeSwayError
-from tree_sway.files.export.table_writing import write_columns
 from tree_sway.files.whole_file import write_text_whole
 from tree_sway.studies.plan import Case, Plain
 
@@ -90,8 +89,7 @@ def compute_to_file(case: Case, folder: Path) -> None:
         return
     row, record = compute(case)
     if case.series:
-        columns = {name: each.tolist() for name, each in record.columns().items()}
-        write_columns(columns, folder / f'{case.name}.csv')
+        write_text_whole(folder / f'{case.name}.csv', record.to_csv())
     write_text_whole(result_path(folder, case), json.dumps(row))
 
 

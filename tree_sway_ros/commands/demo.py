@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 from contextlib import ExitStack
+import math
 from pathlib import Path
 import sys
 import tempfile
@@ -18,14 +19,14 @@ import webbrowser
 from tree_sway.commands.arguments import add_sway_arguments, opened_scene
 from tree_sway.commands.ending import Ending, LONGEST
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings
+from tree_sway.core.checks import within
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.parameters.parameter import Value
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
-from tree_sway_ros.commands.watch import checked_seconds, watch
+from tree_sway_ros.commands.watch import watch
 from tree_sway_ros.process.composition import Composition
 
 
@@ -40,7 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='of an anemometer in place of both: serial:/dev/ttyUSB0:4800, tcp://host:port, '
         'udp://:port',
     )
-    add('--seconds', type=float, metavar='N', help='end after this time [s]; else by Ctrl-C')
+    add(
+        '--seconds',
+        type=float,
+        default=math.inf,
+        metavar='N',
+        help='end after this time [s]; else by Ctrl-C',
+    )
     add('--rate', type=float, default=60.0, help='poses per second [Hz] (%(default)s)')
     add('--gravity', choices=('on', 'off'), default='on', help='its own weight (%(default)s)')
     add('--no-page', action='store_true', help='serve no page')
@@ -49,13 +56,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the demo until its time is over, the record ends, or Ctrl-C."""
-    seconds = checked_seconds(arguments.seconds)
+    seconds = within('--seconds', arguments.seconds, 0.0, math.inf, 's', above=True)
     scene = opened_scene(arguments)
     for warning in scene.warnings:
         print(f'warning: {warning}', file=sys.stderr)
     tree = scene.tree
     print(
-        f'{tree.name}: {size_of(tree)}; starting (the first start compiles, up to a minute)',
+        f'{tree.name}: {tree.n_branches} branches, {tree.n_segments} segments; starting '
+        '(the first start compiles, up to a minute)',
         flush=True,
     )
     with (
@@ -89,13 +97,6 @@ def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
     print(f'page: {url}', flush=True)
     if arguments.open:
         webbrowser.open(url)
-
-
-def size_of(tree: Tree) -> str:
-    """Return branches and segments, trees if there are more, and height, for people."""
-    n_trees = int((tree.branch_parent < 0).sum())
-    trees = f'{n_trees} trees, ' if n_trees > 1 else ''
-    return f'{trees}{tree.n_branches} branches, {tree.n_segments} segments, {tree.height:.2f} m'
 
 
 def _tree_of(scene: Scene, arguments: argparse.Namespace, files: ExitStack) -> str:

@@ -10,13 +10,14 @@ again.
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 import time
 from typing import Any
 
 from tree_sway.commands.ending import Ending
+from tree_sway.core.checks import within
 from tree_sway.files.recording.bag_writer import BagWriter, FORMATS
-from tree_sway_ros.commands.watch import checked_seconds
 from tree_sway_ros.process.listener import Listener
 from tree_sway_ros.process.topics import (
     DIAGNOSTICS,
@@ -46,13 +47,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add('--namespace', default='', help="of the tree's nodes")
     add('--poses', action='store_true', help='also poses, markers and diagnostics: GB per hour')
     add(
-        '--seconds', type=float, metavar='N', help='time from the first message; else until Ctrl-C'
+        '--seconds',
+        type=float,
+        default=math.inf,
+        metavar='N',
+        help='time from the first message; else until Ctrl-C',
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Record until the time is over or Ctrl-C."""
-    seconds = checked_seconds(arguments.seconds)
+    seconds = within('--seconds', arguments.seconds, 0.0, math.inf, 's', above=True)
     topics = _USUAL + (_MORE if arguments.poses else ())
     with (
         BagWriter(Path(arguments.output), arguments.format) as bag,

@@ -8,23 +8,12 @@ from collections.abc import Callable
 import sys
 import time
 
-from tree_sway.errors import ParameterError, TransportError
+from tree_sway.errors import TransportError
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import status_line
 
 _SETTLING = 0.5
 _LIVE_PERIOD, _LOG_PERIOD = 0.5, 2.0
-
-
-def checked_seconds(seconds: float | None) -> float:
-    """Return for how long to watch in [s], for ever if None; refuse what is no length of time."""
-    if seconds is None:
-        return float('inf')
-    if not seconds > 0.0:
-        raise ParameterError(
-            f'{seconds:g} s is no time to run', where='--seconds', cure='give more than 0'
-        )
-    return seconds
 
 
 def watch(

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
 import importlib
 import socket
 import threading
@@ -26,6 +27,7 @@ Read = Callable[[], bytes | None]
 """Bytes that have come, none where nothing came for a while, None at the end of the link."""
 
 
+@dataclass(eq=False)
 class LineSource:
     """
     Listens to an instrument at an address; hands each line to `take`, in a thread of its own.
@@ -34,27 +36,20 @@ class LineSource:
     `first_pause` [s]. A `MissingDependencyError` says that a serial port needs pyserial.
     """
 
-    def __init__(
-        self,
-        address: Address,
-        take: Callable[[str], None],
-        log: Callable[[str], None],
-        *,
-        silence: float = 10.0,
-        first_pause: float = FIRST_PAUSE,
-    ) -> None:
-        if address.kind == 'serial':
+    address: Address
+    take: Callable[[str], None]
+    log: Callable[[str], None]
+    silence: float = 10.0
+    first_pause: float = FIRST_PAUSE
+
+    def __post_init__(self) -> None:
+        """Prepare the thread."""
+        if self.address.kind == 'serial':
             _pyserial()
-        self._address = address
-        self._take = take
-        self._log = log
-        self._silence = silence
-        self._first_pause = first_pause
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._run, name='instrument', daemon=True)
         self.is_up = False
-        self.links = 0
-        self.lines = 0
+        self.links = self.lines = 0
         self.failure = ''
 
     def start(self) -> None:
@@ -68,16 +63,16 @@ class LineSource:
             self._thread.join(timeout=_CONNECT_FOR + 1.0)
 
     def _run(self) -> None:
-        pause = self._first_pause
+        pause = self.first_pause
         while not self._ending.is_set():
             before = self.lines
             try:
-                with _LINKS[self._address.kind](self._address) as read:
+                with _LINKS[self.address.kind](self.address) as read:
                     why = self._listen(read)
             except Exception as error:  # an instrument may fail in any way, and is tried again
                 why = f'{type(error).__name__}: {error}'
             self._lose(why)
-            pause = self._first_pause if self.lines > before else min(2.0 * pause, LONGEST_PAUSE)
+            pause = self.first_pause if self.lines > before else min(2.0 * pause, LONGEST_PAUSE)
             self._ending.wait(pause)
 
     def _listen(self, read: Read) -> str:
@@ -85,23 +80,23 @@ class LineSource:
         lines, latest = Lines(), time.monotonic()
         self.is_up, self.failure = True, ''
         self.links += 1
-        self._log(f'listening to {self._address}')
+        self.log(f'listening to {self.address}')
         while not self._ending.is_set():
             data = read()
             if data is None:
                 return 'closed by the other side'
             if data:
                 latest = time.monotonic()
-            elif time.monotonic() - latest > self._silence:
-                return f'nothing for {self._silence:g} s'
-            for line in lines.feed(data, is_whole=self._address.kind == 'udp'):
+            elif time.monotonic() - latest > self.silence:
+                return f'nothing for {self.silence:g} s'
+            for line in lines.feed(data, is_whole=self.address.kind == 'udp'):
                 self.lines += 1
-                self._take(line)
+                self.take(line)
         return ''
 
     def _lose(self, why: str) -> None:
         if not self._ending.is_set() and (self.is_up or why != self.failure):
-            self._log(f'{self._address}: {why}; trying again')
+            self.log(f'{self.address}: {why}; trying again')
         self.is_up, self.failure = False, why
 
 

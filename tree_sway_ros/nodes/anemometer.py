@@ -44,20 +44,14 @@ class AnemometerNode(TreeSwayNode):
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse gusts and faults that overlap."""
-        duration, every = values['gust_duration'], values['gust_every']
-        if values['gust'] != 'none' and 0.0 < every < duration:
-            raise ParameterError(
-                f'gusts of {duration:g} s every {every:g} s overlap',
-                where="parameters 'gust_duration' and 'gust_every'",
-                cure='give gust_every 0 or not less than gust_duration, both at once if need be',
-            )
-        if values['fault'] != 'none' and values['fault_duration'] > values['fault_every']:
-            raise ParameterError(
-                f'faults of {values["fault_duration"]:g} s every {values["fault_every"]:g} s '
-                'overlap',
-                where="parameters 'fault_duration' and 'fault_every'",
-                cure='give fault_every not less than fault_duration, both at once if need be',
-            )
+        for what in ('gust', 'fault'):
+            duration, every = values[f'{what}_duration'], values[f'{what}_every']
+            if values[what] != 'none' and 0.0 < every < duration:
+                raise ParameterError(
+                    f'{what}s of {duration:g} s every {every:g} s overlap',
+                    where=f"parameters '{what}_duration' and '{what}_every'",
+                    cure=f'give {what}_every not less than {what}_duration, both at once',
+                )
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Blow otherwise from the next sample on; the gusts of a seed keep their pattern."""

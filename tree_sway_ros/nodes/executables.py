@@ -11,10 +11,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from tree_sway_ros.process.composition import NODE_CLASSES
+from tree_sway_ros.process.composition import NODES, place_of
 from tree_sway_ros.process.spin import run
 
 anemometer, wind, solver, player, sensor, viewer = (
-    partial(run, *NODE_CLASSES[name])
-    for name in ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer')
+    partial(run, *place_of(name)) for name in NODES
 )

@@ -19,14 +19,12 @@ from tree_sway.parameters.parameter import Value
 from tree_sway_ros.process.spin import create, init, require_rclpy
 
 _CHECK_PERIOD = 0.2
-NODE_CLASSES = {
-    'anemometer': ('tree_sway_ros.nodes.anemometer', 'AnemometerNode'),
-    'wind': ('tree_sway_ros.nodes.wind', 'WindNode'),
-    'solver': ('tree_sway_ros.nodes.solver', 'SolverNode'),
-    'player': ('tree_sway_ros.nodes.player', 'PlayerNode'),
-    'sensor': ('tree_sway_ros.nodes.sensor', 'SensorNode'),
-    'viewer': ('tree_sway_ros.nodes.viewer', 'ViewerNode'),
-}
+NODES = ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer')
+
+
+def place_of(node: str) -> tuple[str, str]:
+    """Return the module and the class of a node."""
+    return f'tree_sway_ros.nodes.{node}', f'{node.title()}Node'
 
 
 class Composition:
@@ -74,10 +72,10 @@ class Composition:
         self._thread.start()
 
     def add(self, name: str, values: Mapping[str, Value], namespace: str = '') -> Any:
-        """Start another node of `NODE_CLASSES` in a namespace, with values of its parameters."""
+        """Start another node of `NODES` in a namespace, with values of its parameters."""
         from rclpy.parameter import Parameter
 
-        module, class_name = NODE_CLASSES[name]
+        module, class_name = place_of(name)
         node = create(
             getattr(importlib.import_module(module), class_name),
             context=self.context,

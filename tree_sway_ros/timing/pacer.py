@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 import threading
 import time
 from typing import Any, NamedTuple
@@ -61,6 +62,7 @@ class Pace(NamedTuple):
     silence: float
 
 
+@dataclass(eq=False)
 class Pacer:
     """
     Calls `work` with each tick at a fixed rate [Hz] in a thread of its own, by a node's clock.
@@ -69,21 +71,16 @@ class Pacer:
     what it raised before that goes to `on_slip`, and the next tick comes as if nothing had been.
     """
 
-    def __init__(
-        self,
-        clock: Any,
-        rate: float,
-        work: Callable[[Tick], None],
-        on_error: Callable[[Exception], None],
-        on_slip: Callable[[Exception], None] = lambda _error: None,
-    ) -> None:
-        self.period = round(1e9 / rate)
-        self._clock = clock
-        self._work = work
-        self._on_error = on_error
-        self._on_slip = on_slip
-        self._slips = 0
-        self._last_steady = self._late = 0
+    clock: Any
+    rate: float
+    work: Callable[[Tick], None]
+    on_error: Callable[[Exception], None]
+    on_slip: Callable[[Exception], None] = lambda _error: None
+
+    def __post_init__(self) -> None:
+        """Prepare the thread."""
+        self.period = round(1e9 / self.rate)
+        self._slips = self._last_steady = self._late = 0
         self._last: int | None = None
         self._wake = threading.Event()
         self._stopping = False
@@ -102,7 +99,7 @@ class Pacer:
         threshold = JumpThreshold(
             min_forward=smallest, min_backward=Duration(nanoseconds=-1), on_clock_change=True
         )
-        self._jumps = self._clock.create_jump_callback(
+        self._jumps = self.clock.create_jump_callback(
             threshold, post_callback=lambda _jump: self._wake.set()
         )
         self._thread.start()
@@ -120,7 +117,7 @@ class Pacer:
     @property
     def is_simulated(self) -> bool:
         """Whether the clock is simulated time, which may stand still."""
-        return bool(self._clock.ros_time_is_active)
+        return bool(self.clock.ros_time_is_active)
 
     def pace(self) -> Pace:
         """How well the pace was kept over the last 600 ticks."""
@@ -140,19 +137,19 @@ class Pacer:
                 if self._stopping:
                     return
                 if self._slips >= PATIENCE:
-                    return self._on_error(error)
-                self._on_slip(error)
+                    return self.on_error(error)
+                self.on_slip(error)
 
     def _go_on(self) -> None:
         """Work if a tick is due, else sleep until one may be."""
         self._wake.clear()
-        now = self._clock.now().nanoseconds
+        now = self.clock.now().nanoseconds
         tick = self._due(now)
         if tick is None:
             self._wake.wait(self._until_next(now))
             return
         begin = time.perf_counter()
-        self._work(tick)
+        self.work(tick)
         self._slips = 0
         self._recent.append((begin, now - tick.time, time.perf_counter() - begin))
         self._ticks += 1

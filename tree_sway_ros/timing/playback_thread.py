@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 import threading
 import time
 
@@ -15,6 +16,7 @@ _LATEST = 0.5
 _POLL = 0.02
 
 
+@dataclass(eq=False)
 class PlaybackThread:
     """
     Plays the events of a record at a multiple of real time, once ``may_start`` is true.
@@ -25,26 +27,18 @@ class PlaybackThread:
     [ns]; `on_error` with what it raised.
     """
 
-    def __init__(
-        self,
-        playback: Playback,
-        speed: float,
-        *,
-        publish: Callable[[int, int], None],
-        may_start: Callable[[], bool],
-        on_end: Callable[[], None],
-        on_error: Callable[[Exception], None],
-    ) -> None:
-        self._playback = playback
-        self._speed = speed
-        self._publish = publish
-        self._may_start = may_start
-        self._on_end = on_end
-        self._on_error = on_error
+    playback: Playback
+    speed: float
+    publish: Callable[[int, int], None]
+    may_start: Callable[[], bool]
+    on_end: Callable[[], None]
+    on_error: Callable[[Exception], None]
+
+    def __post_init__(self) -> None:
+        """Prepare the thread."""
         self._stopping = threading.Event()
         self._position = 0.0
-        self._samples = 0
-        self._stalls = 0
+        self._samples = self._stalls = 0
         self._thread = threading.Thread(target=self._run, name='playback', daemon=True)
 
     def start(self) -> None:
@@ -60,31 +54,31 @@ class PlaybackThread:
     def progress(self) -> dict[str, float]:
         """How far it is, for reports."""
         return {
-            'position [s]': self._position % self._playback.round,
-            'rounds': float(self._position // self._playback.round),
+            'position [s]': self._position % self.playback.round,
+            'rounds': float(self._position // self.playback.round),
             'samples': float(self._samples),
             'stalls': float(self._stalls),
         }
 
     def _run(self) -> None:
         try:
-            while not self._may_start():
-                if self._playback.has_clock:
-                    self._publish(-1, self._playback.epoch)  # time stands, for all who come
+            while not self.may_start():
+                if self.playback.has_clock:
+                    self.publish(-1, self.playback.epoch)  # time stands, for all who come
                 if self._stopping.wait(_POLL):
                     return
             self._play()
         except Exception as error:
             if not self._stopping.is_set():
-                self._on_error(error)
+                self.on_error(error)
 
     def _play(self) -> None:
-        has_clock = self._playback.has_clock
+        has_clock = self.playback.has_clock
         # What goes ahead of all time is given a while to arrive.
-        begin = time.monotonic() + (SETTLING if self._playback.goes_ahead else 0.0)
+        begin = time.monotonic() + (SETTLING if self.playback.goes_ahead else 0.0)
         wall = time.time_ns()
-        for event in self._playback.events():
-            due = event.due / self._speed
+        for event in self.playback.events():
+            due = event.due / self.speed
             wait = begin + due - time.monotonic()
             if event.row >= 0 and due == 0.0:
                 wait = 0.0
@@ -95,10 +89,10 @@ class PlaybackThread:
                 wall -= round(wait * 1e9)
                 self._stalls += 1
             if has_clock:
-                stamp = self._playback.epoch + round(event.time * 1e9)
+                stamp = self.playback.epoch + round(event.time * 1e9)
             else:
                 stamp = wall + round(due * 1e9)
-            self._publish(event.row, stamp)
+            self.publish(event.row, stamp)
             self._position = event.time
             self._samples += event.row >= 0
-        self._on_end()
+        self.on_end()

@@ -14,8 +14,8 @@ LONG = ('T1', 'T3', 'T18')
 
 @pytest.mark.parametrize(
     ('name', 'full'),
-    [(name, False) for name in CASES]
-    + [pytest.param(name, True, marks=pytest.mark.long) for name in LONG],
+    [(name, False) for name in CASES if name not in LONG]
+    + [pytest.param(name, k, marks=pytest.mark.long) for name in LONG for k in (False, True)],
 )
 def test_every_row_is_as_it_should_be(name, full):
     rows = load_case(name).run(full)

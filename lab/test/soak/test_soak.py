@@ -36,9 +36,10 @@ def test_a_process_looks_at_itself() -> None:
     assert now.threads >= 1
 
 
+@pytest.mark.long
 @pytest.mark.ros
 @pytest.mark.skipif(not sys.platform.startswith('linux'), reason='reads /proc')
-@pytest.mark.parametrize('kind', ['nodes', pytest.param('demo', marks=pytest.mark.long)])
+@pytest.mark.parametrize('kind', ['nodes', 'demo'])
 def test_the_chain_goes_through_all_faults(kind: str, ros_environment: dict[str, str]) -> None:
     command = [sys.executable, '-m', 'tree_sway.commands.cli', 'lab', 'soak', '--hours', '0.003']
     ended = subprocess.run(

@@ -196,5 +196,5 @@ def test_an_unknown_name_is_met_with_the_nearest_and_all() -> None:
 
 
 def test_a_negative_seed_is_refused() -> None:
-    with pytest.raises(ParameterError, match='seed -1'):
+    with pytest.raises(ParameterError, match='seed: -1'):
         builtin_tree('benjamina', seed=-1)

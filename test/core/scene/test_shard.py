@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ from tree_sway.core.scene.shard import dealt
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
 
+DATA = Path(__file__).parents[2] / 'files' / 'data'
+KINDS = {'pine': 'seedling.yaml', 'oak': 'segments.csv'}
 ROWS = [(4.0 * i, 3.0 * (i % 3), ('pine', 'oak')[i % 2], 1.5 + 0.1 * i) for i in range(7)]
 
 
@@ -21,7 +24,9 @@ def stand(tmp_path):
     path = tmp_path / 'stand.csv'
     lines = [','.join(map(str, row)) for row in ROWS]
     path.write_text('\n'.join(['x,y,species,height', *lines]) + '\n')
-    return open_scene(str(path))
+    kinds = [f'  - {{species: {key}, tree: {DATA / name}}}' for key, name in KINDS.items()]
+    path.with_suffix('.yaml').write_text('\n'.join(['stand: stand.csv', 'kinds:', *kinds]) + '\n')
+    return open_scene(str(path.with_suffix('.yaml')))
 
 
 @pytest.mark.parametrize('shards', [1, 2, 3, 7])

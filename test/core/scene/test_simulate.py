@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import io
 from types import SimpleNamespace
 
 import numpy as np
@@ -60,10 +61,14 @@ def test_chosen_branches_are_told_by_name(fork):
 
 def test_the_record_as_columns(fork):
     record = simulate(fork(), STEADY[:7], model=12)
+    text = record.to_csv()
+    assert text.startswith('time [s],wind_x [m/s],wind_y [m/s],wind_z [m/s],moment_x [N m]')
+    read = np.loadtxt(io.StringIO(text), delimiter=',', skiprows=1)
     columns = record.columns()
     assert [*columns][:3] == ['time [s]', 'wind_x [m/s]', 'wind_y [m/s]']
     rows = np.stack([*columns.values()], axis=1)
     assert rows.shape == (7, 13)
+    assert read == pytest.approx(rows, rel=1e-8, abs=1e-12)
     assert (rows[:, 7:10] == record.tips[:, 0]).all()
     assert len(repr(record)) < 120
     pandas = pytest.importorskip('pandas', reason='pandas is not installed')

@@ -134,7 +134,7 @@ def test_a_bad_number_comes_out_as_not_finite_and_without_a_warning(bad):
 @pytest.mark.parametrize(
     ('options', 'match'),
     [
-        ({'direction_convention': 'towards'}, "unknown convention 'towards'.*'to'.*'from'"),
+        ({'direction_convention': 'towards'}, "direction convention 'towards'; .*to, from"),
         ({'speed_scale': 0.0}, 'speed_scale'),
         ({'speed_scale': -1.0}, 'speed_scale'),
         ({'speed_scale': math.nan}, 'speed_scale'),

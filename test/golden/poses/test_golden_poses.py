@@ -21,8 +21,14 @@ def maker():
     return module
 
 
-@pytest.mark.parametrize('tree_name', ['goldcrest', 'broadleaf'])
-@pytest.mark.parametrize('model', ['branch', 12, 'full'])
+@pytest.mark.parametrize(
+    ('tree_name', 'model'),
+    [
+        *((name, model) for name in ('goldcrest', 'broadleaf') for model in ('branch', 12)),
+        ('goldcrest', 'full'),
+        pytest.param('broadleaf', 'full', marks=pytest.mark.long),
+    ],
+)
 def test_ten_seconds_of_wind_end_where_they_did(maker, tree_name, model):
     golden = np.load(FOLDER / 'golden.npz')[f'{tree_name}_{model}']
     _, found = maker.run(tree_name, model, seconds=10)

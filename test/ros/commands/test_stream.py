@@ -11,10 +11,8 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from tree_sway.errors import ParameterError
 from tree_sway_ros.commands.text import status_line, summary
 from tree_sway_ros.commands.totals import StreamTotals
-from tree_sway_ros.commands.watch import checked_seconds
 
 STAMPS = [k / 60 for k in range(121) if k != 50]
 WINDS = [0.05 * k for k in range(41)]
@@ -104,11 +102,3 @@ def test_a_summary_says_it_all(totals: StreamTotals) -> None:
     for stamp in STAMPS[:50]:
         whole.add_poses(stamp, stamp, TIP)
     assert 'none missing' in summary(whole, 60.0)
-
-
-def test_a_time_to_watch() -> None:
-    assert checked_seconds(None) == math.inf
-    assert checked_seconds(2.5) == 2.5
-    for wrong in (0.0, -1.0, math.nan):
-        with pytest.raises(ParameterError, match='no time to run'):
-            checked_seconds(wrong)

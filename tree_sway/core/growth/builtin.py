@@ -9,11 +9,11 @@ from types import MappingProxyType
 
 import numpy as np
 
+from tree_sway.core.checks import one_of, within
 from tree_sway.core.growth.benjamina import grow_benjamina
 from tree_sway.core.growth.broadleaf import grow_broadleaf
 from tree_sway.core.growth.goldcrest import grow_goldcrest
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import nearest, ParameterError
 
 _GENERATORS: MappingProxyType[str, Callable[[np.random.Generator], Tree]] = MappingProxyType(
     {'benjamina': grow_benjamina, 'goldcrest': grow_goldcrest, 'broadleaf': grow_broadleaf}
@@ -29,10 +29,6 @@ def builtin_tree(name: str, seed: int = 0) -> Tree:
 
     Raises a `ParameterError` for a name that no tree has, or a negative seed.
     """
-    if name not in _GENERATORS:
-        guess = nearest(name.lower(), BUILTIN_TREES)
-        cure = f'{guess} use one of: {", ".join(BUILTIN_TREES)}'.lstrip()
-        raise ParameterError(f"no built-in tree is called '{name}'", where='tree', cure=cure)
-    if seed < 0:
-        raise ParameterError(f'seed {seed} is negative', where='seed', cure='give 0 or more')
+    one_of('built-in tree', name, BUILTIN_TREES)
+    within('seed', seed, 0, 2**63)
     return _GENERATORS[name](np.random.default_rng(seed))

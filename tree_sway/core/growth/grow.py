@@ -100,6 +100,14 @@ def _slenderness(kind: str, species: str, height: float) -> float:
     return broadleaf_form(species).slenderness if kind == 'broadleaf' else _POT_SLENDERNESS
 
 
+def height_of_stem(species: str, diameter: float) -> float:
+    """Height [m] at which `grow` gives a species a diameter [m], within what the habit has."""
+    wood = species_named(species)
+    heights = np.linspace(*_HEIGHTS[wood.habit], 200)
+    stems = [height / _slenderness(wood.habit, wood.key, height) for height in heights]
+    return float(np.interp(diameter, stems, heights))
+
+
 def _check_stem(wood: Species, height: float, diameter: float) -> None:
     thinnest, thickest = stem_range(wood, height)
     if not thinnest <= diameter <= thickest:

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import signal
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import one_of
 from tree_sway.core.identification.ambient_sway import ambient_sway, AmbientSway
 from tree_sway.core.identification.free_decay import free_decay, FreeDecay
 from tree_sway.core.identification.spectral_peaks import Band, spectral_peaks
@@ -67,8 +68,8 @@ def estimate_sway(
         An unknown kind or an empty band.
 
     """
-    if kind is not None and kind not in KINDS:
-        raise ParameterError(f"unknown kind '{kind}'", cure=f'use one of: {", ".join(KINDS)}')
+    if kind is not None:
+        one_of('kind', kind, KINDS)
     if band is not None and not 0.0 < band[0] < band[1] < np.inf:
         raise ParameterError(
             f'band {band[0]:g} to {band[1]:g} Hz', cure='give two rising frequencies above 0'

@@ -184,7 +184,7 @@ def moment_per_rotation(calibrated: CalibratedTree) -> Floats:
     It is by the curvature of the stem's shapes there, and so what a strain gauge measures: the
     moment of wind and inertia together, as the wood carries it.
     """
-    stem = calibrated.layer(calibrated.settings.model).models[0]
+    stem = calibrated.reduced(calibrated.settings.model).models[0]
     along, found = stem.beam.tangent[0], []
     for field in stem.fields:
         across = field.curvature[0] - np.outer(field.curvature[0] @ along, along)

@@ -78,6 +78,13 @@ class SwayRecord:
         names = enumerate(self.branch_names)
         return found | {f'{name} largest strain [-]': self.strain[:, k] for k, name in names}
 
+    def to_csv(self) -> str:
+        """Return the record as comma-separated values under one line of names and units."""
+        columns = self.columns()
+        head = ','.join(f'"{name}"' if ',' in name else name for name in columns)
+        rows = np.stack([*columns.values()], axis=1)
+        return '\n'.join([head, *(','.join(f'{x:.9g}' for x in row) for row in rows), ''])
+
     def __repr__(self) -> str:
         """Name tree, model, length and the largest motion of the first tip on one line."""
         largest = float(np.linalg.norm(self.tips[:, 0], axis=1).max())

@@ -84,7 +84,7 @@ class Kept(Protocol):
 
 
 @dataclass(frozen=True)
-class Layer:
+class ReducedTree:
     """
     A tree reduced in one of the two ways that models differ in.
 
@@ -161,7 +161,7 @@ class CalibratedTree:
         from tree_sway.core.simulator.crown_gusts import delays_of
 
         whole = delays_of(self.tree, self.leaf_load_area)
-        return whole._replace(of_branch=whole.of_branch[self.layer(model).branch])
+        return whole._replace(of_branch=whole.of_branch[self.reduced(model).branch])
 
     def bank(self, model: int | str | None = None) -> Bank:
         """
@@ -187,18 +187,18 @@ class CalibratedTree:
         with solvable(self.tree):
             if model != 'branch':
                 return self._bank_of_modes(model)
-            layer = self.isolated
-            branches = layer.branches.copy()
-            oscillators = self._bank_of_branches(layer, branches)
-            return self._laid_out(oscillators, branches, layer.segments, layer.mass)
+            reduced = self.isolated
+            branches = reduced.branches.copy()
+            oscillators = self._bank_of_branches(reduced, branches)
+            return self._laid_out(oscillators, branches, reduced.segments, reduced.mass)
 
     def natural_modes(self, count: int | None = None) -> Modes:
         """Return the slowest natural modes of the tree, or all, found once."""
         wanted = self.coupled.reduction.n_coordinates if count is None else count
         if self._slowest is None or len(self._slowest.circular) < wanted:
             with solvable(self.tree):
-                layer = self.coupled
-                self._slowest = natural_modes(layer.tree, layer.reduction, count)
+                reduced = self.coupled
+                self._slowest = natural_modes(reduced.tree, reduced.reduction, count)
         return self._slowest.slowest(wanted)
 
     def natural_frequencies(self, count: int) -> Floats:
@@ -237,14 +237,14 @@ class CalibratedTree:
         """Find all that modes are stepped and placed by."""
         from tree_sway.core.motion.modal import modal_arrays
 
-        layer = self.coupled
-        records = {'branches': layer.branches, 'segments': layer.segments}
-        arrays = modal_arrays(layer.branches, layer.reduction, self._modes(model))
-        even = self.natural_modes(min(EVENLY_DAMPED, layer.reduction.n_coordinates)).circular
+        reduced = self.coupled
+        records = {'branches': reduced.branches, 'segments': reduced.segments}
+        arrays = modal_arrays(reduced.branches, reduced.reduction, self._modes(model))
+        even = self.natural_modes(min(EVENLY_DAMPED, reduced.reduction.n_coordinates)).circular
         arrays['loss'] = np.maximum(arrays['circular'] / even[-1], 1.0)
         assert self._slowest is not None
         natural = self._slowest.circular
-        return {**records, **arrays, 'natural': natural, 'tree_mass': np.array(layer.mass)}
+        return {**records, **arrays, 'natural': natural, 'tree_mass': np.array(reduced.mass)}
 
     @one_thread()
     def _table(self, modal: ModalBank) -> WindBasisTable:
@@ -275,19 +275,19 @@ class CalibratedTree:
         heads = head_records(branches, segments)
         return Bank(oscillators, branches, segments, heads, solved, mass, self.plain)
 
-    def layer(self, model: int | str) -> Layer:
+    def reduced(self, model: int | str) -> ReducedTree:
         """Reduction that a model starts from."""
         return self.isolated if model == 'branch' else self.coupled
 
     @cached_property
-    def isolated(self) -> Layer:
+    def isolated(self) -> ReducedTree:
         """Every branch on its own."""
         return self._reduced(
             whole_tree(self.tree), self._beams, carries=False, enriched=frozenset()
         )
 
     @cached_property
-    def coupled(self) -> Layer:
+    def coupled(self) -> ReducedTree:
         """Branches that carry their children, those of the enriched ones with further shapes."""
         beams = self._cut_beams
         enriched = beams.enriched(self.settings.enrich)
@@ -342,7 +342,7 @@ class CalibratedTree:
     @one_thread()
     def _reduced(
         self, cut: CutTree, beams: TreeBeams, *, carries: bool, enriched: frozenset[int]
-    ) -> Layer:
+    ) -> ReducedTree:
         tree, species = cut.tree, self.species
         models = beams.models(carries=carries, enriched=enriched)
         shear = species.shear_ratio * species.modulus
@@ -357,7 +357,7 @@ class CalibratedTree:
         records['first'], records['base_segment'] = row, np.where(on < 0, -1, cut.row[on])
         mass = float(sum(model.beam.integral(model.mass) for model in models))
         segments = segment_records(places)
-        return Layer(tree, cut.branch, models, reduction, records, segments, mass)
+        return ReducedTree(tree, cut.branch, models, reduction, records, segments, mass)
 
     def _modes(self, model: int | str) -> Modes:
         """All modes, or of the slowest those the wind drives most and the sway that they lack."""
@@ -397,7 +397,7 @@ class CalibratedTree:
         return ModalBank
 
     @one_thread()
-    def _bank_of_branches(self, layer: Layer, branches: Records) -> UncoupledBank:
+    def _bank_of_branches(self, reduced: ReducedTree, branches: Records) -> UncoupledBank:
         """Each branch's own oscillator: the mean of its two axes."""
         from tree_sway.core.motion.uncoupled import UncoupledBank
         from tree_sway.core.reduction.carried_inertia import carried_inertia
@@ -405,12 +405,12 @@ class CalibratedTree:
         from tree_sway.core.tree.similar_twigs import twig_sources
 
         tree, settings = self.tree, self.settings
-        refuse_buckling(tree, layer.reduction)
+        refuse_buckling(tree, reduced.reduction)
         copy_twigs(branches, twig_sources(tree, settings.twig_tolerance))
-        inertia = carried_inertia(tree, layer.reduction).reshape(-1, 2).mean(axis=1)
-        inertia = inertia * np.array([model.inertia_share for model in layer.models])
-        stiffness = np.asarray(layer.reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
-        weight = np.asarray(layer.reduction.gravity.diagonal()).reshape(-1, 2).mean(axis=1)
+        inertia = carried_inertia(tree, reduced.reduction).reshape(-1, 2).mean(axis=1)
+        inertia = inertia * np.array([model.inertia_share for model in reduced.models])
+        stiffness = np.asarray(reduced.reduction.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
+        weight = np.asarray(reduced.reduction.gravity.diagonal()).reshape(-1, 2).mean(axis=1)
         damping = 2.0 * self.damping_ratio * np.sqrt(stiffness * inertia)
         if settings.volume_stiffness:
             volume = np.add.reduceat(tree.volume, tree.branch_first[:-1])

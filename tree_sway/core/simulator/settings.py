@@ -10,7 +10,7 @@ import math
 from typing import Any
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import within
+from tree_sway.core.checks import one_of, within
 from tree_sway.core.state.tree_state import digest_of
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.limits import FASTEST_WIND
@@ -107,10 +107,8 @@ class Settings:
             value = getattr(self, name)
             if value is not None:
                 within(name, value, low, high, unit, above=above)
-        for name, known in (('enrich', ENRICHED), ('degree', (1, 3, 5))):
-            if getattr(self, name) not in known:
-                cure = f'use one of: {", ".join(map(str, known))}'
-                raise ParameterError(f'unknown {name} {getattr(self, name)!r}', cure=cure)
+        one_of('enrich', self.enrich, ENRICHED)
+        one_of('degree', self.degree, (1, 3, 5))
         if self.volume_stiffness and self.model != 'branch':
             raise ParameterError(
                 f"the volume rule on model '{self.model}'",

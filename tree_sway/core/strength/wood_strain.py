@@ -29,9 +29,9 @@ class WoodStrain:
 
     def __init__(self, calibrated: CalibratedTree) -> None:
         """Gather what each coordinate bends."""
-        layer = calibrated.layer(calibrated.settings.model)
+        reduced = calibrated.reduced(calibrated.settings.model)
         blocks, radii = [], []
-        for model in layer.models:
+        for model in reduced.models:
             beam = model.beam
             along = beam.tangent[:, None, :]
             bent = [
@@ -43,8 +43,8 @@ class WoodStrain:
             radii.append(0.5 * beam.over_segments(beam.diameter))
         self._curvature = sparse.block_diag(blocks, format='csr')
         self._radius = np.concatenate(radii)
-        tree = layer.tree
-        self.branch = np.repeat(layer.branch, [len(radius) for radius in radii])
+        tree = reduced.tree
+        self.branch = np.repeat(reduced.branch, [len(radius) for radius in radii])
         self.height = 0.5 * (tree.start[:, 2] + tree.end[:, 2]) - tree.start[0, 2]
 
     def of(self, rotations: Floats) -> Floats:

@@ -77,7 +77,9 @@ def species_named(name: str) -> Species:
 
 def species_like(name: str) -> tuple[Species, str]:
     """
-    Look a species up; one that no table has is a conifer or a broadleaf of no known species.
+    Look a species up; one that no table has is what its last word is, as a silver maple a maple.
+
+    Any other is a conifer or a broadleaf of no known species.
 
     Returns
     -------
@@ -88,7 +90,8 @@ def species_like(name: str) -> tuple[Species, str]:
     try:
         return species_named(name), ''
     except SpeciesError:
-        group = SPECIES['conifer' if _CONIFEROUS.search(name.lower()) else 'broadleaf']
+        kind = 'conifer' if _CONIFEROUS.search(name.lower()) else 'broadleaf'
+        group = SPECIES[_KEYS.get((re.findall(r'[^\W_]+', name.lower()) or [''])[-1], kind)]
         guess = nearest(name.lower(), _WORDS)
         return group, f"'{name[:40]}' is not in the table: taken as {group.title}; {guess}".rstrip(
             '; '

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import within
+from tree_sway.core.checks import one_of, within
 from tree_sway.errors import ParameterError
 
 CALM_SPEED = 0.05
@@ -70,12 +70,7 @@ class WindConvention:
 
     def __post_init__(self) -> None:
         """Refuse what cannot be read."""
-        if self.direction_convention not in ('to', 'from'):
-            raise ParameterError(
-                f"unknown convention '{self.direction_convention}'",
-                where='direction_convention',
-                cure="use 'to' (blows to, as ROS) or 'from' (comes from, as meteorology)",
-            )
+        one_of('direction convention', self.direction_convention, ('to', 'from'))
         within('speed_scale', self.speed_scale, 0.0, 1e3, 'm/s', above=True)
         within('yaw_offset', self.yaw_offset, -4.0 * math.pi, 4.0 * math.pi, 'rad')
         normal = np.asarray(self.plane_normal, dtype=np.float64)

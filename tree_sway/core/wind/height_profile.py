@@ -10,8 +10,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import within
-from tree_sway.errors import ParameterError
+from tree_sway.core.checks import one_of, within
 
 PROFILES = ('none', 'power', 'log')
 """Kinds of profile."""
@@ -46,10 +45,7 @@ class WindProfile:
 
     def __post_init__(self) -> None:
         """Refuse what has no wind."""
-        if self.kind not in PROFILES:
-            raise ParameterError(
-                f"unknown wind profile '{self.kind}'", cure=f'use one of: {", ".join(PROFILES)}'
-            )
+        one_of('wind profile', self.kind, PROFILES)
         within('anemometer_height', self.anemometer_height, 0.0, 1e4, 'm', above=True)
         if self.kind == 'log':
             highest = 0.999 * self.anemometer_height

@@ -4,8 +4,9 @@
 A stand from an inventory: a table of places, species and heights, and maybe of stem diameters.
 
 Columns are found by what inventories call them: ``x``, ``y`` (or easting, northing, or latitude
-and longitude in degrees), ``species``, ``height``; ``dbh`` at breast height or ``girth``, in cm
-where no unit is named and they are not fractions of a metre. Further ones may be ``name``, ``z``,
+and longitude in degrees, in two columns or one), ``species``, ``height``; ``dbh`` at breast height
+or ``girth``, in cm where no unit is named and they are not fractions of a metre. Without heights
+they are those that grown trees of that thickness have. Further ones may be ``name``, ``z``,
 ``yaw`` [rad] and ``model``; a tree without a name is called after its row, one without a yaw is
 turned at random. Trees are scaled from few that are grown: those of one species whose heights are
 within a factor of three, and height over diameter within one of 1.3, share one.
@@ -16,12 +17,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 import math
 from pathlib import Path
+import re
 from typing import Any
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.growth.grow import grow, stem_range
+from tree_sway.core.growth.grow import grow, height_of_stem, stem_range
 from tree_sway.core.scene.placed_tree import LARGEST, PlacedTree, SMALLEST
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.tree.grown_tree import GrownTree, rooted
@@ -33,6 +35,7 @@ from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.imported_tree import TreeFile
 
 _EARTH = 6.371e6
+_NUMBER = re.compile(r'-?\d+(?:\.\d+)?')
 _FAR = 1e5
 _HEIGHTS, _SLENDERNESSES = 3.0, 1.3
 
@@ -43,8 +46,9 @@ def is_stand_table(head: str) -> bool:
         table = parse_table(head.splitlines()[:20], '')
     except FormatError:
         return False
-    here = _find(table, 'x', 'y') or _find(table, 'latitude', 'longitude')
-    return here is not None and _find(table, 'species', 'height') is not None
+    here = _find(table, 'x', 'y') or _find(table, 'latitude', 'longitude') or _find(table, 'place')
+    size = [table.find(each) for each in ('height', 'diameter', 'girth')]
+    return here is not None and table.find('species') is not None and any(size)
 
 
 def read_stand_table(
@@ -67,7 +71,7 @@ def read_stand_table(
     stand = _Inventory(table)
     given, made = dict(kinds or {}), dict[tuple[str, float, float], GrownTree]()
     rng = np.random.default_rng(seed)
-    yaw = stand.optional('yaw', rng.uniform(0.0, 2.0 * np.pi, len(stand.height)))
+    yaw = stand.optional('yaw', rng.uniform(0.0, 2.0 * np.pi, len(stand.species)))
     z = stand.optional('z', np.zeros(len(yaw)))
     models: Sequence[str | None] = stand.texts('model') or [None] * len(yaw)
     names = stand.texts('tree_name') or [f'tree{row + 1}' for row in range(len(yaw))]
@@ -75,6 +79,7 @@ def read_stand_table(
     wood = {each: species_like(each) for each in dict.fromkeys(stand.species) if each not in given}
     stand.note(*(note for _, note in wood.values() if note))
     keys = [wood[each][0].key if each in wood else each for each in stand.species]
+    stand.find_heights(keys)
     sizes, slender = stand.classes(keys)
     trees = []
     for row, key in enumerate(keys):
@@ -121,8 +126,8 @@ class _Inventory:
             self.x, self.y = self.x - east, self.y - north
             self.note(f'moved by {-east:.0f}, {-north:.0f} m to be near the origin')
         self.species = self.texts('species') or table.cells(table.index_of('species'), ())
-        height = table.find('height') or Column(table.index_of('height'), 1.0)
-        (self.height,) = self._values(height)
+        height = table.find('height')
+        self.height = np.zeros(0) if height is None else self._values(height)[0]
         self.diameter = self._diameter()
 
     def note(self, *notes: str) -> None:
@@ -155,11 +160,22 @@ class _Inventory:
     def _degrees(self) -> list[Floats]:
         """East and north of the first tree [m], from degrees on a sphere."""
         found = _find(self._table, 'latitude', 'longitude')
-        if found is None:
-            return list(self._table.strict(['x', 'y']).T)
-        north, east = (np.radians(each) for each in self._values(*found))
+        degrees = self._pairs() if found is None else self._values(*found)
+        north, east = np.radians(degrees)
         self.note('east and north are counted from the first tree')
         return [_EARTH * math.cos(north[0]) * (east - east[0]), _EARTH * (north - north[0])]
+
+    def _pairs(self) -> list[Floats]:
+        """Latitude and longitude in one column: ``48.85, 2.32`` or ``POINT (2.32 48.85)``."""
+        cells = self.texts('place') or self._table.cells(self._table.index_of('x'), ())
+        pairs = np.empty((2, len(cells)))
+        for row, cell in enumerate(cells):
+            found = _NUMBER.findall(cell)
+            if len(found) != 2:
+                what = f"'{cell[:40]}' is no latitude and longitude"
+                raise FormatError(what, where=self._table.where(row))
+            pairs[:, row] = found[::-1] if cell.upper().startswith('POINT') else found
+        return list(pairs)
 
     def _diameter(self) -> Floats | None:
         """Diameters at breast height [m]; None if the table has none."""
@@ -175,6 +191,14 @@ class _Inventory:
                 self.note(f'{heading} is taken as {"cm" if is_cm else "m"}')
             return values / over
         return None
+
+    def find_heights(self, keys: list[str]) -> None:
+        """Where the table has none, take the heights that grown trees of such stems have."""
+        if len(self.height) or self.diameter is None:
+            return
+        found = [height_of_stem(key, d) for key, d in zip(keys, self.diameter, strict=True)]
+        self.height = np.array(found)
+        self.note('heights are those of grown trees of these stems, as the table has none')
 
     def classes(self, keys: list[str]) -> tuple[Floats, Floats]:
         """Height that each tree is scaled from, and its height over diameter, 0 if not known."""

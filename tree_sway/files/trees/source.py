@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,9 +16,8 @@ from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
-from tree_sway.files.scenes.forest_yaml import read_forest
+from tree_sway.files.scenes.scene_yaml import read_scene_yaml
 from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table
-from tree_sway.files.scenes.stand_yaml import read_stand_yaml
 from tree_sway.files.text_file import path_of, read_head
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
@@ -88,17 +87,16 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> Scene
     ParameterError
         Options for a forest or a built-in tree.
     TreeSwayError
-        As `open_tree` and `read_forest`.
+        As `open_tree` and `read_scene_yaml`.
 
     """
     path = path_of(name_or_path)
     if str(name_or_path) in BUILTIN_TREES or not path.is_file():
         return scene_of_files([open_tree(name_or_path, seed, **options)])
-    head, readers = read_head(path), dict[str, Callable[[], Scene]]()
-    readers['trees'] = lambda: read_forest(path, open_tree)
-    readers['stand'] = lambda: read_stand_yaml(path, open_tree)
-    read = next((readers[key] for key in readers if begins_with_key(path, head, key)), None)
-    if read is None and is_stand_table(head):
+    head, read = read_head(path), None
+    if any(begins_with_key(path, head, key) for key in ('trees', 'stand')):
+        read = partial(read_scene_yaml, path, open_tree)
+    elif is_stand_table(head):
         read = partial(read_stand_table, path, seed=seed)
     if read is None:
         files = [each.checked() for each in read_trees(path, head=head, **options)]

@@ -50,34 +50,12 @@ def test_a_measured_modulus_is_no_estimate():
     assert not parse_yaml_tree(text).species.is_estimate
 
 
-def test_plain_segments_find_their_parents_and_branches():
-    text = """
-    segments:
-    - {start: [0, 0, 1], end: [0, 0, 2], diameter: [.08, .06]}
-    - {start: [0, 0, 0], end: [0, 0, 1], diameter: .1}
-    - {start: [0, 0, 1], end: [1, 0, 1], diameter: .02}
-    """
-    tree = parse_yaml_tree(text).tree
-    assert list(tree.segment_parent) == [-1, 0, 0]
-    assert list(tree.source_index) == [1, 0, 2]
-    assert tree.n_branches == 2
-
-
-def test_plain_segments_with_parents():
-    text = """
-    segments:
-    - {start: [0, 0, 0], end: [0, 0, 1], diameter: .1, parent: -1}
-    - {start: [.05, 0, .5], end: [1, 0, .5], diameter: .02, parent: 0}
-    """
-    assert list(parse_yaml_tree(text).tree.segment_parent) == [-1, 0]
-
-
 @pytest.mark.parametrize(
     ('text', 'kind', 'message'),
     [
         ('', FormatError, 't: empty'),
         ('a: [1', FormatError, 't:2: not YAML'),
-        ('name: x', FormatError, 't:1: no branches or segments; give one'),
+        ('name: x', FormatError, "t:1: the file has no 'branches'"),
         ('[1, 2]', FormatError, 't:1: the file is a list; give a mapping'),
         (STEM + 'name: {a: b}\n', FormatError, 't:4: name is a mapping; give a text'),
         (STEM + 'name: a\nname: b\n', FormatError,
@@ -89,7 +67,7 @@ def test_plain_segments_with_parents():
         (STEM + '---\na: 1\n', FormatError, 't:5: a second document'),
         (STEM + 'x: ' + 20 * '[' + 20 * ']', FormatError, 't:4: nested deeper'),
         (STEM + '[1]: x\n', FormatError, 't:4: a list as a key'),
-        (STEM + 'segments: []\n', FormatError, r't:4: segments has 0 items; give at least 1'),
+        ('branches: []\n', FormatError, r't:1: branches has 0 items; give at least 1'),
         (STEM + 'species: oka\n', SpeciesError, "t:4: unknown species 'oka'"),
         (STEM + 'wood: {modulus: -1}\n', FormatError, 't:4: wood.modulus is -1; give more than 0'),
         (STEM + "wood: {modulus: '1e9'}\n", FormatError,
@@ -149,16 +127,6 @@ BRANCH = '  nodes: [[0, 0, 1, .05], [1, 0, 1, .05]]\n'
 def test_errors_of_branches(branch, kind, message):
     with pytest.raises(kind, match=message):
         parse_yaml_tree(STEM + branch, 't')
-
-
-def test_mixed_parents_of_segments():
-    text = """
-    segments:
-    - {start: [0, 0, 0], end: [0, 0, 1], diameter: .1, parent: -1}
-    - {start: [0, 0, 1], end: [0, 0, 2], diameter: .1}
-    """
-    with pytest.raises(TreeError, match=r't:4: segment 1: no parent, where others have one'):
-        parse_yaml_tree(text, 't')
 
 
 def test_missing_file_and_binary_file(tmp_path):

@@ -16,8 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tree_sway.core.checks import within
-from tree_sway.errors import ParameterError
+from tree_sway.core.checks import one_of, within
 
 Floats = NDArray[np.float64]
 
@@ -82,12 +81,7 @@ class GustEvent:
 
     def __post_init__(self) -> None:
         """Refuse what is out of range, and repeats that overlap."""
-        if self.kind not in _SHAPES:
-            raise ParameterError(
-                f"unknown event '{self.kind}'",
-                where='gust event',
-                cure=f'use one of: {", ".join(EVENT_KINDS)}',
-            )
+        one_of('event', self.kind, EVENT_KINDS)
         largest, unit = (_LARGEST_ANGLE, 'rad') if self.is_turn else (_LARGEST_SPEED, 'm/s')
         within('angle' if self.is_turn else 'amplitude', self.amplitude, -largest, largest, unit)
         within('duration', self.duration, 0.0, _LONGEST, 's', above=self.kind != 'step')

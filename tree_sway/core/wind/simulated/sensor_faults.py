@@ -16,8 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.checks import within
-from tree_sway.errors import ParameterError
+from tree_sway.core.checks import one_of, within
 
 Floats = NDArray[np.float64]
 _SPIKE = 20.0
@@ -59,10 +58,7 @@ class SensorFaults:
 
     def __init__(self, kind: str = 'none', every: float = 20.0, duration: float = 1.0) -> None:
         """Check the parameters."""
-        if kind not in FAULTS:
-            raise ParameterError(
-                f"unknown fault '{kind}'", where='fault', cure=f'use one of: {", ".join(FAULTS)}'
-            )
+        one_of('fault', kind, FAULTS)
         self._kind = kind
         self._every = within('every', every, 0.0, 1e6, 's', above=True)
         self._duration = within('duration', duration, 0.0, every, 's', above=True)

@@ -27,9 +27,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tree_sway.core.checks import within
+from tree_sway.core.checks import one_of, within
 from tree_sway.core.wind.simulated.spectra import SPECTRA
-from tree_sway.errors import ParameterError
 
 Floats = NDArray[np.float64]
 
@@ -80,12 +79,7 @@ class Turbulence:
 
     def __post_init__(self) -> None:
         """Refuse what no wind can be."""
-        if self.model not in SPECTRA:
-            raise ParameterError(
-                f"unknown spectrum '{self.model}'",
-                where='turbulence model',
-                cure=f'use one of: {", ".join(SPECTRA)}',
-            )
+        one_of('spectrum', self.model, SPECTRA)
         within('mean_speed', self.mean_speed, 0.0, 40.0, 'm/s', above=True)
         within('height', self.height, 0.0, 1000.0, 'm', above=True)
         if self.intensity is not None:

@@ -46,4 +46,4 @@ def _read(path: Path, species: str = 'broadleaf') -> TreeFile:
     return TreeFile(tree, wood, str(path))
 
 
-FORMAT = TreeFormat('csv', ('.csv',), has_columns('x0', 'y0', 'z0', 'x1', 'd0'), _read)
+FORMAT = TreeFormat('csv', (), has_columns('x0', 'y0', 'z0', 'x1', 'd0'), _read)

@@ -121,11 +121,10 @@ def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
     links = branch['segments']
     start = np.array([link['start'] for link in links], dtype=np.float64)
     end = np.array([link['end'] for link in links], dtype=np.float64)
-    return start, end, np.array([diameter_pair(link['diameter']) for link in links])
+    return start, end, np.array([_pair(link['diameter']) for link in links])
 
 
-def diameter_pair(diameter: float | list[float]) -> list[float]:
-    """Diameter at start and end in [m] from one number or a pair."""
+def _pair(diameter: float | list[float]) -> list[float]:
     return list(diameter) if isinstance(diameter, list) else [diameter, diameter]
 
 

@@ -3,8 +3,8 @@
 """
 The YAML form of a tree, which a person can write by hand.
 
-Either ``branches``, each with a name, the parent's name and its nodes (x, y, z, diameter), or
-plain ``segments`` with start, end and diameter. ``species`` names the wood; ``wood`` replaces its
+Each of its ``branches`` has a name, the parent's name and its nodes (x, y, z, diameter), or
+``segments`` with start, end and diameter. ``species`` names the wood; ``wood`` replaces its
 values by measured ones. Keys, kinds and ranges are those of ``tree_schema.json`` beside this
 file::
 
@@ -23,14 +23,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from tree_sway.core.tree.species import Species, species_named
-from tree_sway.errors import FormatError, SpeciesError, TreeError
+from tree_sway.errors import FormatError, SpeciesError
 from tree_sway.files.text_file import read_text
 from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.yaml.branches import branch_segments, diameter_pair
+from tree_sway.files.trees.yaml.branches import branch_segments
 from tree_sway.files.yaml_document import read_yaml, tree_schema, YamlDocument
 
 
@@ -55,12 +54,8 @@ def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree')
     """Read a tree from YAML text; see `read_yaml_tree`."""
     document = read_yaml(text, source, tree_schema())
     values, species = document.values, species_of(document)
-    if ('branches' in values) == ('segments' in values):
-        found = 'both branches and segments' if 'branches' in values else 'no branches or segments'
-        raise FormatError(found, where=document.where(), cure='give one of the two')
-    segments = (branch_segments if 'branches' in values else _plain_segments)(document)
     name = values.get('name', default_name)
-    tree = built_tree(source, **segments, name=name, species=species.key)
+    tree = built_tree(source, **branch_segments(document), name=name, species=species.key)
     return TreeFile(tree, species, source)
 
 
@@ -85,26 +80,3 @@ def species_of(document: YamlDocument) -> Species:
             wood[state] = ratio
     # A modulus from the file is a measured one, and no longer the table's guess.
     return replace(species, **wood, is_estimate=species.is_estimate and 'modulus' not in wood)
-
-
-def _plain_segments(document: YamlDocument) -> dict[str, Any]:
-    """Segments of the document, as the arguments of `tree_from_segments`."""
-    segments = document.values['segments']
-    labels = [
-        f'{document.where("segments", number)}: segment {number}'
-        for number in range(len(segments))
-    ]
-    with_parent = ['parent' in segment for segment in segments]
-    if any(with_parent) and not all(with_parent):
-        raise TreeError(
-            'no parent, where others have one',
-            where=labels[with_parent.index(False)],
-            cure='give parent to every segment (-1 to the root) or to none',
-        )
-    return {
-        'start': [segment['start'] for segment in segments],
-        'end': [segment['end'] for segment in segments],
-        'diameter': [diameter_pair(segment['diameter']) for segment in segments],
-        'parent': [segment['parent'] for segment in segments] if any(with_parent) else None,
-        'labels': labels,
-    }

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tree_sway.errors import FormatError, SpeciesError, TreeSwayError
-from tree_sway.files.scenes.forest_yaml import parse_forest, read_forest
+from tree_sway.files.scenes.scene_yaml import parse_scene, read_scene_yaml
 from tree_sway.files.trees.source import open_scene, open_tree
 from tree_sway.files.yaml_document import begins_with_key, packaged_schema
 
@@ -28,7 +28,7 @@ def test_trees_stand_where_the_file_says():
     - {name: a, tree: t, x: 1, y: 2, z: .5, yaw: 1.6, leaf_on: true}
     - {name: b, tree: t, species: birch}
     """
-    forest = parse_forest(text, seedlings)
+    forest = parse_scene(text, seedlings, Path('glade'))
     a, b = forest.trees
     assert (a.x, a.y, a.z, a.yaw, a.leaf_on) == (1.0, 2.0, 0.5, 1.6, True)
     assert (b.x, b.yaw, b.leaf_on) == (0.0, 0.0, None)
@@ -49,7 +49,7 @@ def test_a_path_counts_from_the_file_and_a_tree_is_read_once(tmp_path):
         opened.append(Path(name).name)
         return open_tree(name, seed)
 
-    forest = read_forest(path, counted)
+    forest = read_scene_yaml(path, counted)
     assert opened == ['seedling.yaml', 'seedling.yaml']  # './' is another spelling
     assert forest.name == 'glade'
     assert forest.tree.n_segments == 3 * 6
@@ -68,7 +68,8 @@ def test_the_example_holds_three_trees():
         ('', 'empty; describe a tree or a forest'),
         ('trees: []', 'glade:1: trees has 0 items; give at least 1'),
         ('trees: oak', 'glade:1: trees is a text; give a list'),
-        ('name: x', "the file has no 'trees'"),
+        ('name: x', 'glade:1: no trees and no stand; give one of the two'),
+        ('stand: a.csv\ntrees: [{name: a, tree: t}]', 'both trees and stand; give one of the two'),
         ('trees:\n- {tree: t}', r"glade:2: trees\[0\] has no 'name'"),
         ('trees:\n- {name: a}', r"glade:2: trees\[0\] has no 'tree'"),
         (
@@ -91,7 +92,7 @@ def test_the_example_holds_three_trees():
 )
 def test_what_is_wrong_has_a_line_and_a_cure(text, message):
     with pytest.raises(FormatError, match=message):
-        parse_forest(text, seedlings, 'glade')
+        parse_scene(text, seedlings, Path('glade'))
 
 
 def test_a_tree_that_cannot_be_opened_is_named(tmp_path):
@@ -137,9 +138,9 @@ def test_a_forest_is_known_by_its_trees(tmp_path):
 
 def test_the_schema_is_one_that_editors_take():
     validator = pytest.importorskip('jsonschema').Draft202012Validator
-    schema = packaged_schema('forest_schema.json')
+    schema = packaged_schema('scene_schema.json')
     validator.check_schema(schema)
     assert validator(schema).is_valid({'trees': [{'name': 'a', 'tree': 'b', 'leaf_on': True}]})
     assert not validator(schema).is_valid({'trees': [{'name': 'a'}]})
     with pytest.raises(TreeSwayError):
-        parse_forest('trees:\n- {name: a}', seedlings)
+        parse_scene('trees:\n- {name: a}', seedlings, Path('glade'))

@@ -1,0 +1,93 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Inventories as cities and surveys publish them: read as they are, or refused with the cure."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tree_sway.errors import FormatError
+from tree_sway.files.trees.source import open_scene
+
+#: Head of each as its pages describe it with rows made up; species and heights [m] expected.
+READ = {
+    'Berlin, Baumbestand': (
+        'gml_id;baumid;standortnr;artdtsch;art_bot;pflanzjahr;stammumfg;baumhoehe;x;y\n'
+        's_1;81;35;Winter-Linde;Tilia cordata;1965;127;14,5;389102,5;5820112,1\n'
+        's_2;82;36;Spitz-Ahorn;Acer platanoides;1970;110;12;389110,0;5820119,3\n',
+        [('lime', 14.5), ('maple', 12.0)],
+    ),
+    'Wien, Baumkataster': (
+        'OBJECTID,SHAPE,BAUM_ID,GATTUNG_ART,PFLANZJAHR,STAMMUMFANG,BAUMHOEHE\n'
+        '1,POINT (16.3799 48.2218),101,Platanus x acerifolia (Platane),1930,212,14\n'
+        '2,POINT (16.3801 48.2219),102,Tilia cordata (Winterlinde),1930,112,13\n',
+        [('plane', 14.0), ('lime', 13.0)],
+    ),
+    'Paris, les arbres': (
+        'IDBASE;LIBELLE FRANCAIS;GENRE;ESPECE;CIRCONFERENCE (cm);HAUTEUR (m);geo_point_2d\n'
+        '99874;Tilleul;Tilia;tomentosa;65;8;48.857620,2.320962\n',
+        [('lime', 8.0)],
+    ),
+    'i-Tree Eco': (
+        'Tree ID,Species,DBH (in),Total Height (ft),Longitude,Latitude\n'
+        '1,Silver maple,18.2,52,-77.03,38.9\n2,White oak,24,60,-77.031,38.9001\n',
+        [('maple', 15.85), ('oak', 18.29)],
+    ),
+    'NEON, vegetation structure': (
+        'uid,plotID,scientificName,easting,northing,stemDiameter,height,plantStatus\n'
+        'a,HARV_001,Quercus rubra L.,732123.4,4713230.1,32.4,21.3,Live\n'
+        'b,HARV_001,Tsuga canadensis (L.) Carr.,732125.4,4713232.1,12.4,9.3,Live\n',
+        [('oak', 21.3), ('conifer', 9.3)],
+    ),
+    'Melbourne, urban forest': (
+        'CoM ID,Common Name,Scientific Name,Diameter Breast Height,Latitude,Longitude\n'
+        '1028628,London Plane,Platanus x acerifolia,34,-37.8,144.96\n',
+        [('plane', None)],
+    ),
+    'New York, street trees': (
+        'tree_id,tree_dbh,status,spc_latin,latitude,longitude\n'
+        '180683,12,Alive,Acer rubrum,40.72309177,-73.84421522\n'
+        '200540,21,Alive,Quercus palustris,40.79411067,-73.81867946\n',
+        [('maple', None), ('oak', None)],
+    ),
+}
+
+REFUSED = {
+    'FIA, by codes and azimuths': 'CN,TREE,SPCD,DIA,HT,AZIMUTH,DIST\n1,1,131,9.6,55,120,10.2\n',
+    'lidR, tree tops without species': 'treeID,X,Y,Z\n1,273364.5,5274361.0,18.2\n',
+    'a list in Finnish': 'plot;tree;x;y;puulaji;lpm;pituus\n1;1;2,3;4,5;kuusi;21,3;17,2\n',
+}
+
+
+def written(folder: Path, text: str) -> Path:
+    """Write an inventory."""
+    path = folder / 'trees.csv'
+    path.write_text(text, encoding='utf-8')
+    return path
+
+
+@pytest.mark.parametrize('name', READ)
+def test_it_is_read_as_it_is(tmp_path: Path, name: str) -> None:
+    text, expected = READ[name]
+    scene = open_scene(written(tmp_path, text))
+    assert [each.species.key for each in scene.trees] == [key for key, _ in expected]
+    for tree, (_, height) in zip(scene.trees, expected, strict=True):
+        own = tree.scale * tree.tree.height
+        assert own == pytest.approx(height, rel=1e-3) if height else 5.0 < own < 30.0
+    if any(height is None for _, height in expected):
+        assert any('heights are those of grown trees' in note for note in scene.notes)
+
+
+@pytest.mark.parametrize('name', REFUSED)
+def test_it_is_refused_with_the_cure(tmp_path: Path, name: str) -> None:
+    with pytest.raises(FormatError, match='columns for the place, the species, and the height'):
+        open_scene(written(tmp_path, REFUSED[name]))
+
+
+@pytest.mark.parametrize('cell', ['POINT (nan 48.2)', 'somewhere', '48.2 16.3 200'])
+def test_a_place_that_is_none_is_named(tmp_path: Path, cell: str) -> None:
+    text = f'SHAPE,species,height\n{cell},oak,12\n'
+    with pytest.raises(FormatError, match=r'trees.csv:2: .* is no latitude and longitude'):
+        open_scene(written(tmp_path, text))

@@ -1,0 +1,117 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The YAML form of a scene: its trees one by one, or the table of a stand and what is not in it.
+
+A tree is the name of a built-in one or a file of any format; files are found from the scene's own
+folder. Keys, kinds and ranges are those of ``scene_schema.json``::
+
+    name: glade
+    trees:
+      - {name: fig, tree: benjamina, x: 0, y: 0, leaf_on: true}
+      - {name: old oak, tree: ../scans/oak.mat, species: oak, x: 9, y: 3}
+
+    name: north slope
+    stand: trees.csv
+    kinds:
+      - {species: oak, tree: scans/oak.mat}
+    convection_ratio: 1.4
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
+from tree_sway.errors import FormatError, TreeSwayError
+from tree_sway.files.scenes.stand_table import read_stand_table
+from tree_sway.files.scenes.tree_names import refuse_same_names
+from tree_sway.files.text_file import path_of, read_text
+from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.files.trees.yaml.species_yaml import open_species
+from tree_sway.files.yaml_document import packaged_schema, read_yaml, YamlDocument
+
+OpenTree = Callable[[str | Path, int], TreeFile]
+
+_PLACE = ('x', 'y', 'z', 'yaw', 'leaf_on')
+
+
+def read_scene_yaml(path: Path, open_tree: OpenTree) -> Scene:
+    """
+    Read a scene from a YAML file, its trees opened by their names or paths, with a seed.
+
+    Raises
+    ------
+    FormatError
+        Not YAML, not what the schema says, or a table that cannot be read; names file and line.
+    TreeSwayError
+        A tree that cannot be opened; names the line, the tree, and what is wrong with it.
+
+    """
+    return parse_scene(read_text(path), open_tree, path)
+
+
+def parse_scene(text: str, open_tree: OpenTree, path: Path) -> Scene:
+    """Read a scene from the YAML text of a file; see `read_scene_yaml`."""
+    document = read_yaml(text, str(path), packaged_schema('scene_schema.json'))
+    values = document.values
+    if ('trees' in values) == ('stand' in values):
+        found = 'both trees and stand' if 'trees' in values else 'no trees and no stand'
+        raise FormatError(found, where=document.where(), cure='give one of the two')
+    anemometer = values.get('anemometer')
+    common = {
+        'name': values.get('name', path.stem),
+        'source': str(path),
+        'anemometer': None if anemometer is None else tuple(anemometer),
+        'convection_ratio': values.get('convection_ratio', 1.0),
+    }
+    if 'trees' in values:
+        trees, notes = _trees(document, open_tree, path.parent)
+        return Scene(trees, notes=tuple(notes), **common)
+    kinds = {}
+    for number, entry in enumerate(values.get('kinds', ())):
+        try:
+            kinds[entry['species']] = open_tree(_beside(path.parent, entry['tree']), 0)
+        except TreeSwayError as error:
+            raise error.at(document.where('kinds', number)) from error
+    table = path.parent / path_of(values['stand'])
+    return read_stand_table(table, kinds, seed=values.get('seed', 0), **common)
+
+
+def _trees(
+    document: YamlDocument, open_tree: OpenTree, folder: Path
+) -> tuple[list[PlacedTree], list[str]]:
+    """Trees of the list, and what their importers noted."""
+    entries = document.values['trees']
+    refuse_same_names(
+        [entry['name'] for entry in entries], lambda number: document.where('trees', number)
+    )
+
+    @cache
+    def opened(tree: str, seed: int, species: str | None) -> TreeFile:
+        """Open a tree once, so that all of its kind share it."""
+        file = open_tree(_beside(folder, tree), seed)
+        return file if species is None else file.of_species(open_species(_beside(folder, species)))
+
+    trees, notes = [], []
+    for number, entry in enumerate(entries):
+        name, where = entry['name'], document.where('trees', number)
+        try:
+            file = opened(entry['tree'], entry.get('seed', 0), entry.get('species'))
+        except TreeSwayError as error:
+            inner = f'{error.where}: {error.what}' if error.where else error.what
+            raise type(error)(inner, where=f"{where}: tree '{name}'", cure=error.cure) from None
+        place: dict[str, Any] = {key: entry[key] for key in _PLACE if key in entry}
+        trees.append(PlacedTree(name, file.tree, species=file.species, **place))
+        notes += [f'{name}: {note}' for note in file.notes]
+    return trees, notes
+
+
+def _beside(folder: Path, name: str) -> str | Path:
+    """File of a name in a folder; the name itself if the folder has no such file."""
+    beside = folder / path_of(name)
+    return beside if beside.is_file() else name
