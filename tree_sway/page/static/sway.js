@@ -17,7 +17,7 @@
  */
 
 import { need, ProtocolError, sizesOf } from "./checks.js";
-import { unpack } from "./protocol.js";
+import { reading, unpack } from "./protocol.js";
 
 /** Time step of a stand unless it is given another [s]. */
 export const STEP = 1 / 60;
@@ -71,7 +71,10 @@ for (const [name, rows] of Object.entries(SLOPES)) {
 
 /** Read tables; a `ProtocolError` with a sentence if they are damaged.
  * @param {ArrayBuffer} data @returns {Tables} */
-export function decodeTables(data) {
+export const decodeTables = (data) => reading("tables", () => decoded(data));
+
+/** @param {ArrayBuffer} data @returns {Tables} */
+function decoded(data) {
   const { header, kinds, own } = unpack(data, "tables");
   const { description, anemometer, convection_ratio: ratio } = header;
   need(typeof description === "string", "description");
