@@ -27,6 +27,17 @@ def test_it_is_yaml(name: str) -> None:
     assert isinstance(yaml.safe_load((ROOT / name).read_text(encoding='utf-8')), dict)
 
 
+def test_nothing_lies_in_the_root_that_does_not_belong_there():
+    """Every file there is one that a tool or a reader looks for by its name."""
+    listed = subprocess.run(
+        ['git', 'ls-files'], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.split()
+    found = {name for name in listed if '/' not in name and not name.startswith('.')}
+    known = {'CHANGELOG.rst', 'CITATION.cff', 'CONTRIBUTING.md', 'Dockerfile', 'LICENSE'}
+    known |= {'QUALITY_DECLARATION.md', 'README.md', 'conftest.py', 'package.xml'}
+    assert found == known | {'pyproject.toml', 'setup.cfg', 'setup.py'}
+
+
 def test_the_citation_names_this_version() -> None:
     citation = yaml.safe_load((ROOT / 'CITATION.cff').read_text(encoding='utf-8'))
     assert citation['version'] == tree_sway.__version__

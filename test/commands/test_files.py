@@ -139,13 +139,15 @@ def test_a_simulated_tree_is_a_table_with_units(
     for path in tables:
         wind = ['--wind', str(wind_file), '--branch', 'stem', '--seconds', '2']
         assert cli.main(['simulate', SEEDLING, *wind, '-o', str(path)]) == 0
-    assert capsys.readouterr().out.startswith(f'{tables[0]}: SwayRecord of seedling')
+    told = capsys.readouterr().out
+    assert told.startswith(f'{tables[0]}: SwayRecord of seedling')
+    assert 'strength used: wood ' in told
     head, *rows = tables[0].read_text().splitlines()
     assert head.split(',')[:2] == ['time [s]', 'wind_x [m/s]']
     assert 'stem tip_x [m]' in head
     assert len(rows) == 120
     columns = json.loads(tables[1].read_text())
-    assert [float(row.split(',')[-1]) for row in rows] == columns['strain_north [-]']
+    assert [float(row.split(',')[-1]) for row in rows] == columns['stem largest strain [-]']
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tree_sway.commands import cli, info, info_forest
+from tree_sway.commands import cli, info
 from tree_sway.commands.mode_table import mode_table
 from tree_sway.files.trees.source import open_scene
 
@@ -61,12 +61,12 @@ def test_a_thousand_trees_of_one_kind_are_worked_out_once(
         return items
 
     monkeypatch.setattr(info, 'mode_table', table)
-    monkeypatch.setattr(info_forest, 'bar', bar)
+    monkeypatch.setattr(info, 'bar', bar)
     began = time.monotonic()
     assert cli.main(['info', str(tmp_path / 'hall.yaml'), '--json']) == 0
     assert time.monotonic() - began < 10.0
     assert len(asked) == 1
-    assert counted == [(1, 'kinds of trees')]
+    assert counted == [(1, 'working out the modes')]
     facts = json.loads(capsys.readouterr().out)
     assert len(facts['trees']) == 1000
     slow, fast = facts['trees'][-1], facts['trees'][0]

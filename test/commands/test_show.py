@@ -17,6 +17,7 @@ import pytest
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.core.simulator.settings import model_of, USUAL  # noqa: E402
 from tree_sway.page.protocol import decode_description, decode_frame  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -40,12 +41,13 @@ def test_the_page_is_served_and_the_tree_moves() -> None:
                 session.ws_connect(f'{url}stream') as ws,
             ):
                 await ws.send_json({'credit': 64})
-                description, states, names = None, set(), []
+                description, states, controls = None, set(), {}
                 while len(states) < 10:
                     message = await asyncio.wait_for(ws.receive(), DEADLINE)
                     if message.type is aiohttp.WSMsgType.TEXT:
                         hello = json.loads(message.data).get('hello')
-                        names = [each['name'] for each in hello['controls']] if hello else names
+                        if hello:
+                            controls = {each['name']: each for each in hello['controls']}
                     elif message.data[:4] == b'TSWD':
                         description = decode_description(message.data)
                     else:
@@ -54,7 +56,13 @@ def test_the_page_is_served_and_the_tree_moves() -> None:
                     'seedling1',
                     'seedling2',
                 ]
-                assert {'mean_speed', 'model', 'tree', 'pause'} <= set(names)
+                assert {'mean_speed', 'model', 'tree', 'pause'} <= set(controls)
+                # By their names: no path of this machine, no model that there is not.
+                tree, count, model = (controls[name] for name in ('tree', 'count', 'model'))
+                assert (tree['value'], count['value']) == ('seedling.yaml', '2')
+                assert not [each for each in tree['choices'] if '/' in each]
+                assert model['value'] == str(USUAL)
+                assert [model_of(each) for each in model['choices']]
 
         asyncio.run(look())
     finally:

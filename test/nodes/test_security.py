@@ -57,6 +57,13 @@ def test_nobody_in_the_graph_names_a_file(name):
     assert not any(each.live for each in named)
 
 
+def test_no_parameter_is_a_secret():
+    """Whoever is in the graph may read parameters: a token is in a file of its owner's."""
+    names = {each.name for table in NODE_PARAMETERS.values() for each in table}
+    assert 'token_file' in names
+    assert not {name for name in names if name.endswith(('token', 'password', 'secret'))}
+
+
 def test_every_node_has_an_enclave():
     assert {each.get('node') for each in POLICY.iter('profile')} == set(NODE_PARAMETERS)
     paths = {each.get('path') for each in POLICY.iter('enclave')}

@@ -15,8 +15,10 @@ import time
 import pytest
 
 from tree_sway.commands import cli
+from tree_sway.core.simulator.settings import USUAL
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.studies import runner
+from tree_sway.studies.compute import compute
 from tree_sway.studies.plan import Case
 from tree_sway.studies.runner import batches, compute_to_file, result_path, run_study
 from tree_sway.studies.table import write_table
@@ -70,6 +72,16 @@ def test_what_is_finished_is_not_computed_again(alone, tmp_path):
     )
 
 
+def test_trees_of_any_size_are_on_one_model():
+    rows = []
+    for name in ('seedling.yaml', 'segments.csv', 'fork.swc'):
+        tree = {'file': str(SEEDLING.with_name(name))}
+        case = Case(tree, {'speed': 4.0, 'intensity': 0.2, 'seed': 0}, seconds=1.0)
+        rows.append(compute(case)[0])
+    assert len({row['segments'] for row in rows}) == 3
+    assert {row['model'] for row in rows} == {str(USUAL)}
+
+
 def test_a_tree_is_set_up_once_for_many_winds():
     same, other = cases(8), cases(8, settings={'model': 'branch'})
     mixed = [case for pair in zip(same, other, strict=True) for case in pair]
@@ -94,6 +106,7 @@ def workers_of(parent: int) -> list[int]:
     return found
 
 
+@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find a worker to kill')
 def test_a_killed_worker_loses_nothing(alone, tmp_path, monkeypatch):
     killed = []
 
@@ -108,7 +121,6 @@ def test_a_killed_worker_loses_nothing(alone, tmp_path, monkeypatch):
     assert rows[:4] == alone
 
 
-@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find the workers')
 @pytest.fixture
 def ctrl_c():
     """Have Ctrl-C reach commands, also where tests run in the background of a shell."""
@@ -117,7 +129,7 @@ def ctrl_c():
     signal.signal(signal.SIGINT, before)
 
 
-@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find a worker to kill')
+@pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find the workers')
 @pytest.mark.usefixtures('ctrl_c')
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_whatever_ends_a_study_ends_its_workers(tmp_path, number):

@@ -66,10 +66,9 @@ def run_study(
     """
     folder.mkdir(parents=True, exist_ok=True)
     missing = [case for case in cases if not result_path(folder, case).is_file()]
-    outcomes = _outcomes(missing, folder, workers, scheduler)
+    outcomes = _outcomes(missing, folder, workers, scheduler) if missing else iter(())
     failed: TreeSwayError | None = None
-    for _ in bar(missing, 'cases'):
-        outcome = next(outcomes)
+    for _, outcome in zip(bar(missing, 'cases'), outcomes, strict=True):
         failed = failed or outcome
     if failed is not None:
         raise failed

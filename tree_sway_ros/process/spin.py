@@ -86,7 +86,8 @@ def init(
         rclpy.init(args=given, **options)
     except Exception as error:  # rclpy has a class an error and no common root
         first_line = str(error).split('\n', 1)[0]
-        raise TransportError(f'ROS 2 cannot start: {first_line}') from error
+        cure = 'name a folder that can be written by ROS_LOG_DIR' if 'log' in first_line else ''
+        raise TransportError(f'ROS 2 cannot start: {first_line}', cure=cure) from error
 
 
 def create(make: Any, **options: Any) -> Any:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tree_sway_lab.paper import experiment as experiment_module
 from tree_sway_lab.paper.experiment import FORMS, RATE, run_experiment, wind_from_the_right
 from tree_sway_lab.paper.followers import followed
 from tree_sway_lab.paper.pictures import tip_path
@@ -14,11 +15,24 @@ from tree_sway.commands import cli
 from tree_sway.core.tree.species import species_named
 from tree_sway.errors import ParameterError
 
+SHOWN = []
+"""What there was a bar for."""
+
 
 @pytest.fixture(scope='module')
 def experiment(fork):
+    def shown(items, what):
+        SHOWN.append(what)
+        return items
+
     speed = wind_from_the_right(4.0, 1.0)
-    return run_experiment(fork(), species_named('broadleaf'), speed, 2e4, 200.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(experiment_module, 'bar', shown)
+        return run_experiment(fork(), species_named('broadleaf'), speed, 2e4, 200.0)
+
+
+def test_every_part_of_it_shows_how_far_it_is(experiment):
+    assert SHOWN == [*FORMS, 'the default model']
 
 
 def test_multipliers_and_the_reduced_form_agree(experiment):

@@ -95,7 +95,13 @@ def test_the_branch_that_sways_is_named(sketch):
     trunk = drawn.add(None, 0, (0.0, 0.0, 1.0), 2.0, 0.2, 0.15, 4)
     drawn.add(trunk, 4, (1.0, 0.0, 0.2), 1.5, 0.006, 0.004, 3)
     tree = drawn.tree()
-    assert calibrate(tree, OAK, 1.0, settings=WEIGHTLESS).branch == tree.branch_names[1]
+    limb, stem = calibrate(tree, OAK, 1.0, settings=WEIGHTLESS), tree.branch_names[0]
+    assert limb.branch == tree.branch_names[1]
+    slowest, of_the_stem = (
+        calibrate(tree, OAK, 12.0, settings=WEIGHTLESS, branch=each) for each in (None, stem)
+    )
+    assert of_the_stem.branch == stem
+    assert of_the_stem.species.modulus < 0.1 * slowest.species.modulus
 
 
 @pytest.mark.parametrize('frequency', [0.0, -1.0, np.nan, np.inf, 2e3])

@@ -101,6 +101,14 @@ def test_modes_are_the_coupled_ones(fork):
     assert few == pytest.approx(coupled, rel=1e-9)
 
 
+@pytest.mark.parametrize('model', [3, 6, 60, 'full'])
+def test_its_frequencies_are_the_natural_ones_whatever_the_number_of_coordinates(fork, model):
+    """Shapes that correct the static answer are none of them, and none is left out."""
+    natural = CalibratedTree(fork(), OAK, Settings()).natural_frequencies(6)
+    assert len(natural) == 6
+    assert frequencies(fork(), count=6, model=model) == pytest.approx(natural, rel=1e-6)
+
+
 def test_enriching_makes_no_mode_faster(fork):
     plain = frequencies(fork(), model='full', enrich='none')
     for enrich in ('stem', 'needed', 'carriers', 'all'):

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 import subprocess
 import sys
 
@@ -21,14 +22,21 @@ from tree_sway.page.protocol import quantised
 DT = 1.0 / 60.0
 
 
-@pytest.fixture(scope='module')
+@cache
+def with_basis(name):
+    """Make a tree that sways, and its basis; once."""
+    sim = SwaySimulator(builtin_tree(name), model=60)
+    return sim, state_basis(sim)
+
+
+@pytest.fixture
 def benjamina():
-    return SwaySimulator(builtin_tree('benjamina'), model=60)
+    return with_basis('benjamina')[0]
 
 
-@pytest.fixture(scope='module')
-def basis(benjamina):
-    return state_basis(benjamina)
+@pytest.fixture
+def basis():
+    return with_basis('benjamina')[1]
 
 
 def gaps(sim, basis, speed, steps=600):
@@ -51,8 +59,7 @@ def gaps(sim, basis, speed, steps=600):
 @pytest.mark.parametrize('name', ['benjamina', 'goldcrest'])
 @pytest.mark.parametrize('speed', [2.0, 9.0, 15.0])
 def test_no_segment_is_farther_off_than_the_error_that_is_reported(name, speed):
-    sim = SwaySimulator(builtin_tree(name))
-    basis = state_basis(sim)
+    sim, basis = with_basis(name)
     gap, motion = gaps(sim, basis, speed)
     assert gap.max() <= basis.error
     assert np.sqrt(np.square(motion).sum(axis=2).mean()) > 5.0 * np.sqrt(np.square(gap).mean())

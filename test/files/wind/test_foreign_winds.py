@@ -80,11 +80,42 @@ def test_turbulence_has_the_gusts_that_were_reported() -> None:
         assert of_each.mean() - 8.0 == pytest.approx(gust - 8.0, rel=0.15)
 
 
-def test_the_weather_sentence_of_a_station() -> None:
-    body = 'WIMDA,29.9,I,1.01,B,12.0,C,,,40.0,,1.0,C,270.0,T,268.0,M,19.4,N,10.0,M'
+def test_reports_of_airports(tmp_path: Path) -> None:
+    lines = [
+        'METAR EDDF 312220Z 24010KT 9999 FEW040 12/08 Q1015',
+        'EDDF 312250Z 27020G32KT 9999',
+        'METAR EDDF 312320Z VRB02KT CAVOK',
+        'SPECI EDDF 010020Z 00000KT CAVOK',
+        'UUEE 010050Z 09005MPS 9999',
+    ]
+    path = tmp_path / 'reports.txt'
+    path.write_text('\n'.join(lines))
+    record = read_wind(path, turbulence=False)
+    assert record.time.tolist() == [0.0, 1800.0, 7200.0, 9000.0]
+    np.testing.assert_allclose(record.velocity[1], [20 * 1852 / 3600, 0, 0], atol=1e-9)
+    np.testing.assert_allclose(record.velocity[3], [-5, 0, 0], atol=1e-9)
+    assert record.gust is not None
+    assert record.gust[1] == pytest.approx(32 * 1852 / 3600)
+    assert record.first_refused == "line 3: no direction or speed in 'VRB02'"
+
+
+@pytest.mark.parametrize(
+    ('body', 'expected'),
+    [
+        ('WIMDA,29.9,I,1.01,B,12.0,C,,,40.0,,1.0,C,270.0,T,268.0,M,19.4,N,10.0,M', (10, 0, 0)),
+        ('WIXDR,A,260,D,0,A,270,D,1,A,280,D,2,S,4.0,M,0,S,5.0,M,1,S,6.0,M,2', (5, 0, 0)),
+        ('WIXDR,A,180.0,D,WDIR,S,3.0,M,WSPD', (0, 3, 0)),
+        ('WIVWR,90.0,L,10.0,N,5.144,M,18.5,K', (5.1444, 0, 0)),
+    ],
+)
+def test_further_sentences_of_weather_stations(body: str, expected: tuple[float, ...]) -> None:
     said = parse_nmea(f'${body}*{checksum_of(body)}')
     assert said is not None
-    np.testing.assert_allclose(said.velocity, (10, 0, 0), atol=1e-3)
+    np.testing.assert_allclose(said.velocity, expected, atol=1e-3)
+
+
+def test_other_transducers_are_no_wind() -> None:
+    assert parse_nmea('$WIXDR,C,20.5,C,TEMP,P,1.01,B,BARO') is None
     said = parse_nmea('$WIMDA,29.9,I,1.01,B')
     assert said is not None
     assert said.velocity is None

@@ -53,9 +53,9 @@ def test_heading_and_rate():
 @pytest.mark.parametrize(
     ('body', 'velocity'),
     [
-        ('IIMWV,270.0,R,5.0,M,A', (5, 0, 0)),  # from the left, to the right
-        ('IIMWV,090.0,R,10.0,N,A', (-10 * 1852 / 3600, 0, 0)),
-        ('IIMWV,000.0,T,18.0,K,A', (0, -5, 0)),
+        ('IIVWR,090.0,L,,,5.0,M,,', (5, 0, 0)),  # from the left, to the right
+        ('IIVWR,090.0,R,10.0,N,5.2,M,18.7,K', (-10 * 1852 / 3600, 0, 0)),
+        ('IIVWT,000.0,R,,N,,M,18.0,K', (0, -5, 0)),
         ('WIMWV,180.0,R,36.0,K,A', (0, 10, 0)),
     ],
 )
@@ -70,9 +70,10 @@ def test_left_and_right_of_the_bow(body, velocity):
 @pytest.mark.parametrize(
     ('line', 'refusal'),
     [
-        ('$IIMWV,361.0,R,5.0,M,A', "angle '361.0', speed '5.0', unit 'M'"),
-        ('$IIMWV,90.0,R,5.0,C,A', "angle '90.0', speed '5.0', unit 'C'"),
-        ('$IIMWV,90.0,R,-5.0,M,A', "angle '90.0', speed '-5.0', unit 'M'"),
+        ('$IIVWR,190.0,L,5.0,M', "angle '190.0', side 'L'"),
+        ('$IIVWR,90.0,X,5.0,M', "angle '90.0', side 'X'"),
+        ('$IIVWR,90.0,R,5.0,C', 'no speed'),
+        ('$IIVWT,90.0,R,-5.0,M', 'speed is -5 m/s'),
         ('$IIMWV,270,R,12.0,N,A*1', 'wrong checksum'),
         ('$IIMWV,270,R,12.0,N,A*+1', 'wrong checksum'),
         ('$IIMWV,270,R,12.0,N,A' + ',' * 2000, 'a line of 2021 characters'),

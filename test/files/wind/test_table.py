@@ -54,7 +54,7 @@ def test_errors(tmp_path, text, message):
 
 
 def test_convention_is_checked():
-    with pytest.raises(ParameterError, match='blows to, as ROS'):
+    with pytest.raises(ParameterError, match='use one of: to, from'):
         read_csv_wind(DATA / 'wind.csv', direction_convention='in')
 
 

@@ -32,7 +32,7 @@ def test_axes_of_the_sonic():
     np.testing.assert_allclose(turned[0], [-0.5, 2.0, -0.1], atol=1e-15)
     against = read_toa5_wind(SONIC, direction_convention='from').velocity
     np.testing.assert_allclose(against[0], [-2.0, -0.5, 0.1])
-    with pytest.raises(ParameterError, match='blows to, as ROS'):
+    with pytest.raises(ParameterError, match='use one of: to, from'):
         read_toa5_wind(SONIC, direction_convention='north')
 
 

@@ -37,7 +37,7 @@ def test_options_and_formats_are_checked():
     with pytest.raises(ParameterError, match="no option 'rate'; it has: columns, yaw"):
         read_wind(DATA / 'sonic.toa5.dat', rate=2.0)
     with pytest.raises(
-        ParameterError, match="unknown wind format 'grib'; use toa5, nmea, sonic, bag, csv"
+        ParameterError, match="unknown wind format 'grib'; use toa5, nmea, sonic, bag, metar, csv"
     ):
         read_wind(DATA / 'sonic.toa5.dat', format='grib')
     assert len({known.name for known in WIND_FORMATS}) == len(WIND_FORMATS)

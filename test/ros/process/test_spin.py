@@ -207,6 +207,21 @@ def test_a_start_that_fails_is_one_line(rclpy, monkeypatch):
         spin.init(rclpy)
 
 
+@pytest.mark.ros
+@pytest.mark.skipif(not sys.platform.startswith('linux'), reason='writes to /proc')
+def test_a_machine_that_is_read_only_is_one_line_with_the_cure():
+    pytest.importorskip('rclpy.node', reason='ROS 2 is not installed')
+    start = 'from tree_sway_ros.nodes.executables import wind; raise SystemExit(wind())'
+    ended = subprocess.run(
+        [sys.executable, '-c', start], env={**os.environ, 'ROS_LOG_DIR': '/proc/nowhere'},
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert ended.returncode == 2
+    assert ended.stderr.count('\n') == 1
+    assert '/proc/nowhere' in ended.stderr
+    assert 'name a folder that can be written by ROS_LOG_DIR' in ended.stderr
+
+
 def test_a_domain_that_cannot_be_joined_is_named(monkeypatch):
     monkeypatch.setenv('ROS_DOMAIN_ID', '7')
     error = type('RCLError', (RuntimeError,), {})('failed to create domain participant')

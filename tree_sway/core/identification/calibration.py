@@ -186,7 +186,7 @@ class _ScaledTree:
     def sway(self, scale: float) -> _Sway:
         """Slowest mode at a scale."""
         scaled = replace(self.reduction, elastic=scale * self.reduction.elastic)
-        count = 1 if self._branch is None else min(_MODES, len(scaled.elastic))
+        count = 1 if self._branch is None else min(_MODES, scaled.elastic.shape[0])
         modes = natural_modes(self.tree, scaled, count)
         energy = modes.shapes * (self.reduction.elastic @ modes.shapes)
         most = np.argmax(energy, axis=0).tolist()

@@ -4,9 +4,9 @@
 The simulator of a scene of several trees in one wind.
 
 Trees on a number of coordinates share the table and the rest geometry of their kind: each is a
-state, a pose, a scale and the delay with which gusts reach it. All of them are solved in one call,
-and placed only where asked for. Trees on other models are solved one after another, each by a
-simulator that is set up where the tree is, so that no wind need be turned into its frame.
+state, a pose, a scale and the delay with which gusts reach it. All of them are solved in one call.
+Trees on other models are solved one after another, each by a simulator that is set up where the
+tree is, so that no wind need be turned into its frame.
 """
 
 from __future__ import annotations

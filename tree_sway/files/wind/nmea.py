@@ -10,6 +10,10 @@ NMEA 0183: the wind sentences of an instrument on a mast or a boat.
 - ``$--MWD,direction,T,direction,M,speed,N,speed,M``: true wind, clockwise from true and from
   magnetic north.
 - ``$--MDA``: weather, the last eight fields of which are those of MWD.
+- ``$--XDR,A,angle,D,id,...,S,speed,K|M|N|S,id``: transducers, as weather stations send them; of
+  several angles and speeds the second ones, which are the means between least and largest.
+- ``$--VWR,angle,L|R,speed,N,speed,M,speed,K`` and ``$--VWT``: apparent and true wind, left
+  or right of the bow.
 
 Where the bow points is the option ``heading``. A mast instrument aligned to north has 0. A wrong
 checksum, a status that is not A, an empty field: the sentence is refused.
@@ -30,12 +34,12 @@ from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sensor_line import line_of, read_sensor_log, SensorLine
 from tree_sway.files.wind.units import degrees_to_bearing, Velocity
 
-SENTENCES = ('MWD', 'MDA', 'MWV T', 'MWV R')
+SENTENCES = ('MWD', 'MDA', 'MWV T', 'VWT', 'MWV R', 'VWR', 'XDR')
 """What can be read, in the order of preference: least depends on the motion of the boat first."""
 
 _KNOT = 1852.0 / 3600.0
 _UNITS = {'N': _KNOT, 'K': 1.0 / 3.6, 'M': 1.0, 'S': 0.44704}
-_SENTENCE = re.compile(r'\$[A-Z]{2}(MWV|MWD|MDA),([^*]*)(\*.*)?', re.ASCII | re.DOTALL)
+_SENTENCE = re.compile(r'\$[A-Z]{2}(MWV|MWD|MDA|VWR|VWT|XDR),([^*]*)(\*.*)?', re.ASCII | re.DOTALL)
 
 
 def parse_nmea(
@@ -68,9 +72,11 @@ def parse_nmea(
         if reference not in ('R', 'T'):
             return None
         name = f'MWV {reference}'
+    if name == 'XDR' and not {'A', 'S'} <= set(fields[::4]):
+        return None
     sent_sum = None if check is None else check[1:].strip().upper()
     body = line[sentence.start() + 1 : sentence.start(3)]
-    own_angle = heading if name.startswith('MWV') else declination
+    own_angle = declination if name in ('MWD', 'MDA') else heading
     read = partial(_READERS[name[:3]], fields, own_angle)
     return line_of(name, len(line), sent_sum, [body], read, need_checksum=need_checksum)
 
@@ -136,5 +142,34 @@ def _mda(fields: list[str], declination: float) -> Velocity | str:
     return _mwd(fields[12:], declination)
 
 
-_READERS = {'MWV': _mwv, 'MWD': _mwd, 'MDA': _mda}
+def _xdr(fields: list[str], heading: float) -> Velocity | str:
+    """Wind of transducers in groups of kind, value, unit and name."""
+    groups = [fields[i : i + 4] for i in range(0, len(fields) - 3, 4)]
+    angles = [each[1] for each in groups if each[0] == 'A' and each[2] == 'D']
+    speeds = [(each[1], each[2]) for each in groups if each[0] == 'S']
+    if not angles or not speeds:
+        return 'no angle in degrees with a speed'
+    speed, unit = speeds[len(speeds) > 2]
+    return _mwv([angles[len(angles) > 2], 'R', speed, unit, 'A'], heading)
+
+
+def _vwr(fields: list[str], heading: float) -> Velocity | str:
+    """Angle up to half a turn, left or right; the first speed that is there counts."""
+    angle, side = finite(fields[0]), fields[1] if len(fields) > 1 else ''
+    speeds = (
+        (finite(speed), _UNITS.get(unit))
+        for speed, unit in zip(fields[2::2], fields[3::2], strict=False)
+    )
+    speed = next((s * unit for s, unit in speeds if s is not None and unit is not None), None)
+    if angle is None or not 0.0 <= angle <= 180.0 or side not in ('L', 'R'):
+        return f"angle '{fields[0][:8]}', side '{side[:8]}'"
+    if speed is None or speed < 0.0:
+        return 'no speed' if speed is None else f'speed is {speed:g} m/s'
+    turn = angle * pi / 180.0
+    return velocity_of_bearing(speed, heading + (turn if side == 'R' else -turn))
+
+
+_READERS = {
+    **{'MWV': _mwv, 'MWD': _mwd, 'MDA': _mda, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr},
+}
 """Readers of the fields of a sentence, which also take the heading, or the declination for MWD."""

@@ -15,6 +15,7 @@ from typing import Any
 from tree_sway.files.file_format import contains, FileFormat, format_of
 from tree_sway.files.text_file import path_of
 from tree_sway.files.wind.bag import read_bag_wind
+from tree_sway.files.wind.metar import METAR, read_metar_wind
 from tree_sway.files.wind.nmea import read_nmea_wind
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sonic_ascii import read_sonic_wind
@@ -32,6 +33,7 @@ WIND_FORMATS = (
     FileFormat(
         'bag', ('.db3', '.mcap'), contains(r'\A(SQLite format 3\0|\ufffdMCAP0\r\n)'), read_bag_wind
     ),
+    FileFormat('metar', ('.metar',), lambda head: METAR.search(head) is not None, read_metar_wind),
     FileFormat('csv', ('.csv', '.tsv', '.txt'), contains(LOOKS_LIKE_WIND), read_csv_wind),
 )
 

@@ -1,0 +1,56 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+METAR, the reports of airports: ``EDDF 221150Z 24015G27KT ...``, a line each.
+
+The group of the wind is where it comes from in degrees, its mean speed and maybe its gust (WMO
+Manual on Codes 306, FM 15). A report has the day of the month and no month: one whose day is
+smaller than that of the line before is taken as of the day after.
+"""
+
+from __future__ import annotations
+
+from math import radians
+from pathlib import Path
+import re
+
+import numpy as np
+
+from tree_sway.core.wind.convention import velocity_of_bearing
+from tree_sway.files.text_file import read_lines
+from tree_sway.files.wind.record import WindRecord, WindRows
+from tree_sway.files.wind.station_means import filled_means
+
+METAR = re.compile(
+    r'\b(\d\d)(\d\d)(\d\d)Z\b.*?\b(\d{3}|VRB|///)(\d\d\d?|//)(?:G(\d\d\d?))?(KT|MPS|KMH)\b',
+    re.ASCII,
+)
+_UNITS = {'KT': 1852.0 / 3600.0, 'MPS': 1.0, 'KMH': 1.0 / 3.6}
+
+
+def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> WindRecord:
+    """
+    Read the wind of METAR reports, with turbulence about them as of `filled_means`.
+
+    A `FormatError` reports a missing one.
+    """
+    rows, gusts = WindRows(str(path)), list[float]()
+    day, passed = 0, 0
+    for number, line in enumerate(read_lines(path), start=1):
+        report = METAR.search(line)
+        if report is None:
+            continue
+        today, hour, minute = (int(report[i]) for i in (1, 2, 3))
+        if today != day:
+            passed += max(today - day, 1) if day else 0
+            day = today
+        if not report[5].isdigit() or not (report[4].isdigit() or report[5] == '00'):
+            rows.refuse(number, f"no direction or speed in '{report[4]}{report[5]}'")
+            continue
+        unit = _UNITS[report[7]]
+        bearing = radians(float(report[4])) if report[4].isdigit() else 0.0
+        time = 86400.0 * passed + 3600.0 * hour + 60.0 * minute
+        gusts.append(unit * float(report[6]) if report[6] else np.nan)
+        rows.add(number, time, velocity_of_bearing(unit * float(report[5]), bearing))
+    rows.gust = np.array(gusts)
+    return filled_means(rows.record(), turbulence, seed)
