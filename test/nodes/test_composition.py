@@ -11,6 +11,7 @@ from builtin_interfaces.msg import Time  # noqa: E402, I100
 from rosgraph_msgs.msg import Clock  # noqa: E402
 
 from tree_sway.errors import TreeSwayError  # noqa: E402
+from tree_sway_ros.process import rivals  # noqa: E402
 from tree_sway_ros.process.composition import Composition  # noqa: E402
 from tree_sway_ros.process.topics import CLOCK, WIND, WIND_FILTERED  # noqa: E402
 from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
@@ -62,7 +63,8 @@ def test_an_error_in_a_callback_ends_nothing_and_is_told(domain, observer, statu
         nodes.check()
 
 
-def test_two_of_a_kind_in_one_namespace_are_named(compose, observer, statuses):
+def test_two_of_a_kind_in_one_namespace_are_named(compose, observer, statuses, monkeypatch):
+    monkeypatch.setattr(rivals, 'GHOST', 0.0)
     nodes = compose(namespace='oak', wind={})
     compose(namespace='oak', wind={})
     observer.until(lambda: statuses('oak/wind: topics') is not None, 'a warning')
@@ -70,10 +72,13 @@ def test_two_of_a_kind_in_one_namespace_are_named(compose, observer, statuses):
     assert status.level[0] == WARN
     assert '2 nodes publish /oak/wind/filtered: /oak/wind and /oak/wind' in status.message
     nodes['oak/wind'].reporter.report()
-    assert nodes['oak/wind']._said == {status.message}
+    assert nodes['oak/wind']._alone['/oak/wind/filtered'].said == {status.message}
 
 
-def test_two_senders_of_wind_are_named_though_neither_is_ours(compose, observer, statuses):
+def test_two_senders_of_wind_are_named_though_neither_is_ours(
+    compose, observer, statuses, monkeypatch
+):
+    monkeypatch.setattr(rivals, 'GHOST', 0.0)
     compose(wind={})
     for _ in range(2):
         observer.publisher(WIND)

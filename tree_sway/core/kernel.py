@@ -90,8 +90,8 @@ def need_compiler(what: str) -> None:
     if WHY_PLAIN:
         raise MissingDependencyError(
             f'{what} needs compiled kernels, and {WHY_PLAIN}',
-            cure='install numba 0.59 or later, or take one of the models that run on numpy: '
-            'branch, subtree, modes, coupled',
+            cure='install numba 0.59 or later, or take a model that runs on numpy: a number of '
+            'coordinates, branch or full',
         )
 
 

@@ -10,6 +10,7 @@ from typing import Any
 from rclpy.callback_groups import CallbackGroup
 from rclpy.lifecycle import LifecycleNodeMixin, TransitionCallbackReturn
 from rclpy.node import Node
+from rclpy.qos import qos_check_compatible, QoSCompatibility
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from tree_sway.core.wind.gate import LARGEST_LEAD
@@ -18,6 +19,7 @@ from tree_sway_ros.parameters.declaration import ParameterValues
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.process.guard import CallbackGuard
 from tree_sway_ros.process.reporter import Reporter
+from tree_sway_ros.process.rivals import Rivals
 from tree_sway_ros.process.topics import message_class, qos_profile, Topic
 from tree_sway_ros.reports.diagnostics import Status, WARN
 
@@ -42,6 +44,12 @@ def _nobody(_message: Any) -> None:
     """Do nothing, where rclpy wants a callback."""
 
 
+def _match(offer: Any, request: Any) -> bool:
+    """Whether a subscription receives what a publisher sends."""
+    found, _reason = qos_check_compatible(offer.qos_profile, request.qos_profile)
+    return offer.topic_type == request.topic_type and found != QoSCompatibility.ERROR
+
+
 class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     """
     A node with a table of parameters, found under its name, whatever the node is remapped to.
@@ -57,8 +65,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         self.failure: Exception | None = None
         self.is_done = self.is_active = False
         self._refusal: Exception | None = None
-        self._alone: set[str] = set()
-        self._said: set[str] = set()
+        self._alone: dict[str, Rivals] = {}
         self._closers: list[Callable[[], None]] = []
         try:
             table = NODE_PARAMETERS[name]
@@ -168,7 +175,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
         if alone:
-            self._alone.add(made.topic_name)
+            self._alone[made.topic_name] = Rivals()
         return made
 
     def subscription(
@@ -195,7 +202,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
         if alone:
-            self._alone.add(made.topic_name)
+            self._alone[made.topic_name] = Rivals()
         return made
 
     def polled(self, topic: Topic) -> Callable[[], Iterator[Any]]:
@@ -219,12 +226,16 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     def listeners(self, topic: str) -> int:
         """Count the subscriptions of other nodes that receive what is published on a topic."""
-        name = self.resolve_topic_name(topic)
+        name, me = self.resolve_topic_name(topic), (self.get_name(), self.get_namespace())
         for each in self.publishers:
-            if each.topic_name == name:  # of its own topic, those that match
+            if each.topic_name == name:
                 return int(each.get_subscription_count())
-        own = sum(each.topic_name == name for each in self.subscriptions)
-        return int(self.count_subscribers(topic)) - own
+        offers = self.get_publishers_info_by_topic(topic)
+        return sum(
+            (each.node_name, each.node_namespace) != me
+            and (not offers or any(_match(offer, each) for offer in offers))
+            for each in self.get_subscriptions_info_by_topic(topic)
+        )
 
     @property
     def clock_lead(self) -> int:
@@ -241,17 +252,15 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         if self.guard.count:
             values = {'failed': self.guard.count, 'last': self.guard.latest}
             statuses.append(Status('callbacks', WARN, f'{self.guard.count} failed', values))
-        for topic in self._alone:
-            here = sorted(
+        for topic, rivals in self._alone.items():
+            here = [
                 f'{each.node_namespace.rstrip("/")}/{each.node_name}'
                 for each in self.get_publishers_info_by_topic(topic)
-            )
-            if len(here) > 1:
-                names = ' and '.join(here)
-                text = f'{len(here)} nodes publish {topic}: {names}; what they send mixes'
+            ]
+            if text := rivals.warning(topic, here):
                 statuses.append(Status('topics', WARN, text))
-                if text not in self._said:
-                    self._said.add(text)
+                if text not in rivals.said:
+                    rivals.said.add(text)
                     self.get_logger().warning(f'{text}; end one, or give it another namespace')
         return statuses
 

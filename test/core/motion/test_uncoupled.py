@@ -40,10 +40,10 @@ def test_a_planar_sway_is_the_papers_equation(stem):
 
     def rate(t, state):
         angle, speed = state
-        # The wind sees the branch turned by Cayley's map of its mean slope; only what crosses it
-        # pushes.
-        seen = 2.0 * np.arctan(turn * angle / 2.0)
-        across = (wind(t) - flow * speed) * np.cos(seen)
+        # The wind sees the branch turned by its mean slope, and moving across itself; only what
+        # crosses it pushes.
+        seen = turn * angle
+        across = wind(t) * np.cos(seen) - flow * speed
         # Pieces move faster and slower than their mean.
         beside = branch['spread'] * speed**2
         force = DRAG * branch['area'] * np.sqrt(across**2 + beside) * across

@@ -416,7 +416,7 @@ def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> 
         layout = load_layout(branches.dtype['load_mode'].shape[0])
     records = zeros_in_lines(-(-len(branches) // LANES), layout)
     block, lane = np.divmod(np.arange(len(branches)), LANES)
-    for name in ('speed', 'area', 'spread', 'projector', 'centre'):
+    for name in ('speed', 'area', 'spread', 'projector'):
         records[name][block, ..., lane] = branches[name]
     for name in ('damping_mode', 'load_rotation', 'load_mode'):
         rows = records.dtype[name].shape[0]

@@ -3,8 +3,13 @@
 """
 Natural modes of the coupled tree as oscillators, on the loads of all branches.
 
-The model `full` steps all modes, a number of coordinates that many. The load is found once per
-step, at the state half a step on, and held over the step.
+The model `full` steps all modes, a number of coordinates that many. The load is that of the state
+half a step on, and is held over the step.
+
+**Implicit where it must be.** What a load does in a step is felt by the load itself: twigs in a
+storm point along the wind within a fraction of it. So the load is found again until it is that of
+the state it leads to; in light wind, where the last step's is near enough, once. What still turns
+further than a step can follow is held, and counted.
 
 Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -14,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
+import math
 
 import numpy as np
 
@@ -23,11 +29,21 @@ from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.records import LANES, WORK
-from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, wind_forces
+from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
 from tree_sway.core.reduction.matrices import Reduction
 from tree_sway.core.reduction.modes import Modes
+
+MOST_TRIALS = 12
+"""How often the load of a step is found at most."""
+
+ENOUGH = 0.02
+"""By how much the load may miss that of the middle of its step: the turn that it makes [rad]."""
+
+
+FARTHEST, MOST_TURN = 2.0, 1.0
+"""How far a branch may turn on its parent, and how far in a step, in [rad]."""
 
 
 class ModalBank(Branchwise):
@@ -61,6 +77,8 @@ class ModalBank(Branchwise):
         self.modal = np.zeros((5, m))
         self.state = np.zeros((3, n))
         self.whole, self.half = np.zeros((2, m, 8))
+        self._fastest = np.zeros(1)
+        self._tried = np.zeros((2 + 2 * MOST_TRIALS, n))
 
     @property
     def mean_square_motion(self) -> Floats:
@@ -77,6 +95,7 @@ class ModalBank(Branchwise):
     def set_pace(self, dt: float) -> None:
         """Refill how the modes go on in a time step [s]."""
         one = np.ones(len(self.stiffness))
+        self._fastest[0] = MOST_TURN / dt
         fill_propagator(one, self.damping, self.stiffness, dt, self.whole)
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
 
@@ -113,7 +132,7 @@ class ModalBank(Branchwise):
     def _compiled(self) -> Callable[..., int]:
         arrays = (
             self.branches, self.work, self._loads, self.modal, self.state, self._shapes,
-            self.limit, self.whole, self.half,
+            self.limit, self.whole, self.half, self._tried, self._momentum, self._fastest,
         )  # fmt: skip
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
@@ -136,11 +155,12 @@ class ModalBank(Branchwise):
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of what is carried from one step to the next."""
-        return self.modal[:3], self._loads['drag_impulse']
+        return self.modal[:3], self.state[0], self._loads['drag_impulse']
 
     def take(self, eta: Floats, rate: Floats, force: Floats) -> None:
         """Go on from modes, rates and forces (m,)."""
         self.modal[0], self.modal[1], self.modal[2] = eta, rate, force
+        self.state[0] = 0.0
         self._loads['drag_impulse'] = 0.0
 
     def rotations(self) -> Floats:
@@ -249,29 +269,43 @@ def wind_moments(
         here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
         for c in range(branches[b].n_coordinates):
             here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
-        for k in range(6):
-            here.velocity[k, j] = work[b].velocity[k]
-        for k in range(3):
-            here.base[k, j] = work[b].rotation[k]
-    wind_forces(branches, work, loads, wx, wy, wz, per_speed_squared)
+    set_air(work, loads, wx, wy, wz)
+    wind_forces(loads, per_speed_squared)
     bent_loads(branches, work, loads, moment)
 
 
 @fused
 def _advance(
     branches: Records, work: Records, loads: Records, modal: Floats, state: Floats, shapes: Floats,
-    limit: Floats, whole: Floats, half: Floats,
+    limit: Floats, whole: Floats, half: Floats, tried: Floats, momentum: Floats, fastest: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
-    _to_middle(modal, state, shapes, half)
     eta, rate, force = modal[0], modal[1], modal[2]
     moment, x, v = state[0], state[1], state[2]
-    wind_moments(branches, work, loads, x, v, moment, wx, wy, wz, per_speed_squared)
-    over, total = 0, 0.0
+    missing, found = tried[0], tried[3]
+    trial, over, total = 0, 0, 0.0
+    while True:
+        _to_middle(modal, state, shapes, half)
+        wind_moments(branches, work, loads, x, v, found, wx, wy, wz, per_speed_squared)
+        most = 0.0
+        for i in range(len(moment)):
+            missing[i] = LOAD_MAX * (found[i] - moment[i]) / limit[i]
+            most = max(most, abs(missing[i]))
+        trial += 1
+        if most <= ENOUGH or trial == MOST_TRIALS:
+            break
+        _try_next(tried, trial)
+        for i in range(len(moment)):
+            moment[i] += tried[2, i] * limit[i] / LOAD_MAX
+            moment[i] = min(max(moment[i], -limit[i]), limit[i])
+        for k in range(len(eta)):
+            force[k] = 0.0
+            for i in range(len(moment)):
+                force[k] += shapes[k, i] * moment[i]
     for i in range(len(moment)):
-        if not abs(moment[i]) <= limit[i]:
-            moment[i] = limit[i] if moment[i] > 0.0 else -limit[i]
-            over += 1
+        if most <= ENOUGH:
+            moment[i] = found[i]
+        over += not abs(found[i]) <= limit[i]
     for k in range(len(eta)):
         pushed = 0.0
         for i in range(len(moment)):
@@ -281,4 +315,75 @@ def _advance(
         eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * pushed
         rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * pushed
         total += 0.0 * eta[k] + 0.0 * rate[k]
-    return over if total == 0.0 else -1
+    if total != 0.0:
+        return -1
+    for i in range(len(x)):
+        if not (abs(x[i]) <= FARTHEST and abs(v[i]) <= fastest[0]):
+            _hold(modal, state, shapes, momentum, fastest[0])
+            return over + 1
+    return over
+
+
+@fused
+def _hold(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastest: float) -> None:
+    """Let no branch turn further or faster than a step can follow."""
+    eta, rate, x, v = modal[0], modal[1], state[1], state[2]
+    for i in range(len(x)):
+        x[i], v[i] = 0.0, 0.0
+    for k in range(len(eta)):
+        for i in range(len(x)):
+            x[i] += shapes[k, i] * eta[k]
+            v[i] += shapes[k, i] * rate[k]
+    for i in range(len(x)):
+        x[i] = min(max(x[i], -FARTHEST), FARTHEST)
+        v[i] = min(max(v[i], -fastest), fastest)
+    for k in range(len(eta)):
+        eta[k], rate[k] = 0.0, 0.0
+        for i in range(len(x)):
+            eta[k] += momentum[k, i] * x[i]
+            rate[k] += momentum[k, i] * v[i]
+
+
+@fused
+def _try_next(tried: Floats, trial: int) -> None:
+    """
+    Find the change of the moments after which nothing should be missing, in [rad].
+
+    Rows of ``tried`` are what is missing now, what was missing before, and the last change, which
+    is written; behind the next one, pairs of what a change brought, orthonormal, and that change
+    (Anderson's mixing; Walker & Ni 2011, SIAM Journal on Numerical Analysis 49, 1715-1735).
+    """
+    missing, before, change = tried[0], tried[1], tried[2]
+    if trial > 1:
+        brought, made = tried[2 * trial], tried[2 * trial + 1]
+        for i in range(len(missing)):
+            brought[i], made[i] = missing[i] - before[i], change[i]
+        for other in range(2, trial):
+            _take_off(brought, made, tried[2 * other], tried[2 * other + 1])
+        square = 0.0
+        for i in range(len(missing)):
+            square += brought[i] * brought[i]
+        scale = 1.0 / math.sqrt(max(square, 1e-300))
+        for i in range(len(missing)):
+            brought[i], made[i] = scale * brought[i], scale * made[i]
+    for i in range(len(missing)):
+        before[i], change[i] = missing[i], 0.0
+    for other in range(2, trial + 1):
+        _take_off(missing, change, tried[2 * other], tried[2 * other + 1])
+    most = 0.0
+    for i in range(len(missing)):
+        change[i] += missing[i]
+        most = max(most, abs(change[i]))
+    for i in range(len(missing)):
+        change[i] *= min(1.0, MOST_TURN / most)
+
+
+@fused
+def _take_off(brought: Floats, made: Floats, other: Floats, by: Floats) -> None:
+    """Take off what is along another unit vector, and the change that would bring it."""
+    share = 0.0
+    for i in range(len(brought)):
+        share += brought[i] * other[i]
+    for i in range(len(brought)):
+        brought[i] -= share * other[i]
+        made[i] -= share * by[i]

@@ -189,11 +189,13 @@ SEGMENT = segment_layout()
 
 WORK = np.dtype(
     [
-        ('velocity', 'f8', (6,)),  # of the base (v, w), about the root, in rest geometry
-        ('rotation', 'f8', (3,)),  # of the base, from rest
+        # Of the base, in its own frame as it is turned:
+        ('velocity', 'f8', (6,)),  # of its place, then its spin
+        ('attitude', 'f8', (4,)),  # how it is turned from rest, w x y z
         ('force', 'f8', (3,)),  # of the wind on the branch in the last step [N]
         ('turn', 'f8', (3,)),  # rotation of the base, from its parent's base
         ('shift', 'f8', (3,)),  # displacement of the base in its parent's base's frame
+        ('arm', 'f8', (3,)),  # where it now is from there
         ('wrench', 'f8', (6,)),  # force and moment of itself and all it carries (`tree_passes`)
     ]
 )
@@ -215,7 +217,6 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
         ('area', 'f8', (LANES,)),
         ('spread', 'f8', (LANES,)),
         ('projector', 'f8', (6, LANES)),
-        ('centre', 'f8', (3, LANES)),
         ('damping_mode', 'f8', (n_coordinates, 3, LANES)),
         ('load_rotation', 'f8', (n_coordinates, 3, LANES)),
         ('load_mode', 'f8', (n_coordinates, 3, LANES)),
@@ -228,15 +229,13 @@ def load_fields(n_coordinates: int = MAX_COORDINATES) -> list[tuple[Any, ...]]:
         # State half a step on, and what follows from it:
         ('x', 'f8', (n_coordinates, LANES)),
         ('v', 'f8', (n_coordinates, LANES)),
-        ('velocity', 'f8', (6, LANES)),  # of the base
-        ('base', 'f8', (3, LANES)),  # rotation of the base
-        ('motion', 'f8', (3, LANES)),  # of what the wind sees [m/s]
-        ('turned', 'f8', (3, LANES)),  # rotation of what the wind sees
+        ('velocity', 'f8', (6, LANES)),  # of the base, in its own frame as it is turned
+        ('air', 'f8', (3, LANES)),  # its wind in that frame [m/s]
+        ('turned', 'f8', (3, LANES)),  # rotation of what the wind sees from there
         # What the last force took off the relative wind, over the compliance [N]:
         ('drag_impulse', 'f8', (3, LANES)),
-        ('force', 'f8', (3, LANES)),
-        ('turned_force', 'f8', (3, LANES)),  # the same in the frame of the turned base
-        ('own_force', 'f8', (3, LANES)),  # in that of the branch as it is turned
+        ('own_force', 'f8', (3, LANES)),  # in the frame of the branch as it is turned
+        ('force', 'f8', (3, LANES)),  # the same in that of its base
         ('moment', 'f8', (3, LANES)),  # about the base, in its frame [N m]
         ('load', 'f8', (1 + n_coordinates, LANES)),  # along b, then on each coordinate [N m]
     ]

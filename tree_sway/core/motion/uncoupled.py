@@ -22,7 +22,7 @@ from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.records import LANES, OSCILLATORS, WORK
-from tree_sway.core.motion.tree_passes import own_loads, wind_forces
+from tree_sway.core.motion.tree_passes import own_loads, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
 from tree_sway.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force
 
@@ -125,7 +125,8 @@ def _advance(
             here.now_x[k, j], here.now_v[k, j] = x[2 * b + k], v[2 * b + k]
     for block in range(len(banks)):
         _to_middle(banks[block])
-    wind_forces(branches, work, banks, wx, wy, wz, per_speed_squared)
+    set_air(work, banks, wx, wy, wz)
+    wind_forces(banks, per_speed_squared)
     own_loads(banks)
     held, total = 0, 0.0
     for block in range(len(banks)):
@@ -134,6 +135,8 @@ def _advance(
         here, j = banks[b // LANES], b % LANES
         if not here.is_solved[j]:
             here, j = banks[branches[b].source // LANES], branches[b].source % LANES
+        for k in range(3):
+            work[b].force[k] = here.force[k, j]
         for k in range(2):
             x[2 * b + k], v[2 * b + k] = here.now_x[k, j], here.now_v[k, j]
             total += 0.0 * x[2 * b + k] + 0.0 * v[2 * b + k]

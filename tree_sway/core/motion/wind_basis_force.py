@@ -13,7 +13,7 @@ from tree_sway.core.arrays import Floats, Record, Singles
 from tree_sway.core.kernel import fused, inlined
 from tree_sway.core.motion.harmonics import fill_harmonics
 
-N_AZIMUTHS, N_LEVELS = 24, 5
+N_AZIMUTHS, N_LEVELS = 24, 6
 """Azimuths of the wind and levels of the lean in the table."""
 
 STEEP = math.sin(math.radians(45.0))

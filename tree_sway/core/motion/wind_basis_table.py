@@ -36,7 +36,7 @@ from tree_sway.core.motion.modal import ModalBank
 from tree_sway.core.motion.static_answers import STORM, WindMoments
 from tree_sway.core.motion.wind_basis_force import N_AZIMUTHS, N_LEVELS, table_layout, wind_force
 
-SPEEDS = (0.0, 5.0, 10.0, 20.0, STORM)
+SPEEDS = (0.0, 4.0, 8.0, 13.0, 20.0, STORM)
 """Winds in [m/s] that the tree is held in at the levels of the table."""
 
 BEYOND = 1.1

@@ -55,24 +55,29 @@ export function need(holds, name) {
 /** @param {unknown} value */
 const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREATEST;
 
+/** Refuse arrays that are missing, of another type or shape, or not finite; the sizes of their axes.
+ * @param {import("./protocol.js").Arrays} parts @param {typeof ARRAYS} forms */
+export function sizesOf(parts, forms) {
+  /** @type {Record<string, number>} */
+  const size = {};
+  for (const [name, [type, ...axes]] of Object.entries(forms)) {
+    const { values, shape } = parts[name] ?? {};
+    need(values?.constructor === type && shape.length === axes.length, name);
+    axes.forEach((axis, i) => {
+      if (typeof axis === "string") size[axis] ??= shape[i];
+      need(shape[i] === (typeof axis === "string" ? size[axis] : axis), name);
+    });
+    need(values.every(Number.isFinite), name);
+  }
+  return size;
+}
+
 /** Refuse a kind whose arrays do not fit each other, and find its sizes.
  * @param {import("./protocol.js").Kind} kind with its arrays
  * @param {import("./protocol.js").Arrays} parts its arrays with their shapes */
 export function checkKind(kind, parts) {
   const { arrays } = kind;
-  /** @type {Record<string, number>} */
-  const size = {};
-  const forms = arrays.leaf_segment ? { ...ARRAYS, ...LEAVES } : ARRAYS;
-  for (const [name, [type, ...axes]] of Object.entries(forms)) {
-    need(arrays[name]?.constructor === type, name);
-    const { shape } = parts[name];
-    need(shape.length === axes.length, name);
-    axes.forEach((axis, i) => {
-      if (typeof axis === "string") size[axis] ??= shape[i];
-      need(shape[i] === (typeof axis === "string" ? size[axis] : axis), name);
-    });
-    if (type === Float32Array) need(arrays[name].every(Number.isFinite), name);
-  }
+  const size = sizesOf(parts, arrays.leaf_segment ? { ...ARRAYS, ...LEAVES } : ARRAYS);
   const { branches: b, segments: n, keys: nKeys, coordinates, rows } = size;
   need(b > 0 && size["branches + 1"] === b + 1, "branch_first");
   need(arrays.basis_scale.every((value) => value > 0), "basis_scale");

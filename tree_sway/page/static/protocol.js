@@ -76,34 +76,28 @@ const LARGEST_HEADER = 8 * 2 ** 20;
 
 const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: Uint8Array };
 
-/** Read a description; a `ProtocolError` if it is none, or if an array points outside of another.
- * @param {ArrayBuffer} data @returns {Description} */
-export function decodeDescription(data) {
+/** Do what reads a message; whatever goes wrong is a `ProtocolError`.
+ * @template T @param {keyof typeof MAGIC} what @param {() => T} read @returns {T} */
+export function reading(what, read) {
   try {
-    return decoded(data);
-  } catch (error) {
-    if (error instanceof ProtocolError) throw error;
-    throw new ProtocolError(`not a whole description (${String(error).slice(0, 200)})`);
-  }
-}
-
-/**
- * Take a message of a header and arrays apart; a `ProtocolError` if it is none.
- * @typedef {Record<string, {values: NumberArray, shape: number[]}>} Arrays
- * @param {ArrayBuffer} data @param {keyof typeof MAGIC} what
- * @returns {{header: Record<string, any>, kinds: Arrays[], own: Arrays}} own arrays are those of no kind
- */
-export function unpack(data, what) {
-  try {
-    return unpacked(data, what);
+    return read();
   } catch (error) {
     if (error instanceof ProtocolError) throw error;
     throw new ProtocolError(`not a whole message of ${what} (${String(error).slice(0, 200)})`);
   }
 }
 
-/** @param {ArrayBuffer} data @param {keyof typeof MAGIC} what */
-function unpacked(data, what) {
+/** Read a description; a `ProtocolError` if it is none, or if an array points outside of another.
+ * @param {ArrayBuffer} data */
+export const decodeDescription = (data) => reading("description", () => decoded(data));
+
+/**
+ * Take a message of a header and arrays apart, within `reading`.
+ * @typedef {Record<string, {values: NumberArray, shape: number[]}>} Arrays
+ * @param {ArrayBuffer} data @param {keyof typeof MAGIC} what
+ * @returns {{header: Record<string, any>, kinds: Arrays[], own: Arrays}} own arrays are those of no kind
+ */
+export function unpack(data, what) {
   const view = new DataView(data);
   const begins = new TextDecoder().decode(new Uint8Array(data, 0, Math.min(4, data.byteLength)));
   if (data.byteLength < 12 || begins !== MAGIC[what]) {

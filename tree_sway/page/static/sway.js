@@ -16,14 +16,14 @@
  *     placer.place(stand.write(coordinates));     // coordinates of the description, then poses
  */
 
-import { need, ProtocolError } from "./checks.js";
-import { unpack } from "./protocol.js";
+import { need, ProtocolError, sizesOf } from "./checks.js";
+import { reading, unpack } from "./protocol.js";
 
 /** Time step of a stand unless it is given another [s]. */
 export const STEP = 1 / 60;
 
 const AZIMUTHS = 24;
-const LEVELS = 5;
+const LEVELS = 6;
 /** Sine of the elevation from which on a wind goes over to one straight up or down. */
 const STEEP = Math.sin(Math.PI / 4);
 const MOST_COORDINATES = 1000;
@@ -71,7 +71,10 @@ for (const [name, rows] of Object.entries(SLOPES)) {
 
 /** Read tables; a `ProtocolError` with a sentence if they are damaged.
  * @param {ArrayBuffer} data @returns {Tables} */
-export function decodeTables(data) {
+export const decodeTables = (data) => reading("tables", () => decoded(data));
+
+/** @param {ArrayBuffer} data @returns {Tables} */
+function decoded(data) {
   const { header, kinds, own } = unpack(data, "tables");
   const { description, anemometer, convection_ratio: ratio } = header;
   need(typeof description === "string", "description");
@@ -87,17 +90,7 @@ export function decodeTables(data) {
 export class Table {
   /** @param {Record<string, any>} numbers @param {import("./protocol.js").Arrays} arrays */
   constructor(numbers, arrays) {
-    /** @type {Record<string, number>} */
-    const size = {};
-    for (const [name, [type, ...axes]] of Object.entries(ARRAYS)) {
-      const { values, shape } = arrays[name] ?? {};
-      need(values?.constructor === type && shape.length === axes.length, name);
-      axes.forEach((axis, i) => {
-        const wanted = typeof axis === "number" ? axis : (size[axis] ??= shape[i]);
-        need(shape[i] === wanted, name);
-      });
-      need(values.every(Number.isFinite), name);
-    }
+    const size = sizesOf(arrays, ARRAYS);
     const { m, n } = size;
     const { degree, most_pressure: mostPressure, most_energy: mostEnergy, drag_law: law } = numbers;
     need(m > 0 && m <= MOST_COORDINATES && size["m m"] === m * m, "stiffness");

@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.motion.modal import ModalBank
-from tree_sway.core.motion.plain.numpy_passes import into_lanes, NumpyPasses, of_lanes
+from tree_sway.core.motion.modal import ENOUGH, FARTHEST, ModalBank, MOST_TRIALS, MOST_TURN
+from tree_sway.core.motion.plain.numpy_passes import Bases, into_lanes, NumpyPasses, of_lanes
 from tree_sway.core.motion.plain.numpy_rotation import two_axis_moment
 from tree_sway.core.motion.uncoupled import UncoupledBank
+from tree_sway.core.oscillators.two_axis import LOAD_MAX
 
 
 class NumpyUncoupledBank(UncoupledBank):
@@ -50,13 +51,14 @@ class NumpyUncoupledBank(UncoupledBank):
         h = self._half[:, :, None]
         middle_x = h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment
         middle_v = h[:, 3] * x + h[:, 4] * v + h[:, 5] * moment
-        base = np.zeros((n, 9))
+        base = Bases.at_rest(n)
         wind = np.array([wx, wy, wz]) + of_lanes(self._banks['gust'], n)
         force = passes.wind_forces(
             base, middle_x, middle_v, wind, per_speed_squared, self._compliance, impulse
         )
+        force = passes.at_bases(middle_x, force)
         load = passes.own_loads(force)
-        self.work['force'] = force
+        self.work['force'] = force[self.branches['source']]
         into_lanes(impulse, self._banks['drag_impulse'])
         into_lanes(load, self._banks['load'])
         return self._step(x, v, load)
@@ -104,27 +106,57 @@ class NumpyModalBank(ModalBank):
         """Advance one step, as `ModalBank.advance`."""
         passes, n = self._passes, len(self.branches)
         eta, rate, force = self.modal[:3]
-        moment = self.state[0]
+        moment, found = self.state[0], np.empty(self.state.shape[1])
         h, c = self.half.T, self.whole.T
-        middle_eta = h[0] * eta + h[1] * rate + (h[2] + h[3]) * force
-        middle_rate = h[4] * eta + h[5] * rate + (h[6] + h[7]) * force
-        x = passes.per_branch(_summed(middle_eta, self._shapes))
-        v = passes.per_branch(_summed(middle_rate, self._shapes))
         impulse = of_lanes(self._loads['drag_impulse'], n).copy()
-        base = passes.outward(x, v)
         wind = np.array([wx, wy, wz]) + of_lanes(self._loads['gust'], n)
         compliance = of_lanes(self._loads['compliance'], n)
-        on_branches = passes.wind_forces(base, x, v, wind, per_speed_squared, compliance, impulse)
-        passes.bent_loads(base, x, on_branches, moment)
-        self.work['force'] = on_branches
+        tried: list[tuple[Floats, Floats]] = []
+        for trial in range(MOST_TRIALS):
+            x = _summed(h[0] * eta + h[1] * rate + (h[2] + h[3]) * force, self._shapes)
+            v = _summed(h[4] * eta + h[5] * rate + (h[6] + h[7]) * force, self._shapes)
+            angles, rates = passes.per_branch(x), passes.per_branch(v)
+            bases = passes.outward(angles, rates)
+            on_branches = passes.wind_forces(
+                bases, angles, rates, wind, per_speed_squared, compliance, impulse
+            )
+            self.work['force'] = passes.bent_loads(bases, angles, on_branches, found)
+            missing = LOAD_MAX * (found - moment) / self.limit
+            if np.abs(missing).max() <= ENOUGH:
+                moment[:] = found
+                break
+            if trial == MOST_TRIALS - 1:
+                break
+            if tried:
+                brought, made = missing - tried[-1][0], tried[-1][1]
+                for other, by in tried[:-1]:
+                    share = brought @ other
+                    brought, made = brought - share * other, made - share * by
+                scale = 1.0 / max(float(np.linalg.norm(brought)), 1e-150)
+                tried[-1] = scale * brought, scale * made
+            left, change = missing, np.zeros_like(missing)
+            for other, by in tried:
+                share = left @ other
+                left, change = left - share * other, change - share * by
+            change = change + left
+            change *= min(1.0, MOST_TURN / float(np.abs(change).max()))
+            tried.append((missing, change))
+            moment[:] = np.clip(moment + change * self.limit / LOAD_MAX, -self.limit, self.limit)
+            force[:] = np.einsum('mi,i->m', self._shapes, moment)
         into_lanes(impulse, self._loads['drag_impulse'])
-        over = ~(np.abs(moment) <= self.limit)
-        moment[over] = np.where(moment[over] > 0.0, self.limit[over], -self.limit[over])
         force[:] = np.einsum('mi,i->m', self._shapes, moment)
         new_eta = c[0] * eta + c[1] * rate + (c[2] + c[3]) * force
         rate[:] = c[4] * eta + c[5] * rate + (c[6] + c[7]) * force
         eta[:] = new_eta
-        return int(over.sum()) if np.isfinite(self.modal[:2]).all() else -1
+        if not np.isfinite(self.modal[:2]).all():
+            return -1
+        over = int((~(np.abs(found) <= self.limit)).sum())
+        fastest = self._fastest[0]
+        if (np.abs(x) <= FARTHEST).all() and (np.abs(v) <= fastest).all():
+            return over
+        eta[:] = self._momentum @ np.clip(_summed(eta, self._shapes), -FARTHEST, FARTHEST)
+        rate[:] = self._momentum @ np.clip(_summed(rate, self._shapes), -fastest, fastest)
+        return over + 1
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""

@@ -8,14 +8,36 @@ The same formulas on the same records; subtree sums are differences of one cumul
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.motion.plain.numpy_rotation import cayley_turned, cross
+from tree_sway.core.motion.plain.numpy_rotation import (
+    cross,
+    quaternion_product,
+    quaternion_rotated,
+    quaternions_of,
+    turned_by,
+)
 from tree_sway.core.motion.records import LANES
+
+
+class Bases(NamedTuple):
+    """Where bases are, how they move and are turned: the fields of `WORK` of the same names."""
+
+    velocity: Floats
+    attitude: Floats
+    turn: Floats
+    shift: Floats
+    arm: Floats
+
+    @classmethod
+    def at_rest(cls, count: int) -> Bases:
+        """Return a number of bases that are not turned and do not move."""
+        attitude = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+        return cls(np.zeros((count, 6)), attitude, *np.zeros((3, count, 3)))
 
 
 class NumpyPasses:
@@ -28,13 +50,14 @@ class NumpyPasses:
     def __init__(self, branches: Records) -> None:
         """Take over columns, and sort the branches by level."""
         names = (
-            'parent', 'source', 'twist', 'centre', 'damping_mode', 'load_rotation', 'load_mode',
-            'lever', 'speed', 'base', 'arm', 'per_arm',
+            'parent', 'source', 'twist', 'damping_mode', 'load_rotation', 'load_mode', 'lever',
+            'speed', 'base', 'arm', 'per_arm',
         )  # fmt: skip
         self._of: dict[str, NDArray[Any]] = {
             name: np.ascontiguousarray(branches[name])
-            for name in (*names, 'spread', 'area', 'frame', 'coupling')
+            for name in (*names, 'spread', 'area', 'frame')
         }
+        self._couple = branches['coupling'] - cross_matrices(branches['base'])
         xx, yy, zz, xy, xz, yz = branches['projector'].T
         self._projector = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
         self.levels = levels_of(branches['parent'])
@@ -47,18 +70,30 @@ class NumpyPasses:
         found: Floats = np.where(self.is_there, x[self._column], 0.0)
         return found
 
-    def outward(self, x: Floats, v: Floats) -> Floats:
-        """Velocity (v, w) and rotation of each base, (b, 9), of angles and rates (b, c)."""
-        base = np.zeros((len(x), 9))
+    def outward(self, x: Floats, v: Floats) -> Bases:
+        """Move the bases by angles and rates (b, c)."""
+        bases = Bases.at_rest(len(x))
         for level in self.levels:
-            parent, twist = self._of['parent'][level], self._of['twist'][level]
-            base[level, :6] = base[parent, :6] + np.einsum('bc,bck->bk', v[parent], twist)
-            base[level, 6:] = base[parent, 6:] + np.einsum('bc,bck->bk', x[parent], twist[..., 3:])
-        return base
+            names = ('parent', 'twist', 'base', 'arm')
+            parent, twist, at, arm = (self._of[name][level] for name in names)
+            moved, rate = (np.einsum('bc,bck->bk', each[parent], twist) for each in (x, v))
+            turn, spin = moved[:, 3:], rate[:, 3:]
+            shift, gone = moved[:, :3] + cross(turn, at), rate[:, :3] + cross(spin, at)
+            per = self._of['per_arm'][level, None]
+            now = arm * (1.0 - per * np.square(shift).sum(axis=1, keepdims=True)) + shift
+            gone -= 2.0 * per * (shift * gone).sum(axis=1, keepdims=True) * arm
+            below = bases.velocity[parent]
+            spin = below[:, 3:] + spin + 0.5 * cross(turn, spin)
+            place = below[:, :3] + cross(below[:, 3:], now) + gone
+            bases.velocity[level] = np.hstack([turned_by(-turn, place), turned_by(-turn, spin)])
+            turned = quaternion_product(bases.attitude[parent], quaternions_of(turn))
+            bases.attitude[level] = turned
+            bases.turn[level], bases.shift[level], bases.arm[level] = turn, shift, now
+        return bases
 
     def wind_forces(
         self,
-        base: Floats,
+        bases: Bases,
         x: Floats,
         v: Floats,
         wind: Floats,
@@ -66,13 +101,18 @@ class NumpyPasses:
         compliance: Floats,
         impulse: Floats,
     ) -> Floats:
-        """Force of the wind on each branch in [N], (b, 3); the impulse (b, 3) is written again."""
+        """
+        Force of the wind on each branch as it is turned in [N], (b, 3).
+
+        The impulse (b, 3) is written again.
+        """
         of = self._of
-        motion = base[:, :3] + cross(base[:, 3:6], of['centre'])
-        motion += np.einsum('bc,bck->bk', v, of['damping_mode'])
-        turn = base[:, 6:] + np.einsum('bc,bck->bk', x, of['load_rotation'])
-        free = cayley_turned(-turn, of['speed'][:, None] * wind - motion)
-        free += compliance[:, None] * impulse
+        back = bases.attitude * [1.0, -1.0, -1.0, -1.0]
+        air = quaternion_rotated(back, of['speed'][:, None] * wind) - bases.velocity[:, :3]
+        turn = np.einsum('bc,bck->bk', x, of['load_rotation'])
+        spin = turned_by(-turn, bases.velocity[:, 3:])
+        free = turned_by(-turn, air) - np.einsum('bij,bi->bj', self._couple, spin)
+        free += compliance[:, None] * impulse - np.einsum('bc,bck->bk', v, of['damping_mode'])
         across = np.einsum('bij,bj->bi', self._projector, free)
         spread = of['spread'] * np.square(v[:, :2]).sum(axis=1)
         speed = np.sqrt(np.maximum(np.einsum('bi,bi->b', free, across), 0.0) + spread)
@@ -80,7 +120,11 @@ class NumpyPasses:
         share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 * compliance * c * speed))
         per_speed = (c * speed * share**2)[:, None]
         impulse[:] = per_speed * free
-        return cayley_turned(turn, per_speed * across)[of['source']]
+        return np.asarray(per_speed * across)
+
+    def at_bases(self, x: Floats, force: Floats) -> Floats:
+        """Turn forces (b, 3) on branches at angles (b, c) into the frames of their bases."""
+        return turned_by(np.einsum('bc,bck->bk', x, self._of['load_rotation']), force)
 
     def own_loads(self, force: Floats) -> Floats:
         """Pull along each chord and moments on its key rotation in [N m], (b, 3)."""
@@ -89,32 +133,40 @@ class NumpyPasses:
         pull = of['lever'] * np.einsum('bk,bk->b', of['frame'][:, 0], force)
         return np.hstack([pull[:, None], own])
 
-    def bent_loads(self, base: Floats, x: Floats, force: Floats, moment: Floats) -> None:
-        """Write moments on the coordinates of a tree as it is bent and turned, (N,), in [N m]."""
+    def bent_loads(self, bases: Bases, x: Floats, force: Floats, moment: Floats) -> Floats:
+        """
+        Write moments on the coordinates of a tree as it is bent and turned, (N,), in [N m].
+
+        Forces (b, 3) are those of `wind_forces`; returned they are as they act in space.
+        """
         of = self._of
         own_turn = np.einsum('bc,bck->bk', x, of['load_rotation'])
-        turned = cayley_turned(-(base[:, 6:] + own_turn), force)
-        own = np.einsum('bck,bk->bc', of['load_mode'], turned)
-        couple = np.einsum('bij,bj->bi', of['coupling'], turned) - cross(of['base'], turned)
-        wrench = np.hstack([cayley_turned(-base[:, 6:], force), cayley_turned(own_turn, couple)])
+        own = np.einsum('bck,bk->bc', of['load_mode'], force)
+        couple = turned_by(own_turn, np.einsum('bij,bj->bi', self._couple, force))
+        wrench = np.hstack([turned_by(own_turn, force), couple])
+        world = quaternion_rotated(bases.attitude, wrench[:, :3])
         for level in reversed(self.levels):
-            parent, twist, at = (of[name][level] for name in ('parent', 'twist', 'base'))
-            moved = np.einsum('bc,bck->bk', x[parent], twist)
-            turn, shift = moved[:, 3:], moved[:, :3] + cross(moved[:, 3:], at)
-            f, m = (cayley_turned(turn, wrench[level][:, k : k + 3]) for k in (0, 3))
-            arm, per = of['arm'][level], of['per_arm'][level, None]
-            now = arm * (1.0 - per * np.square(shift).sum(axis=1, keepdims=True)) + shift
-            np.add.at(wrench, parent, np.hstack([f, m + cross(now, f)]))
+            names = ('parent', 'twist', 'base', 'arm')
+            parent, twist, at, arm = (of[name][level] for name in names)
+            turn, shift, per = bases.turn[level], bases.shift[level], of['per_arm'][level, None]
+            f, m = (turned_by(turn, wrench[level][:, k : k + 3]) for k in (0, 3))
+            np.add.at(wrench, parent, np.hstack([f, m + cross(bases.arm[level], f)]))
             f = f - 2.0 * per * (arm * f).sum(axis=1, keepdims=True) * shift
             m = m + 0.5 * cross(m, turn) + cross(at, f)
             np.add.at(own, parent, np.einsum('bck,bk->bc', twist, np.hstack([f, m])))
         moment[self._column[self.is_there]] = own[self.is_there]
+        return world
+
+
+def cross_matrices(vectors: Floats) -> Floats:
+    """Matrices whose products are the cross products of vectors (n, 3), (n, 3, 3)."""
+    return np.asarray(np.cross(vectors[:, None], np.eye(3)).swapaxes(1, 2))
 
 
 def even_wind_moments(branches: Records, n_coordinates: int, axes: int = 2) -> Floats:
     """Moments [N m], (N, axes), at rest of even winds of 1 m/s and 1 kg/m^3 along x, y and z."""
     passes, n = NumpyPasses(branches), len(branches)
-    moments, still, none = np.zeros((axes, n_coordinates)), np.zeros((n, 9)), np.zeros(n)
+    moments, still, none = np.zeros((axes, n_coordinates)), Bases.at_rest(n), np.zeros(n)
     at_rest = np.zeros(branches['load_mode'].shape[:2])
     for moment, wind in zip(moments, np.eye(3), strict=False):
         impulse = np.zeros((n, 3))

@@ -44,13 +44,10 @@ def quaternion_rotated(q: Floats, vectors: Floats) -> Floats:
     return rotated
 
 
-def cayley_turned(rotations: Floats, vectors: Floats) -> Floats:
-    """
-    Turn vectors (n, 3) by Cayley's map of rotation vectors [rad], (n, 3).
-
-    That is (1 - H)^-1 (1 + H) with H the cross product by r / 2.
-    """
-    half = 0.5 * rotations
+def turned_by(rotations: Floats, vectors: Floats) -> Floats:
+    """Turn vectors (n, 3) by rotation vectors [rad], (n, 3), as `rotation.turned`."""
+    t = np.square(rotations).sum(axis=1, keepdims=True)
+    half = (0.5 + t * (1.0 / 24.0 + t * (1.0 / 240.0 + t * (17.0 / 40320.0)))) * rotations
     square = np.square(half).sum(axis=1, keepdims=True)
     along = (half * vectors).sum(axis=1, keepdims=True)
     turned = (1.0 - square) * vectors + 2.0 * along * half + 2.0 * cross(half, vectors)

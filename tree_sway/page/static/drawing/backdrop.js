@@ -5,7 +5,7 @@
  * their pixels are many, and may cost something.
  */
 
-import { canvasTexture, drawable, drawPart, program } from "./gl.js";
+import { canvasTexture, drawable, drawPart, program, use } from "./gl.js";
 
 /**
  * @typedef {object} Daylight
@@ -163,10 +163,7 @@ export class Backdrop {
       gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     }
     if (this._kept) {
-      gl.useProgram(this._copy.program);
-      gl.activeTexture(gl.TEXTURE2);
-      gl.bindTexture(gl.TEXTURE_2D, this._kept.texture);
-      gl.uniform1i(this._copy.uniforms.picture, 2);
+      use(gl, this._copy, { picture: [2, this._kept.texture] });
       drawPart(gl, this._whole);
     }
     gl.enable(gl.DEPTH_TEST);
@@ -188,22 +185,12 @@ export class Backdrop {
    * @param {{kind: number, height: number, haze: number}} ground */
   _paint(camera, day, ground) {
     const { gl } = this;
-    const at = this._program.uniforms;
-    const { right, up, back } = camera.axes();
-    gl.useProgram(this._program.program);
-    gl.uniform3fv(at.right, right);
-    gl.uniform3fv(at.up, up);
-    gl.uniform3fv(at.back, back);
-    gl.uniform3fv(at.eye, camera.eye);
-    gl.uniform1f(at.ground, ground.height);
-    gl.uniform1f(at.haze, ground.haze);
-    gl.uniform1f(at.kind, ground.kind);
     const size = Math.hypot(...day.light);
-    gl.uniform3fv(at.light, day.light.map((l) => l / size));
-    gl.uniform3fv(at.sun, day.sun);
-    gl.uniform3fv(at.zenith, day.zenith);
-    gl.uniform3fv(at.horizon, day.horizon);
-    gl.uniform1f(at.dimmed, day.dimmed);
+    const { height, haze, kind } = ground;
+    use(gl, this._program, {
+      ...day, ...camera.axes(), eye: camera.eye, ground: height, haze, kind,
+      light: day.light.map((l) => l / size),
+    });
     drawPart(gl, this._whole);
   }
 }

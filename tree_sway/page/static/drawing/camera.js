@@ -93,11 +93,8 @@ export class Camera {
     const half = Math.tan(FIELD / 2);
     const right = wide.map((w) => w / half / this.aspect);
     const up = high.map((h) => h / half);
-    this.eye = [
-      this.target[0] + this.distance * back[0],
-      this.target[1] + this.distance * back[1],
-      this.target[2] + this.distance * back[2],
-    ];
+    const [x, y, z] = this.target.map((each, c) => each + this.distance * back[c]);
+    this.eye = [x, y, z];
     const near = 0.02 * this.distance;
     const far = this.distance + 30 * this._size;
     const f = 1 / Math.tan(FIELD / 2);

@@ -5,7 +5,7 @@
 /**
  * @typedef {object} Program
  * @property {WebGLProgram} program
- * @property {Record<string, WebGLUniformLocation>} uniforms
+ * @property {Record<string, (value: any) => void>} uniforms what sets each of them
  *
  * @typedef {object} Drawable
  * @property {WebGLVertexArrayObject} vao
@@ -41,15 +41,37 @@ export function program(gl, vertex, fragment) {
   if (!gl.getProgramParameter(made, gl.LINK_STATUS)) {
     throw new Error(String(gl.getProgramInfoLog(made)));
   }
-  /** @type {Record<string, WebGLUniformLocation>} */
+  /** @type {Program["uniforms"]} */
   const uniforms = {};
   for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
-    const { name } = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(made, i));
+    const { name, type } = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(made, i));
+    const at = gl.getUniformLocation(made, name);
+    /** @type {Program["uniforms"]} */
+    const setters = {
+      [gl.FLOAT]: (value) => gl.uniform1f(at, value),
+      [gl.FLOAT_VEC2]: (value) => gl.uniform2fv(at, value),
+      [gl.FLOAT_VEC3]: (value) => gl.uniform3fv(at, value),
+      [gl.FLOAT_VEC4]: (value) => gl.uniform4fv(at, value),
+      [gl.FLOAT_MAT4]: (value) => gl.uniformMatrix4fv(at, false, value),
+      [gl.UNSIGNED_INT_VEC4]: (value) => gl.uniform4uiv(at, value),
+      [gl.SAMPLER_2D]: ([unit, texture]) => {
+        gl.activeTexture(gl.TEXTURE0 + unit);
+        gl.bindTexture(gl.TEXTURE_2D, texture);
+        gl.uniform1i(at, unit);
+      },
+    };
     // An array has the name of its first element.
-    const key = name.replace("[0]", "");
-    uniforms[key] = /** @type {WebGLUniformLocation} */ (gl.getUniformLocation(made, name));
+    uniforms[name.replace("[0]", "")] = setters[type];
   }
   return { program: made, uniforms };
+}
+
+/** Set what a program is given: numbers, vectors and matrices; of a texture, its unit and itself.
+ * @param {WebGL2RenderingContext} gl @param {Program} used
+ * @param {Record<string, any>} values those that it has not are left out */
+export function use(gl, used, values) {
+  gl.useProgram(used.program);
+  for (const [name, value] of Object.entries(values)) used.uniforms[name]?.(value);
 }
 
 /** @param {WebGL2RenderingContext} gl @param {number} kind @param {ArrayBufferView} data */
@@ -102,6 +124,7 @@ export function drawPart(gl, part, share = 1) {
  * @param {boolean} isPlain the nearest point alone is looked up, which costs less */
 export function pictureTexture(gl, mips, wrap, isPlain) {
   const texture = /** @type {WebGLTexture} */ (gl.createTexture());
+  gl.activeTexture(gl.TEXTURE2);
   gl.bindTexture(gl.TEXTURE_2D, texture);
   mips.forEach(({ size, data }, level) => {
     gl.texImage2D(gl.TEXTURE_2D, level, gl.RGBA, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, data);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Far trees: each kind is painted once from all sides, then drawn as pictures that lean. */
 
-import { canvasTexture, discard, drawable } from "./gl.js";
+import { canvasTexture, discard, drawable, use } from "./gl.js";
 import { ELEVATIONS, ROUND } from "./shaders.js";
 
 const TILE = 128;
@@ -102,11 +102,8 @@ export class Impostor {
    * @param {number} shade of the foot of a tree among others */
   draw(used, shade) {
     const { gl, box, tip } = this;
-    gl.activeTexture(gl.TEXTURE2);
-    gl.bindTexture(gl.TEXTURE_2D, this._atlas.texture);
-    gl.uniform1i(used.uniforms.picture, 2);
-    gl.uniform4f(used.uniforms.box, box.wide, box.middle, box.tall, shade);
-    gl.uniform3f(used.uniforms.restTip, tip[0], tip[1], tip[2]);
+    const picture = [2, this._atlas.texture];
+    use(gl, used, { picture, box: [box.wide, box.middle, box.tall, shade], restTip: tip });
     gl.bindVertexArray(this._part.vao);
     gl.drawElements(gl.TRIANGLES, 6 * (ROWS - 1) * this.count, gl.UNSIGNED_INT, 0);
   }

@@ -120,8 +120,7 @@ export function shadeOf(kind, rest) {
 function leafPlace(kind, rest, segment, i) {
   const o = STRIDE * segment;
   const [x, y, z] = kind.arrays.leaf_offset.subarray(3 * i, 3 * i + 3);
-  const at = rotate(rest[o + 4], rest[o + 5], rest[o + 6], rest[o + 7], x, y, z);
-  return at.map((each, c) => each + rest[o + c]);
+  return apply(quaternion(rest, segment), [x, y, z]).map((each, c) => each + rest[o + c]);
 }
 
 /**
@@ -202,22 +201,9 @@ function twistBetween(poses, before, after) {
 }
 
 /** An axis of a segment's frame.
- * @param {Float32Array} poses @param {number} segment @param {0 | 1 | 2} which
- * @returns {[number, number, number]} */
+ * @param {Float32Array} poses @param {number} segment @param {0 | 1 | 2} which */
 function axis(poses, segment, which) {
-  const o = STRIDE * segment + 4;
-  const v = [0, 0, 0];
-  v[which] = 1;
-  return rotate(poses[o], poses[o + 1], poses[o + 2], poses[o + 3], v[0], v[1], v[2]);
-}
-
-/** @param {number} x @param {number} y @param {number} z @param {number} w @param {number} vx
- * @param {number} vy @param {number} vz @returns {[number, number, number]} */
-function rotate(x, y, z, w, vx, vy, vz) {
-  const tx = 2 * (y * vz - z * vy);
-  const ty = 2 * (z * vx - x * vz);
-  const tz = 2 * (x * vy - y * vx);
-  return [vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx];
+  return apply(quaternion(poses, segment), [0, 1, 2].map((c) => (c === which ? 1 : 0)));
 }
 
 /** Leaves: each cluster is up to three cards that fan out from the twig and show leaves in a
@@ -323,19 +309,22 @@ function addCard(mesh, here, size, number, species, across, random) {
 }
 
 /** @param {Float32Array} rest @param {number} segment @returns {number[]} w x y z */
-function quaternion(rest, segment) {
+export function quaternion(rest, segment) {
   const o = STRIDE * segment + 4;
   return [rest[o + 3], rest[o], rest[o + 1], rest[o + 2]];
 }
 
 /** @param {number[]} q */
-function conjugate([w, x, y, z]) {
+export function conjugate([w, x, y, z]) {
   return [w, -x, -y, -z];
 }
 
-/** @param {number[]} q @param {number[]} v @returns {number[]} */
+/** A vector turned by a quaternion. @param {number[]} q @param {number[]} v */
 function apply([w, x, y, z], [vx, vy, vz]) {
-  return rotate(x, y, z, w, vx, vy, vz);
+  const tx = 2 * (y * vz - z * vy);
+  const ty = 2 * (z * vx - x * vz);
+  const tz = 2 * (x * vy - y * vx);
+  return [vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx];
 }
 
 /** The drawn segment that each segment moves with: itself, or what carries the branch left out.
@@ -354,7 +343,7 @@ function hungOn(kind, branches) {
 }
 
 /** Quaternion product, w x y z. @param {number[]} a @param {number[]} b */
-function multiply(a, b) {
+export function multiply(a, b) {
   return [
     a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
     a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],

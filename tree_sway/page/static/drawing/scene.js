@@ -15,9 +15,12 @@ import {
   isSoftware,
   pictureTexture,
   program,
+  use,
 } from "./gl.js";
 import { Impostor } from "./impostors.js";
-import { barkMesh, boxOf, branchOrder, highestOf, leafMesh, shadeOf } from "./mesh.js";
+import {
+  barkMesh, boxOf, branchOrder, conjugate, highestOf, leafMesh, multiply, quaternion, shadeOf,
+} from "./mesh.js";
 import { Pace } from "./pace.js";
 import { arrowMesh, personMesh, potMesh } from "./props.js";
 import * as shaders from "./shaders.js";
@@ -120,6 +123,8 @@ export class Scene {
     /** @type {Map<string, WebGLTexture>} */
     this._pictures = new Map();
     this._texture = /** @type {WebGLTexture} */ (gl.createTexture());
+    /** Where the shaders look poses up. */
+    this._poses = this._texture;
     this._rows = 0;
     /** Poses of the segments that are drawn, tree after tree. */
     this._texels = new Float32Array(0);
@@ -307,9 +312,9 @@ export class Scene {
     const { branch_first: first, segment_length: length, segment_radius: radius } = kind.arrays;
     const base = first[Math.max(0, this.picked)];
     if (first[Math.max(0, this.picked) + 1] - base < 2) return 0;
-    const at = (/** @type {number} */ s) => STRIDE * (detail.start[this._watched] + placer.slots[s]) + 4;
+    const at = (/** @type {number} */ s) => detail.start[this._watched] + placer.slots[s];
     const now = apart(this._texels, at(base), at(base + 1));
-    const before = apart(rest, STRIDE * base + 4, STRIDE * (base + 1) + 4);
+    const before = apart(rest, base, base + 1);
     const bend = 2 * Math.hypot(now[0] - before[0], now[1] - before[1], now[2] - before[2]);
     return (bend * radius[2 * (base + 1)]) / (0.5 * (length[base] + length[base + 1]));
   }
@@ -413,6 +418,7 @@ export class Scene {
     placer.place(new Float32Array(placer.kind.nCoordinates), 0, AT_ORIGIN, levels[number].branches,
       texels, 0);
     const poses = /** @type {WebGLTexture} */ (gl.createTexture());
+    this._poses = poses;
     gl.activeTexture(gl.TEXTURE0);
     poseTexture(gl, poses, texels.length / 4 / shaders.TEXTURE_WIDTH, texels);
     const alone = { ...level, starts: new Uint32Array(shaders.MOST_COPIES).fill(shaders.NOTHING), count: 1 };
@@ -420,6 +426,7 @@ export class Scene {
     const { leaf: color } = lookOf(placer.kind.species);
     const kindOf = this._kinds[kind];
     impostor.bake((camera, eye) => this._paintTree(kindOf, alone, camera, eye), color);
+    this._poses = this._texture;
     gl.deleteTexture(poses);
     return impostor;
   }
@@ -428,22 +435,13 @@ export class Scene {
    * @param {DrawnKind} kind @param {DrawnLevel} level @param {Float32Array} camera
    * @param {number[]} eye */
   _paintTree(kind, level, camera, eye) {
-    const { gl } = this;
-    for (const used of [this._programs.bark, this._programs.leaf]) {
-      this._begin(used, camera, false);
-      const at = used.uniforms;
-      gl.uniform3fv(at.eye, eye);
-      gl.uniform3f(at.sun, 0, 0, 0);
-      gl.uniform3f(at.sky, 1.1, 1.1, 1.1);
-      gl.uniform1f(at.haze, 0);
-      if (used === this._programs.bark) this._drawBark(kind, level);
-      else if (this.leavesShown) {
-        gl.uniform1f(at.isBaked, 1);
-        gl.uniform1f(at.speed, 0);
-        gl.uniform2f(at.law, 0, 1);
-        this._drawLeaves(kind, level, 1);
-      }
-    }
+    const { bark, leaf } = this._programs;
+    const even = { eye, sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0 };
+    this._begin(bark, camera, false, even);
+    this._drawBark(kind, level);
+    if (!this.leavesShown) return;
+    this._begin(leaf, camera, false, { ...even, isBaked: 1, speed: 0, law: [0, 1] });
+    this._drawLeaves(kind, level, 1);
   }
 
   /** Place what is drawn of each tree. */
@@ -487,8 +485,7 @@ export class Scene {
     this._time = time;
     for (const c of [0, 1]) this._calmWind[c] += (passed / CALM) * (this.wind[c] - this._calmWind[c]);
     // The eye takes a shadow that is some frames old for one that is not.
-    const isCrowd = (this.detail?.trees.length ?? 0) > CROWD;
-    const every = this.isSlow ? (isCrowd ? 3 : 1) * SHADOW_EVERY : 1;
+    const every = this.isSlow ? (this.isCrowd ? 3 : 1) * SHADOW_EVERY : 1;
     if (this.detail && this._frame % every === 0) this._castShadow(matrix, time);
     if (this.isSlow && !isPaused) this.pace.count(performance.now(), this._hasCards);
     this._frame++;
@@ -543,23 +540,15 @@ export class Scene {
     this._drawSolids(matrix, true);
   }
 
-  /** @param {Program} used @param {Float32Array} matrix @param {boolean} isShadow */
-  _begin(used, matrix, isShadow) {
-    const { gl, day } = this;
-    const at = used.uniforms;
-    gl.useProgram(used.program);
-    gl.uniformMatrix4fv(at.camera, false, matrix);
-    gl.uniform3fv(at.light, this.light);
-    gl.uniform3fv(at.sun, day.sun);
-    gl.uniform3fv(at.sky, day.sky);
-    gl.uniform3fv(at.horizon, day.horizon);
-    gl.uniform3fv(at.eye, this.camera.eye);
-    gl.uniform1f(at.haze, this._haze);
-    gl.uniform1f(at.ground, this._groundHeight);
-    gl.uniform1f(at.isShadow, isShadow ? 1 : 0);
-    const [x, y] = this._shadowMiddle;
-    gl.uniform4f(at.shadowArea, x, y, 1 / this._shadowHalf, isShadow ? 1 : 0);
-    gl.uniform1i(at.poses, 0);
+  /** @param {Program} used @param {Float32Array} camera @param {boolean} shadow
+   * @param {Record<string, any>} [own] what it is given beside the usual */
+  _begin(used, camera, shadow, own = {}) {
+    const isShadow = shadow ? 1 : 0;
+    const shadowArea = [...this._shadowMiddle, 1 / this._shadowHalf, isShadow];
+    use(this.gl, used, {
+      ...this.day, camera, light: this.light, eye: this.camera.eye, haze: this._haze,
+      ground: this._groundHeight, isShadow, shadowArea, poses: [0, this._poses], ...own,
+    });
   }
 
   /** Where the shadow falls, with room to sway. */
@@ -581,25 +570,21 @@ export class Scene {
 
   /** @param {Float32Array} matrix @param {number} time @param {boolean} isShadow */
   _drawTrees(matrix, time, isShadow) {
-    const { gl } = this;
     const description = /** @type {import("../protocol.js").Description} */ (this.description);
     const law = description.flutter ?? { gain: 0, largest_angle: 1 };
     const { bark, leaf, impostor } = this._programs;
-    this._begin(bark, matrix, isShadow);
-    const [from, to] = this._pickedRows();
-    gl.uniform2f(bark.uniforms.picked, from, to);
+    this._begin(bark, matrix, isShadow, { picked: this._pickedRows() });
     this._eachLevel((level, kind) => this._drawBark(kind, level));
     if (this.leavesShown) {
-      this._begin(leaf, matrix, isShadow);
-      gl.uniform1f(leaf.uniforms.isBaked, 0);
-      gl.uniform1f(leaf.uniforms.time, time % 1000);
-      gl.uniform1f(leaf.uniforms.speed, Math.hypot(...this.wind));
-      gl.uniform2f(leaf.uniforms.law, this.flutters ? law.gain : 0, law.largest_angle);
+      this._begin(leaf, matrix, isShadow, {
+        isBaked: 0, time: time % 1000, speed: Math.hypot(...this.wind),
+        law: [this.flutters ? law.gain : 0, law.largest_angle],
+      });
       const density = this.isSlow ? this.pace.density * (isShadow ? SHADOW_LEAVES : 1) : 1;
       this._eachLevel((level, kind) => this._drawLeaves(kind, level, density));
     }
     this._begin(impostor, matrix, isShadow);
-    const shade = description.trees.length > CROWD ? 0.35 : 0.9;
+    const shade = this.isCrowd ? 0.35 : 0.9;
     this._eachLevel((level) => level.impostor?.draw(impostor, shade));
   }
 
@@ -613,30 +598,24 @@ export class Scene {
   /** @param {DrawnKind} kind @param {DrawnLevel} level */
   _drawBark(kind, level) {
     const { gl } = this;
-    const at = this._programs.bark.uniforms;
+    const used = this._programs.bark;
     if (!level.bark) return;
-    const look = lookOf(kind.placer.kind.species);
-    gl.uniform3fv(at.barkColor, look.bark);
-    gl.uniform3fv(at.twigColor, look.twig);
-    gl.activeTexture(gl.TEXTURE2);
-    gl.bindTexture(gl.TEXTURE_2D, this._picture(`bark ${look.pattern}`, gl.REPEAT, () =>
-      barkPicture(look.pattern)));
-    gl.uniform1i(at.relief, 2);
-    drawBatches(gl, level.bark, level, at.starts);
+    const { bark: barkColor, twig: twigColor, pattern } = lookOf(kind.placer.kind.species);
+    const picture = this._picture(`bark ${pattern}`, gl.REPEAT, () => barkPicture(pattern));
+    use(gl, used, { barkColor, twigColor, relief: [2, picture] });
+    drawBatches(gl, level.bark, level, used);
   }
 
   /** @param {DrawnKind} kind @param {DrawnLevel} level @param {number} density share of them */
   _drawLeaves(kind, level, density) {
     const { gl } = this;
-    const at = this._programs.leaf.uniforms;
+    const used = this._programs.leaf;
     if (!level.leaf) return;
     const { species } = kind.placer.kind;
-    const name = `leaves ${species} ${level.across} ${this.isAutumn}`;
-    gl.activeTexture(gl.TEXTURE2);
-    gl.bindTexture(gl.TEXTURE_2D, this._picture(name, gl.CLAMP_TO_EDGE, () =>
-      leafPicture(species, level.across, this.isAutumn)));
-    gl.uniform1i(at.leaves, 2);
-    drawBatches(gl, level.leaf, level, at.starts, density);
+    const picture = this._picture(`leaves ${species} ${level.across} ${this.isAutumn}`, gl.CLAMP_TO_EDGE,
+      () => leafPicture(species, level.across, this.isAutumn));
+    use(gl, used, { leaves: [2, picture] });
+    drawBatches(gl, level.leaf, level, used, density);
   }
 
   /** A picture that is painted when it is first used.
@@ -669,8 +648,7 @@ export class Scene {
     const used = this._programs.solid;
     this._begin(used, matrix, isShadow);
     const draw = (/** @type {Drawable} */ part, /** @type {number[]} */ placed, c = 1, s = 0) => {
-      gl.uniform4fv(used.uniforms.placed, placed);
-      gl.uniform2f(used.uniforms.heading, c, s);
+      use(gl, used, { placed, heading: [c, s] });
       drawPart(gl, part);
     };
     if (this._potSize > 0) draw(parts.pot, [...root, this._potSize]);
@@ -699,16 +677,10 @@ export class Scene {
   /** @param {Float32Array} matrix */
   _drawShadow(matrix) {
     const { gl } = this;
-    const shadow = this._programs.shadow.uniforms;
-    gl.useProgram(this._programs.shadow.program);
-    gl.uniformMatrix4fv(shadow.camera, false, matrix);
-    gl.uniform4f(shadow.area, this._shadowMiddle[0], this._shadowMiddle[1], this._shadowHalf,
-      this._groundHeight);
-    gl.uniform1f(shadow.softness, this.isSlow ? 0 : 1.5 / this._shadowSize);
-    gl.uniform1f(shadow.depth, 0.5);
-    gl.activeTexture(gl.TEXTURE1);
-    gl.bindTexture(gl.TEXTURE_2D, this._shadow.texture);
-    gl.uniform1i(shadow.shadow, 1);
+    use(gl, this._programs.shadow, {
+      camera: matrix, area: [...this._shadowMiddle, this._shadowHalf, this._groundHeight],
+      softness: this.isSlow ? 0 : 1.5 / this._shadowSize, depth: 0.5, shadow: [1, this._shadow.texture],
+    });
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.disable(gl.DEPTH_TEST);
@@ -766,11 +738,10 @@ export class Scene {
 
 /** Draw the trees of a level, a batch at a time.
  * @param {WebGL2RenderingContext} gl @param {Drawable} part @param {DrawnLevel} level
- * @param {WebGLUniformLocation} at of the rows of the trees
- * @param {number} [share] of its triangles */
-function drawBatches(gl, part, { starts, count }, at, share = 1) {
+ * @param {Program} used @param {number} [share] of its triangles */
+function drawBatches(gl, part, { starts, count }, used, share = 1) {
   for (let from = 0; from < count; from += part.copies) {
-    gl.uniform4uiv(at, starts, from, 4 * Math.ceil(part.copies / 4));
+    used.uniforms.starts(starts.subarray(from, from + 4 * Math.ceil(part.copies / 4)));
     drawPart(gl, part, share);
   }
 }
@@ -787,12 +758,9 @@ function poseTexture(gl, texture, rows, texels) {
     texels);
 }
 
-/** Vector of the rotation from one quaternion x y z w of an array to another.
- * @param {Float32Array} poses @param {number} i @param {number} j */
-function apart(poses, i, j) {
-  const [x, y, z, w] = poses.subarray(i, i + 4);
-  const [a, b, c, d] = poses.subarray(j, j + 4);
-  const sign = w * d + x * a + y * b + z * c < 0 ? -1 : 1;
-  return [sign * (w * a - x * d - y * c + z * b), sign * (w * b + x * c - y * d - z * a),
-    sign * (w * c - x * b + y * a - z * d)];
+/** Vector of the rotation from one segment to another. @param {Float32Array} poses
+ * @param {number} from row of its pose @param {number} to */
+function apart(poses, from, to) {
+  const [w, ...vector] = multiply(conjugate(quaternion(poses, from)), quaternion(poses, to));
+  return vector.map((each) => (w < 0 ? -each : each));
 }
