@@ -78,5 +78,5 @@ def test_a_tree_of_its_own_roots_stands_like_that_in_every_model():
 
 @pytest.mark.parametrize('stiffness', [0.0, -1.0, math.nan])
 def test_roots_that_cannot_be_are_refused(stiffness):
-    with pytest.raises(ParameterError, match='root_stiffness: .* is out of range'):
+    with pytest.raises(ParameterError, match=r'root_stiffness: .* is out of range'):
         Settings(root_stiffness=stiffness)
