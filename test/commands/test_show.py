@@ -16,9 +16,11 @@ import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.core.simulator.settings import model_of, USUAL  # noqa: E402
 from tree_sway.page.protocol import decode_description, decode_frame  # noqa: E402
+from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEDLING = ROOT / 'test' / 'files' / 'data' / 'seedling.yaml'
@@ -87,3 +89,11 @@ def test_what_cannot_be_served_is_refused_in_words(
 ) -> None:
     assert main(['show', str(SEEDLING), '--seconds', '0', *arguments]) == 2
     assert told in capsys.readouterr().err
+
+
+def test_a_stand_of_a_file_offers_neither_a_model_nor_a_number_of_trees() -> None:
+    """Its trees have models of their own, and are as many as the file has."""
+    choices, wind = show.Choices('stand.yaml', '1', str(USUAL)), SimulatedWind(6.0)
+    of_a_tree = {each.name for each in show._controls(choices, wind)}
+    of_a_stand = {each.name for each in show._controls(choices, wind, is_one_tree=False)}
+    assert of_a_tree - of_a_stand == {'model', 'count'}

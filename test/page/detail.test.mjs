@@ -14,6 +14,7 @@ import {
   shadeOf,
 } from "../../tree_sway/page/static/drawing/mesh.js";
 import { Pace } from "../../tree_sway/page/static/drawing/pace.js";
+import { arrowLength } from "../../tree_sway/page/static/drawing/props.js";
 import { crownShade } from "../../tree_sway/page/static/drawing/shade.js";
 import { lookOf } from "../../tree_sway/page/static/drawing/species.js";
 import { leavesAcross } from "../../tree_sway/page/static/drawing/textures.js";
@@ -174,4 +175,9 @@ test("a small tree has fewer rings of bark, none thinner than half a pixel", () 
   for (let v = 0; v < far.count; v++) {
     assert.ok(Math.hypot(far.values[7 * v + 1], far.values[7 * v + 2]) > 0.5 / 12 / 2);
   }
+});
+
+test("the arrow of the wind is small beside the tree, whatever the wind", () => {
+  for (const speed of [1, 10, 100]) assert.ok(arrowLength(12, speed) < 12 / 6);
+  assert.ok(arrowLength(12, 10) > arrowLength(12, 5));
 });

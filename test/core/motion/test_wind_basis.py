@@ -143,7 +143,7 @@ def test_the_base_moment_is_that_of_all_coordinates():
 
 @pytest.mark.parametrize('degree', [0, 2, 4, 7])
 def test_a_degree_that_is_none_is_refused(fork, degree):
-    with pytest.raises(ParameterError, match=f"degree '{degree}'"):
+    with pytest.raises(ParameterError, match=f"unknown degree '{degree}'"):
         SwaySimulator(fork(), model=60, degree=degree)
 
 

@@ -86,6 +86,9 @@ export function personMesh() {
   return joined(parts);
 }
 
+/** Length of the wind's arrow: never more than a sixth of the tree. @param {number} height @param {number} speed */
+export const arrowLength = (height, speed) => 0.16 * height * Math.tanh(speed / 7);
+
 /** An arrow of length 1 along x, lying flat. */
 export function arrowMesh() {
   const blue = [0.16, 0.34, 0.52];

@@ -22,7 +22,7 @@ import {
   barkMesh, boxOf, branchOrder, conjugate, highestOf, leafMesh, multiply, quaternion, shadeOf,
 } from "./mesh.js";
 import { Pace } from "./pace.js";
-import { arrowMesh, personMesh, potMesh } from "./props.js";
+import { arrowLength, arrowMesh, personMesh, potMesh } from "./props.js";
 import * as shaders from "./shaders.js";
 import { isPotted, lookOf } from "./species.js";
 import { barkPicture, leafPicture } from "./textures.js";
@@ -662,7 +662,7 @@ export class Scene {
     const [u, v] = this._calmWind;
     const speed = Math.hypot(u, v);
     if (speed > 0.2 && !isShadow) {
-      const long = this._treeHeight * 0.16 * Math.tanh(speed / 7);
+      const long = arrowLength(this._treeHeight, speed);
       const away = 0.42 * this._extent + long;
       draw(parts.arrow, [this._middle[0] - (u / speed) * away, this._middle[1] - (v / speed) * away,
         this._groundHeight + 0.01 * this._treeHeight, long], u / speed, v / speed);
