@@ -75,9 +75,16 @@ def test_cayleys_map_is_a_rotation_that_its_opposite_undoes(a, v):
     back = turned(*(-np.array(a)), *turned(*a, *v))
     assert back == pytest.approx(v, abs=1e-12)
     size = np.linalg.norm(a)
-    angle = 2.0 * np.arctan(size / 2.0)
+    tangent = size / 2.0 + size**3 / 24.0 + size**5 / 240.0 + 17.0 * size**7 / 40320.0
+    angle = 2.0 * np.arctan(tangent)
     judge = Rotation.from_rotvec(np.array(a) / max(size, 1e-300) * angle)
     assert turned(*a, *v) == pytest.approx(judge.apply(v), abs=1e-11)
+
+
+@pytest.mark.parametrize(('angle', 'share'), [(0.3, 1e-8), (1.0, 1e-4), (2.0, 0.02)])
+def test_cayleys_map_turns_by_nearly_the_angle(angle, share):
+    x, y, _ = turned(0.0, 0.0, angle, 1.0, 0.0, 0.0)
+    assert np.arctan2(y, x) == pytest.approx(angle, rel=share)
 
 
 @settings(deadline=None)
