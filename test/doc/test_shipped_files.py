@@ -39,7 +39,7 @@ def to_copy() -> Iterator[str]:
     kinds = ('.yaml', '.py', '.ipynb', '.js', '.html', '.json')
     for folder in ('config', 'examples', 'launch'):
         for path in sorted((ROOT / folder).rglob('*')):
-            if path.suffix in kinds:
+            if path.suffix in kinds and 'node_modules' not in path.parts:
                 yield path.read_text(encoding='utf-8')
     for path in sorted((ROOT / 'tree_sway').rglob('*.py')):
         yield from EXAMPLE.findall(path.read_text(encoding='utf-8'))

@@ -10,7 +10,7 @@ import pytest
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.pictures.projection import Camera
 
 POINTS = arrays(np.float64, (5, 3), elements=st.floats(-10, 10))

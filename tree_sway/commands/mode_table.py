@@ -12,7 +12,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.simulator.assembly import CalibratedTree
 from tree_sway.core.simulator.bank import Bank
 from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.flutter import air_speed, flutter_angle, leaf_poses
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError, MissingDependencyError, ParameterError
 from tree_sway.files.whole_file import whole_file

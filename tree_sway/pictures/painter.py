@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.flutter import leaf_poses
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import MissingDependencyError
 from tree_sway.pictures.projection import Camera, Frame

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.leaves.flutter import flutter_angle
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.pictures.painter import Painter
 from tree_sway.pictures.plotting import DOTS_PER_INCH, new_figure, save_figure, show_image

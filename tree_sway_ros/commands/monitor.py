@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TransportError
 from tree_sway_ros.commands.totals import StreamTotals

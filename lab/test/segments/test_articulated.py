@@ -23,7 +23,7 @@ from tree_sway_lab.segments.refinement import refined
 from tree_sway_lab.tip_error import record_tips, tip_error
 
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.core.tree.pose_ends import tips_of_poses
+from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.frame_means import frame_means
 from tree_sway.errors import TreeError
 

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from tree_sway_lab.example_trees import forked_tree, tapered_stem
 from tree_sway_lab.tip_error import record_tips, tip_error
 
-from tree_sway.core.tree.pose_ends import tips_of_poses
+from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.frame_means import frame_means, recorded_means
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 

@@ -46,7 +46,7 @@ from tree_sway.core.simulator.simulator import (
     SwaySimulator,
     WIND_REFUSED,
 )
-from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway.core.wind.limits import is_wind

@@ -19,8 +19,7 @@ from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
-from tree_sway.core.tree.pose_ends import tips_of_poses
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree.tree import tips_of_poses, Tree
 from tree_sway.core.wind.frame_means import recorded_means
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError

@@ -22,7 +22,7 @@ from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.state.tree_state import digest_of, refuse_version, TreeState
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
-from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.limits import is_wind

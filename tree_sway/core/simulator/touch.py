@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_read, within
 from tree_sway.core.simulator.bank import Bank
-from tree_sway.core.tree.pose_ends import ends_of_poses
+from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 

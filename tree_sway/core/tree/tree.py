@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.tree.rest_frame import quaternions_from_x
+from tree_sway.core.tree.segment_frame import ends_of_poses, quaternions_from_x
 
 _Number = TypeVar('_Number', np.float64, np.int64)
 
@@ -157,3 +157,9 @@ class Tree:
 def _read_only(array: NDArray[_Number]) -> NDArray[_Number]:
     array.setflags(write=False)
     return array
+
+
+def tips_of_poses(tree: Tree, poses: Floats, branches: Ints | slice = slice(None)) -> Floats:
+    """Tips of some branches, or of all, in [m], (k, 3), from a pose block (n, 7)."""
+    last = tree.branch_first[1:][branches] - 1
+    return ends_of_poses(poses[last], tree.length[last])[1]

@@ -11,7 +11,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator, REVIEW
-from tree_sway.core.tree.pose_ends import tips_of_poses
+from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway_lab.kinds.kinds import kind_called

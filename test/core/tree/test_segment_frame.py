@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.rotation import rotated
-from tree_sway.core.tree.rest_frame import quaternions_from_x
+from tree_sway.core.tree.segment_frame import quaternions_from_x
 
 vectors = st.tuples(*[st.floats(-3.0, 3.0)] * 3)
 

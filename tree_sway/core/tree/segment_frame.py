@@ -3,12 +3,14 @@
 """
 The frame of a segment: x along it, turned from the axes of the world as little as possible.
 
-Every pose, file and picture that speaks of the frame of a segment means this one.
+Every pose, file and picture that speaks of the frame of a segment means this one, and
+the ends of segments follow from their poses.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 
@@ -28,3 +30,14 @@ def quaternions_from_x(direction: Floats) -> Floats:
     q[(x < 0.0) & (across < 1e-30)] = [0.0, 0.0, 0.0, 1.0]
     q /= np.linalg.norm(q, axis=1)[:, None]
     return q
+
+
+def ends_of_poses(poses: ArrayLike, length: ArrayLike) -> tuple[Floats, Floats]:
+    """Root-side and tip-side nodes [m], (n, 3), of segments of lengths [m] at poses (n, 7)."""
+    block = np.asarray(poses, dtype=np.float64)
+    start = block[:, :3]
+    x, y, z, w = block[:, 3:].T
+    along = np.stack(
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)], axis=1
+    )
+    return start, start + np.asarray(length, dtype=np.float64)[:, None] * along
