@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 import sys
 
@@ -27,7 +28,9 @@ from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
+from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
 from tree_sway.files.export.tree_export import GLTF_SUFFIXES, write_gltf, write_tree
+from tree_sway.files.export.usd_tree import usd_of_tree
 from tree_sway.files.whole_file import write_text_whole
 
 
@@ -72,25 +75,11 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _usd(simulator: SwaySimulator, leaves: LeafClusters | None) -> str:
-    from tree_sway.files.export.usd_tree import usd_of_tree
-
-    return usd_of_tree(simulator, leaves)
-
-
-def _mjcf(simulator: SwaySimulator, _leaves: LeafClusters | None) -> str:
-    from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree
-
-    return mjcf_of_tree(simulator)
-
-
-def _sdf(simulator: SwaySimulator, _leaves: LeafClusters | None) -> str:
-    from tree_sway.files.export.hinged_tree_writing import sdf_of_tree
-
-    return sdf_of_tree(simulator)
-
-
-_OF_ONE_TREE = {'.usda': _usd, '.xml': _mjcf, '.sdf': _sdf}
+_OF_ONE_TREE: dict[str, Callable[[SwaySimulator, LeafClusters | None], str]] = {
+    '.usda': usd_of_tree,
+    '.xml': lambda simulator, _leaves: mjcf_of_tree(simulator),
+    '.sdf': lambda simulator, _leaves: sdf_of_tree(simulator),
+}
 
 
 def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
@@ -112,7 +101,7 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             where=arguments.output,
             cure='convert its trees one by one',
         )
-    settings = Settings(in_leaf=told_leaves(arguments))
+    settings = Settings(model=arguments.model, in_leaf=told_leaves(arguments))
     with waiting('finding what sways'):
         simulator = SwaySimulator(scene.tree, scene.species, settings)
         leaves = drawn_leaves(scene, arguments)

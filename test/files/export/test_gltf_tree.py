@@ -145,9 +145,7 @@ def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
     changes = np.array([arrays[t['POSITION']] for t in primitive['targets']], dtype=float)
     ours = wood_mesh(simulator.tree)
     simulator.reset()
-    wind = breeze.simulate_turbulence(
-        6.0, rate=60.0, duration=20.0, rng=np.random.default_rng(7)
-    )
+    wind = breeze.simulate_turbulence(6.0, rate=60.0, duration=20.0, rng=np.random.default_rng(7))
     gaps, motions = [], []
     for number, each in enumerate(wind):
         simulator.step(each, 1 / 60)

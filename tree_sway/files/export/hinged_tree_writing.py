@@ -4,128 +4,121 @@
 A tree on hinges as MJCF, which MuJoCo reads, and as SDF, which Gazebo and Drake read.
 
 The rest shape is that of the tree under its own weight, so gravity is taken off its bodies.
-Segments touch other things, and not each other.
+Segments touch other things, and not each other in MuJoCo.
 """
 
 from __future__ import annotations
 
-import math
-from xml.etree import ElementTree
+from collections.abc import Iterator
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.tree import Tree
 from tree_sway.files.export.hinged_tree import hinged_tree, HingedTree
 
 _USUAL_STEP = 0.002
-_ALONG_X = f'0 0 0 0 {math.sqrt(0.5):.9g} 0 {math.sqrt(0.5):.9g}'
+
+_BODY = """\
+<body name="{name}" pos="{place}" quat="{wxyz}" gravcomp="1">
+<inertial pos="{centre} 0 0" mass="{mass}" diaginertia="{turning} {across} {across}"/>
+<joint name="{name}_y" axis="0 1 0" stiffness="{stiffness}" damping="{damping}"/>
+<joint name="{name}_z" axis="0 0 1" stiffness="{stiffness}" damping="{damping}"/>
+<geom fromto="0 0 0 {length} 0 0" size="{radius}"/>"""
+
+_SHAPE = """\
+<{kind} name="{kind}"><pose>{middle} 0 0 0 1.5707963 0</pose>
+<geometry><cylinder><radius>{radius}</radius><length>{length}</length></cylinder></geometry>
+</{kind}>"""
+_AXIS = """\
+<{axis}><xyz>{along}</xyz><limit><lower>-1.57</lower><upper>1.57</upper></limit>
+<dynamics><damping>{damping}</damping><spring_reference>0</spring_reference>
+<spring_stiffness>{stiffness}</spring_stiffness></dynamics></{axis}>"""
+_LINK = f"""\
+<link name="{{name}}"><gravity>false</gravity>
+<pose relative_to="{{frame}}" rotation_format="quat_xyzw">{{place}} {{xyzw}}</pose>
+<inertial><pose>{{centre}} 0 0 0 0 0</pose><mass>{{mass}}</mass>
+<inertia><ixx>{{turning}}</ixx><iyy>{{across}}</iyy><izz>{{across}}</izz></inertia></inertial>
+{_SHAPE.replace('{kind}', 'visual')}
+{_SHAPE.replace('{kind}', 'collision')}</link>
+<joint name="{{name}}_joint" type="universal"><parent>{{parent}}</parent><child>{{name}}</child>
+{_AXIS.replace('{axis}', 'axis').replace('{along}', '0 1 0')}
+{_AXIS.replace('{axis}', 'axis2').replace('{along}', '0 0 1')}</joint>"""
 
 
 def mjcf_of_tree(simulator: SwaySimulator) -> str:
     """Return the tree of a simulator as MJCF, MuJoCo's model file."""
     tree, hinged = simulator.tree, hinged_tree(simulator)
-    root = ElementTree.Element('mujoco', model=tree.name)
-    root.append(ElementTree.Comment(_comment(simulator, hinged)))
-    ElementTree.SubElement(root, 'compiler', angle='radian')
-    step = min(_USUAL_STEP, hinged.largest_step)
-    ElementTree.SubElement(root, 'option', timestep=f'{step:g}', integrator='Euler')
-    default = ElementTree.SubElement(root, 'default')
-    # Bits that no segment has in common with another, and all have with what is left to default.
-    ElementTree.SubElement(default, 'geom', type='capsule', contype='0', rgba='0.4 0.3 0.2 1')
-    bodies = [ElementTree.SubElement(root, 'worldbody')]
-    radius = 0.25 * (tree.base_diameter + tree.tip_diameter)
-    for i, (name, parent) in enumerate(zip(hinged.names, tree.segment_parent, strict=True)):
-        body = ElementTree.SubElement(
-            bodies[parent + 1],
-            'body',
-            name=name,
-            pos=_text(hinged.poses[i, :3]),
-            quat=_text(hinged.poses[i, [6, 3, 4, 5]]),
-            gravcomp='1',
-        )
-        ElementTree.SubElement(
-            body,
-            'inertial',
-            pos=f'{hinged.centre[i]:.9g} 0 0',
-            mass=f'{hinged.mass[i]:.9g}',
-            diaginertia=_text(hinged.inertia[i, [0, 1, 1]]),
-        )
-        stiffness = hinged.stiffness[i]
-        for axis, direction in (('y', '0 1 0'), ('z', '0 0 1')):
-            ElementTree.SubElement(
-                body,
-                'joint',
-                name=f'{name}_{axis}',
-                axis=direction,
-                stiffness=f'{stiffness:.9g}',
-                damping=f'{hinged.damping_time * stiffness:.9g}',
-            )
-        reach = f'0 0 0 {tree.length[i]:.9g} 0 0'
-        ElementTree.SubElement(body, 'geom', fromto=reach, size=f'{radius[i]:.9g}')
-        bodies.append(body)
-    return _document(root)
+    inside: list[list[str]] = [[] for _ in range(tree.n_segments + 1)]  # of bodies, and the world
+    texts = [_BODY.format_map(values) for values in _values(tree, hinged)]
+    for body in range(tree.n_segments - 1, -1, -1):  # what is carried comes after what carries it
+        text = '\n'.join([texts[body], *reversed(inside[body]), '</body>'])
+        inside[int(tree.segment_parent[body])].append(text)
+    # Geometries of one kind touch where a bit of one is in the other's mask: segments have none.
+    return '\n'.join(
+        [
+            f'<mujoco model={quoteattr(tree.name)}>',
+            _comment(simulator, hinged),
+            '<compiler angle="radian"/>',
+            f'<option timestep="{min(_USUAL_STEP, hinged.largest_step):g}" integrator="Euler"/>',
+            '<default><geom type="capsule" contype="0" rgba="0.4 0.3 0.2 1"/></default>',
+            '<worldbody>',
+            *inside[-1],
+            '</worldbody>\n</mujoco>\n',
+        ]
+    )
 
 
 def sdf_of_tree(simulator: SwaySimulator) -> str:
     """Return the tree of a simulator as a model of SDF 1.9, on universal joints."""
     tree, hinged = simulator.tree, hinged_tree(simulator)
-    root = ElementTree.Element('sdf', version='1.9')
-    root.append(ElementTree.Comment(_comment(simulator, hinged)))
-    model = ElementTree.SubElement(root, 'model', name=tree.name)
-    radius = 0.25 * (tree.base_diameter + tree.tip_diameter)
-    for i, (name, parent) in enumerate(zip(hinged.names, tree.segment_parent, strict=True)):
-        carrier = hinged.names[parent] if parent >= 0 else '__model__'
-        link = ElementTree.SubElement(model, 'link', name=name)
-        _add(link, 'pose', _text(hinged.poses[i]), relative_to=carrier,
-             rotation_format='quat_xyzw')  # fmt: skip
-        _add(link, 'gravity', 'false')
-        inertial = ElementTree.SubElement(link, 'inertial')
-        _add(inertial, 'pose', f'{hinged.centre[i]:.9g} 0 0 0 0 0')
-        _add(inertial, 'mass', f'{hinged.mass[i]:.9g}')
-        inertia = ElementTree.SubElement(inertial, 'inertia')
-        for entry, value in zip(('ixx', 'iyy', 'izz'), hinged.inertia[i, [0, 1, 1]], strict=True):
-            _add(inertia, entry, f'{value:.9g}')
-        for kind in ('visual', 'collision'):
-            shape = ElementTree.SubElement(link, kind, name=kind)
-            middle = f'{0.5 * tree.length[i]:.9g}{_ALONG_X[1:]}'
-            _add(shape, 'pose', middle, rotation_format='quat_xyzw')
-            geometry = ElementTree.SubElement(shape, 'geometry')
-            cylinder = ElementTree.SubElement(geometry, 'cylinder')
-            _add(cylinder, 'radius', f'{radius[i]:.9g}')
-            _add(cylinder, 'length', f'{tree.length[i]:.9g}')
-        joint = ElementTree.SubElement(model, 'joint', name=f'{name}_joint', type='universal')
-        _add(joint, 'parent', carrier if parent >= 0 else 'world')
-        _add(joint, 'child', name)
-        for tag, direction in (('axis', '0 1 0'), ('axis2', '0 0 1')):
-            axis = ElementTree.SubElement(joint, tag)
-            _add(axis, 'xyz', direction)
-            dynamics = ElementTree.SubElement(axis, 'dynamics')
-            _add(dynamics, 'damping', f'{hinged.damping_time * hinged.stiffness[i]:.9g}')
-            _add(dynamics, 'spring_reference', '0')
-            _add(dynamics, 'spring_stiffness', f'{hinged.stiffness[i]:.9g}')
-            limit = ElementTree.SubElement(axis, 'limit')
-            _add(limit, 'lower', '-1.57')
-            _add(limit, 'upper', '1.57')
-    return _document(root)
-
-
-def _comment(simulator: SwaySimulator, hinged: HingedTree) -> str:
-    ratio, frequency = simulator.check_tuning().damping_ratio, simulator.frequencies(1)[0]
-    return (
-        f' {simulator.tree.name} by tree_sway: first natural frequency {frequency:.4g} Hz, damping '
-        f'ratio {ratio:.3g} there and higher above. Largest stable time step '
-        f'{hinged.largest_step:.3g} s by semi-implicit Euler with implicit damping. SI units. '
+    return '\n'.join(
+        [
+            '<sdf version="1.9">',
+            _comment(simulator, hinged),
+            f'<model name={quoteattr(tree.name)}>',
+            *(_LINK.format_map(values) for values in _values(tree, hinged)),
+            '</model>\n</sdf>\n',
+        ]
     )
 
 
-def _add(parent: ElementTree.Element, tag: str, text: str, **attributes: str) -> None:
-    ElementTree.SubElement(parent, tag, attributes).text = text
+def _comment(simulator: SwaySimulator, hinged: HingedTree) -> str:
+    return (
+        f'<!-- A tree by tree_sway, in SI units. First natural frequency '
+        f'{simulator.frequencies(1)[0]:.4g} Hz, damping ratio '
+        f'{simulator.check_tuning().damping_ratio:.3g} there and higher above. Largest stable '
+        f'time step {hinged.largest_step:.3g} s by semi-implicit Euler, damping implicit. -->'
+    )
 
 
-def _text(values: np.ndarray) -> str:
-    return ' '.join(f'{value:.9g}' for value in values)
+def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
+    """Yield what the templates ask for, of each segment."""
+    columns = {
+        'place': hinged.poses[:, :3],
+        'xyzw': hinged.poses[:, 3:],
+        'wxyz': hinged.poses[:, [6, 3, 4, 5]],
+        'centre': hinged.centre,
+        'mass': hinged.mass,
+        'turning': hinged.inertia[:, 0],
+        'across': hinged.inertia[:, 1],
+        'stiffness': hinged.stiffness,
+        'damping': hinged.damping_time * hinged.stiffness,
+        'length': tree.length,
+        'middle': 0.5 * tree.length,
+        'radius': 0.25 * (tree.base_diameter + tree.tip_diameter),
+    }
+    for i, parent in enumerate(tree.segment_parent.tolist()):
+        carrier = hinged.names[parent] if parent >= 0 else ''
+        yield {
+            'name': hinged.names[i],
+            'frame': carrier or '__model__',
+            'parent': carrier or 'world',
+            **{name: _text(column[i]) for name, column in columns.items()},
+        }
 
 
-def _document(root: ElementTree.Element) -> str:
-    ElementTree.indent(root, '')
-    return ElementTree.tostring(root, encoding='unicode')
+def _text(values: Floats) -> str:
+    return ' '.join(f'{value:.9g}' for value in np.atleast_1d(values))
