@@ -64,16 +64,15 @@ def test_wind_from_the_west_leans_the_tree_to_the_right_of_its_shape_at_rest(
     path = tmp_path / 'wind.png'
     assert picture_in_wind([tree], leaning(tree, 0.5), [8.0, 0.0, 0.0], path) == path
     picture = pixels(path)
-    middle = picture.shape[1] // 2
     moved = dark_columns(picture)
-    # The root stays, the top goes to the right.
-    assert moved.mean() > middle + 20
-    assert moved.max() > middle + 60
     rows = picture[int(0.15 * len(picture)) : int(0.3 * len(picture))]
     ghost = np.flatnonzero((np.abs(rows - [222, 218, 214]).max(axis=2) < 3).any(axis=0))
-    assert abs(ghost.mean() - middle) < 10
+    # The root stays, the top goes to the right.
+    assert moved.min() < ghost.mean() + 20
+    assert moved.max() > ghost.mean() + 100
     blue = (picture[..., 2] > picture[..., 0] + 80).any(axis=0)
-    assert blue[:middle].sum() > 0 == blue[middle:].sum()
+    half = picture.shape[1] // 2
+    assert blue[:half].sum() > 0 == blue[half:].sum()
 
 
 def test_several_trees_stand_side_by_side(tmp_path: Path) -> None:
