@@ -67,8 +67,8 @@ def test_wind_from_the_west_leans_the_tree_to_the_right_of_its_shape_at_rest(
     moved = dark_columns(picture)
     rows = picture[int(0.15 * len(picture)) : int(0.3 * len(picture))]
     ghost = np.flatnonzero((np.abs(rows - [222, 218, 214]).max(axis=2) < 3).any(axis=0))
-    # The root stays, the top goes to the right.
-    assert moved.min() < ghost.mean() + 20
+    # Above the root the tree is to the right of where it is at rest.
+    assert moved.min() > ghost.mean()
     assert moved.max() > ghost.mean() + 100
     blue = (picture[..., 2] > picture[..., 0] + 80).any(axis=0)
     half = picture.shape[1] // 2
