@@ -97,4 +97,4 @@ def test_a_clock_set_forward_is_no_explosion(world, observer):
     world.run(0.1)
     observer.until(lambda: world.stamps[-1] > START + 3600 * 10**9, 'a frame of the new time')
     assert 0.0 < world.sway() < 2.0 * before
-    assert world.nodes['solver'].pacer.pace().clamped == 1
+    assert world.nodes['solver'].pacer.timing().clamped == 1

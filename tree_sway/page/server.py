@@ -350,7 +350,7 @@ class PageServer:
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         settings, given = self.settings, given_token(request.headers, request.query)
         is_known = not self._token or is_token(given, self._token)
-        self._doors.let_in(request.protocol, is_known=is_known)
+        self._doors.let_in(request.transport, is_known=is_known)
         if request.can_read_body:
             return self._refused(413, 'nothing here takes a body')
         try:

@@ -85,9 +85,9 @@ class WindNode(TreeSwayNode):
         good = self._intake.offer(
             sample.stamp, components, arrival, lead=self.clock_lead, rotation=turn
         )
-        self._report.add(good is not None)
         if good is None:
             return
+        self._report.add()
         time, vector = good
         self._filtered.publish(
             wind_to_message(Vector3Stamped, WindSample(time, frame_id, *vector))

@@ -22,6 +22,8 @@ from tree_sway_ros.process.reporter import Reporter
 from tree_sway_ros.process.rivals import Rivals
 from tree_sway_ros.process.topics import message_class, qos_profile, Topic
 from tree_sway_ros.reports.diagnostics import Status, WARN
+from tree_sway_ros.timing.pacer import Pacer, Tick
+from tree_sway_ros.timing.worker import Worker
 
 _ENTITIES = {
     'publishers': 'destroy_publisher',
@@ -269,6 +271,15 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Take live changes of parameters; by default whoever needs a value reads it again."""
+
+    def pacer_of(self, work: Callable[[Tick], None]) -> Pacer:
+        """Make what calls `work` at the parameter `rate`, by the clock of the node."""
+        return Pacer(self.get_clock(), self.values['rate'], work, self.fail, self.slip)
+
+    def run_worker(self, worker: Worker) -> None:
+        """Start what works in a thread; it stops with the node."""
+        self.on_close(worker.stop)
+        worker.start()
 
     def on_close(self, closer: Callable[[], None]) -> None:
         """Have something called when the node closes, last come first served."""
