@@ -31,12 +31,8 @@ class Topic:
     any_input: bool = False
 
 
-_BY_NAME = {
-    name: Topic(name, **keys)
-    for name, keys in yaml.safe_load(
-        Path(__file__).with_name('topics.yaml').read_text(encoding='utf-8')
-    ).items()
-}
+_TABLE = yaml.safe_load(Path(__file__).with_name('topics.yaml').read_text(encoding='utf-8'))
+_BY_NAME = {name: Topic(name, **keys) for name, keys in _TABLE.items()}
 TOPICS = tuple(_BY_NAME.values())
 
 WIND = _BY_NAME['wind']
