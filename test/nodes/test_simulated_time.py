@@ -10,12 +10,12 @@ from tree_sway_ros.process.topics import CLOCK, SEGMENT_POSES, WIND_FILTERED  # 
 from tree_sway_ros.wire.wind_messages import (  # noqa: E402
     clock_message,
     stamp_to_ns,
-    wind_class,
+    WIND_CLASSES,
     wind_to_message,
     WindSample,
 )
 
-VECTOR = wind_class('geometry_msgs/Vector3Stamped')
+VECTOR = WIND_CLASSES['geometry_msgs/Vector3Stamped']
 START = 1_000 * 10**9
 STEP = 4_000_000  # of /clock
 

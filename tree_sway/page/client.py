@@ -179,7 +179,7 @@ class StreamClient:
         moment, placer = self.sample(now), self._placer
         if moment is None or placer is None:
             return None
-        return placer.place_coordinates(moment.coordinates)
+        return placer.place(moment.coordinates)
 
     def _run(self) -> None:
         with contextlib.closing(self._loop), contextlib.suppress(asyncio.CancelledError):

@@ -31,7 +31,6 @@ from tree_sway_ros.process.topics import (
     WIND,
     WIND_FILTERED,
 )
-from tree_sway_ros.wire.wind_messages import wind_class
 
 _USUAL = (WIND, WIND_FILTERED, TREE_STATE, TREE_DESCRIPTION)
 _MORE = (FORCE_PLANE, SEGMENT_POSES, MARKERS, DIAGNOSTICS)
@@ -98,8 +97,5 @@ class Recorder(Listener):
             if self._began is None:
                 self._began = time.monotonic()
 
-        of_wind = topic is WIND
-        message = wind_class(kind.replace('/msg/', '/')) if of_wind else message_class(topic)
-        self.node.create_subscription(
-            message, name, write, qos_profile(topic, is_input=True), raw=True
-        )
+        message, profile = message_class(topic, kind), qos_profile(topic, is_input=True)
+        self.node.create_subscription(message, name, write, profile, raw=True)

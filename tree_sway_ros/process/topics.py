@@ -61,7 +61,7 @@ def qos_profile(topic: Topic, *, is_input: bool = False) -> Any:
     )
 
 
-def message_class(topic: Topic) -> Any:
-    """Class of a topic's messages."""
-    package, _, name = topic.type_name.split('/')
+def message_class(topic: Topic, type_name: str = '') -> Any:
+    """Class of a topic's messages, or of those of a type that a program chose for it."""
+    package, _, name = (type_name or topic.type_name).split('/')
     return getattr(importlib.import_module(f'{package}.msg'), name)
