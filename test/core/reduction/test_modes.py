@@ -180,7 +180,7 @@ def test_a_tree_of_121_branches_has_the_modes_of_its_beam_frame():
     for gravity in (0.0, 9.81):
         sim = SwaySimulator(tree, green, gravity=gravity)
         chain = ArticulatedTree(
-            tree, 8e9, 900.0, gravity=gravity, subdivisions=4, twist_ratio=2 / 14
+            tree, 8e9, 900.0, gravity=gravity, subdivisions=2, twist_ratio=2 / 14
         )
         assert sim.frequencies(12) == pytest.approx(chain.linear_modes(12)[0], rel=0.005)
 
