@@ -68,6 +68,7 @@ extras = {
     'bag': ['rosbags>=0.11'],
     'relay': ['eclipse-zenoh>=1.0'],
     'plot': ['matplotlib>=3.6'],
+    'film': ['matplotlib>=3.6', 'imageio-ffmpeg>=0.5'],
     'h5': ['h5py>=3.7'],
     # colcon runs pytest only where an extra of this name asks for it.
     'test': [

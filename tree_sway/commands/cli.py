@@ -42,7 +42,7 @@ EXTRAS = {
     **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
     **dict.fromkeys(('cryptography', 'dask', 'distributed', 'pyarrow'), 'study'),
     **{'h5py': 'h5', 'numba': 'fast', 'rosbags': 'bag', 'serial': 'serial', 'tqdm': 'progress'},
-    'zenoh': 'relay',
+    **{'imageio_ffmpeg': 'film', 'zenoh': 'relay'},
 }
 _OF_ROS = re.compile(r'rclpy|\w+_msgs|\w+_srvs|builtin_interfaces|ament_\w+|rosidl\w*|launch\w*')
 _FAILURE = 2
