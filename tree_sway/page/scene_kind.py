@@ -15,9 +15,8 @@ from functools import partial
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.find_basis import state_basis
-from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.simulator.settings import USUAL
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.state.state_basis import StateBasis

@@ -8,8 +8,7 @@ import numpy as np
 
 from tree_sway.core.motion.exported_table import exported_table
 from tree_sway.core.motion.wind_basis import WindBasisBank
-from tree_sway.core.scene.scene_simulator import SceneSimulator
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import encode_description, TABLES

@@ -11,9 +11,9 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.shard import dealt
 from tree_sway.core.simulator.live_tuning import LIVE
-from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.wind.averaging import WindAverage

@@ -25,7 +25,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.demand import adaptive_among
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.gate import GateCounts
 from tree_sway.core.wind.intake import GoodWind, WindIntake

@@ -22,9 +22,8 @@ from tree_sway.core.leaves.foliage import (
 )
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import joined_where_placed, Kind, kinds_of, PlacedTree
-from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.assembly import Kept
-from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.tree.plausibility import oddities, refuse_nonsense
 from tree_sway.core.tree.species import Species

@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 import math
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -389,6 +390,10 @@ class SceneSimulator:
             fill_pace(pace, modal)
         self._standing['pace'][rows] = number.ravel()
         self._dt = dt
+
+
+Simulator: TypeAlias = SwaySimulator | SceneSimulator
+"""A tree that sways, whatever its model, or the trees of a scene: both are used alike."""
 
 
 def _oscillators(model: SwaySimulator) -> WindBasisBank:
