@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from tree_sway.core.branch.model import branch_models
+from tree_sway.core.branch.model import TreeBeams
 from tree_sway.core.reduction.matrices import reduce_tree
 from tree_sway.core.simulator.assembly import CalibratedTree
 from tree_sway.core.simulator.settings import Settings
@@ -27,7 +27,7 @@ def modal(tree, **changes):
 
 
 def stiffness_of(tree):
-    models = branch_models(tree, WOOD.density, carries=True, shear_ratio=WOOD.shear_ratio)
+    models = TreeBeams(tree, WOOD.density, shear_ratio=WOOD.shear_ratio).models(carries=True)
     return reduce_tree(tree, models, WOOD.modulus, WOOD.shear_ratio * WOOD.modulus, 0.0).stiffness
 
 
