@@ -64,7 +64,7 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
     """
     if not isinstance(simulator, SceneSimulator):
         return [_alone(0, each, is_running) for each in simulator.simulators]
-    kinds, trees = [], simulator.trees
+    kinds, trees = [], simulator.scene.trees
     for model, bank, numbers in simulator.shared:
         # The model stays at rest: the scene steps its table.
         basis = state_basis(model)

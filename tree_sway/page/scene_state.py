@@ -63,7 +63,7 @@ class SceneState:
         self.simulator = simulator
         self.kinds = scene_kinds(simulator, is_running=is_running)
         if isinstance(simulator, SceneSimulator):
-            self.names, name = simulator.names, simulator.name
+            self.names, name = simulator.names, simulator.scene.name
         else:
             self.names, name = (simulator.tree.name,), simulator.tree.name
         self.n_branches = sum(len(k.numbers) * k.simulator.tree.n_branches for k in self.kinds)

@@ -41,8 +41,8 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
     header |= {'kinds': entries, 'anemometer': None, 'convection_ratio': 1.0}
     if isinstance(simulator, SceneSimulator):
         arrays['tree_speed'][:] = simulator.speeds
-        ratio = simulator.convection_ratio
-        anemometer = simulator.anemometer
+        ratio = simulator.scene.convection_ratio
+        anemometer = simulator.scene.anemometer
         header['anemometer'] = None if anemometer is None else np.asarray(anemometer).tolist()
         header['convection_ratio'] = ratio if np.isfinite(ratio) else None
     return encode_description(header, arrays, TABLES)

@@ -96,7 +96,7 @@ class SolverNode(TreeSwayNode):
             profile=WindProfile(self.values['profile'], self.values['anemometer_height']),
         )
         self.simulator: Simulator = source.simulator(
-            settings, kept=KeptSetUps(), **self.values('tolerance')
+            settings, cache=KeptSetUps(), **self.values('tolerance')
         )
         if self.values['stiffness_factor'] != 1.0:
             self.simulator.tune(**self.values('stiffness_factor'))

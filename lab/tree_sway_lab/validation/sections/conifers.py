@@ -10,7 +10,7 @@ import numpy as np
 
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.growth.thickness import BREAST_HEIGHT
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import Tree
@@ -45,7 +45,7 @@ def over_measured(case: tuple[str, float]) -> float:
     species, height = case
     tree = grow(species, height, rng=np.random.default_rng(0))
     settings = Settings(in_leaf=True)
-    calibrated = CalibratedTree(tree, species_named(species), settings)
+    calibrated = TreeReductions(tree, species_named(species), settings)
     frequency = float(calibrated.natural_frequencies(1)[0])
     measured = 0.0766 + 3.1219 * 100.0 * diameter_at_breast(tree) / height**2
     return frequency / measured
