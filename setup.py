@@ -68,11 +68,12 @@ extras = {
     'bag': ['rosbags>=0.11'],
     'relay': ['eclipse-zenoh>=1.0'],
     'plot': ['matplotlib>=3.6'],
+    'film': ['matplotlib>=3.6', 'imageio-ffmpeg>=0.5'],
     'h5': ['h5py>=3.7'],
     # colcon runs pytest only where an extra of this name asks for it.
     'test': [
         *('pytest>=7,<9', 'pytest-xdist>=3.2', 'pytest-cov>=4', 'hypothesis>=6.60', 'mpmath>=1.2'),
-        *('pygltflib>=1.16', 'trimesh>=4.0'),
+        *('pygltflib>=1.16', 'trimesh>=4.0', 'usd-core>=24.5'),
     ],
     'lint': ['ruff>=0.8', 'mypy>=1.11', 'types-PyYAML', 'types-jsonschema'],
     # Studies on all cores or a cluster, and their tables as Parquet.

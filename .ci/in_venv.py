@@ -41,7 +41,8 @@ NEEDS = {
         ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer', 'ros2'), ('ros',)
     ),
     **dict.fromkeys(('tree-sway demo', 'tree-sway listen'), ('ros',)),
-    **dict.fromkeys(('tree-sway plot', 'tree-sway render'), ('plot',)),
+    'tree-sway plot': ('plot',),
+    'tree-sway render': ('film',),
     'tree-sway record': ('ros', 'bag'),
     'tree-sway relay': ('relay',),
     'tree-sway study': ('study',),
@@ -49,7 +50,7 @@ NEEDS = {
     **dict.fromkeys(
         ('pytest', 'py.test'),
         (
-            *('ros', 'serial', 'bag', 'relay', 'plot', 'h5', 'study', 'test'),
+            *('ros', 'serial', 'bag', 'relay', 'film', 'plot', 'h5', 'study', 'test'),
             *('lab', 'docs'),
         ),
     ),

@@ -69,7 +69,7 @@ _HOMES = {
 }
 """Module that each public name lives in."""
 
-__all__ = sorted([*_HOMES, '__version__'])
+__all__ = sorted((*_HOMES, '__version__'))
 
 
 def __getattr__(name: str) -> Any:

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-import shutil
+import sys
 
 import numpy as np
 import pytest
@@ -51,18 +51,19 @@ def test_the_same_command_gives_the_same_film(tmp_path: Path) -> None:
     assert films[0].read_bytes() == films[1].read_bytes()
 
 
-def test_a_film_is_written_where_ffmpeg_is(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_film_is_written_by_the_wheel(tmp_path: Path) -> None:
+    pytest.importorskip('imageio_ffmpeg', reason='imageio-ffmpeg is not installed')
     path = tmp_path / 'sway.mp4'
-    code = main(['render', SEEDLING, '--seconds', '1', '--pixels', '96', '-o', str(path)])
-    if shutil.which('ffmpeg') is None:
-        assert code == 2
-        assert 'install ffmpeg' in capsys.readouterr().err
-        assert not path.exists()
-    else:
-        assert code == 0
-        assert path.read_bytes()[4:8] == b'ftyp'
+    assert main(['render', SEEDLING, '--seconds', '1', '--pixels', '96', '-o', str(path)]) == 0
+    assert path.read_bytes()[4:8] == b'ftyp'
+
+
+def test_a_film_that_cannot_be_is_refused_before_the_tree_is_opened(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, 'imageio_ffmpeg', None)
+    assert main(['render', 'no such tree', '-o', str(tmp_path / 'sway.mp4')]) == 2
+    assert 'pip install "tree_sway_ros[film]"' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -130,7 +130,7 @@ CHANGES = {
         'True',
     ),
     'command': (
-        'tree_sway/commands/cli.py', 'info benjamina', 'info goldcrest',
+        'tree_sway/commands/commands.csv', 'info benjamina', 'info goldcrest',
         "from tree_sway.commands.cli import COMMANDS; print(COMMANDS['info'].example)",
         'info goldcrest',
     ),

@@ -80,14 +80,14 @@ def test_values(text, values):
 @pytest.mark.parametrize(
     ('text', 'message'),
     [
-        ('width: [1, x]', r"t:1: width\[1\] is 'x', not a number; give a finite number without"),
-        ('width: {}', 't:1: width is a mapping; give a number or a list'),
-        ('name: a\n\ncount: 1.5', "t:3: count is '1.5', not a whole number"),
+        ('width: [1, x]', r"t:1: width\[1\] is 'x'; give a number, finite, without"),
+        ('width: {}', 't:1: width is a mapping of 0; give a number or a list'),
+        ('name: a\n\ncount: 1.5', "t:3: count is '1.5'; give a whole number"),
         ("is_bare: yes\nname: ''\n", "t:1: is_bare is 'yes'; give true or false"),
-        ("name: ''", 't:1: name is empty; give a text'),
+        ("name: ''", "t:1: name is ''; give a text"),
         (
             "count: '3'",
-            "t:1: count is '3', not a whole number; give a whole number without quotes",
+            "t:1: count is '3'; give a whole number, finite, without quotes",
         ),
         ('# nothing', 't: no document'),
         ('name: *a', 't:1: an anchor or alias; write the value itself'),

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tree_sway.pictures.leaf_drawing import leaf_blades, leaf_colors
-from tree_sway.pictures.projection import Camera
 
 LEVEL = np.array([[1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]])
 
@@ -35,7 +34,7 @@ def test_blades_stay_by_their_cluster() -> None:
 def test_a_leaf_that_faces_the_light_is_brighter_and_a_far_one_paler() -> None:
     sun = np.array([-0.35, -0.5, 0.8]) / np.linalg.norm([-0.35, -0.5, 0.8])
     normal = np.stack([sun, np.array([sun[2], 0.0, -sun[0]]), sun])
-    lit, dark, far = leaf_colors('oak', normal, np.array([0.0, 0.0, 1.0]), Camera())
+    lit, dark, far = leaf_colors('oak', normal, np.array([0.0, 0.0, 1.0]))
     assert lit.sum() > dark.sum()
     assert far.min() > lit.min()
     assert np.all((far >= 0.0) & (far <= 1.0))
@@ -43,7 +42,7 @@ def test_a_leaf_that_faces_the_light_is_brighter_and_a_far_one_paler() -> None:
 
 def test_goldcrest_is_golden() -> None:
     gold, green = (
-        leaf_colors(species, np.array([[0.0, 0.0, 1.0]]), np.zeros(1), Camera())[0]
+        leaf_colors(species, np.array([[0.0, 0.0, 1.0]]), np.zeros(1))[0]
         for species in ('goldcrest', 'benjamina')
     )
     assert gold[0] > 2.0 * gold[2]

@@ -39,9 +39,9 @@ def test_a_quarter_turn_about_z_takes_x_to_y() -> None:
     np.testing.assert_allclose(end, [[1.0, 4.0, 3.0]], atol=1e-12)
 
 
-@given(points=POINTS, azimuth=st.floats(-4, 4), elevation=st.floats(-1.5, 1.5))
-def test_projection_keeps_distances(points: np.ndarray, azimuth: float, elevation: float) -> None:
-    seen = Camera(azimuth, elevation).project(points)
+@given(points=POINTS, elevation=st.floats(-1.5, 1.5))
+def test_projection_keeps_distances(points: np.ndarray, elevation: float) -> None:
+    seen = Camera(elevation).project(points)
     np.testing.assert_allclose(
         np.linalg.norm(seen[1:] - seen[0], axis=1),
         np.linalg.norm(points[1:] - points[0], axis=1),

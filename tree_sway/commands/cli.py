@@ -21,47 +21,10 @@ import sys
 from typing import Any, NoReturn
 import warnings
 
-from tree_sway.commands.command import Command
+from tree_sway.commands.command import Command, commands_beside
 from tree_sway.errors import nearest, shown, TreeSwayError
 
-_OWN = {
-    'show': (
-        'a tree in wind on a page of the browser, without ROS',
-        'show goldcrest --seconds 10',
-    ),
-    'info': ('what a tree is: size, masses, natural frequencies', 'info benjamina'),
-    'grow': (
-        'make a tree of a species and a height',
-        'grow --species oak --height 12 -o oak.yaml',
-    ),
-    'convert': ('write a tree in another format', 'convert goldcrest -o goldcrest.glb'),
-    'calibrate': (
-        'fit modulus and damping to one measured sway',
-        'calibrate goldcrest --frequency 3 -o measured.yaml',
-    ),
-    'simulate': (
-        'a tree through a wind: tips, base moment and strain over time, as a table',
-        'simulate goldcrest --wind canopy --seconds 10 -o sway.csv',
-    ),
-    'plot': (
-        'pictures of a tree, and of the wind and the motion of its tip',
-        'plot benjamina --seconds 20 -o sway.png',
-    ),
-    'render': (
-        'a tree in wind as a moving picture: GIF or MP4',
-        'render goldcrest --speed 9 --seconds 2 -o sway.gif',
-    ),
-    'relay': (
-        'one tree at several sites: send the wind, and receive it',
-        'relay send goldcrest --listen tcp/127.0.0.1:0 --seconds 1',
-    ),
-}
-COMMANDS = {name: Command(*texts, f'tree_sway.commands.{name}') for name, texts in _OWN.items()}
-COMMANDS['study'] = Command(
-    'many trees in many winds with many settings, over all cores',
-    'study study.yaml -o study.csv',
-    'tree_sway.studies.command',
-)
+COMMANDS = commands_beside(__file__)
 
 #: Entry points of this group are further tables of commands: those of the nodes are merged with
 #: the table above, those of the laboratory stand under the name of their entry point.
@@ -79,7 +42,7 @@ EXTRAS = {
     **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
     **dict.fromkeys(('cryptography', 'dask', 'distributed', 'pyarrow'), 'study'),
     **{'h5py': 'h5', 'numba': 'fast', 'rosbags': 'bag', 'serial': 'serial', 'tqdm': 'progress'},
-    'zenoh': 'relay',
+    **{'imageio_ffmpeg': 'film', 'zenoh': 'relay'},
 }
 _OF_ROS = re.compile(r'rclpy|\w+_msgs|\w+_srvs|builtin_interfaces|ament_\w+|rosidl\w*|launch\w*')
 _FAILURE = 2

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from tree_sway.tables import table_beside
+
 
 class Command(NamedTuple):
     """What a command does, an example of it, and the module that runs it."""
@@ -13,3 +15,8 @@ class Command(NamedTuple):
     summary: str
     example: str
     module: str
+
+
+def commands_beside(module: str) -> dict[str, Command]:
+    """Read the commands of a package by name, from ``commands.csv`` beside a module's file."""
+    return {row.pop('name'): Command(**row) for row in table_beside(module, 'commands.csv')}

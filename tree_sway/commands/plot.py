@@ -46,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--portrait',
         action='store_true',
-        help='draw the tree at rest and, beside it, in a steady wind',
+        help='draw the tree in a steady wind, with its shape at rest behind it',
     )
     strength = 'draw the share of its strength that each tree uses, up to --speed (30 m/s)'
     parser.add_argument('--strength', action='store_true', help=strength)

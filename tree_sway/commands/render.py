@@ -5,9 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
 import time
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +17,7 @@ from tree_sway.commands.arguments import (
     output_path,
     told_leaves,
 )
-from tree_sway.commands.progress import bar, waiting
+from tree_sway.commands.progress import waiting
 from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
 
@@ -44,10 +42,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Sway the tree, paint it, and say how long that took."""
     for name, low, high in (('seconds', 0.1, 3600.0), ('rate', 1.0, 120.0), ('pixels', 64, 4320)):
         within(f'--{name}', getattr(arguments, name), low, high)
-    from tree_sway.pictures.animation import animate_poses
+    from tree_sway.pictures.animation import animate_poses, check_film
     from tree_sway.pictures.leaf_drawing import blades_per_cluster
 
-    target = output_path(arguments)
+    target = check_film(output_path(arguments))
     scene = opened_scene(arguments)
     wind = opened_wind(arguments)
     with waiting('setting up the tree'):
@@ -59,24 +57,19 @@ def run(arguments: argparse.Namespace) -> int:
     for _ in swaying(simulator, wind, *how):
         frames.append(simulator.place().copy())
         winds.append(simulator.wind.copy())
-    animate_poses(
-        scene.tree,
-        frames,
-        np.array(winds),
-        target,
-        rate=arguments.rate,
-        leaves=scene.leaves(told_leaves(arguments), clusters),
-        pixels=arguments.pixels,
-        watched=_watched,
-    )
+    with waiting('painting'):
+        animate_poses(
+            scene.tree,
+            frames,
+            np.array(winds),
+            target,
+            rate=arguments.rate,
+            leaves=scene.leaves(told_leaves(arguments), clusters),
+            pixels=arguments.pixels,
+        )
     spent = time.monotonic() - began
     print(
         f'{target}: {scene.tree.name}, {len(frames)} pictures, {arguments.seconds:g} s of wind '
         f'in {spent:.1f} s'
     )
     return 0
-
-
-def _watched(images: Iterator[Any], count: int) -> Iterator[Any]:
-    for _ in bar(range(count), 'painting'):
-        yield next(images)

@@ -29,11 +29,12 @@ YAML_SUFFIXES = ('.yaml', '.yml', '.json')
 
 # The C parser, where PyYAML was built with it, is ten times faster.
 _LOADER: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
-_MAX_DEPTH, _MAX_NODES = 16, 600_000
+_MAX_DEPTH, _MAX_EVENTS = 16, 600_000
 _TYPES = {yaml.MappingNode: 'object', yaml.SequenceNode: 'array', yaml.ScalarNode: 'number'}
 _KINDS = {'object': 'a mapping', 'array': 'a list', 'string': 'a text', 'number': 'a number',
           'integer': 'a whole number', 'boolean': 'true or false'}  # fmt: skip
-_CURES = {'object': 'a mapping of keys to values', 'number': 'a finite number'}
+_LIMITS = {'minimum': 'at least', 'exclusiveMinimum': 'more than', 'maximum': 'at most',
+           'minItems': 'at least', 'maxItems': 'at most'}  # fmt: skip
 
 
 def packaged_schema(name: str) -> Schema:
@@ -84,7 +85,7 @@ def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
     if not text.strip():
         raise FormatError('empty', where=source, cure='describe a tree or a forest in it')
     try:
-        _refuse_snares(text, source)
+        _refuse_unsafe(text, source)
         root = yaml.compose(text, Loader=_LOADER)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
@@ -99,33 +100,24 @@ def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
     return document
 
 
-def _refuse_snares(text: str, source: str) -> None:
-    depth = documents = nodes = 0
+def _refuse_unsafe(text: str, source: str) -> None:
+    """Refuse what could blow a small file up, or end the process."""
+    depth = 0
     events: Iterator[Any] = yaml.parse(text, Loader=_LOADER)
-    for event in events:
-        what = cure = ''
-        if isinstance(event, yaml.CollectionEndEvent):
-            depth -= 1
-        elif isinstance(event, yaml.DocumentStartEvent):
-            documents += 1
-            if documents > 1:
-                what, cure = 'a second document', 'keep one document in a file'
-        elif isinstance(event, yaml.NodeEvent):
-            nodes += 1
-            depth += isinstance(event, yaml.CollectionStartEvent)
-            if event.anchor is not None:
-                what, cure = 'an anchor or alias', 'write the value itself'
-            elif getattr(event, 'tag', None) is not None:
-                what, cure = f'a tag {getattr(event, "tag", None)!r}', 'write the value itself'
-            elif depth > _MAX_DEPTH:
-                what = f'nested deeper than {_MAX_DEPTH}'
-            elif nodes > _MAX_NODES:
-                what = f'more than {_MAX_NODES} keys and values'
-                cure = 'give a tree of that many segments as a table'
+    for number, event in enumerate(events):
+        depth += isinstance(event, yaml.CollectionStartEvent)
+        depth -= isinstance(event, yaml.CollectionEndEvent)
+        what, cure = '', 'write the value itself'
+        if getattr(event, 'anchor', None) is not None:
+            what = 'an anchor or alias'
+        elif getattr(event, 'tag', None) is not None:
+            what = f'a tag {event.tag!r}'
+        elif depth > _MAX_DEPTH:
+            what, cure = f'nested deeper than {_MAX_DEPTH}', 'write it flatter'
+        elif number > _MAX_EVENTS:
+            what, cure = f'more than {_MAX_EVENTS} keys and values', 'give a table of segments'
         if what:
-            # A document that begins without a mark begins with what is in it, in the next line.
-            line = event.end_mark.line + 1 + (documents > 1)
-            raise FormatError(what, where=f'{source}:{line}', cure=cure)
+            raise FormatError(what, where=f'{source}:{event.end_mark.line + 1}', cure=cure)
 
 
 def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
@@ -140,7 +132,7 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
             line = key.start_mark.line + 1
             if not isinstance(key, yaml.ScalarNode):
                 raise FormatError(
-                    f'{_kind_of(key)} as a key',
+                    f'{_KINDS[_TYPES[type(key)]]} as a key',
                     where=f'{source}:{line}',
                     cure='use a word as the key',
                 )
@@ -169,10 +161,6 @@ def _resolved(schema: Schema, root: Schema) -> Schema:
     while '$ref' in schema:
         schema = root['$defs'][schema['$ref'].rsplit('/', 1)[1]]
     return schema
-
-
-def _kind_of(node: Any) -> str:
-    return 'a text' if isinstance(node, yaml.ScalarNode) else _KINDS[_TYPES[type(node)]]
 
 
 def _node_at(node: Any, path: Any) -> Any:
@@ -208,39 +196,30 @@ def _error(document: YamlDocument, error: Any) -> FormatError:
         inside = [each for each in error.context if each.path or each.validator != 'type']
         if inside:
             return _error(document, inside[0])
-    path, wanted, value = list(error.absolute_path), error.validator_value, error.instance
-    node = _node_at(document.root, path)
-    name = ''.join(f'[{step}]' if isinstance(step, int) else f'.{step}' for step in path)
-    name = name.lstrip('.') or 'the file'
-    kind = _KINDS.get(error.schema.get('type', ''), '')
+    path = list(error.absolute_path)
+    name = error.json_path.removeprefix('$').lstrip('.') or 'the file'
     if error.validator == 'additionalProperties':
         known = error.schema['properties']
-        key = next(key for key in value if key not in known)
+        key = next(key for key in error.instance if key not in known)
         path.append(key)
         what = f"unknown key '{key}' in {name}"
         cure = nearest(key, known) or f'known are {", ".join(known)}'
     elif error.validator == 'required':
-        key = next(key for key in wanted if key not in value)
+        key = next(key for key in error.validator_value if key not in error.instance)
         what, cure = f"{name} has no '{key}'", f"add '{key}'"
-    elif error.validator == 'anyOf':
-        kinds = [_KINDS[_resolved(choice, document.schema)['type']] for choice in wanted]
-        what, cure = f'{name} is {_kind_of(node)}', f'give {" or ".join(kinds)}'
-    elif error.validator == 'type':
-        what, cure = f'{name} is {_kind_of(node)}', f'give {_CURES.get(wanted, kind)}'
-        if isinstance(node, yaml.ScalarNode) and wanted not in ('object', 'array'):
-            what = f"{name} is '{node.value[:40]}'"
-            if wanted != 'boolean':
-                what, cure = f'{what}, not {kind}', f'{cure} without quotes or unit'
-    elif error.validator in ('minItems', 'maxItems'):
-        least, most = error.schema.get('minItems', 0), error.schema.get('maxItems')
-        what = f'{name} has {len(value)} items'
-        cure = f'give {least}' if least == most else f'give at least {least}'
-    elif error.validator == 'minLength':
-        what, cure = f'{name} is empty', 'give a text'
     else:
-        what, cure = f'{name} is {value:g}', f'give more than {wanted}'
-        if error.validator != 'exclusiveMinimum':
-            low, high = error.schema.get('minimum'), error.schema.get('maximum')
-            cure = f'from {low} to {high}' if high is not None else f'of at least {low}'
-            cure = f'give {kind} {cure}'
+        node, cure = _node_at(document.root, path), _wanted(error.schema, document.schema)
+        what = f'{name} is {_KINDS[_TYPES[type(node)]]} of {len(node.value)}'
+        if isinstance(node, yaml.ScalarNode):
+            what = f"{name} is '{node.value[:40]}'"
+            cure += ', finite, without quotes or unit' * ('number' in cure)
+        cure = f'give {cure}'
     return FormatError(what, where=document.where(*path), cure=cure)
+
+
+def _wanted(schema: Schema, root: Schema) -> str:
+    """Describe the values that a schema allows."""
+    if 'anyOf' in schema:
+        return ' or '.join(_wanted(_resolved(each, root), root) for each in schema['anyOf'])
+    limits = [f'{word} {schema[key]}' for key, word in _LIMITS.items() if key in schema]
+    return _KINDS[schema['type']] + (' of ' if limits else '') + ' and '.join(limits)

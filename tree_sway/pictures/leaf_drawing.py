@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.tree.species import leaf_traits
-from tree_sway.pictures.projection import Camera
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ _NEEDLES = _Spray(
     length=1.0,
     width=0.36,
 )
-_SUN = np.array([-0.35, -0.5, 0.8])
+_SUN = np.array([-0.35, -0.5, 0.8]) / np.linalg.norm([-0.35, -0.5, 0.8])
 
 # A blade of unit length along x, from its stalk to its tip.
 _BLADE = np.array([[0.0, 0.0], [0.3, 0.19], [0.6, 0.2], [1.0, 0.0], [0.6, -0.2], [0.3, -0.19]])
@@ -82,18 +81,14 @@ def leaf_blades(species: str, poses: Floats, size: Floats) -> tuple[Floats, Floa
     return base[:, None] + length[:, None, None] * corners, own.apply([0.0, 0.0, 1.0])
 
 
-def leaf_colors(species: str, normal: Floats, depth: Floats, camera: Camera) -> Floats:
+def leaf_colors(species: str, normal: Floats, depth: Floats) -> Floats:
     """
     Colour of each blade by the unit vector across it and how far back it is, 0 to 1, (k, 3).
 
     The light comes from above and over the viewer's left shoulder.
     """
     green = np.array(leaf_traits(species).green)
-    turn = camera.azimuth - 0.5 * np.pi
-    sine, cosine = np.sin(turn), np.cos(turn)
-    x, y, z = _SUN / np.linalg.norm(_SUN)
-    sun = np.array([cosine * x - sine * y, sine * x + cosine * y, z])
     # A leaf shines through: lit from either side.
-    light = 0.6 + 0.55 * np.abs(normal @ sun)
+    light = 0.6 + 0.55 * np.abs(normal @ _SUN)
     color = np.clip(light[:, None] * green, 0.0, 1.0)
     return np.asarray(color + 0.45 * depth[:, None] * (1.0 - color))

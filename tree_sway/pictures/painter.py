@@ -16,14 +16,12 @@ from tree_sway.core.leaves.flutter import leaf_poses
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import MissingDependencyError
 from tree_sway.pictures.projection import Camera, Frame
 from tree_sway.pictures.shapes import ground_shapes, outline_at_rest, tree_shapes
 
 _FINER = 2
 """Points painted for each point of the image, in either direction."""
 _WIND, _SHADOW, _GHOST = '#1f6fb4', '#e2e2e0', '#dedad6'
-_BARS = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.02)
 
 
 class Painter:
@@ -41,23 +39,19 @@ class Painter:
 
     Raises
     ------
-    MissingDependencyError
+    ModuleNotFoundError
         If pillow is not installed.
 
     """
 
     def __init__(self, trees: Sequence[Tree], camera: Camera, frame: Frame, pixels: int) -> None:
-        try:
-            from PIL import Image, ImageDraw, ImageFont
-        except ImportError:
-            raise MissingDependencyError(
-                'pictures of trees need pillow', cure='pip install pillow'
-            ) from None
+        from PIL import Image, ImageDraw, ImageFont
+
         first = accumulate((each.n_segments for each in trees), initial=0)
         rows = [slice(begin, end) for begin, end in pairwise(first)]
         self._trees = sorted(
             zip(trees, rows, strict=True),
-            key=lambda each: -float(camera.distance(each[0].start[0])),
+            key=lambda each: -float(each[0].start[0, 1]),
         )
         self._length = np.concatenate([each.length for each in trees])
         self._camera, self._frame, self._draw_on = camera, frame, ImageDraw.Draw
@@ -84,7 +78,6 @@ class Painter:
         flutter: ArrayLike = 0.0,
         *,
         has_ghost: bool = False,
-        has_scale: bool = False,
     ) -> Any:
         """
         Paint an RGB image of Pillow.
@@ -97,8 +90,8 @@ class Painter:
             In [m/s], (3,), for an arrow; none is painted without wind.
         leaves, flutter
             Their leaves, none if None, and how far each is turned, as of `leaf_poses`.
-        has_ghost, has_scale
-            Whether to paint the shape at rest behind, and a bar of a round length.
+        has_ghost
+            Whether to paint the shape at rest behind.
 
         """
         image = self._back.copy()
@@ -116,8 +109,6 @@ class Painter:
                 is_own = (leaves.segment >= rows.start) & (leaves.segment < rows.stop)
                 foliage = placed[is_own], leaves.size[is_own]
             self._draw_tree(draw, tree, start[rows], end[rows], foliage)
-        if has_scale:
-            self._draw_scale(draw)
         self._draw_wind(draw, np.asarray(wind, dtype=np.float64))
         return image.reduce(_FINER)
 
@@ -140,17 +131,6 @@ class Painter:
             ink = tuple(level)
             draw.polygon(points[first:last], fill=ink, outline=ink if has_edge else None)
             first = last
-
-    def _draw_scale(self, draw: Any) -> None:
-        """Draw a bar of a round length in the lower right corner."""
-        frame = self._frame
-        size = frame.top - frame.bottom
-        length = next((each for each in _BARS if each <= 0.2 * size), _BARS[-1])
-        right, low = frame.right - 0.03 * size, frame.bottom + 0.03 * size
-        bar = self._points(np.array([[right - length, low], [right, low]]))
-        draw.line(bar, fill='black', width=round(0.004 * size * self._scale))
-        middle = self._points(np.array([[right - 0.5 * length, low + 0.03 * size]]))
-        draw.text(middle, f'{length:g} m', fill='black', font=self._font, anchor='mm')
 
     def _draw_wind(self, draw: Any, wind: Floats) -> None:
         """Draw an arrow along the wind as the camera sees it, with its speed."""

@@ -68,7 +68,7 @@ def plot_wind_and_tip(
     sway.plot(t, scale * moved[:, 1], color=_NORTH, lw=1.2, label='north')
     sway.set(xlabel='time [s]', ylabel=f'tip from rest [{unit}]', xlim=(t[0], t[-1]))
     _legend_above(sway)
-    _plot_from_above(above, scale * moved, blowing.mean(axis=0), unit)
+    _plot_from_above(above, scale * moved, unit)
     for axes in (speed, sway, above):
         axes.grid(alpha=0.25)
         axes.spines[['top', 'right']].set_visible(False)
@@ -136,20 +136,10 @@ def _legend_above(axes: Axes) -> None:
     )
 
 
-def _plot_from_above(axes: Axes, moved: Floats, mean: Floats, unit: str) -> None:
-    """Plot the tip's path, older parts paler, and the direction of the mean wind."""
-    from matplotlib.collections import LineCollection
-
-    steps = np.stack([moved[:-1, :2], moved[1:, :2]], axis=1)
-    age = np.linspace(0.15, 1.0, len(steps))
-    axes.add_collection(LineCollection(list(steps), colors=_EAST, alpha=age, linewidths=1.0))
+def _plot_from_above(axes: Axes, moved: Floats, unit: str) -> None:
+    """Plot the tip's path."""
+    axes.plot(*moved[:, :2].T, color=_EAST, lw=0.8)
     axes.plot(0.0, 0.0, '+', color='black', ms=8)
     reach = 1.15 * max(float(np.abs(moved[:, :2]).max()), 1e-3)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect='equal')
     axes.set(xlabel=f'east [{unit}]', ylabel=f'north [{unit}]', title='tip from above')
-    level = float(np.hypot(mean[0], mean[1]))
-    if level > 0.05:
-        along = 0.22 * reach * mean[:2] / level
-        middle = np.array([-0.68, 0.8]) * reach
-        arrow = {'arrowstyle': '-|>', 'lw': 2.0, 'color': _WIND}
-        axes.annotate('', xy=tuple(middle + along), xytext=tuple(middle - along), arrowprops=arrow)

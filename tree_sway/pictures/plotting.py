@@ -6,45 +6,31 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from typing import Any, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from tree_sway.errors import FormatError, MissingDependencyError
+from tree_sway.errors import FormatError
 from tree_sway.files.whole_file import whole_file
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-DOTS_PER_INCH = 110.0
-"""Of a figure that is saved."""
+_DOTS_PER_INCH = 110.0
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Make an empty figure of a size [inch]; a `MissingDependencyError` without matplotlib."""
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingDependencyError(
-            'pictures need matplotlib', cure='pip install matplotlib'
-        ) from None
+    """Make an empty figure of a size [inch]; a `ModuleNotFoundError` without matplotlib."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(width, height), facecolor='white')
     FigureCanvasAgg(figure)
     return figure
 
 
-def show_image(axes: Axes, image: Any) -> None:
-    """Show an image of Pillow on axes, which show nothing else."""
-    axes.imshow(np.asarray(image))
-    axes.axis('off')
-
-
 def save_figure(
     figure: Figure,
     path: str | Path,
-    dots_per_inch: float = DOTS_PER_INCH,
+    dots_per_inch: float = _DOTS_PER_INCH,
     figures: Path | None = None,
 ) -> Path:
     """

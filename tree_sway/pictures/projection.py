@@ -16,36 +16,20 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 
+_MARGIN = 0.06
+
 
 @dataclass(frozen=True)
 class Camera:
-    """
-    Where a picture is taken from: heading of the line of sight, from x towards y, in [rad].
+    """Where a picture is taken from: the south, looking down by ``elevation`` in [rad]."""
 
-    At pi/2 it looks north, and east (+x) is to the right; ``elevation`` [rad] is how far it looks
-    down.
-    """
-
-    azimuth: float = np.pi / 2.0
     elevation: float = 0.12
 
     def project(self, points: ArrayLike) -> Floats:
         """Right, up and away of points (..., 3), all in [m]."""
-        sine, cosine = np.sin(self.azimuth), np.cos(self.azimuth)
         down, level = np.sin(self.elevation), np.cos(self.elevation)
-        rows = np.array(
-            [
-                [sine, -cosine, 0.0],
-                [cosine * down, sine * down, level],
-                [cosine * level, sine * level, -down],
-            ]
-        )
+        rows = np.array([[1.0, 0.0, 0.0], [0.0, down, level], [0.0, level, -down]])
         return np.asarray(np.asarray(points, dtype=np.float64) @ rows.T)
-
-    def distance(self, points: ArrayLike) -> Floats:
-        """Depth [m] of points (..., 3) behind the picture plane, whatever their height."""
-        level = np.array([np.cos(self.azimuth), np.sin(self.azimuth), 0.0])
-        return np.asarray(np.asarray(points, dtype=np.float64) @ level)
 
 
 @dataclass(frozen=True)
@@ -63,9 +47,7 @@ class Frame:
         return (self.right - self.left) / (self.top - self.bottom)
 
 
-def frame_around(
-    points: Floats, camera: Camera, margin: float = 0.06, headroom: float = 0.0
-) -> Frame:
+def frame_around(points: Floats, camera: Camera, headroom: float = 0.0) -> Frame:
     """
     Frame all points [m], (..., 3), with a margin round them and headroom above.
 
@@ -75,6 +57,6 @@ def frame_around(
     low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
     size = max(float(high[1] - low[1]), 0.4 * float(high[0] - low[0]))
     middle = 0.5 * float(low[0] + high[0])
-    half = max(0.5 * float(high[0] - low[0]), 0.3 * size) + margin * size
-    top = float(high[1]) + (margin + headroom) * size
+    half = max(0.5 * float(high[0] - low[0]), 0.3 * size) + _MARGIN * size
+    top = float(high[1]) + (_MARGIN + headroom) * size
     return Frame(middle - half, middle + half, float(low[1]) - 0.14 * size, top)

@@ -20,8 +20,6 @@ _SHADE, _HAZE = 0.68, 0.62
 _TWIG = np.array([0.36, 0.28, 0.22])
 _THICK = 0.004
 """Diameter over the height of the picture from which joints are closed by discs."""
-_FLARE, _FLARE_HIGH = 0.45, 1.6
-"""How much wider a stem is at the ground, and how high that goes, in diameters."""
 _POT = '#b5694a'
 _POT_RIM = '#c67f60'
 
@@ -53,7 +51,7 @@ def tree_shapes(
     Leaves are the pose block of their clusters, (m, 7), and the diameters of these in [m], (m,).
     """
     base, tip = camera.project(start), camera.project(end)
-    depth = _depth(camera, 0.5 * (start + end), frame)
+    depth = _depth(0.5 * (start + end), frame)
     corners = list(_tapered(base, tip, tree))
     # Twigs are brown, whatever the colour of the bark that old wood has.
     old = np.clip(tree.base_diameter / (0.2 * tree.base_diameter[0]), 0.0, 1.0)[:, None]
@@ -63,17 +61,14 @@ def tree_shapes(
     # Discs close the joints of thick wood, edges those of the rest.
     thick = np.flatnonzero(tree.base_diameter > _THICK * (frame.top - frame.bottom))
     corners += list(_discs(base[thick, :2], tree.base_diameter[thick]))
-    if len(thick) and not _is_potted(tree):
-        corners.append(_flare(base[0, :2], float(tree.base_diameter[0])))
-        thick = np.append(thick, 0)
     colors, away = np.vstack([colors, colors[thick]]), np.append(away, away[thick])
     has_edge = np.ones(len(away), dtype=np.bool_)
     if leaves is not None and len(leaves[1]):
         blades, normal = leaf_blades(tree.species, *leaves)
         seen = camera.project(blades)
-        depth = _depth(camera, blades.mean(axis=1), frame)
+        depth = _depth(blades.mean(axis=1), frame)
         corners += list(seen[..., :2])
-        colors = np.vstack([colors, leaf_colors(tree.species, normal, depth, camera)])
+        colors = np.vstack([colors, leaf_colors(tree.species, normal, depth)])
         away = np.concatenate([away, seen[..., 2].mean(axis=1)])
         has_edge = np.concatenate([has_edge, np.zeros(len(seen), dtype=np.bool_)])
     far_first = np.argsort(-away)
@@ -103,22 +98,13 @@ def _discs(middle: Floats, diameter: Floats) -> Floats:
     return np.asarray(middle[:, None] + 0.5 * diameter[:, None, None] * round_it)
 
 
-def _flare(foot: Floats, diameter: float) -> Floats:
-    """Outline of the root flare round the foot of a stem on the picture plane, (k, 2)."""
-    up = np.linspace(0.0, 1.0, 8)
-    half = 0.5 * diameter * (1.0 + _FLARE * (1.0 - up) ** 2.5)
-    high = _FLARE_HIGH * diameter * up
-    left, right = np.stack([-half, high], axis=1), np.stack([half, high], axis=1)
-    return np.asarray(foot + np.vstack([left, right[::-1]]))
-
-
 def _is_potted(tree: Tree) -> bool:
     return tree.species in species_keys() and species_named(tree.species).habit == 'pot'
 
 
-def _depth(camera: Camera, points: Floats, frame: Frame) -> Floats:
-    """How far back each point stands, from 0 to 1; little in a tree that has no depth."""
-    away = camera.distance(points)
+def _depth(points: Floats, frame: Frame) -> Floats:
+    """How far back each point is, from 0 to 1; little in a tree that has no depth."""
+    away = points[:, 1]
     span = max(float(np.ptp(away)), 0.3 * (frame.top - frame.bottom))
     return np.asarray(0.5 + (away - 0.5 * (away.min() + away.max())) / span)
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 import json
 from multiprocessing import resource_tracker
 import os
@@ -20,7 +21,7 @@ import signal
 from typing import Any
 
 from tree_sway.commands.progress import bar
-from tree_sway.errors import MissingDependencyError, TransportError, TreeSwayError
+from tree_sway.errors import TransportError, TreeSwayError
 from tree_sway.files.whole_file import write_text_whole
 from tree_sway.studies.plan import Case, Plain
 
@@ -60,7 +61,7 @@ def run_study(
         The first case that cannot be computed, by its name; the others are kept.
     TransportError
         Workers that die again and again, or a scheduler that does not answer.
-    MissingDependencyError
+    ModuleNotFoundError
         There is something to compute and dask is not installed.
 
     """
@@ -127,7 +128,8 @@ def _outcomes(
     cases: list[Case], folder: Path, workers: int | None, scheduler: str | None
 ) -> Iterator[TreeSwayError | None]:
     """Outcome of each case as it is finished: None, or what is wrong with it."""
-    distributed = _dask()
+    distributed = import_module('distributed')
+    import_module('cryptography')  # of the keys that keep other users of this machine out
     with _cluster(distributed, workers, scheduler) as client:
         count = max(len(client.scheduler_info(n_workers=-1)['workers']), workers or 1)
         futures = [
@@ -143,18 +145,6 @@ def _outcomes(
                 where=f'case {error.task}',
                 cure='look for what kills them (memory?), use fewer --workers, and run it again',
             ) from None
-
-
-def _dask() -> Any:
-    try:
-        import cryptography
-        import distributed
-    except ImportError as error:
-        raise MissingDependencyError(
-            f'studies need {error.name}', cure='pip install "tree_sway_ros[study]"'
-        ) from None
-    del cryptography  # of the keys that keep other users of this machine out
-    return distributed
 
 
 @contextmanager

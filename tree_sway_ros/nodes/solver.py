@@ -4,9 +4,11 @@
 
 from __future__ import annotations
 
+import math
 import time
 from typing import Any
 
+from scipy.spatial.transform import Rotation
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
@@ -16,6 +18,7 @@ from tree_sway.core.scene.shard import dealt
 from tree_sway.core.simulator.live_tuning import LIVE
 from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.gate import LARGEST_LEAD
 from tree_sway.core.wind.height_profile import WindProfile
@@ -26,11 +29,11 @@ from tree_sway.files.trees.source import open_scene
 from tree_sway.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import CAMERA, WIND_FILTERED
+from tree_sway_ros.process.topics import CAMERA, PUSH, WIND_FILTERED
 from tree_sway_ros.reports.diagnostics import Status, WARN
 from tree_sway_ros.reports.sway_report import SwayReport
 from tree_sway_ros.timing.handshake import Reach
-from tree_sway_ros.timing.pacer import Pacer, Tick
+from tree_sway_ros.timing.pacer import Tick
 from tree_sway_ros.wire.pose_stream import PoseStream
 from tree_sway_ros.wire.wind_messages import wind_from_message
 
@@ -39,6 +42,9 @@ _LEAF_CLUSTERS = 1000
 
 _FARTHEST_CAMERA = 1e6
 """Along each axis [m]."""
+
+_STRONGEST_PUSH, _PUSH_LASTS = 1e5, 0.5
+"""Force [N], and time [s] after which a push ends that is not sent again."""
 
 
 class SolverNode(TreeSwayNode):
@@ -68,15 +74,10 @@ class SolverNode(TreeSwayNode):
 
     def activate(self) -> None:
         """Sway, from rest."""
-        self.pacer = self._make_pacer()
-        self.on_close(self.pacer.stop)
         self._reach = Reach()
+        self.run_worker(self.pacer)
         self.on_close(self._reach.end)
-        self.pacer.start()
         self._state.start()
-
-    def _make_pacer(self) -> Pacer:
-        return Pacer(self.get_clock(), self.values['rate'], self._tick, self.fail, self.slip)
 
     def _open(self) -> Any:
         source = open_scene(self.values['tree'])
@@ -101,13 +102,13 @@ class SolverNode(TreeSwayNode):
         if self.values['stiffness_factor'] != 1.0:
             self.simulator.tune(**self.values('stiffness_factor'))
         self._camera: Any = None
-        self._refused_cameras = 0
-        self.pacer = self._make_pacer()
+        self._refused: dict[str, tuple[int, str]] = {}
+        self.pacer = self.pacer_of(self._tick)
         self._run = Run(
             self.simulator,
             self.values['rate'],
             intake=WindIntake.of_velocities(),
-            make_wind=self._make_wind,
+            make_wind=WindAverage,
             timer=time.perf_counter,
         )
         set_cost_scale(self.simulator.simulators, self._run.warm_up())
@@ -120,12 +121,13 @@ class SolverNode(TreeSwayNode):
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
         self._new_wind = self.polled(WIND_FILTERED)
         self.subscription(CAMERA, self._see)
+        is_one = isinstance(self.simulator, SwaySimulator)
+        names = source.tree.segment_names if is_one else ()
+        self._segments = {name: number for number, name in enumerate(names)}
+        self.subscription(PUSH, self._take_push)
         self.create_service(Trigger, '~/reset', self._reset)
         self.create_service(SetBool, '~/pause', self._pause)
         self.report_with(source.tree.name, self._statuses)
-
-    def _make_wind(self) -> WindAverage:
-        return WindAverage()
 
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)
@@ -140,10 +142,33 @@ class SolverNode(TreeSwayNode):
         at = message.pose.position
         camera = (at.x, at.y, at.z)
         if not all(abs(each) <= _FARTHEST_CAMERA for each in camera):  # NaN is not, either
-            self._refused_cameras += 1
+            self._refuse('camera', 'not finite or too far away')
             return
         self._camera = camera
         self.on_change({})
+
+    def _take_push(self, message: Any) -> None:
+        name, force = message.header.frame_id, message.wrench.force
+        components = (force.x, force.y, force.z)
+        if name not in self._segments:
+            self._refuse('push', f"no segment '{name}'; tree_description names those of one tree")
+        elif not math.hypot(*components) <= _STRONGEST_PUSH:  # NaN is not, either
+            self._refuse('push', f'not finite or above {_STRONGEST_PUSH:g} N')
+        else:
+            self._run.request(lambda: self._push(self._segments[name], components))
+
+    def _push(self, segment: int, components: tuple[float, float, float]) -> None:
+        """Push at the origin of a segment's frame, by a force [N] in its axes."""
+        axes = Rotation.from_quat(self.simulator.place()[segment, 3:])
+        tree = self.simulator.simulators[0]
+        try:
+            tree.push(segment, axes.apply(components), _PUSH_LASTS, along=0.0)
+        except ParameterError as error:
+            self._refuse('push', str(error))
+
+    def _refuse(self, what: str, why: str) -> None:
+        """Count what is refused, for the report."""
+        self._refused[what] = self._refused.get(what, (0, ''))[0] + 1, why
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a change that the trees could not take while they sway."""
@@ -223,9 +248,6 @@ class SolverNode(TreeSwayNode):
 
     def _statuses(self) -> list[Status]:
         statuses = self._sway_report.statuses(self._run, self.pacer, self.stream.frames)
-        if self._refused_cameras:
-            text = (
-                f'{self._refused_cameras} poses of the camera refused: not finite or too far away'
-            )
-            statuses.append(Status('camera', WARN, text, {'refused': self._refused_cameras}))
+        for what, (count, why) in list(self._refused.items()):
+            statuses.append(Status(what, WARN, f'{count} refused: {why}', {'refused': count}))
         return statuses

@@ -13,7 +13,7 @@ from tree_sway.core.growth.grow import grow
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.tree.species import species_named
 from tree_sway.pictures.painter import Painter
-from tree_sway.pictures.plotting import new_figure, save_figure, show_image
+from tree_sway.pictures.plotting import new_figure, save_figure
 from tree_sway.pictures.projection import Camera, Frame
 
 SPECIES = (
@@ -48,7 +48,8 @@ def chart_habits(out_dir: str | Path) -> list[Path]:
         painter = Painter([tree], camera, _FRAME, _PIXELS)
         row, column = 2 * (i // half), i % half
         for below, worn in enumerate((None, clusters)):
-            show_image(axes[row + below, column], painter.image(tree.rest_poses, leaves=worn))
+            axes[row + below, column].imshow(painter.image(tree.rest_poses, leaves=worn))
+            axes[row + below, column].axis('off')
         axes[row, column].set_title(species_named(key).title, y=0.98, fontsize=12)
     figure.subplots_adjust(0.0, 0.0, 1.0, 0.97, 0.0, 0.02)
     return [save_figure(figure, folder / 'habits.png', 80.0)]

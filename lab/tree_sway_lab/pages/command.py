@@ -22,7 +22,7 @@ import re
 from tree_sway.commands import cli
 from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import FormatError
-from tree_sway.files.trees.tree_file import options_of, TREE_FORMATS
+from tree_sway.files.trees.tree_file import TREE_FORMATS
 from tree_sway.files.whole_file import write_text_whole
 from tree_sway.parameters.parameter import Table, Value
 from tree_sway_lab.chart.fidelity import MODELS
@@ -177,11 +177,11 @@ def _text(value: Value) -> str:
 
 
 def formats_table() -> str:
-    """Lay out the formats of tree files, with the options that each takes."""
-    lines = ['| format | files | options |', '|---|---|---|']
+    """Lay out the formats of tree files, with the options that are not as in other formats."""
+    lines = ['| format | files | defaults of its own |', '|---|---|---|']
     for each in TREE_FORMATS:
-        options = ', '.join(f'`{option}`' for option in options_of(each))
-        lines.append(f'| {each.name} | {", ".join(each.suffixes)} | {options} |')
+        own = ', '.join(f'`{name}={value}`'.lower() for name, value in each.defaults.items())
+        lines.append(f'| {each.name} | {", ".join(each.suffixes)} | {own} |')
     return '\n'.join(lines) + '\n'
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.pictures.painter import Painter
-from tree_sway.pictures.plotting import new_figure, save_figure, show_image
+from tree_sway.pictures.plotting import new_figure, save_figure
 from tree_sway.pictures.projection import Camera, frame_around
 from tree_sway_lab.paper.experiment import Experiment, RATE
 from tree_sway_lab.paper.followers import followed
@@ -48,7 +48,8 @@ def draw_plants(experiments: list[Experiment], path: str | Path) -> Path:
         tree = experiment.tree
         axes = figure.add_axes((place / len(experiments), 0.0, 1.0 / len(experiments), 0.92))
         frame = frame_around(np.vstack([tree.start, tree.end]), CAMERA)
-        show_image(axes, Painter([tree], CAMERA, frame, _PIXELS).image(tree.rest_poses))
+        axes.imshow(Painter([tree], CAMERA, frame, _PIXELS).image(tree.rest_poses))
+        axes.axis('off')
         axes.set_title(f'{tree.name}: {tree.n_branches} branches, {tree.n_segments} segments')
     return save_figure(figure, path)
 
@@ -68,7 +69,8 @@ def draw_sway(experiment: Experiment, path: str | Path, frames: int = 6) -> Path
         axes = figure.add_axes((column / columns, 0.5 * (1 - row), 1.0 / columns, 0.46))
         poses = replace(tree, start=start, end=end).rest_poses
         wind = (-experiment.speed[k], 0.0, 0.0)
-        show_image(axes, painter.image(poses, wind, has_ghost=True))
+        axes.imshow(painter.image(poses, wind, has_ghost=True))
+        axes.axis('off')
         axes.set_title(f'{k / RATE:.1f} s', fontsize=10)
     return save_figure(figure, path)
 

@@ -26,7 +26,7 @@ from tree_sway_lab.validation.section import Effort, HOLDS, MISSES, Section
 
 SECTIONS = (
     'kinds', 'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans', 'still_air',
-    'leaves', 'slopes', 'conifers', 'broadleaves', 'battery', 'paper',
+    'leaves', 'slopes', 'conifers', 'published', 'broadleaves', 'battery', 'paper',
 )  # fmt: skip
 """Names of the sections, each a module of ``sections``."""
 

@@ -85,7 +85,7 @@ def test_trees_of_one_file_stand_where_they_do_in_it():
     assert second.tree.name == 'forest.treefile2'
     with pytest.raises(ParameterError, match='tree 3 of 2; give 1 to 2'):
         open_scene(path, tree=3)
-    with pytest.raises(ParameterError, match=r"option tree is '1.5'; give a whole number"):
+    with pytest.raises(ParameterError, match=r'tree 1\.5 of 2; give 1 to 2'):
         open_scene(path, tree=1.5)
     # Left where they are, they stand where the file has them.
     placed = open_scene(path, to_origin=False).tree

@@ -66,8 +66,8 @@ def test_the_example_holds_three_trees():
     ('text', 'message'),
     [
         ('', 'empty; describe a tree or a forest'),
-        ('trees: []', 'glade:1: trees has 0 items; give at least 1'),
-        ('trees: oak', 'glade:1: trees is a text; give a list'),
+        ('trees: []', 'glade:1: trees is a list of 0; give a list of at least 1'),
+        ('trees: oak', "glade:1: trees is 'oak'; give a list of at least 1"),
         ('name: x', 'glade:1: no trees and no stand; give one of the two'),
         ('stand: a.csv\ntrees: [{name: a, tree: t}]', 'both trees and stand; give one of the two'),
         ('trees:\n- {tree: t}', r"glade:2: trees\[0\] has no 'name'"),
@@ -76,18 +76,21 @@ def test_the_example_holds_three_trees():
             'trees:\n- {name: a, tree: t, yaww: 1}',
             r"glade:2: unknown key 'yaww' in trees\[0\]; did you mean 'yaw'",
         ),
-        ('trees:\n- {name: a, tree: t, x: 1 m}', r"trees\[0\].x is '1 m', not a number"),
-        ('trees:\n- {name: a, tree: t, x: .inf}', r"trees\[0\].x is '.inf', not a number"),
+        ('trees:\n- {name: a, tree: t, x: 1 m}', r"trees\[0\].x is '1 m'; give a number"),
+        ('trees:\n- {name: a, tree: t, x: .inf}', r"trees\[0\].x is '.inf'; give a number"),
         ('trees:\n- {name: a, tree: t, leaf_on: yes}', "leaf_on is 'yes'; give true or false"),
-        ('trees:\n- {name: a, tree: t, leaf_on: [1]}', 'leaf_on is a list; give true or false'),
-        ('trees:\n- {name: a, tree: t, seed: -1}', r'trees\[0\].seed is -1'),
+        ('trees:\n- {name: a, tree: t, leaf_on: [1]}', 'leaf_on is a list of 1; give true or'),
+        ('trees:\n- {name: a, tree: t, seed: -1}', r"trees\[0\].seed is '-1'"),
         ('trees:\n- {name: a/b, tree: t}', "glade:2: a slash in the name 'a/b'"),
         (
             'trees:\n- {name: a, tree: t}\n- {name: a, tree: t}',
             "glade:3: two trees called 'a', the first in line 2",
         ),
-        ('anemometer: [1, 2]\ntrees:\n- {name: a, tree: t}', 'anemometer has 2 items; give 3'),
-        ('convection_ratio: 0\ntrees:\n- {name: a, tree: t}', 'convection_ratio is 0'),
+        (
+            'anemometer: [1, 2]\ntrees:\n- {name: a, tree: t}',
+            'anemometer is a list of 2; give a list of at least 3',
+        ),
+        ('convection_ratio: 0\ntrees:\n- {name: a, tree: t}', "convection_ratio is '0'"),
     ],
 )
 def test_what_is_wrong_has_a_line_and_a_cure(text, message):
@@ -107,7 +110,7 @@ def test_a_tree_that_cannot_be_opened_is_named(tmp_path):
     (tmp_path / 'bad.yaml').write_text('branches:\n- {name: stem, nodes: [[0, 0, 0, .1]]}\n')
     path.write_text('trees:\n- {name: oak, tree: bad.yaml}\n')
     with pytest.raises(
-        FormatError, match=r"glade.yaml:2: tree 'oak': .*bad.yaml:2: .*has 1 items"
+        FormatError, match=r"glade.yaml:2: tree 'oak': .*bad.yaml:2: .*is a list of 1"
     ):
         open_scene(path)
 

@@ -25,7 +25,6 @@ from tree_sway.core.motion.fill_records import branch_records, places_of, segmen
 from tree_sway.core.reduction.matrices import reduce_tree, Reduction
 from tree_sway.core.reduction.modes import (
     by_importance,
-    factors,
     Modes,
     most_driven,
     natural_modes,
@@ -145,7 +144,7 @@ class TreeReductions:
         """Key rotations by which the tree answers to winds, for a pressure of 1 kg/m/s^2."""
         from tree_sway.core.motion.static_answers import static_answers
 
-        law, solve = self.drag_law, factors(self.coupled.reduction).solve
+        law, solve = self.drag_law, self.coupled.reduction.factors.solve
         return static_answers(self.wind_moments, solve, lambda u: pressure(u, *law) * u * u)
 
     @cached_property

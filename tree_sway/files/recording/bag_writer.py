@@ -11,7 +11,7 @@ import sqlite3
 import time
 from typing import Any
 
-from tree_sway.errors import FormatError, MissingDependencyError, ParameterError
+from tree_sway.errors import FormatError, ParameterError
 
 FORMATS = ('mcap', 'sqlite3')
 """Kinds of storage."""
@@ -25,7 +25,7 @@ class BagWriter:
 
     Raises
     ------
-    MissingDependencyError
+    ModuleNotFoundError
         If rosbags is not installed.
     ParameterError
         A format that is not one of `FORMATS`.
@@ -41,13 +41,9 @@ class BagWriter:
     """
 
     def __init__(self, path: Path, format: str = 'mcap') -> None:  # noqa: A002
-        try:
-            from rosbags.rosbag2 import StoragePlugin, Writer
-            from rosbags.typesys import get_typestore, Stores
-        except ImportError as error:
-            raise MissingDependencyError(
-                'bags need rosbags', where=str(path), cure='pip install rosbags'
-            ) from error
+        from rosbags.rosbag2 import StoragePlugin, Writer
+        from rosbags.typesys import get_typestore, Stores
+
         if format not in FORMATS:
             raise ParameterError(f"unknown format '{format}'", cure=f'use {" or ".join(FORMATS)}')
         if path.exists():

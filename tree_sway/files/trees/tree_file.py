@@ -19,10 +19,10 @@ from tree_sway.errors import ParameterError
 from tree_sway.files.file_format import format_of
 from tree_sway.files.text_file import path_of
 from tree_sway.files.trees import formats
-from tree_sway.files.trees.cylinders.cylinder_tree import CylinderOptions, tree_of_cylinders
-from tree_sway.files.trees.file_units import FileUnits
+from tree_sway.files.trees.cylinders.cylinder_tree import tree_of_cylinders
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.tree_format import TreeFormat
+from tree_sway.files.trees.tree_options import TreeOptions
 
 TREE_FORMATS: tuple[TreeFormat, ...] = tuple(
     each
@@ -31,14 +31,6 @@ TREE_FORMATS: tuple[TreeFormat, ...] = tuple(
     if isinstance(each, TreeFormat)
 )
 """Every format, in the order of modules and of their contents."""
-
-
-def options_of(known: TreeFormat) -> tuple[str, ...]:
-    """Return every option that a format takes."""
-    shared = [field.name for field in fields(FileUnits)]
-    if known.gives_cylinders:
-        shared = [*(field.name for field in fields(CylinderOptions)), *shared]
-    return tuple(dict.fromkeys((*known.own_options, *shared)))
 
 
 def read_trees(
@@ -51,9 +43,8 @@ def read_trees(
     """
     Read every tree of a file, of a format that is named or found from content and suffix.
 
-    Options are what the reader of the format takes, such as ``species``; for cylinder and skeleton
-    formats also those of `CylinderOptions`; for all, those of `FileUnits` that it does not have
-    itself. ``head`` is the beginning of the file where it was read before.
+    Options are those of `TreeOptions`. ``head`` is the beginning of the file where it was read
+    before.
 
     Raises
     ------
@@ -67,22 +58,23 @@ def read_trees(
     """
     path = path_of(path)
     chosen = format_of(path, format, TREE_FORMATS, 'tree', head=head)
-    chosen.refuse_others(options, options_of(chosen))
-    _check_kinds(chosen, options)
-    own = {name: options.pop(name) for name in chosen.own_options if name in options}
-    shared = {field.name for field in fields(FileUnits)} & set(options)
-    units = FileUnits(**{name: options.pop(name) for name in shared})
-    content = chosen.read(path, **own)
+    chosen.refuse_others(options, [each.name for each in fields(TreeOptions)])
+    wanted = TreeOptions(**{**chosen.defaults, **options})
+    content = chosen.read(path)
     if isinstance(content, TreeFile):
-        return (units.of_tree(content),)
-    settings = CylinderOptions(**options)
-    files = tuple(tree_of_cylinders(units.of_cylinders(c), path, settings) for c in content)
-    if len({each.tree.name for each in files}) == len(files):
-        return files
-    return tuple(
-        replace(each, tree=replace(each.tree, name=f'{each.tree.name}{number}'))
-        for number, each in enumerate(files, start=1)
-    )
+        files = [replace(content, tree=wanted.in_metres(content.tree))]
+    else:
+        files = [tree_of_cylinders(wanted.in_metres(each), path) for each in content]
+    if len({each.tree.name for each in files}) < len(files):
+        for number, each in enumerate(files, start=1):
+            tree = replace(each.tree, name=f'{each.tree.name}{number}')
+            files[number - 1] = replace(each, tree=tree)
+    if wanted.tree not in range(len(files) + 1):
+        what, cure = f'tree {wanted.tree} of {len(files)}', f'give 1 to {len(files)}, or 0 for all'
+        raise ParameterError(what, where=str(path), cure=cure)
+    if wanted.tree:
+        files = [files[int(wanted.tree) - 1]]
+    return tuple(wanted.applied(each) for each in files)
 
 
 def read_tree(path: str | Path, format: str | None = None, **options: Any) -> TreeFile:  # noqa: A002, E501
@@ -95,22 +87,3 @@ def read_tree(path: str | Path, format: str | None = None, **options: Any) -> Tr
     if not others:
         return first
     return replace(first, notes=(*first.notes, f'the file holds {len(others)} more trees'))
-
-
-def _check_kinds(chosen: TreeFormat, options: dict[str, Any]) -> None:
-    """Refuse values of another kind than the option's."""
-    kinds = {field.name: str(field.type) for field in fields(CylinderOptions)}
-    kinds |= {field.name: str(field.type) for field in fields(FileUnits)}
-    for name, kind in chosen.read.__annotations__.items():
-        kinds[name] = kind.__name__ if isinstance(kind, type) else str(kind)
-    for name, value in options.items():
-        wanted = kinds[name].split(' ')[0]
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        fits, kind = {
-            'float': (is_number, 'a number'),
-            'int': (is_number and float(value).is_integer(), 'a whole number'),
-            'bool': (isinstance(value, bool), 'true or false'),
-            'str': (isinstance(value, str), 'a text'),
-        }[wanted]
-        if not (fits or (value is None and 'None' in kinds[name])):
-            raise ParameterError(f"option {name} is '{value}'", cure=f'give {kind}')

@@ -4,21 +4,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 from tree_sway.files.file_format import FileFormat
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.imported_tree import TreeFile
 
+AS_IT_IS = {'to_origin': False}
+"""Defaults of our own forms, whose trees are where they are meant to be."""
+
 
 @dataclass(frozen=True)
 class TreeFormat(FileFormat):
-    """A format of tree files, whose reader gives a tree, or the cylinders of trees."""
+    """
+    A format of tree files, whose reader gives a tree, or the cylinders of trees.
 
-    read: Callable[..., TreeFile | tuple[Cylinders, ...]]
+    ``defaults`` are those of its options that are not as in `TreeOptions`.
+    """
 
-    @property
-    def gives_cylinders(self) -> bool:
-        """Whether the reader gives cylinders, which take the options of all such formats."""
-        return 'Cylinders' in str(self.read.__annotations__['return'])
+    read: Callable[[Path], TreeFile | tuple[Cylinders, ...]]
+    defaults: Mapping[str, Any] = field(default_factory=dict)

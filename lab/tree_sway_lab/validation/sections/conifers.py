@@ -12,7 +12,7 @@ from tree_sway.core.growth.grow import grow
 from tree_sway.core.growth.thickness import BREAST_HEIGHT
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 
@@ -44,11 +44,14 @@ def over_measured(case: tuple[str, float]) -> float:
     """First frequency of a grown conifer over that of measured ones of its size."""
     species, height = case
     tree = grow(species, height, rng=np.random.default_rng(0))
-    settings = Settings(in_leaf=True)
-    calibrated = TreeReductions(tree, species_named(species), settings)
-    frequency = float(calibrated.natural_frequencies(1)[0])
     measured = 0.0766 + 3.1219 * 100.0 * diameter_at_breast(tree) / height**2
-    return frequency / measured
+    return first_frequency(tree, species_named(species)) / measured
+
+
+def first_frequency(tree: Tree, species: Species) -> float:
+    """First natural frequency of a tree in leaf in [Hz]."""
+    reductions = TreeReductions(tree, species, Settings(in_leaf=True))
+    return float(reductions.natural_frequencies(1)[0])
 
 
 def diameter_at_breast(tree: Tree) -> float:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import ParameterError, TreeError
-from tree_sway.files.trees.cylinders.cylinder_tree import CylinderOptions, tree_of_cylinders
+from tree_sway.files.trees.cylinders.cylinder_tree import tree_of_cylinders
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.tree_options import TreeOptions
 
 FILE = Path('cylinders.txt')
 
@@ -28,7 +29,7 @@ def cylinders_of(rows, continues=None):
 
 
 def built(rows, continues=None, **options):
-    return tree_of_cylinders(cylinders_of(rows, continues), FILE, CylinderOptions(**options))
+    return TreeOptions(**options).applied(tree_of_cylinders(cylinders_of(rows, continues), FILE))
 
 
 STEM = [((0, 0, 0), (0, 0, 1), 0.2, -1), ((0, 0, 1), (0, 0, 2), 0.1, 0)]
@@ -126,4 +127,4 @@ def test_what_cannot_be(rows, message):
 @pytest.mark.parametrize('options', [{'trusted_diameter': -1.0}, {'twig_diameter': float('nan')}])
 def test_options_are_checked(options):
     with pytest.raises(ParameterError, match=next(iter(options))):
-        CylinderOptions(**options)
+        TreeOptions(**options)

@@ -24,11 +24,11 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.tree_format import TreeFormat
 
 
-def read_poles(path: Path, base: float = 0.0) -> tuple[Cylinders, ...]:
-    """Read poles that stand at a height."""
+def read_poles(path: Path) -> tuple[Cylinders, ...]:
+    """Read poles whose feet are 2 m up."""
     table = parse_columns(read_lines(path)[1:], str(path), ["height", "diameter"])
     return tuple(
-        Cylinders(np.array([[0, 0, base]]), np.array([[0, 0, base + height]]),
+        Cylinders(np.array([[0, 0, 2.0]]), np.array([[0, 0, 2.0 + height]]),
                   np.array([[diameter, diameter]]), np.array([-1]), None, [table.where(row)])
         for row, (height, diameter) in enumerate(table.strict(["height", "diameter"]))
     )
@@ -39,7 +39,7 @@ FORMAT = TreeFormat("poles", (".poles",), lambda head: head.startswith("POLES"),
 USE = """
 import sys
 from tree_sway.files.trees.source import open_tree, open_scene
-one = open_tree(sys.argv[1], base=2.0, species="oak", to_origin=False)
+one = open_tree(sys.argv[1], species="oak", to_origin=False)
 print(one.tree.height, one.tree.start[0][2], one.species.key, len(open_scene(sys.argv[1]).trees))
 """
 

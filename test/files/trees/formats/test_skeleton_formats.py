@@ -24,11 +24,11 @@ def test_swc_of_two_trees():
 
 
 def test_swc_in_micrometres():
-    small = read_tree(DATA / 'fork.swc', unit=1e-3).tree
+    small = read_tree(DATA / 'fork.swc', length_unit=1e-3, diameter_unit=1e-3).tree
     assert small.height == pytest.approx(2.3e-3)
     assert small.base_diameter[0] == pytest.approx(0.24e-3)
-    with pytest.raises(ParameterError, match='unit is 0 m'):
-        read_tree(DATA / 'fork.swc', unit=0.0)
+    with pytest.raises(ParameterError, match=r'length_unit: 0\.0 is out of range'):
+        read_tree(DATA / 'fork.swc', length_unit=0.0)
 
 
 def test_treefile_of_two_trees():

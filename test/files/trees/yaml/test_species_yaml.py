@@ -36,7 +36,7 @@ def test_a_file_replaces_what_it_says(tmp_path):
         ('species: elm', "elm.yaml:1: unknown species 'elm'"),
         (
             'species: ash\nwood: {modulus: soft}',
-            r"elm.yaml:2: wood.modulus is 'soft', not a number",
+            r"elm.yaml:2: wood.modulus is 'soft'; give a number",
         ),
         (
             'species: ash\nwod: {}',

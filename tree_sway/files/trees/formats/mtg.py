@@ -25,7 +25,6 @@ import numpy as np
 from tree_sway.errors import FormatError, TreeError
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.file_units import FileUnits
 from tree_sway.files.trees.tree_format import TreeFormat
 
 _POSITION = ('XX', 'YY', 'ZZ')
@@ -50,11 +49,8 @@ def _is_mtg(head: str) -> bool:
     return any(line.startswith('CODE') and 'FORM-' in line for line in head.splitlines())
 
 
-def _read(
-    path: Path, length_unit: float = 0.01, diameter_unit: float = 0.001
-) -> tuple[Cylinders, ...]:
-    """Segments of a digitised tree; the units of positions and of diameters are in [m]."""
-    units = FileUnits(length_unit, diameter_unit)
+def _read(path: Path) -> tuple[Cylinders, ...]:
+    """Segments of a digitised tree."""
     vertices = _parse(read_lines(path), str(path))
     points = np.array([[v.features.get(name, np.nan) for name in _POSITION] for v in vertices])
     placed = np.isfinite(points).all(axis=1).tolist()
@@ -94,7 +90,7 @@ def _read(
         [vertices[index].label for index in tip],
         notes=(note,),
     )
-    return (units.of_cylinders(cylinders),)
+    return (cylinders,)
 
 
 def _before(vertices: list[_Vertex], vertex: _Vertex, placed: list[bool], place: list[int]) -> int:
@@ -197,4 +193,5 @@ def _add(
     return reference
 
 
-FORMAT = TreeFormat('mtg', ('.mtg',), _is_mtg, _read)
+_UNITS = {'length_unit': 0.01, 'diameter_unit': 0.001}
+FORMAT = TreeFormat('mtg', ('.mtg',), _is_mtg, _read, _UNITS)

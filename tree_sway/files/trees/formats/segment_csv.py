@@ -20,10 +20,10 @@ from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.tree_format import TreeFormat
+from tree_sway.files.trees.tree_format import AS_IT_IS, TreeFormat
 
 
-def _read(path: Path, species: str = 'broadleaf') -> TreeFile:
+def _read(path: Path) -> TreeFile:
     """Tree from a table of segments."""
     text = parse_table(read_lines(path), str(path))
     columns = {column.lower() for column in text.columns}
@@ -33,7 +33,7 @@ def _read(path: Path, species: str = 'broadleaf') -> TreeFile:
     branch = None
     if 'branch' in columns:
         branch = text.whole(text.strict(['branch'])[:, 0], 'branch')
-    wood = species_named(species)
+    wood = species_named('broadleaf')
     tree = built_tree(
         str(path),
         *np.hsplit(values, [3, 6]),
@@ -46,4 +46,4 @@ def _read(path: Path, species: str = 'broadleaf') -> TreeFile:
     return TreeFile(tree, wood, str(path))
 
 
-FORMAT = TreeFormat('csv', (), has_columns('x0', 'y0', 'z0', 'x1', 'd0'), _read)
+FORMAT = TreeFormat('csv', (), has_columns('x0', 'y0', 'z0', 'x1', 'd0'), _read, AS_IT_IS)

@@ -4,7 +4,8 @@
 SWC, the skeleton format of neuroscience, which tree reconstructions use too.
 
 A node in each line: number, type, x, y, z, radius, parent, -1 at a root. Each root is a tree of
-its own. SWC has no unit: ``unit`` says how many metres one is.
+its own. SWC has no unit: see ``length_unit`` and
+``diameter_unit`` of `TreeOptions`.
 """
 
 from __future__ import annotations
@@ -14,11 +15,11 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.core.tree.parents_first import checked_order
-from tree_sway.errors import FormatError, ParameterError
+from tree_sway.errors import FormatError
 from tree_sway.files.table_file import filled_lines, parse_columns
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.cylinders.skeleton import Skeleton
+from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 from tree_sway.files.trees.tree_format import TreeFormat
 
 _COLUMNS = ('number', 'type', 'x', 'y', 'z', 'radius', 'parent')
@@ -31,14 +32,12 @@ def _is_swc(head: str) -> bool:
     return len(cells) == 7 and None not in map(finite, cells)
 
 
-def _read(path: Path, unit: float = 1.0) -> tuple[Cylinders, ...]:
-    """Trees of an SWC file, whose unit is given in [m]."""
-    if not 0.0 < unit < 1e6:
-        raise ParameterError(f'unit is {unit:g} m', cure='give more than 0')
+def _read(path: Path) -> tuple[Cylinders, ...]:
+    """Trees of an SWC file."""
     table = parse_columns(read_lines(path), str(path), _COLUMNS)
     if not table.texts:
         raise FormatError('no nodes', where=str(path), cure='give a node in each line')
-    nodes = unit * table.strict(_COLUMNS)[:, 2:6]
+    nodes = table.strict(_COLUMNS)[:, 2:6]
     labels, parent = table.family('number', 'parent', [-1], 'node')
     order = checked_order(parent, labels)
     members: dict[int, list[int]] = {}
@@ -51,10 +50,10 @@ def _read(path: Path, unit: float = 1.0) -> tuple[Cylinders, ...]:
     trees = []
     for rows in members.values():
         above = np.where(parent[rows] >= 0, place[parent[rows]], -1)
-        skeleton = Skeleton(
-            nodes[rows, :3], 2.0 * nodes[rows, 3], above, [labels[i] for i in rows]
+        own, called = nodes[rows], [labels[i] for i in rows]
+        trees.append(
+            cylinders_of_nodes(own[:, :3], 2.0 * own[:, 3], above, called, str(path), cones=True)
         )
-        trees.append(skeleton.cylinders(str(path), cones=True))
     return tuple(trees)
 
 

@@ -15,19 +15,19 @@ from pathlib import Path
 
 import numpy as np
 
-from tree_sway.errors import FormatError, ParameterError, TreeError
+from tree_sway.errors import FormatError, TreeError
 from tree_sway.files.file_format import contains
 from tree_sway.files.table_file import filled_lines, split_row, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.cylinders.skeleton import Skeleton
+from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 from tree_sway.files.trees.tree_format import TreeFormat
 
 _FIELDS = ('x', 'y', 'z', 'radius', 'parent_id')
 
 
-def _read(path: Path, tree: int = 0) -> tuple[Cylinders, ...]:
-    """Trees of a file, or the one of a number from 1 on."""
+def _read(path: Path) -> tuple[Cylinders, ...]:
+    """Trees of a file."""
     numbers, lines = filled_lines(read_lines(path))
     if not lines:
         raise FormatError('no header', where=str(path), cure=f'a header names {",".join(_FIELDS)}')
@@ -43,25 +43,16 @@ def _read(path: Path, tree: int = 0) -> tuple[Cylinders, ...]:
             )
     if len(lines) < 2:
         raise FormatError('no trees', where=str(path))
-    if not 0 <= tree < len(lines):
-        raise ParameterError(
-            f'tree {tree} of {len(lines) - 1}',
-            where=str(path),
-            cure=f'give 1 to {len(lines) - 1}, or 0 for all',
-        )
     n_of_tree = sum(bool(name.strip()) for name in of_tree.split(','))
     trees = []
-    for index, (number, line) in enumerate(zip(numbers[1:], lines[1:], strict=True), start=1):
+    for number, line in zip(numbers[1:], lines[1:], strict=True):
         cells = [cell for cell in split_row(line, ',') if cell][n_of_tree:]
-        skeleton = _skeleton(cells, columns, f'{path}:{number}')
-        cylinders = skeleton.cylinders(f'{path}:{number}', cones=False)
-        cylinders.name = f'{path.stem}{index}' if len(lines) > 2 else path.stem
-        trees.append(cylinders)
-    return (trees[int(tree) - 1],) if tree else tuple(trees)
+        trees.append(_tree(cells, columns, f'{path}:{number}'))
+    return tuple(trees)
 
 
-def _skeleton(cells: list[str], columns: list[str], where: str) -> Skeleton:
-    """Nodes of a line, as the rows of a table."""
+def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
+    """Cylinders of a line, whose nodes are the rows of a table."""
     size = len(columns)
     if not cells or len(cells) % size:
         raise FormatError(
@@ -83,7 +74,8 @@ def _skeleton(cells: list[str], columns: list[str], where: str) -> Skeleton:
                 where=labels[row],
                 cure='the first node has -1, every other the number of a node of its line',
             )
-    return Skeleton(values[:, :3], 2.0 * values[:, 3], np.maximum(parent, -1), labels)
+    radius, above = values[:, 3], np.maximum(parent, -1)
+    return cylinders_of_nodes(values[:, :3], 2.0 * radius, above, labels, where, cones=False)
 
 
 FORMAT = TreeFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read)

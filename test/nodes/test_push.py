@@ -1,0 +1,102 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A robot's wrench on a branch: taken in the segment's frame, refused with a reason."""
+
+from contextlib import suppress
+import os
+from pathlib import Path
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+pytest.importorskip('rclpy', reason='ROS 2 is not installed')
+pytestmark = pytest.mark.ros
+
+from geometry_msgs.msg import WrenchStamped  # noqa: E402, I100
+
+from tree_sway_ros.process.topics import PUSH, SEGMENT_POSES  # noqa: E402
+
+
+def wrench(segment, x=0.0, y=0.0, z=0.0):
+    message = WrenchStamped()
+    message.header.frame_id = segment
+    message.wrench.force.x, message.wrench.force.y, message.wrench.force.z = x, y, z
+    return message
+
+
+@pytest.fixture
+def pushes(observer):
+    return lambda: observer.publisher(PUSH, name='solver/push')
+
+
+@pytest.mark.parametrize('model', [20, 'auto'])
+def test_a_wrench_bends_the_tree_and_lets_go(compose, observer, pushes, tree_file, model):
+    solver = compose(solver={'tree': tree_file, 'model': str(model)})['solver']
+    frames, push = observer.listen(SEGMENT_POSES), pushes()
+    observer.until(lambda: frames, 'a frame')
+    # At rest the stem is upright, and the y axis of its frame is level.
+    turn = np.array([getattr(frames[0].poses[2].orientation, axis) for axis in 'xyzw'])
+    level = Rotation.from_quat(turn).apply([0.0, 1.0, 0.0])[:2]
+
+    def sway():
+        tip = frames[-1].poses[2].position
+        return tip.x * level[0] + tip.y * level[1]
+
+    rest = sway()
+    observer.until(lambda: push.publish(wrench('stem/2', y=5.0)) or sway() > rest + 2e-3, 'a bend')
+    assert solver.simulator.push_load[:2] @ level == pytest.approx(5.0, rel=0.01)
+    # Nobody pushes any longer: it ends by itself.
+    observer.until(lambda: not solver.simulator.push_load.any(), 'the end of the push')
+
+
+@pytest.mark.parametrize(
+    ('segment', 'force', 'why'),
+    [
+        ('stem/99', 1.0, "no segment 'stem/99'"),
+        ('', 1.0, "no segment ''"),
+        ('stem/1', float('nan'), 'not finite'),
+        ('stem/1', 1e6, 'above 100000 N'),
+    ],
+)
+def test_a_push_that_cannot_be_is_refused_and_counted(
+    compose, observer, statuses, pushes, tree_file, segment, force, why
+):
+    solver = compose(solver={'tree': tree_file, 'model': '20'})['solver']
+    push = pushes()
+    wrong = wrench(segment, x=force)
+    observer.until(
+        lambda: push.publish(wrong) or statuses('solver: push') is not None, 'a warning', poll=0.1
+    )
+    assert why in statuses('solver: push').message
+    assert not solver.simulator.push_load.any()
+
+
+def test_branches_by_themselves_refuse_it(compose, observer, statuses, pushes, tree_file):
+    compose(solver={'tree': tree_file, 'model': 'branch'})
+    push = pushes()
+    observer.until(
+        lambda: push.publish(wrench('stem/1', x=1.0)) or statuses('solver: push') is not None,
+        'a warning', poll=0.1,
+    )  # fmt: skip
+    assert 'branch' in statuses('solver: push').message
+
+
+def test_the_example_pulls_and_lets_go(compose, domain, tree_file):
+    solver = compose(solver={'tree': tree_file, 'model': '20'})['solver']
+    example = Path(__file__).parents[2] / 'examples' / 'python' / 'pull_branch.py'
+    command = [sys.executable, example, 'stem/2', '--force', '3', '0', '0', '--seconds', '1']
+    environment = os.environ | {'ROS_DOMAIN_ID': str(domain)}
+    strongest = 0.0
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
+        deadline = time.monotonic() + 30.0
+        while process.poll() is None and time.monotonic() < deadline:
+            strongest = max(strongest, *solver.simulator.push_load[:1])
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(0.02)
+        process.kill()
+        assert process.stdout.read() == 'let go of stem/2\n'
+    assert 2.0 < strongest <= 3.0

@@ -1,0 +1,98 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Options of reading a tree's file of any format: what its numbers mean, and what to mend."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import one_of, within
+from tree_sway.core.tree.species import species_named
+from tree_sway.core.tree.tree import Tree
+from tree_sway.files.trees.cylinders.cylinders import Cylinders
+from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
+from tree_sway.files.trees.imported_tree import TreeFile
+
+_ENDS, _DIAMETERS = ('start', 'end'), ('diameter', 'base_diameter', 'tip_diameter')
+_Shape = TypeVar('_Shape', Tree, Cylinders)
+_RANGES = {
+    'length_unit': (1e-6, 1e3), 'diameter_unit': (1e-6, 1e3),
+    'twig_diameter': (0.0, 0.1), 'trusted_diameter': (0.0, 2.0),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class TreeOptions:
+    """
+    What to do with the trees of a file.
+
+    Parameters
+    ----------
+    species
+        Key of the wood; the file's own if None.
+    length_unit, diameter_unit
+        Units of positions and of diameters in [m].
+    up
+        Axis of the file that points up, ``z`` or ``y``.
+    twig_diameter
+        Measured diameter of a twig's tip in [m], to which what is thinner than `trusted_diameter`
+        is made to taper; None to leave the twigs as thick as the scan has them.
+    trusted_diameter
+        Diameter from which on a scan is trusted in [m]; only used with `twig_diameter`.
+    to_origin
+        Whether to move the base of the stem to the origin.
+    tree
+        Number of the one tree that is wanted, from 1 on; 0 for all.
+
+    """
+
+    species: str | None = None
+    length_unit: float = 1.0
+    diameter_unit: float = 1.0
+    up: str = 'z'
+    twig_diameter: float | None = None
+    trusted_diameter: float = 0.05
+    to_origin: bool = True
+    tree: int = 0
+
+    def __post_init__(self) -> None:
+        """Check the values; a `ParameterError` gives the range."""
+        for name, (low, high) in _RANGES.items():
+            if getattr(self, name) is not None:
+                within(name, getattr(self, name), low, high, 'm (0.01 is 1 cm)')
+        one_of('up', self.up, ('z', 'y'))
+        one_of('to_origin', self.to_origin, (True, False))
+
+    def in_metres(self, shape: _Shape) -> _Shape:
+        """Return a tree, or its cylinders, in metres, z up."""
+        changed: dict[str, Any] = {name: self._position(getattr(shape, name)) for name in _ENDS}
+        for name in _DIAMETERS:
+            if hasattr(shape, name):
+                changed[name] = self.diameter_unit * getattr(shape, name)
+        return replace(shape, **changed)
+
+    def _position(self, nodes: Floats) -> Floats:
+        turned = nodes[:, [0, 2, 1]] * [1.0, -1.0, 1.0] if self.up == 'y' else nodes
+        return np.ascontiguousarray(self.length_unit * turned)
+
+    def applied(self, content: TreeFile) -> TreeFile:
+        """Return a tree in metres with these options applied; its notes say what was changed."""
+        tree, notes, origin = content.tree, list(content.notes), np.zeros(3)
+        if self.twig_diameter is not None:
+            tree = corrected_twigs(tree, self.twig_diameter, self.trusted_diameter)
+            notes.append(
+                f'what is thinner than {self.trusted_diameter:g} m tapers to '
+                f'{self.twig_diameter:g} m at the tips'
+            )
+        if self.to_origin and tree.start[0].any():
+            origin = tree.start[0].copy()
+            tree = replace(tree, start=tree.start - origin, end=tree.end - origin)
+            moved = ', '.join(f'{-x:.6g}' for x in origin)
+            notes.append(f'moved by {moved} m, the base to the origin')
+        x, y, z = origin.tolist()
+        done = replace(content, tree=tree, notes=tuple(notes), origin=(x, y, z))
+        return done if self.species is None else done.of_species(species_named(self.species))
