@@ -14,7 +14,6 @@ from typing import Any, TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.fill_records import copy_twigs, head_records
 from tree_sway.core.motion.records import in_lines
 from tree_sway.core.reduction.modes import refuse_buckling, solvable
@@ -73,7 +72,7 @@ def _bank_of_modes(
     digest, found = '', None
     if cache is not None:
         settings = replace(reductions.settings, model=model)
-        digest = f'{digest_of(reductions.tree, reductions.species, settings)}-{WHY_PLAIN}'
+        digest = f'{digest_of(reductions.tree, reductions.species, settings)}-{reductions.plain}'
         found = cache.read(digest)
     made_of = _modal_arrays(reductions, model) if found is None else found
     reductions.circular = made_of['natural']
