@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats, Record
+from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
@@ -130,7 +130,7 @@ class WindBasisTable:
         found: Floats = slopes @ self._shapes
         return found
 
-    def _fit_harmonics(self, table: Record, degree: int) -> None:
+    def _fit_harmonics(self, table: np.void, degree: int) -> None:
         """Fit the load at rest in winds of all azimuths, level ones to count for most."""
         elevation, azimuth = np.meshgrid(
             _ELEVATIONS, 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, indexing='ij'
@@ -143,7 +143,7 @@ class WindBasisTable:
         fitted = np.linalg.lstsq(values, np.array(loads) * weight[:, None], rcond=None)[0]
         table['harmonics'][:, : table['n_modes']] = fitted
 
-    def _fill_standing(self, table: Record, pressures: list[float]) -> None:
+    def _fill_standing(self, table: np.void, pressures: list[float]) -> None:
         """Find the loads of the tree, and their slopes, where winds of each speed hold it."""
         shapes, m = self._shapes, int(table['n_modes'])
         stiffness = table['stiffness'][:m]
@@ -209,7 +209,7 @@ class WindBasisTable:
             at = here
         return at
 
-    def _fill_aslant(self, table: Record) -> None:
+    def _fill_aslant(self, table: np.void) -> None:
         """Fill what winds aslant change in the slopes of an upright tree, and steep winds."""
         m = int(table['n_modes'])
         lean = np.zeros((len(self._asked), m, m))
@@ -223,7 +223,7 @@ class WindBasisTable:
             table['steep_turning'][row, :m, :m] = self._slopes(self._still, steep)
             table['steep_damping'][row, :m, :m] = self._slopes(self._still, steep, rates=True)
 
-    def _tried(self, table: Record, degree: int, storm: float) -> float:
+    def _tried(self, table: np.void, degree: int, storm: float) -> float:
         """Try the table at leans and winds between those that it is made of."""
         rng = np.random.default_rng(7)
         m, stiffness = int(table['n_modes']), table['stiffness']
