@@ -67,8 +67,6 @@ class SceneState:
             self.names, name = simulator.names, simulator.name
         else:
             self.names, name = (simulator.tree.name,), simulator.tree.name
-        self.n_branches = sum(len(k.numbers) * k.simulator.tree.n_branches for k in self.kinds)
-        self.n_segments = sum(len(k.numbers) * k.simulator.tree.n_segments for k in self.kinds)
         self._lay_out()
         count = FULLY_LEAVED * n_leaves // max(FULLY_LEAVED, len(self.kinds))
         leaves = [_leaves(kind, count) for kind in self.kinds]

@@ -16,7 +16,6 @@ from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.frame_means import recorded_means
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.errors import FormatError
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_tree
 from tree_sway.files.wind.wind_file import read_wind
@@ -76,10 +75,7 @@ def _tree(asked: Plain) -> TreeFile:
         species = species_named(asked['species'])
         rng = np.random.default_rng(asked['seed'])
         return TreeFile(grow(species.key, asked['height'], rng=rng), species, 'grown')
-    opened = open_tree(asked.get('file') or asked['name'])
-    if not isinstance(opened, TreeFile):
-        raise FormatError('is a forest', where=opened.source, cure='name its trees one by one')
-    return opened
+    return open_tree(asked.get('file') or asked['name'])
 
 
 def _wind(case: Case) -> Floats:

@@ -161,8 +161,9 @@ class TreeBeams:
         if leaf_area is not None:
             leaf_area = one_of_each('leaf_area', leaf_area, n, 'branch')
         self._tree, self._shear_ratio = tree, shear_ratio
-        self._bare: list[tuple[BranchBeam, Floats, Floats, Ints]] = []
+        self._bare: list[tuple[BranchBeam, Floats, Floats, Ints, Floats]] = []
         self._known: dict[tuple[int, ...], BranchModel] = {}
+        self._blown: dict[tuple[int, int], Floats] = {}
         area, area_moment = np.zeros(n), np.zeros((n, 3))
         weight, weight_moment, weight_second = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
         force, torque = np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
@@ -176,18 +177,18 @@ class TreeBeams:
             children = np.array(children_of[branch], dtype=np.int64)
             same = known[1][branch] if known is not None else -1
             if known is not None and same >= 0:
-                beam, drag_area, mass, _ = known[0]._bare[same]
+                beam, drag_area, mass, _, loads = known[0]._bare[same]
             else:
                 beam, drag_area, mass = self._beam(
                     branch, children, density, leaf_mass, leaf_area, speed_profile,
                     root_compliance if branch == 0 else 0.0,
                 )  # fmt: skip
-            self._bare.append((beam, drag_area, mass, children))
+                loads = wind_loads(beam, drag_area)
+            self._bare.append((beam, drag_area, mass, children, loads))
             point = beam.point.reshape(-1, 3)
             dm, load = beam.weight * mass, beam.weight * drag_area
             area[branch] = load.sum() + area[children].sum()
             area_moment[branch] = load.ravel() @ point + area_moment[children].sum(axis=0)
-            loads = wind_loads(beam, drag_area)
             force[branch] = beam.integral(loads) + force[children].sum(axis=0)
             torque[branch] = beam.integral(cross(beam.point[:, :, None], loads))
             torque[branch] += torque[children].sum(axis=0)
@@ -237,15 +238,22 @@ class TreeBeams:
         that bend and do not hang.
         """
         turns = np.zeros(len(self._bare))
-        for branch, (beam, drag_area, _, children) in enumerate(self._bare):
-            carried = self._sums[children]
-            moments = beam.moment_in_space(
-                wind_loads(beam, drag_area)[:, :, :2], carried.force[:, :2], carried.moment[:, :2]
-            )
-            slopes = beam.from_base(beam.curvature_in_space(moments, self._shear_ratio))[0]
+        for branch, (beam, *_, children, _) in enumerate(self._bare):
+            curvatures = self._curvatures(branch, len(children))[:, :, :2]
+            slopes = beam.from_base(curvatures)[0]
             ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
             turns[branch] = np.sqrt(np.square(ends).sum(axis=1).max()) / beam.chord_length
         return turns / modulus
+
+    def _curvatures(self, branch: int, n_carried: int) -> Floats:
+        """Curvatures (p, 5, 3, 3) by `wind_loads` of a branch and its first children."""
+        key = branch, n_carried
+        if key not in self._blown:
+            beam, _, _, children, loads = self._bare[branch]
+            carried = self._sums[children[:n_carried]]
+            moments = beam.moment_in_space(loads, carried.force, carried.moment)
+            self._blown[key] = beam.curvature_in_space(moments, self._shear_ratio)
+        return self._blown[key]
 
     def models(
         self, *, carries: bool, enriched: frozenset[int] = frozenset()
@@ -302,7 +310,7 @@ class TreeBeams:
         return frozenset((0, *needed[:most].tolist()))
 
     def _shaken(self, branch: int) -> tuple[float, float]:
-        beam, _, mass, children = self._bare[branch]
+        beam, _, mass, children, _ = self._bare[branch]
         fields = self._model(branch, len(children), 1, 0).fields
         return shaken_energies(beam, mass, self._sums[children], self._shear_ratio, fields)
 
@@ -310,10 +318,11 @@ class TreeBeams:
         """Model a branch, unless that is done."""
         key = branch, n_carried, n_pairs, n_turns
         if key not in self._known:
-            beam, drag_area, mass, children = self._bare[branch]
+            beam, drag_area, mass, children, _ = self._bare[branch]
             carried = self._sums[children[:n_carried]]
+            curvatures = self._curvatures(branch, n_carried)
             shape, fields = shape_fields(
-                beam, drag_area, mass, carried, self._shear_ratio, n_pairs, n_turns
+                beam, drag_area, mass, carried, curvatures, self._shear_ratio, n_pairs, n_turns
             )
             self._known[key] = BranchModel(beam, drag_area, mass, shape, fields, children)
         return self._known[key]

@@ -106,6 +106,7 @@ def shape_fields(
     drag_area: Floats,
     mass: Floats,
     carried: Carried,
+    curvatures: Floats,
     shear_ratio: float,
     n_pairs: int = 1,
     n_turns: int = 0,
@@ -121,6 +122,8 @@ def shape_fields(
         Per length at its points in [m] and [kg/m], (p, 5).
     carried
         What its children hand down; none for a branch that is taken alone.
+    curvatures
+        Of the branch by `wind_loads` on it and on these, for a modulus of 1, (p, 5, 3, 3).
     shear_ratio
         Shear modulus over Young's in [-].
     n_pairs, n_turns
@@ -134,8 +137,6 @@ def shape_fields(
 
     """
     e1, e2 = across(beam.chord)
-    moments = beam.moment_in_space(wind_loads(beam, drag_area), carried.force, carried.moment)
-    curvatures = beam.curvature_in_space(moments, shear_ratio)
     pair = _static_pair(beam, curvatures, e1, e2)
     if pair is None:
         drawn = _static_shape(beam, drag_area, carried)

@@ -60,10 +60,11 @@ def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
             below.velocity[0], below.velocity[1], below.velocity[2],
             below.velocity[3], below.velocity[4], below.velocity[5],
         )  # fmt: skip
-        # A rotation on top of one by t turns by half of t more than its own vector says.
-        kx = px + wx + 0.5 * (ty * wz - tz * wy)
-        ky = py + wy + 0.5 * (tz * wx - tx * wz)
-        kz = pz + wz + 0.5 * (tx * wy - ty * wx)
+        # A rotation on top of one by t spins by t x w / 2 + t x (t x w) / 6 more than its rate w.
+        gx, gy, gz = ty * wz - tz * wy, tz * wx - tx * wz, tx * wy - ty * wx
+        kx = px + wx + 0.5 * gx + (ty * gz - tz * gy) / 6.0
+        ky = py + wy + 0.5 * gy + (tz * gx - tx * gz) / 6.0
+        kz = pz + wz + 0.5 * gz + (tx * gy - ty * gx) / 6.0
         vx += py * az - pz * ay + ux - gone * branch.arm[0]
         vy += pz * ax - px * az + uy - gone * branch.arm[1]
         vz += px * ay - py * ax + uz - gone * branch.arm[2]
@@ -237,9 +238,10 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
         below[5] += mz + ax * fy - ay * fx
         pull = 2.0 * branch.per_arm * (arm[0] * fx + arm[1] * fy + arm[2] * fz)
         fx, fy, fz = fx - pull * dx, fy - pull * dy, fz - pull * dz
-        px = mx + 0.5 * (my * tz - mz * ty) + at[1] * fz - at[2] * fy
-        py = my + 0.5 * (mz * tx - mx * tz) + at[2] * fx - at[0] * fz
-        pz = mz + 0.5 * (mx * ty - my * tx) + at[0] * fy - at[1] * fx
+        gx, gy, gz = my * tz - mz * ty, mz * tx - mx * tz, mx * ty - my * tx
+        px = mx + 0.5 * gx + (gy * tz - gz * ty) / 6.0 + at[1] * fz - at[2] * fy
+        py = my + 0.5 * gy + (gz * tx - gx * tz) / 6.0 + at[2] * fx - at[0] * fz
+        pz = mz + 0.5 * gz + (gx * ty - gy * tx) / 6.0 + at[0] * fy - at[1] * fx
         parent = branches[branch.parent]
         i = parent.coordinate
         for c in range(parent.n_coordinates):

@@ -32,7 +32,6 @@ from tree_sway.core.motion.records import in_lines
 from tree_sway.core.reduction.matrices import reduce_tree, Reduction
 from tree_sway.core.reduction.modes import (
     by_importance,
-    factors,
     Modes,
     most_driven,
     natural_modes,
@@ -265,7 +264,7 @@ class CalibratedTree:
         from tree_sway.core.motion.static_answers import static_answers
 
         law = self.drag_law
-        solve = factors(self.coupled.reduction).solve
+        solve = self.coupled.reduction.factors.solve
         return static_answers(self._wind_moments, solve, lambda u: pressure(u, *law) * u * u)
 
     def _laid_out(
