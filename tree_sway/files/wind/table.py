@@ -126,8 +126,8 @@ def _wind(
         convention, yaw = 'to', 0.0
     kept = np.flatnonzero(good)
     seconds, epoch = table.seconds(_stamps(table, clock, kept.tolist()), clock.factor)
-    rows.add_block(np.array(table.numbers, dtype=np.int64)[kept], velocity[kept])
-    rows.time = array('d', seconds.tolist())
+    rows.number = array('q', [table.numbers[row] for row in kept.tolist()])
+    rows.velocity, rows.time = array('d', velocity[kept].ravel()), array('d', seconds)
     gust = table.find('gust')
     if gust is not None:
         rows.gust = table.values([gust.index])[kept, 0] * gust.factor
