@@ -10,7 +10,8 @@ text.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 
 class TreeSwayError(Exception):
@@ -44,6 +45,15 @@ class TreeSwayError(Exception):
     def inside(self, whole: str) -> TreeSwayError:
         """Return the same error with its place as a part of a larger one."""
         return self.at(f'{whole}: {self.where}' if self.where else whole)
+
+
+@contextmanager
+def inside(whole: str) -> Iterator[None]:
+    """Name the larger place in all that is wrong with its part."""
+    try:
+        yield
+    except TreeSwayError as error:
+        raise error.inside(whole) from None
 
 
 class TreeError(TreeSwayError):

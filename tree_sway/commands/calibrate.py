@@ -26,7 +26,7 @@ from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.plausibility import sway_oddity
 from tree_sway.core.tree.species import Species, species_named
-from tree_sway.errors import FormatError, ParameterError
+from tree_sway.errors import inside, ParameterError
 from tree_sway.files.text_file import path_of
 from tree_sway.files.wind.sway_table import read_csv_sway
 
@@ -121,10 +121,8 @@ def _measured(arguments: argparse.Namespace) -> SwayEstimate:
     """Return what the record says, and print it."""
     record = read_csv_sway(path_of(arguments.record))
     band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
-    try:
-        found = estimate_sway(record.time, record.motion, band=band)
-    except FormatError as error:
-        raise error.inside(record.source) from None
+    with inside(record.source):
+        found = estimate_sway(record.time, record.motion, band)
     print(
         f'{record.source}: {record.quantity} in {", ".join(record.columns)}, '
         f'{found.kind} ({found.cycles:.0f} cycles)'

@@ -39,6 +39,14 @@ def within(
     return number
 
 
+def refuse_time_step(dt: float) -> None:
+    """Refuse a time step [s] that is not finite and above 0."""
+    if not (math.isfinite(dt) and dt > 0.0):
+        raise ParameterError(
+            f'time step of {dt} s', where='step', cure='give a finite one above 0'
+        )
+
+
 def one_of(name: str, value: object, known: Collection[object]) -> None:
     """Refuse a value that is not known; a `ParameterError` names those that are."""
     if value not in known:

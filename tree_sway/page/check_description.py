@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tree_sway.errors import FormatError
+from tree_sway.errors import FormatError, inside
 
 MOST_SEGMENTS = 500_000
 """Segments of all kinds."""
@@ -84,10 +84,8 @@ def check_description(
     _require('kinds', len(kinds) > 0)
     sizes = []
     for number, (kind, arrays) in enumerate(zip(header['kinds'], kinds, strict=True)):
-        try:
+        with inside(f'kind {number}'):
             sizes.append(_check_kind(kind, arrays))
-        except FormatError as error:
-            raise error.inside(f'kind {number}') from None
     numbers = [tree['kind'] for tree in header['trees']]
     names = [tree['name'] for tree in header['trees']]
     _require('trees', all(isinstance(name, str) for name in names) and len(names) > 0)

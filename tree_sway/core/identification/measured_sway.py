@@ -18,15 +18,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import signal
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import one_of
 from tree_sway.core.identification.ambient_sway import ambient_sway, AmbientSway
 from tree_sway.core.identification.free_decay import free_decay, FreeDecay
 from tree_sway.core.identification.spectral_peaks import Band, spectral_peaks
 from tree_sway.core.identification.sway_estimate import SwayEstimate
 from tree_sway.errors import FormatError, ParameterError
-
-KINDS = ('release', 'ambient')
-"""Kinds of record."""
 
 _Sway = TypeVar('_Sway', bound=SwayEstimate)
 
@@ -38,9 +34,7 @@ _EXPLAINED, _QUIET = 0.6, 0.5
 _STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
 
 
-def estimate_sway(
-    time: ArrayLike, motion: ArrayLike, kind: str | None = None, band: Band = None
-) -> SwayEstimate:
+def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> SwayEstimate:
     """
     Find frequency and damping of the slowest sway in a record.
 
@@ -50,8 +44,6 @@ def estimate_sway(
         Time of each sample in [s], rising, (n,).
     motion
         Displacement, tilt or acceleration, one column per axis, all of one unit, (n,) or (n, c).
-    kind
-        ``release`` or ``ambient``; found from the record if None.
     band
         Lowest and highest frequency to look at in [Hz]; all if None.
 
@@ -65,27 +57,21 @@ def estimate_sway(
     FormatError
         A record that is too short, too coarse, not finite, not rising in time, or without a sway.
     ParameterError
-        An unknown kind or an empty band.
+        An empty band.
 
     """
-    if kind is not None:
-        one_of('kind', kind, KINDS)
     if band is not None and not 0.0 < band[0] < band[1] < np.inf:
         raise ParameterError(
             f'band {band[0]:g} to {band[1]:g} Hz', cure='give two rising frequencies above 0'
         )
     even, dt, gap = _even(*_checked(time, motion))
-    if kind == 'ambient':
-        return _ambient(even, dt, gap, band)
     refusal = FormatError('the motion does not die away from one swing')
     try:
         decay = _release(even, dt, gap, band)
     except FormatError as error:
-        if kind == 'release':
-            raise
         refusal = error
     else:
-        if kind == 'release' or _is_release(decay):
+        if _is_release(decay):
             _refuse_lost(decay)
             return decay
     try:

@@ -23,6 +23,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tree_sway.core.checks import one_of_each, refuse_time_step
 from tree_sway.core.kernel import kernel
 from tree_sway.core.oscillators.exponential import (
     exponential_differences,
@@ -66,22 +67,13 @@ def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt:
         nothing but zeros, named by its index.
 
     """
-    parts = np.broadcast_arrays(
-        *(np.atleast_1d(np.asarray(v, float)) for v in (inertia, damping, stiffness))
+    refuse_time_step(dt)
+    parts = {'inertia': inertia, 'damping': damping, 'stiffness': stiffness}
+    values = np.broadcast_arrays(*(np.atleast_1d(each) for each in parts.values()))
+    i, c, k = (
+        one_of_each(name, each, len(each), 'oscillator')
+        for name, each in zip(parts, values, strict=True)
     )
-    i, c, k = (np.ascontiguousarray(part) for part in parts)
-    if not (np.isfinite(dt) and dt > 0.0):
-        raise ParameterError(
-            f'time step of {dt} s', where='propagator', cure='give a step above 0'
-        )
-    for name, values in (('inertia', i), ('damping', c), ('stiffness', k)):
-        bad = np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))
-        if len(bad):
-            raise ParameterError(
-                f'{name} of {values[bad[0]]}',
-                where=f'oscillator {bad[0]}',
-                cure='give a finite value of 0 or more',
-            )
     out = np.empty((len(i), 8))
     refused = fill_propagator(i, c, k, dt, out)
     if refused >= 0:

@@ -18,7 +18,7 @@ from tree_sway.core.simulator.settings import model_of, Settings
 from tree_sway.core.tree.grown_tree import tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import ParameterError, TreeError
+from tree_sway.errors import inside, ParameterError, TreeError
 
 SMALLEST, LARGEST = 0.2, 5.0
 """Scales that a placed tree may have."""
@@ -82,10 +82,8 @@ class PlacedTree:
             raise ParameterError(what, where=self.name, cure='give finite numbers')
         within(f'{self.name}: scale', self.scale, SMALLEST, LARGEST)
         if self.model is not None:
-            try:
+            with inside(self.name):
                 object.__setattr__(self, 'model', model_of(self.model))
-            except ParameterError as error:
-                raise error.inside(self.name) from None
 
     @property
     def kind(self) -> Kind:

@@ -25,7 +25,7 @@ from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.tree.plausibility import oddities, refuse_nonsense
 from tree_sway.core.tree.species import Species
-from tree_sway.errors import TreeSwayError
+from tree_sway.errors import inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,10 +83,8 @@ class Scene(PlacedTrees):
     def checked(self) -> Scene:
         """Return the same scene if every tree's numbers can be those of one, else raise."""
         for label, kind in self._labelled():
-            try:
+            with inside(f'{self.source}: {label}'.removesuffix(': ')):
                 refuse_nonsense(kind.tree, kind.species)
-            except TreeSwayError as error:
-                raise error.inside(f'{self.source}: {label}'.removesuffix(': ')) from None
         return self
 
     def of_species(self, species: Species) -> Scene:

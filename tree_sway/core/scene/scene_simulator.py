@@ -11,8 +11,7 @@ tree is, so that no wind need be turned into its frame.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 import math
@@ -22,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.checks import array_to_fill, three_numbers
+from tree_sway.core.checks import array_to_fill, refuse_time_step, three_numbers
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.records import zeros_in_lines
@@ -42,7 +41,6 @@ from tree_sway.core.simulator.simulator import (
     Counts,
     LOAD_HELD,
     OK,
-    refuse_time_step,
     RESTARTED,
     SwaySimulator,
     WIND_REFUSED,
@@ -51,7 +49,7 @@ from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway.core.wind.limits import is_wind
-from tree_sway.errors import nearest, ParameterError, TreeSwayError
+from tree_sway.errors import inside, nearest, ParameterError
 
 _NO_TABLES: Records = np.zeros(0, dtype=STANDING)
 _FINEST_SCALE = 0.01
@@ -100,7 +98,7 @@ class SceneSimulator:
         for k in used:
             those = np.flatnonzero((kind == k) & ~is_own)
             most = int(counts[those].max()) or 1
-            with _called(self.names[those[0]]):
+            with inside(self.names[those[0]]):
                 tree, species, _ = scene.kinds[k]
                 chosen = replace(scene.kinds[k].settings(settings), model=most)
                 self._models.append(SwaySimulator(tree, species, chosen, cache=cache))
@@ -117,7 +115,7 @@ class SceneSimulator:
         """Simulators of the trees that share no table, by their numbers."""
         for t in np.flatnonzero(is_own).tolist():
             one = trees[t]
-            with _called(one.name):
+            with inside(one.name):
                 where = one.settings_where_it_stands(settings)
                 self.own[t] = make_simulator(
                     one.placed(), one.species, where, tolerance=tolerance, cache=cache
@@ -390,11 +388,3 @@ def _oscillators(model: SwaySimulator) -> WindBasisBank:
     assert isinstance(oscillators, WindBasisBank)
     return oscillators
 
-
-@contextmanager
-def _called(name: str) -> Iterator[None]:
-    """Name the tree in what is wrong with it."""
-    try:
-        yield
-    except TreeSwayError as error:
-        raise error.inside(name) from error

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.checks import array_to_fill, array_to_read, three_numbers
+from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
 from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.simulator.assembly import assembled
@@ -449,10 +449,3 @@ class SwaySimulator:
 
 _pressure = fused(pressure)
 
-
-def refuse_time_step(dt: float) -> None:
-    """Refuse a time step [s] that is not finite and above 0."""
-    if not (math.isfinite(dt) and dt > 0.0):
-        raise ParameterError(
-            f'time step of {dt} s', where='step', cure='give a finite one above 0'
-        )

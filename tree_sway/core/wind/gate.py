@@ -32,17 +32,8 @@ from tree_sway.core.wind.limits import FASTEST_WIND, is_wind
 # What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
 # 0x8000, which is 327.68 where the count is 0.01 m/s.
 SENTINELS = (
-    999.0,
-    999.9,
-    999.99,
-    6999.0,
-    7999.0,
-    9999.0,
-    99999.0,
-    32767.0,
-    32768.0,
-    327.67,
-    327.68,
+    *(999.0, 999.9, 999.99, 6999.0, 7999.0, 9999.0, 99999.0),
+    *(32767.0, 32768.0, 327.67, 327.68),
 )
 
 SECOND = 1_000_000_000

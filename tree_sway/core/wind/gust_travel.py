@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import three_numbers, within
+from tree_sway.core.checks import refuse_time_step, three_numbers, within
 from tree_sway.core.kernel import kernel
 from tree_sway.errors import ParameterError
 
@@ -122,10 +122,9 @@ class GustHistory:
         finite, or a step that is not above 0.
         """
         x, y, z = three_numbers('wind', wind_mean)
-        if not (math.isfinite(x + y + z) and math.isfinite(dt) and dt > 0.0):
-            raise ParameterError(
-                f'wind ({x}, {y}, {z}) m/s over {dt} s', cure='give finite numbers'
-            )
+        refuse_time_step(dt)
+        if not math.isfinite(x + y + z):
+            raise ParameterError(f'wind ({x}, {y}, {z}) m/s', cure='give finite numbers')
         remember(self._run, self._at, self._finest, x, y, z, dt)
         follow_mean(self._mean, x, y, dt, self._averaging)
         east, north, _ = self._mean.tolist()

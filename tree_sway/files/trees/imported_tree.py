@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from tree_sway.core.tree.plausibility import oddities, refuse_nonsense
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import TreeSwayError
+from tree_sway.errors import inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,8 +50,6 @@ class TreeFile:
 
     def checked(self) -> TreeFile:
         """Return the same tree if it can be one, else raise as `refuse_nonsense`."""
-        try:
+        with inside(self.source):
             refuse_nonsense(self.tree, self.species)
-        except TreeSwayError as error:
-            raise error.inside(self.source) from None
         return self

@@ -33,6 +33,13 @@ def test_deterministic_from_the_seed():
     np.testing.assert_array_equal(a.sample(10**8), b.sample(10**8))
 
 
+def test_no_seam_shows_where_the_turbulence_begins_again():
+    model, n = AnemometerModel(seed=3, rate=1.0), 2**15
+    np.testing.assert_array_equal(model.sample(5), model.sample(n + 5))
+    steps = np.abs(np.diff(read(model, 400, first=n - 200), axis=0))
+    assert (steps[199] <= np.quantile(steps, 0.999, axis=0)).all()
+
+
 def test_steady_wind_without_turbulence():
     wind = read(AnemometerModel(6.0, turbulence='none', bearing_to=0.0), 5)
     np.testing.assert_allclose(wind, np.tile([0.0, 6.0, 0.0], (5, 1)), atol=1e-15)

@@ -1,6 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated anemometer: mean wind, turbulence and events, sampled tick by tick without end."""
+"""
+A simulated anemometer: mean wind, turbulence and events, sampled tick by tick without end.
+
+The turbulence is one period of a `Turbulence`, over and over: its end joins its beginning.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +15,16 @@ from numpy.typing import NDArray
 
 from tree_sway.core.checks import within
 from tree_sway.core.wind.simulated.gust_event import GustEvent, with_events
-from tree_sway.core.wind.simulated.turbulence import along_bearing, Turbulence
-from tree_sway.core.wind.simulated.turbulence_stream import TurbulenceStream
+from tree_sway.core.wind.simulated.turbulence import (
+    along_bearing,
+    SHORTEST_PERIOD,
+    Turbulence,
+)
 
 Floats = NDArray[np.float64]
+
+_SAMPLES = 2**15
+"""Least number of samples after which the turbulence repeats: 27 minutes at 20 Hz."""
 
 
 class AnemometerModel:
@@ -64,12 +74,13 @@ class AnemometerModel:
         self._bearing_to = within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
         self._events = tuple(events)
         self._mean = np.array([mean_speed, 0.0, 0.0])
-        self._stream: TurbulenceStream | None = None
+        self._gusts = np.zeros((1, 3))
         if turbulence != 'none':
-            level = mean_speed or 1.0
-            parameters = Turbulence(level, turbulence, height, intensity)
+            parameters = Turbulence(mean_speed or 1.0, turbulence, height, intensity)
+            rng = np.random.default_rng(int(within('seed', seed, 0, 2**63)))
             if mean_speed > 0.0:
-                self._stream = TurbulenceStream(parameters, self._rate, seed)
+                n_samples = max(_SAMPLES, round(SHORTEST_PERIOD * rate))
+                self._gusts = parameters.record(n_samples, self._rate, rng)
 
     @property
     def rate(self) -> float:
@@ -79,7 +90,7 @@ class AnemometerModel:
     def sample(self, tick: int) -> Floats:
         """Wind at a tick of the sample period from 0 on: blowing to, ENU in [m/s], (3,)."""
         within('tick', tick, 0, 2**63)
-        wind = self._mean if self._stream is None else self._mean + self._stream.at(tick)
+        wind = self._mean + self._gusts[tick % len(self._gusts)]
         enu = along_bearing(wind, self._bearing_to)
         if not self._events:
             return enu
