@@ -30,5 +30,5 @@ def test_twigs_that_no_step_can_follow_are_held_and_not_flung():
     model = judged_simulator('full', tree)
     # The wind itself goes 1 m in a frame.
     assert largest_move(record_tips(model, tree, wind, FRAME)) < 2.0
-    assert model.counts.held > 0
+    assert model.counts.clamped > 0
     assert model.counts.restarted == 0

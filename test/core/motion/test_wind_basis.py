@@ -122,7 +122,7 @@ def test_a_storm_beyond_the_table_is_held_at_its_limit_and_flings_no_tip(seed, m
         sim.step(wind, DT)
         poses.append(sim.place()[:, :3])
     assert sim.bank.oscillators.n_outside > 0
-    assert sim.counts.held == sim.bank.oscillators.n_outside
+    assert sim.counts.clamped == sim.bank.oscillators.n_outside
     assert np.isfinite(poses).all()
     assert np.linalg.norm(np.diff(poses, axis=0), axis=2).max() < most
     for _ in range(3000):

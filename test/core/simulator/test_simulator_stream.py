@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.simulator.simulator import LOAD_HELD, OK, SwaySimulator, WIND_REFUSED
+from tree_sway.core.simulator.simulator import LOAD_CLAMPED, OK, SwaySimulator, WIND_REFUSED
 from tree_sway.errors import ParameterError
 
 DT = 1.0 / 60.0
@@ -142,9 +142,9 @@ def test_reset_goes_back_to_rest_and_repeats(fork, model):
 def test_a_storm_that_is_held_says_so(stem):
     sim = SwaySimulator(stem(length=1.0, base=0.002, cuts=4), model='branch', gravity=0.0)
     status = [sim.step([140.0, 0.0, 0.0], DT) for _ in range(30)]
-    assert set(status) <= {OK, LOAD_HELD}
-    assert LOAD_HELD in status
-    assert sim.counts.held >= status.count(LOAD_HELD)
+    assert set(status) <= {OK, LOAD_CLAMPED}
+    assert LOAD_CLAMPED in status
+    assert sim.counts.clamped >= status.count(LOAD_CLAMPED)
 
 
 @pytest.mark.parametrize('dt', [0.0, -0.1, float('nan'), float('inf')])

@@ -12,7 +12,7 @@ from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.validation.truth import WOOD
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.simulator.simulator import LOAD_HELD
+from tree_sway.core.simulator.simulator import LOAD_CLAMPED
 from tree_sway.core.simulator.touch import Touch
 from tree_sway.errors import ParameterError
 
@@ -99,7 +99,7 @@ def test_a_pull_moves_a_tree_further_than_any_wind_may():
     assert record['stiffness'] @ instance['eta'] ** 2 > record['most_energy']
     there = moved(truth, segment)
     assert np.linalg.norm(moved(table, segment) - there) < 0.05 * np.linalg.norm(there)
-    assert table.counts.held == 0
+    assert table.counts.clamped == 0
 
 
 def test_twice_the_force_moves_twice_as_far_where_it_bends_little(tree):
@@ -149,8 +149,8 @@ def test_a_force_beyond_bounds_is_clamped_and_counted(tree):
     sim = make_simulator(tree, WOOD, model=60)
     sim.push(outer_segment(tree), (1e12, 0.0, -1e12), 1.0)
     statuses = {sim.step(CALM, DT) for _ in range(60)}
-    assert LOAD_HELD in statuses
-    assert sim.counts.held > 0
+    assert LOAD_CLAMPED in statuses
+    assert sim.counts.clamped > 0
     assert np.isfinite(sim.place()).all()
 
 

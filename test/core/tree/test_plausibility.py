@@ -13,7 +13,7 @@ import pytest
 
 from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.tree.plausibility import oddities, refuse_nonsense, sway_oddity
+from tree_sway.core.tree.plausibility import oddities, refuse_implausible, sway_oddity
 from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
@@ -38,7 +38,7 @@ def in_units(tree: Tree, length: float = 1.0, diameter: float = 1.0) -> Tree:
 @pytest.mark.parametrize('name', BUILTIN_TREES)
 def test_nothing_is_odd_about_the_trees_of_the_package(name: str) -> None:
     tree = builtin_tree(name)
-    refuse_nonsense(tree, species_named(tree.species))
+    refuse_implausible(tree, species_named(tree.species))
     assert oddities(tree, species_named(tree.species)) == ()
 
 
@@ -47,7 +47,7 @@ def test_nothing_is_odd_about_grown_trees(key: str) -> None:
     wood = species_named(key)
     for height in (0.4, 3.0) if wood.habit == 'pot' else (1.5, 12.0, 45.0):
         tree = grow(key, height, rng=np.random.default_rng(1))
-        refuse_nonsense(tree, wood)
+        refuse_implausible(tree, wood)
         assert oddities(tree, wood) == ()
 
 
@@ -63,7 +63,7 @@ def test_nothing_is_odd_about_grown_trees(key: str) -> None:
 )
 def test_wood_in_another_unit_is_refused(wood: dict[str, float], cure: str) -> None:
     with pytest.raises(ParameterError, match=cure):
-        refuse_nonsense(oak(), replace(OAK, **wood))  # type: ignore[arg-type]
+        refuse_implausible(oak(), replace(OAK, **wood))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_wood_in_another_unit_is_refused(wood: dict[str, float], cure: str) -> N
 def test_lengths_in_another_unit_are_refused(length: float, diameter: float, cure: str) -> None:
     for height in (8.0, 20.0):
         with pytest.raises(TreeError, match=cure):
-            refuse_nonsense(in_units(oak(height), length, diameter), OAK)
+            refuse_implausible(in_units(oak(height), length, diameter), OAK)
 
 
 @pytest.mark.parametrize(
@@ -95,7 +95,7 @@ def test_lengths_in_another_unit_are_refused(length: float, diameter: float, cur
 )
 def test_odd_wood_is_told(change: dict[str, float], oddity: str) -> None:
     wood = replace(OAK, **change)  # type: ignore[arg-type]
-    refuse_nonsense(oak(), wood)
+    refuse_implausible(oak(), wood)
     (told,) = oddities(oak(), wood)
     assert told.startswith(oddity)
 
@@ -103,7 +103,7 @@ def test_odd_wood_is_told(change: dict[str, float], oddity: str) -> None:
 def test_a_tree_whose_file_has_y_up_is_told_to_lie() -> None:
     lying = oak()
     lying = replace(lying, start=lying.start[:, [0, 2, 1]], end=lying.end[:, [0, 2, 1]])
-    refuse_nonsense(lying, OAK)
+    refuse_implausible(lying, OAK)
     (told,) = oddities(lying, OAK)
     assert told.startswith('a lean of 9')
     assert told.endswith('add --option up=y')
@@ -137,7 +137,7 @@ def test_whatever_is_given_is_refused_or_told_in_sentences(
     tree = in_units(builtin_tree('goldcrest'), length, diameter)
     wood = replace(OAK, modulus=modulus)
     try:
-        refuse_nonsense(tree, wood)
+        refuse_implausible(tree, wood)
         told = oddities(tree, wood)
     except (ParameterError, TreeError) as error:
         told = (error.cure,)

@@ -29,7 +29,7 @@ from tree_sway.core.kernel import kernel
 N_POINTS = 5
 
 _DIGITS = 9
-"""Of places along a segment: feet that are nearer to each other, or to a node, are one."""
+"""Decimals of places along a segment: feet nearer to each other, or to a node, are one."""
 
 _ROOTS, _ROOT_WEIGHTS = leggauss(N_POINTS)
 _POINTS = (_ROOTS + 1.0) / 2.0
@@ -70,7 +70,7 @@ class BranchBeam:
     start, end
         Nodes of its segments in [m], (m, 3).
     base_diameter, tip_diameter
-        In [m], (m,).
+        Diameters of its segments in [m], (m,).
     children
         Places of its children.
     root_compliance
@@ -97,7 +97,7 @@ class BranchBeam:
         self.segment_length: Floats = np.linalg.norm(step, axis=1)
         share = np.diff(cuts)
         self.length = share * self.segment_length[self.segment]
-        """Of each panel in [m], (p,)."""
+        """Length of each panel in [m], (p,)."""
         self.tangent = (step / self.segment_length[:, None])[self.segment]
         self.node = np.concatenate([[0.0], np.cumsum(self.length)])
         self.place = self.node[:-1, None] + self.length[:, None] * _POINTS
@@ -205,7 +205,7 @@ class BranchBeam:
         Returns
         -------
         Floats
-            Of all that acts beyond each point, about that point, (p, 5, k, 3).
+            Moment of all that acts beyond each point, about that point, (p, 5, k, 3).
 
         """
         point = self.point[:, :, None]

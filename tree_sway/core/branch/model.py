@@ -102,7 +102,7 @@ class TreeBeams:
     tree
         The tree.
     density
-        Of green wood in [kg/m^3].
+        Density of green wood in [kg/m^3].
     shear_ratio
         Shear modulus over Young's in [-].
     speed_profile
@@ -110,7 +110,7 @@ class TreeBeams:
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
     root_compliance
-        Of the stem, as of `BranchBeam`.
+        Root compliance of the stem, as `BranchBeam` takes it.
     known
         Other beams of the same wood, and which of them each branch is, -1 for none, (b,).
 
@@ -229,7 +229,7 @@ class TreeBeams:
         Returns
         -------
         list of BranchModel
-            In the order of the tree's branches.
+            Models in the order of the tree's branches.
 
         """
         return [

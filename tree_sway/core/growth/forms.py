@@ -67,7 +67,7 @@ class BroadleafForm:
     Parameters
     ----------
     outline
-        Of the crown.
+        Outline of the crown.
     bole
         Height of the lowest limb.
     trunk
@@ -77,7 +77,7 @@ class BroadleafForm:
     rise
         Elevation of the lowest and of the highest limb where they start.
     turn
-        By how much the elevation of the lowest and of the highest changes to their tips.
+        Change of the elevation of the lowest and of the highest to their tips.
     wander
         Standard deviation of a limb's heading from segment to segment.
     is_opposite
@@ -87,14 +87,14 @@ class BroadleafForm:
     spread
         Angle between a branch and its limb.
     branch_turn
-        By how much the elevation of a branch changes to its tip.
+        Change of the elevation of a branch to its tip.
     lift
         How much twigs turn up (positive) or hang (negative); 1 is half-way.
     twig
         Length of the twigs.
     exponent
-        Of the pipe model; less makes branches thinner beside their stem. Trees have 1.8 to 2.3
-        (Eloy 2011, Physical Review Letters 107, 258101).
+        Exponent of the pipe model; less makes branches thinner beside their stem. Trees have 1.8
+        to 2.3 (Eloy 2011, Physical Review Letters 107, 258101).
     taper
         Power of the distance from the top that the trunk tapers with on top of that; as a
         conifer's stem, and hardly where the trunk goes to the very top.
@@ -129,13 +129,13 @@ class ConiferForm:
     Parameters
     ----------
     outline
-        Of the crown.
+        Outline of the crown.
     n_whorls, whorl
         Whorls of branches, and branches in each.
     rise
         Elevation of a branch of the lowest and of the highest whorl where they start.
     turn
-        By how much it changes to the tip.
+        Change of that elevation to the tip.
     wander
         Standard deviation of a branch's heading from segment to segment.
     lift
@@ -143,7 +143,7 @@ class ConiferForm:
     twig
         Length of the twigs over that of their branch.
     exponent
-        Of the pipe model; less makes branches thinner beside their stem.
+        Exponent of the pipe model; less makes branches thinner beside their stem.
 
     """
 

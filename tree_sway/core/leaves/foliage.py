@@ -55,7 +55,7 @@ class LeafClusters:
     size
         Diameter in [m], (m,).
     frequency, phase
-        Of the flutter in [Hz] and [rad], (m,).
+        Frequency and phase of the flutter in [Hz] and [rad], (m,).
 
     """
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a scene asks of its trees: an error that nobody sees, a time that a frame may take."""
+"""What a scene asks of its trees: an error too small to be seen, a time that a frame may take."""
 
 from __future__ import annotations
 

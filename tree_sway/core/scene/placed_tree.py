@@ -136,18 +136,6 @@ class Kind(NamedTuple):
         return replace(scene, in_leaf=self.leaf_on, leaf_mass=None, leaf_area=None)
 
 
-def joined_where_placed(trees: Sequence[PlacedTree], name: str) -> Tree:
-    """Join trees where they are; a `ParameterError` for more than `MOST_SEGMENTS`."""
-    n_segments = sum(each.tree.n_segments for each in trees)
-    if n_segments > MOST_SEGMENTS:
-        raise ParameterError(
-            f'{n_segments} segments in one record',
-            where=name,
-            cure=f'at most {MOST_SEGMENTS}: place or draw a part of the trees',
-        )
-    return joined([each.placed() for each in trees], name)
-
-
 def joined(trees: Sequence[Tree], name: str = 'scene') -> Tree:
     """
     Join trees in one frame to one record, to be described or drawn as one; a `TreeError` if none.

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from tree_sway.core.arrays import Ints
-from tree_sway.core.scene.placed_tree import joined_where_placed, Kind, PlacedTree
+from tree_sway.core.scene.placed_tree import joined, Kind, MOST_SEGMENTS, PlacedTree
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 
@@ -59,7 +59,14 @@ class PlacedTrees:
         """
         if self.is_one_tree:
             return self.trees[0].placed()
-        return joined_where_placed(self.trees, self.name)
+        n_segments = sum(each.tree.n_segments for each in self.trees)
+        if n_segments > MOST_SEGMENTS:
+            raise ParameterError(
+                f'{n_segments} segments in one record',
+                where=self.name,
+                cure=f'at most {MOST_SEGMENTS}: place or draw a part of the trees',
+            )
+        return joined([each.placed() for each in self.trees], self.name)
 
     @property
     def is_one_tree(self) -> bool:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-import math
 from typing import Any
 
 import numpy as np
@@ -18,14 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.motion.exported_table import table_of
-from tree_sway.core.motion.standing import STANDING, step_standing
+from tree_sway.core.motion.standing import step_standing
 from tree_sway.core.motion.wind_basis import instance_layout
 from tree_sway.core.motion.wind_basis_force import pace_layout
 from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.scene.standing_rows import own_steps, standing_rows
 from tree_sway.core.wind.gust_travel import GustHistory
-
-FINEST_SCALE = 0.01
-"""Trees whose scales differ by less than this share have one time step."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +66,7 @@ class ReceivedScene:
         anemometer: ArrayLike | None = None,
         convection_ratio: float = 1.0,
     ) -> None:
-        """Stand at rest."""
+        """Begin at rest."""
         self._dt, self._sizes = dt, [len(kind.arrays['stiffness']) for kind in kinds]
         n_harmonics = max(len(kind.arrays['harmonics']) for kind in kinds)
         m = max(self._sizes)
@@ -77,13 +74,10 @@ class ReceivedScene:
         self.instances = np.zeros(len(places), dtype=instance_layout(m, n_harmonics))
         self._laws = np.array([kind.drag_law for kind in kinds])
         self._kind_of = np.asarray(kind_of)
-        steps = np.rint(np.log(places[:, 4]) / FINEST_SCALE)
-        pairs = np.stack([self._kind_of, steps], axis=1)
-        found, pace = np.unique(pairs, axis=0, return_inverse=True)
+        found, step = own_steps(self._kind_of, places[:, 4], dt)
         self._paces = np.zeros(len(found), dtype=pace_layout(m))
-        for own, (number, step) in zip(self._paces, found.tolist(), strict=True):
-            arrays, size = kinds[int(number)].arrays, self._sizes[int(number)]
-            own_dt = dt / math.exp(step * FINEST_SCALE)
+        for own, (number, own_dt) in zip(self._paces, found, strict=True):
+            arrays, size = kinds[number].arrays, self._sizes[number]
             for name, span in (('whole', own_dt), ('half', 0.5 * own_dt)):
                 rows = propagator(1.0, arrays['own_damping'], arrays['stiffness'], span).T
                 if name == 'half':
@@ -91,12 +85,8 @@ class ReceivedScene:
                         [rows[0], rows[1], rows[2] + rows[3], rows[4], rows[5], rows[6] + rows[7]]
                     )
                 own[name][:, :size] = rows
-        standing = self._standing = np.zeros(len(places), dtype=STANDING)
-        standing['kind'], standing['pace'] = self._kind_of, pace.ravel()
-        standing['at'] = places[:, :3]
-        standing['scale'], standing['speed'] = places[:, 4], speeds
-        half = 0.5 * places[:, 3]
-        standing['cosine'], standing['sine'] = np.cos(half), np.sin(half)
+        self._standing = standing_rows(self._kind_of, places, speeds)
+        self._standing['pace'] = step
         self._gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
         self._states = [kind.arrays['state'].astype(np.float64) for kind in kinds]
         self._corrections = [kind.arrays['correction'].astype(np.float64) for kind in kinds]

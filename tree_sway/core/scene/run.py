@@ -51,7 +51,7 @@ class Run:
     Parameters
     ----------
     simulator
-        Of a tree or a scene.
+        The simulator of a tree or a scene.
     rate
         Steps per second in [Hz].
     intake
@@ -198,7 +198,7 @@ class Run:
         self, time: int, origin: int, wind: list[float], waiting: list[tuple[int, list[float]]]
     ) -> None:
         """
-        Go on from the `memory` of another run; newer samples of its own are kept.
+        Continue from the `memory` of another run; its own newer samples stay.
 
         A `ParameterError` for what no run has; this one stays as it was then.
         """

@@ -23,7 +23,7 @@ from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings, settings_with
-from tree_sway.core.tree.plausibility import oddities, refuse_nonsense
+from tree_sway.core.tree.plausibility import oddities, refuse_implausible
 from tree_sway.core.tree.species import Species
 from tree_sway.errors import inside
 
@@ -84,7 +84,7 @@ class Scene(PlacedTrees):
         """Return the same scene if every tree's numbers can be those of one, else raise."""
         for label, kind in self._labelled():
             with inside(f'{self.source}: {label}'.removesuffix(': ')):
-                refuse_nonsense(kind.tree, kind.species)
+                refuse_implausible(kind.tree, kind.species)
         return self
 
     def of_species(self, species: Species) -> Scene:

@@ -34,12 +34,13 @@ from tree_sway.core.motion.wind_basis import (
 from tree_sway.core.motion.wind_basis_force import pace_layout
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
+from tree_sway.core.scene.standing_rows import own_steps, standing_rows
 from tree_sway.core.simulator.live_tuning import Tuning
 from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import (
     Counts,
-    LOAD_HELD,
+    LOAD_CLAMPED,
     OK,
     RESTARTED,
     SwaySimulator,
@@ -52,7 +53,6 @@ from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import inside, nearest, ParameterError
 
 _NO_TABLES: Records = np.zeros(0, dtype=STANDING)
-_FINEST_SCALE = 0.01
 _CROWN = 0.7
 
 
@@ -104,10 +104,10 @@ class SceneSimulator:
                 self._models.append(SwaySimulator(tree, species, chosen, cache=cache))
             progress(len(self._models))
         self._banks: list[WindBasisBank] = [_oscillators(model) for model in self._models]
-        self._standing = np.zeros(len(models), dtype=STANDING)
-        self._standing['kind'] = np.where(is_own, -1, np.searchsorted(used, kind))
+        places = [(each.x, each.y, each.z, each.yaw, each.scale) for each in trees]
+        tables = np.where(is_own, -1, np.searchsorted(used, kind))
+        self._standing = standing_rows(tables, np.array(places), self._speeds())
         self._standing['is_still'] = is_own | (counts == 0)
-        self._fill_standing()
         self._make_tables()
         self._numbers, self._is_shared = counts, ~is_own
         self._show()
@@ -141,7 +141,7 @@ class SceneSimulator:
         own, counts = [sim.counts for sim in self.own.values()], self._counts
         return replace(
             counts,
-            held=counts.held + sum(each.held for each in own),
+            clamped=counts.clamped + sum(each.clamped for each in own),
             restarted=counts.restarted + sum(each.restarted for each in own),
         )
 
@@ -214,17 +214,17 @@ class SceneSimulator:
         if dt != self._dt or any(has_glided):
             self._set_step(dt)
         felt = self.gusts.push(self._wind, dt)
-        held = restarted = 0
+        clamped = restarted = 0
         if self._models:
-            held, restarted = step_standing(
+            clamped, restarted = step_standing(
                 self._tables, self._paces, self._standing, self._instances, self._laws, felt
             )
         for number, simulator in self.own.items():
             status |= simulator.step(felt[number].tolist(), dt)
         self._counts.steps += 1
-        self._counts.held += held
+        self._counts.clamped += clamped
         self._counts.restarted += restarted
-        return status | (LOAD_HELD if held else OK) | (RESTARTED if restarted else OK)
+        return status | (LOAD_CLAMPED if clamped else OK) | (RESTARTED if restarted else OK)
 
     def check_tuning(self, **changes: float) -> Tuning:
         """Refuse what any tree could not take, as `SwaySimulator.check_tuning`."""
@@ -349,33 +349,27 @@ class SceneSimulator:
         self.gusts.reset()
         self._wind[:] = 0.0
 
-    def _fill_standing(self) -> None:
-        """Write where and how large the trees are, and how much stronger their wind is."""
-        rows, trees, profile = self._standing, self.scene.trees, self.settings.profile
-        rows['at'] = [(each.x, each.y, each.z) for each in trees]
-        scale = rows['scale'] = np.array([each.scale for each in trees])
-        half = 0.5 * np.array([each.yaw for each in trees])
-        rows['cosine'], rows['sine'] = np.cos(half), np.sin(half)
-        crown = profile.ground + _CROWN * self._heights() * np.array([np.ones(len(trees)), scale])
+    def _speeds(self) -> Floats:
+        """Wind of each tree over that of its kind, (t,)."""
+        profile, scale = self.settings.profile, np.array([each.scale for each in self.scene.trees])
+        crown = profile.ground + _CROWN * self._heights() * np.array([np.ones(len(scale)), scale])
         own, scaled = profile.over_anemometer(crown)
-        rows['speed'] = np.where(own > 0.0, scaled / np.where(own > 0.0, own, 1.0), 1.0)
+        return np.where(own > 0.0, scaled / np.where(own > 0.0, own, 1.0), 1.0)
 
     def _heights(self) -> Floats:
         """Heights of the trees' kinds in [m], (t,)."""
         return np.array([each.tree.height for each in self.scene.kinds])[self.scene.kind_numbers]
 
     def _set_step(self, dt: float) -> None:
-        """Fill a pace for every kind and scale that there is, to a hundredth."""
+        """Fill the coefficients of every kind and scale that there is, to a hundredth."""
         rows = np.flatnonzero(self._is_shared)
-        scale = np.round(np.log(self._standing['scale'][rows]) / _FINEST_SCALE).astype(np.int64)
-        pairs = np.stack([self._standing['kind'][rows], scale], axis=1)
-        found, number = np.unique(pairs, axis=0, return_inverse=True)
+        found, number = own_steps(self._standing['kind'][rows], self._standing['scale'][rows], dt)
         self._paces = np.zeros(len(found), dtype=self._paces.dtype)
-        for pace, (kind, step) in zip(self._paces, found.tolist(), strict=True):
+        for pace, (kind, own_dt) in zip(self._paces, found, strict=True):
             modal = self._banks[kind].modal
-            modal.set_pace(dt / math.exp(step * _FINEST_SCALE))
+            modal.set_pace(own_dt)
             fill_pace(pace, modal)
-        self._standing['pace'][rows] = number.ravel()
+        self._standing['pace'][rows] = number
         self._dt = dt
 
 

@@ -29,7 +29,7 @@ class Oscillators(Protocol):
     branches: Records
     work: Records
     shapes: Floats
-    """Of its coordinates, (N, m)."""
+    """Key rotations per unit of each coordinate, (N, m)."""
 
     @property
     def loads(self) -> Records | None:

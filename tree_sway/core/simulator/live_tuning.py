@@ -42,11 +42,11 @@ class Tuning:
     Parameters
     ----------
     damping_ratio
-        Of every oscillator in [-], 0 to 1.
+        Damping ratio of every oscillator in [-], 0 to 1.
     stiffness_factor
         Elastic stiffness over that which the tree was made with in [-], 0.1 to 10.
     gravity
-        In [m/s^2], 0 to 30.
+        Gravity in [m/s^2], 0 to 30.
 
     """
 

@@ -83,7 +83,7 @@ class TreeReductions:
         self.settings = in_season(tree, species, settings)
         self.plain = plain or bool(WHY_PLAIN)
         self.drag_law, self.leaf_load_area = _crown_drag(tree, species, self.settings)
-        """Of the whole tree; wood that the leaves of each branch are equivalent to [m^2], (b,)."""
+        """Law of the whole tree; bare wood that leaves of each branch are worth in [m^2], (b,)."""
         self.circular = np.zeros(0)
         """Lowest natural circular frequencies that are known in [rad/s]."""
         self._slowest: Modes | None = None

@@ -52,17 +52,17 @@ class Settings:
         Or ``branch``, the paper's, each branch by itself; ``full``, all coordinates and the load
         of every branch; or ``auto``, which takes as many coordinates as the scene needs.
     degree
-        Of the harmonics of the wind's direction: 1, 3 or 5.
+        Degree of the harmonics of the wind's direction: 1, 3 or 5.
     volume_stiffness, volume_damping
         The two constants of the paper's rule for the model ``branch``, stiffness and damping of a
         branch over its volume in [N m/rad/m^3] and [N m s/rad/m^3]; a stiffness of 0 for that of
         its beam.
     damping_ratio
-        In [-]; that of the species if None.
+        Damping ratio of every oscillator in [-]; that of the species if None.
     in_leaf
         Whether the tree bears leaves; None leaves it to the species, of which evergreens do.
     gravity
-        In [m/s^2]; 0 leaves weight out.
+        Gravity in [m/s^2]; 0 leaves weight out.
     profile
         Wind over height.
     crown_coherence

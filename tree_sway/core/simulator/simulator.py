@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from tree_sway.core.simulator.touch import Touch
     from tree_sway.core.wind.gust_travel import GustHistory
 
-OK, WIND_REFUSED, LOAD_HELD, RESTARTED = 0, 1, 2, 4
+OK, WIND_REFUSED, LOAD_CLAMPED, RESTARTED = 0, 1, 2, 4
 """What `SwaySimulator.step` returns, as bits."""
 
 
@@ -45,13 +45,13 @@ class Counts:
     What became of the steps since the start.
 
     ``refused``: the wind was not finite or faster than the limit, and the one before was kept;
-    ``held``: loads at the limit of the model; ``restarted``: the motion was not finite, and the
-    tree went on from rest; ``refused_pushes``: calls of `SwaySimulator.push` that were refused.
+    ``clamped``: loads at the limit of the model; ``restarted``: the motion was not finite, and the
+    tree continued from rest; ``refused_pushes``: calls of `SwaySimulator.push` that were refused.
     """
 
     steps: int = 0
     refused: int = 0
-    held: int = 0
+    clamped: int = 0
     restarted: int = 0
     refused_pushes: int = 0
 
@@ -247,7 +247,7 @@ class SwaySimulator:
         -------
         int
             0, or the sum of `WIND_REFUSED` (not finite or too fast: the wind before is kept),
-            `LOAD_HELD` (a load beyond what the model follows was held at its limit) and
+            `LOAD_CLAMPED` (a load beyond what the model follows was clamped) and
             `RESTARTED` (the motion was not finite: the tree goes on from rest).
 
         Raises
@@ -267,8 +267,8 @@ class SwaySimulator:
             if outcome == 0 and self._touch is None:
                 return OK
             counts.refused += outcome & 1
-            held = self.bank.oscillators.step_outside() if outcome & 2 else 0
-            return (WIND_REFUSED if outcome & 1 else OK) | self._count(held) | self._touched(dt)
+            clamped = self.bank.oscillators.step_outside() if outcome & 2 else 0
+            return (WIND_REFUSED if outcome & 1 else OK) | self._count(clamped) | self._touched(dt)
         status = OK
         if is_wind(x, y, z, self._max_wind):
             self._wind[:] = x, y, z
@@ -332,12 +332,12 @@ class SwaySimulator:
             return OK
         return self._count(touch.step(self.place(self._poses), self._origin, dt))
 
-    def _count(self, held: int) -> int:
+    def _count(self, clamped: int) -> int:
         """Take what an advance returned; returns what `step` reports of it."""
-        if held > 0:
-            self.counts.held += held
-            return LOAD_HELD
-        if held < 0:
+        if clamped > 0:
+            self.counts.clamped += clamped
+            return LOAD_CLAMPED
+        if clamped < 0:
             self.bank.oscillators.reset()
             self.counts.restarted += 1
             return RESTARTED

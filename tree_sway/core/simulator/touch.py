@@ -23,7 +23,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
 LONGEST_PUSH = 3600.0
-"""A push ends at the latest after this time [s], should nobody end it."""
+"""Longest time in [s] that a push may be asked to last."""
 
 _RENEWED = 0.1
 """Time in [s] after which the lever of a push is found again, as the tree has moved."""

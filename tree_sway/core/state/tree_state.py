@@ -20,7 +20,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.errors import StateError
 
 VERSION = 1
-"""Of the form of a state; one of another version is refused."""
+"""Version of the form of a state; a state of another version is refused."""
 
 _LARGEST_HEAD = 4096
 
@@ -46,7 +46,7 @@ class TreeState:
 
     @staticmethod
     def from_bytes(data: bytes) -> TreeState:
-        """Read what `to_bytes` wrote; a `StateError` for no state, or one of another version."""
+        """Read what `to_bytes` wrote; a `StateError` for no state, or another version's."""
         head, _, values = data.partition(b'\n')
         try:
             header = json.loads(head[:_LARGEST_HEAD])

@@ -25,7 +25,7 @@ class WoodStrain:
     branch: Ints
     """Branch of the tree that each segment is a part of, (m,)."""
     height: Floats
-    """Of the middle of each segment above the foot of the tree, at rest in [m], (m,)."""
+    """Height of the middle of each segment above the foot of the tree, at rest in [m], (m,)."""
 
     def __init__(self, reductions: TreeReductions) -> None:
         """Gather what each coordinate bends."""

@@ -90,7 +90,7 @@ def tree_from_segments(
             'each tree its own',
         )
     if branch is None:
-        continuations = _heirs(starts, ends, diameters, parents, depth_order)
+        continuations = _continuations(starts, ends, diameters, parents, depth_order)
         keys = chain_starts(parents, continuations)
     else:
         keys = _integers(branch, n, 'branch')
@@ -187,7 +187,7 @@ def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
     return parents.astype(np.int64)
 
 
-def _heirs(
+def _continuations(
     starts: Floats, ends: Floats, diameters: Floats, parents: Ints, depth_order: Ints
 ) -> Ints:
     """Return who goes on from each segment's end: the thickest, the straightest on a tie, (n,)."""

@@ -35,7 +35,7 @@ _SWAY_FACTOR = 5.0
 _LENGTHS = {0.001: 'mm', 0.01: 'cm'}
 
 
-def refuse_nonsense(tree: Tree, species: Species) -> None:
+def refuse_implausible(tree: Tree, species: Species) -> None:
     """
     Refuse a tree whose numbers are in another unit than SI.
 

@@ -201,7 +201,7 @@ class WindAverage:
         ]
 
     def recall(self, memory: Sequence[float]) -> None:
-        """Go on from the memory of another; a `ParameterError` for numbers that are none."""
+        """Continue from another's memory; a `ParameterError` for numbers that are no memory."""
         try:
             numbers = np.array(memory, dtype=np.float64).reshape(-1)
             newest, passed, period, is_new, lateness, start, end = numbers[:7].tolist()

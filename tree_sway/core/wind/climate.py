@@ -27,9 +27,9 @@ class WindClimate:
     Parameters
     ----------
     mean
-        In [m^2/s^2], (3,).
+        Mean in [m^2/s^2], (3,).
     covariance
-        In [m^4/s^4], (3, 3).
+        Covariance in [m^4/s^4], (3, 3).
     speed
         Mean speed in [m/s].
     integral_time

@@ -91,7 +91,7 @@ class WindConvention:
 
     @cached_property
     def sign(self) -> float:
-        """Of a component that points where the wind blows to."""
+        """Sign of a component that points where the wind blows to."""
         return 1.0 if self.direction_convention == 'to' else -1.0
 
     @cached_property

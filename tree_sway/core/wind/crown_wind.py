@@ -48,7 +48,7 @@ N_DELAYS = 16
 """Delays that limbs choose from."""
 
 LONGEST_DELAY = 8.0
-"""In [s]; of a wide crown in a light wind."""
+"""Longest delay in [s], that of a wide crown in a light wind."""
 
 _SLOWEST = 2.0
 _AVERAGING = 30.0

@@ -15,7 +15,7 @@ class WindCurve:
     """
     Straight lines through the newest knots, level before the first and after the last.
 
-    Of more knots than the capacity the oldest go first. Times are in [s], values in [m/s], (3,).
+    Beyond the capacity the oldest knots are dropped. Times are in [s], values in [m/s], (3,).
     """
 
     def __init__(self, capacity: int) -> None:

@@ -63,7 +63,7 @@ class WindProfile:
         Returns
         -------
         Floats
-            Of the same shape, in [-]; 0 at the ground and below but for kind ``none``.
+            Ratios of the same shape in [-]; 0 at the ground and below but for kind ``none``.
 
         """
         height = np.maximum(np.asarray(z, dtype=np.float64) - self.ground, 0.0)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from tree_sway.core.tree.plausibility import oddities, refuse_nonsense
+from tree_sway.core.tree.plausibility import oddities, refuse_implausible
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import inside
@@ -49,7 +49,7 @@ class TreeFile:
         return replace(self, tree=replace(self.tree, species=species.key), species=species)
 
     def checked(self) -> TreeFile:
-        """Return the same tree if it can be one, else raise as `refuse_nonsense`."""
+        """Return the same tree if it can be one, else raise as `refuse_implausible`."""
         with inside(self.source):
-            refuse_nonsense(self.tree, self.species)
+            refuse_implausible(self.tree, self.species)
         return self

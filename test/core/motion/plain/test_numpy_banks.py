@@ -14,7 +14,7 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.simulator.simulator import LOAD_HELD, SwaySimulator
+from tree_sway.core.simulator.simulator import LOAD_CLAMPED, SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
 
 
@@ -78,7 +78,7 @@ def test_they_agree_where_loads_are_held(tree):
         wind = [145.0, 30.0 * np.sin(k), 5.0]
         status = sim.step(wind, 1 / 60)
         assert twin.step(wind, 1 / 60) == status
-        held += status == LOAD_HELD
+        held += status == LOAD_CLAMPED
     # Beyond a radian the kernel's polynomials are right to 3e-9 of a sine, not to rounding.
     assert np.abs(sim.place() - twin.place()).max() < 1e-6
     assert held > 0

@@ -83,7 +83,7 @@ def von_karman_spectrum(
 
 
 _KAIMAL_SCALES = np.array([8.1, 2.7, 0.66])
-"""Of IEC 61400-1."""
+"""Integral scales of u, v, w over Lambda1, by IEC 61400-1."""
 
 # Von Karman scales that share the inertial subrange of Kaimal, and so its rate of dissipation. For
 # u this is IEC's own 3.5 Lambda1; for v and w the standard's 4/3 S_u of local isotropy is kept.
