@@ -75,5 +75,6 @@ def test_no_resonance_is_refused():
 
 
 def test_too_few_cycles():
-    with pytest.raises(FormatError, match=r'14\.0 cycles of 0.7 Hz; an ambient record takes at least 20'):
+    refusal = r'14\.0 cycles of 0.7 Hz; an ambient record takes at least 20'
+    with pytest.raises(FormatError, match=refusal):
         ambient_sway(driven(0.05, 0)[:200], DT, 0.7)
