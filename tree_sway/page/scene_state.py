@@ -124,7 +124,7 @@ class SceneState:
         stamp
             Its time in [ns].
         is_paused
-            Whether time stands still.
+            Whether time is paused.
         has_restarted
             Whether the motion jumped since the frame before.
 

@@ -41,7 +41,7 @@ _LEAF_CLUSTERS = 1000
 """Clusters of leaves in `tree_description`, of a tree in leaf."""
 
 _FARTHEST_CAMERA = 1e6
-"""Along each axis [m]."""
+"""Distance along each axis [m]."""
 
 _STRONGEST_PUSH, _PUSH_LASTS = 1e5, 0.5
 """Force [N], and time [s] after which a push ends that is not sent again."""

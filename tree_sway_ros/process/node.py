@@ -40,7 +40,7 @@ _ENTITIES = {
 
 
 class _Never(CallbackGroup):  # type: ignore[misc]
-    """Of a subscription that no executor looks at."""
+    """The callback group of a subscription that no executor looks at."""
 
     def can_execute(self, _entity: Any) -> bool:
         return False
