@@ -309,6 +309,20 @@ def encode_frame(frame: Frame) -> bytes:
     )  # fmt: skip
 
 
+def encode_state(
+    description: Description,
+    sequence: int,
+    stamp: int,
+    wind: Floats,
+    coordinates: ArrayLike,
+    flags: int = 0,
+) -> bytes:
+    """Write the frame of coordinates (m,) in their own unit; the rest is as of `Frame`."""
+    steps, is_cut = quantised(coordinates, description.scale)
+    flags |= BEYOND_SCALE * is_cut
+    return encode_frame(Frame(description.short_identity, sequence, stamp, flags, wind, steps))
+
+
 def decode_frame(data: bytes) -> Frame:
     """
     Read a frame.

@@ -42,9 +42,6 @@ _MEETING = 2.0
 class PlayerNode(TreeSwayNode):
     """Publishes `wind` or the state of a tree from a record, and `/clock` if asked to."""
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__('player', **options)
-
     def configure(self) -> None:
         """Read the record."""
         if not self.values['file']:

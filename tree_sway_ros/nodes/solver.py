@@ -50,9 +50,6 @@ _STRONGEST_PUSH, _PUSH_LASTS = 1e5, 0.5
 class SolverNode(TreeSwayNode):
     """Subscribes `wind/filtered`; publishes poses, markers and state, and their description."""
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__('solver', **options)
-
     def configure(self) -> None:
         """Open the tree, reduce it and make its kernels ready."""
         began, log = time.monotonic(), self.get_logger().info

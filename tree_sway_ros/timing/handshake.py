@@ -67,16 +67,14 @@ class Audience:
         ]
         if missing:
             self._complete = None
-            self._say(f'waiting for subscribers of {", ".join(missing)}')
+            text = f'waiting for subscribers of {", ".join(missing)}'
+            if text != self._said:
+                self._said = text
+                self._log(text)
             return False
         if self._complete is None:
             self._complete = time.monotonic()
         return not self._wanted or time.monotonic() - self._complete >= SETTLING
-
-    def _say(self, text: str) -> None:
-        if text != self._said:
-            self._said = text
-            self._log(text)
 
 
 class Answers:
