@@ -22,7 +22,7 @@ import struct
 
 import numpy as np
 
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import ParameterError
 from tree_sway.page.scene_state import SceneState
 from tree_sway.page.tables import tables_of

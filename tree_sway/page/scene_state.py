@@ -8,8 +8,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
-from tree_sway.core.scene.scene_simulator import SceneSimulator
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.page.description import describe_scene
 from tree_sway.page.protocol import (
@@ -61,7 +60,7 @@ class SceneState:
         self.simulator = simulator
         self.kinds = scene_kinds(simulator, is_running=is_running)
         if isinstance(simulator, SceneSimulator):
-            self.names, name = simulator.names, simulator.name
+            self.names, name = simulator.names, simulator.scene.name
         else:
             self.names, name = (simulator.tree.name,), simulator.tree.name
         self._lay_out()

@@ -17,7 +17,7 @@ import time
 
 from tree_sway.core.scene.demand import set_demand
 from tree_sway.core.scene.run import Run
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake

@@ -13,9 +13,9 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.shard import dealt
 from tree_sway.core.simulator.live_tuning import LIVE
-from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
@@ -94,7 +94,7 @@ class SolverNode(TreeSwayNode):
             profile=WindProfile(self.values['profile'], self.values['anemometer_height']),
         )
         self.simulator: Simulator = source.simulator(
-            settings, kept=KeptSetUps(), **self.values('tolerance')
+            settings, cache=KeptSetUps(), **self.values('tolerance')
         )
         if self.values['stiffness_factor'] != 1.0:
             self.simulator.tune(**self.values('stiffness_factor'))

@@ -8,7 +8,7 @@ import time
 
 from tree_sway.core.scene.demand import adaptive_among
 from tree_sway.core.scene.run import Run
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.gate import GateCounts
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
@@ -65,7 +65,6 @@ def _wind(state: str, counts: GateCounts) -> Status:
 def _model(simulator: Simulator) -> Status:
     values = {
         'model': simulator.model,
-        'branches solved': simulator.n_solved,
         **vars(simulator.counts),
     }
     trees = simulator.simulators

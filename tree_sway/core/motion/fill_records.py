@@ -4,8 +4,8 @@
 The one place where records are filled: what stepping and placing know of a tree.
 
 `Places` says how a tree is joined and drawn; whoever has one can place it, as a receiver of the
-stream. `branch_records` adds what the wind does, `copy_twigs` which branches copy; `head_records`
-and `load_records` lay the same out in lanes.
+stream. `branch_records` adds what the wind does; `head_records` and `load_records` lay it out in
+lanes.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats, Ints, Record, Records
+from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.branch.beam import cross, cross_matrix
 from tree_sway.core.branch.model import BranchModel
 from tree_sway.core.branch.shapes import across, exposure, MAX_COORDINATES
@@ -231,12 +231,11 @@ def branch_records(
     layout = branch_layout(2) if places.turn.shape[1] == 2 else branch_layout()
     records = np.zeros(tree.n_branches, dtype=layout)
     for branch, model in enumerate(models):
-        record: Record = records[branch]
+        record = records[branch]
         for i, field in enumerate(model.fields):
             record['tip_mode'][i] = field.nodes[-1]
         _fill_load(model, speed_profile[tree.segments_of(branch)], record)
     fill_places(places, records)
-    records['source'] = np.arange(tree.n_branches)
     records['twist'] = reduction.twist[:, : records['twist'].shape[1]]
     records['tip'] = tree.end[tree.branch_first[1:] - 1] - tree.start[0]
     base = tree.start[tree.branch_first[:-1]] - tree.start[0]
@@ -251,7 +250,7 @@ _STRAIGHT = 0.03
 """Share of the wind along a branch below which this is not distinguished from none."""
 
 
-def _fill_load(model: BranchModel, speed_profile: Floats, record: Record) -> None:
+def _fill_load(model: BranchModel, speed_profile: Floats, record: np.void) -> None:
     """Fill what the wind load reads; wind speed at its segments over that at the anemometer."""
     beam = model.beam
     weight = model.drag_area * beam.weight
@@ -295,7 +294,7 @@ def _cubes(squares: Floats) -> Floats:
     return cubes
 
 
-def _fit_load(model: BranchModel, share: Floats, record: Record) -> None:
+def _fit_load(model: BranchModel, share: Floats, record: np.void) -> None:
     """Fit projector, push and couple of a crooked branch to the drag on it (least squares)."""
     tangent = model.beam.tangent
     slanting = _SlantingWinds(model.beam.chord)
@@ -317,7 +316,7 @@ def _fit_load(model: BranchModel, share: Floats, record: Record) -> None:
     record['load_mode'][:k] += (fit @ (pushed - force @ record['load_mode'][:k].T)).T
 
 
-def _fill_flow(record: Record, mean: Floats, square: float, cube: float) -> None:
+def _fill_flow(record: np.void, mean: Floats, square: float, cube: float) -> None:
     """
     Scale the displacement across the branch to that at which drag damps as its mean square does.
 
@@ -332,16 +331,6 @@ def _fill_flow(record: Record, mean: Floats, square: float, cube: float) -> None
     still = (cube / square) ** 2 if square > 0.0 else 0.0
     record['spread'] = max(still - 0.5 * float(np.square(record['damping_mode'][:2]).sum()), 0.0)
     record['lever'] = math.sqrt(0.5 * across)
-
-
-def copy_twigs(records: Records, source: Ints) -> None:
-    """
-    Let twigs copy others: each turns about the axes of its source, so that it moves the same one.
-
-    The source is itself where a branch is solved, (b,).
-    """
-    records['source'] = source
-    records['frame'] = records['frame'][source]
 
 
 class _SlantingWinds:
@@ -424,6 +413,5 @@ def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> 
     records['along'][block, :, lane] = branches['lever'][:, None] * branches['frame'][:, 0]
     at_base = cross(branches['base'][:, None], np.eye(3)).swapaxes(1, 2)
     records['coupling'][block, ..., lane] = branches['coupling'] - at_base
-    records['is_solved'][block, lane] = branches['source'] == np.arange(len(branches))
     np.maximum.at(records['n_rows'], block, branches['n_coordinates'])
     return records

@@ -17,11 +17,19 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Record, Records
+from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
-from tree_sway.core.motion.records import LANES, OSCILLATORS, WORK
+from tree_sway.core.motion.records import (
+    Banks,
+    Branches,
+    LANES,
+    OSCILLATORS,
+    Oscillators,
+    WORK,
+    Works,
+)
 from tree_sway.core.motion.tree_passes import own_loads, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
 from tree_sway.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force
@@ -114,7 +122,7 @@ class UncoupledBank(Branchwise):
 
 @fused
 def _advance(
-    branches: Records, work: Records, banks: Records, state: Floats,
+    branches: Branches, work: Works, banks: Banks, state: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     x, v = state[0], state[1]
@@ -133,8 +141,6 @@ def _advance(
         held += _step(banks[block])
     for b in range(n):
         here, j = banks[b // LANES], b % LANES
-        if not here.is_solved[j]:
-            here, j = banks[branches[b].source // LANES], branches[b].source % LANES
         for k in range(3):
             work[b].force[k] = here.force[k, j]
         for k in range(2):
@@ -144,7 +150,7 @@ def _advance(
 
 
 @fused
-def _to_middle(bank: Record) -> None:
+def _to_middle(bank: Oscillators) -> None:
     """State of sixteen branches half a step on, under the last step's load."""
     x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
     middle_x, middle_v = bank.x, bank.v
@@ -157,15 +163,15 @@ def _to_middle(bank: Record) -> None:
 
 
 @fused
-def _step(bank: Record) -> int:
+def _step(bank: Oscillators) -> int:
     """Step sixteen branches; return how many loads were held."""
     x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard
-    is_solved, held = bank.is_solved, 0
+    held = 0
     for j in range(LANES):
         x[0, j], x[1, j], v[0, j], v[1, j], over = step_branch(
             x[0, j], x[1, j], v[0, j], v[1, j], load[0, j], load[1, j], load[2, j],
             c[0, j], c[1, j], c[2, j], c[3, j], c[4, j], c[5, j], c[6, j], c[7, j],
             g[0, j], g[1, j], g[2, j],
         )  # fmt: skip
-        held += over * is_solved[j]
+        held += over
     return held
