@@ -71,7 +71,7 @@ def set_ups_are_made_once(tmp_path_factory):
 
     @functools.wraps(make)
     def make_from_cache(self, *arguments, **options):
-        make(self, *arguments, **{'kept': cache} | options)
+        make(self, *arguments, **{'cache': cache} | options)
 
     SwaySimulator.__init__ = make_from_cache
     yield

@@ -29,7 +29,6 @@ from tree_sway_ros.wire import frames  # noqa: E402
 from tree_sway_ros.wire.wind_messages import (  # noqa: E402
     fill_stamp,
     stamp_to_ns,
-    wind_class,
     WIND_CLASSES,
     wind_from_message,
     wind_to_message,
@@ -44,7 +43,7 @@ class Mast:
     """An anemometer in the hand of the test: it says when and what."""
 
     def __init__(self, observer, type_name='geometry_msgs/Vector3Stamped'):
-        self._kind = wind_class(type_name)
+        self._kind = WIND_CLASSES[type_name]
         self._publisher = observer.publisher(WIND, self._kind)
         self._clock = observer.node.get_clock()
 
@@ -72,7 +71,7 @@ def test_a_westerly_bends_the_tree_to_the_east(
         anemometer={'output_type': type_name, 'turbulence': 'none', **kind},
     )
     frames = observer.listen(SEGMENT_POSES)
-    said = observer.listen(WIND, wind_class(type_name))
+    said = observer.listen(WIND, WIND_CLASSES[type_name])
     observer.until(lambda: said and frames, 'wind and frames')
     sign = 1.0 if convention == 'to' else -1.0
     assert wind_from_message(said[-1]).u == pytest.approx(sign * 6.0)
@@ -231,7 +230,7 @@ def test_stamps_that_lie_are_counted_and_never_step_back(compose, observer):
     observer.until(lambda: filtered[-1].vector.x == pytest.approx(3.5), 'every sample')
     counts = nodes['wind']._intake.counts
     assert (counts.zero_stamp, counts.future_stamp, counts.old_stamp) == (1, 1, 1)
-    assert counts.out_of_order + counts.duplicate_stamp == 2
+    assert counts.out_of_order == 2
     assert (np.diff([stamp_to_ns(m.header.stamp) for m in filtered]) > 0).all()
     assert [round(m.vector.x, 1) for m in filtered[-6:]] == [3.0, 3.1, 3.2, 3.3, 3.4, 3.5]
 

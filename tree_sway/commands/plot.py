@@ -26,8 +26,8 @@ from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.simulate import Rig
-from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.wind.convention import velocity_of_bearing
 from tree_sway.errors import ParameterError, TreeError
 from tree_sway.page.wind_source import RecordedWind
@@ -62,18 +62,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--seconds', type=float, default=60.0, metavar='N', help='how long (%(default)s)'
     )
-    picture = 'picture (sway.png, or the next name that is free)'
-    add_output_arguments(parser, picture, required=False)
+    add_output_arguments(parser, 'picture to write, .png or .pdf')
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw, and say where the picture is."""
-    if not 0.0 < arguments.seconds <= 3600.0:
-        raise ParameterError(f'{arguments.seconds:g} s', where='--seconds', cure='give 0 to 3600')
+    within('--seconds', arguments.seconds, 0.0, 3600.0, 's', above=True)
     if arguments.speed is None:
         arguments.speed = 30.0 if arguments.strength else 10.0 if arguments.portrait else 6.0
     _refuse_bearing(arguments)
-    output = output_path(arguments, 'sway.png')
+    output = output_path(arguments)
     scene = opened_scene(arguments)
     draw = _strength if arguments.strength else _portrait if arguments.portrait else _motion
     draw(scene, arguments, output)

@@ -13,7 +13,7 @@ from scipy.sparse import csc_matrix
 from tree_sway_lab.segments.articulated import ArticulatedTree
 
 from tree_sway.core.branch.greenhill import greenhill_length
-from tree_sway.core.branch.model import branch_models
+from tree_sway.core.branch.model import TreeBeams
 from tree_sway.core.reduction import modes as modes_module
 from tree_sway.core.reduction.matrices import Factors, reduce_tree
 from tree_sway.core.reduction.modes import buckling_factor, natural_modes, refuse_buckling
@@ -26,7 +26,7 @@ TREE_121 = Path(__file__).parents[2] / 'files' / 'data' / 'tree121.csv'
 
 
 def reduced(tree, gravity=9.81, modulus=9e9, enriched=()):
-    models = branch_models(tree, 900.0, carries=True, enriched=frozenset(enriched))
+    models = TreeBeams(tree, 900.0).models(carries=True, enriched=frozenset(enriched))
     return reduce_tree(tree, models, modulus, modulus / 2.6, gravity)
 
 

@@ -12,40 +12,43 @@ loads other coordinates than before: in a storm that part is as large as the oth
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Record, Records, Singles
+from tree_sway.core.arrays import fields_of, Floats, RecordsOf, Singles
 from tree_sway.core.branch.shapes import MAX_COORDINATES
 from tree_sway.core.kernel import inlined, kernel
-from tree_sway.core.motion.records import LANES
+from tree_sway.core.motion.records import Branch, Branches, LANES, Load, Loads, Work, Works
 from tree_sway.core.rotation import turned
 
-SCRATCH = np.dtype(
-    [
-        # Of a base: by the motion (v, w) of its parent's base, then by that one's coordinates.
-        ('follow', 'f8', (6, 6)),
-        ('relative', 'f8', (6, MAX_COORDINATES)),  # in the frame of the parent's base
-        ('joint', 'f8', (6, MAX_COORDINATES)),  # in its own frame
-        ('borne', 'f8', (6, MAX_COORDINATES)),  # change of what it hands on
-        ('lever', 'f8', (MAX_COORDINATES, MAX_COORDINATES)),  # of what loads the coordinates
-        # Of a branch: columns are the motion (v, w) of its base, then its own coordinates.
-        ('ahead', 'f8', (3, 3)),  # from the frame of its base to its own
-        ('drag', 'f8', (3, 3)),  # force per relative wind
-        ('centre', 'f8', (3, 6 + MAX_COORDINATES)),  # velocity of the load centre
-        ('damped', 'f8', (3, 6 + MAX_COORDINATES)),  # force by the rates
-        ('seen', 'f8', (3, 6 + MAX_COORDINATES)),  # how the branch turns
-        ('force', 'f8', (3, 6 + MAX_COORDINATES)),
-        ('wrench', 'f8', (6, 6 + MAX_COORDINATES)),  # force and moment about its base
-        ('load', 'f8', (MAX_COORDINATES, 6 + MAX_COORDINATES)),
-    ]
-)
-"""Small matrices of one branch."""
+
+class Small:
+    """Small matrices of one branch."""
+
+    # Of a base: by the motion (v, w) of its parent's base, then by that one's coordinates.
+    follow: Annotated[Floats, 6, 6]
+    relative: Annotated[Floats, 6, MAX_COORDINATES]  # in the frame of the parent's base
+    joint: Annotated[Floats, 6, MAX_COORDINATES]  # in its own frame
+    borne: Annotated[Floats, 6, MAX_COORDINATES]  # change of what it hands on
+    lever: Annotated[Floats, MAX_COORDINATES, MAX_COORDINATES]  # of what loads the coordinates
+    # Of a branch: columns are the motion (v, w) of its base, then its own coordinates.
+    ahead: Annotated[Floats, 3, 3]  # from the frame of its base to its own
+    drag: Annotated[Floats, 3, 3]  # force per relative wind
+    centre: Annotated[Floats, 3, 6 + MAX_COORDINATES]  # velocity of the load centre
+    damped: Annotated[Floats, 3, 6 + MAX_COORDINATES]  # force by the rates
+    seen: Annotated[Floats, 3, 6 + MAX_COORDINATES]  # how the branch turns
+    force: Annotated[Floats, 3, 6 + MAX_COORDINATES]
+    wrench: Annotated[Floats, 6, 6 + MAX_COORDINATES]  # force and moment about its base
+    load: Annotated[Floats, MAX_COORDINATES, 6 + MAX_COORDINATES]
+
+
+SCRATCH = np.dtype(fields_of(Small))
 
 
 @kernel
 def load_slopes(
-    branches: Records, work: Records, loads: Records, shapes: Singles, scratch: Records,
+    branches: Branches, work: Works, loads: Loads, shapes: Singles, scratch: RecordsOf[Small],
     rows: Singles, centres: Singles, forces: Singles, moments: Singles,
 ) -> None:  # fmt: skip
     """
@@ -101,7 +104,7 @@ def load_slopes(
 
 @kernel
 def _hand_on(
-    branches: Records, work: Records, b: int, shapes: Singles, small: Record,
+    branches: Branches, work: Works, b: int, shapes: Singles, small: Small,
     rows: Singles, top: int, moments: Singles,
 ) -> None:  # fmt: skip
     """Add what all that a branch bears changes to what its parent bears, and to its moments."""
@@ -171,7 +174,7 @@ def _set_turn(r: Floats, out: Floats) -> None:
 
 
 @kernel
-def _set_joint(branch: Record, here: Record, n: int, small: Record) -> None:
+def _set_joint(branch: Branch, here: Work, n: int, small: Small) -> None:
     """Write how a base moves by its parent's base and each of its parent's coordinates."""
     turn, shift, arm = here.turn, here.shift, branch.arm
     follow, relative = small.follow, small.relative
@@ -198,7 +201,7 @@ def _set_joint(branch: Record, here: Record, n: int, small: Record) -> None:
 
 
 @kernel
-def _set_borne(branch: Record, here: Record, n: int, small: Record) -> None:
+def _set_borne(branch: Branch, here: Work, n: int, small: Small) -> None:
     """Write how what a base hands on, unchanged in its own frame, changes for its parent."""
     relative, borne, lever = small.relative, small.borne, small.lever
     back, wrench, now = small.follow[:3, :3], here.wrench, here.arm
@@ -209,8 +212,10 @@ def _set_borne(branch: Record, here: Record, n: int, small: Record) -> None:
             force[i] += back[k, i] * wrench[k]
             moment[i] += back[k, i] * wrench[3 + k]
     aside[0], aside[1], aside[2] = _cross(moment, here.turn[0], here.turn[1], here.turn[2])
-    pull = 2.0 * branch.per_arm * (
-        branch.arm[0] * force[0] + branch.arm[1] * force[1] + branch.arm[2] * force[2]
+    pull = (
+        2.0
+        * branch.per_arm
+        * (branch.arm[0] * force[0] + branch.arm[1] * force[1] + branch.arm[2] * force[2])
     )
     for c in range(n):
         x, y, z = _cross(force, relative[3, c], relative[4, c], relative[5, c])
@@ -243,7 +248,7 @@ def _set_borne(branch: Record, here: Record, n: int, small: Record) -> None:
 
 
 @kernel
-def _set_own(branch: Record, loads: Record, j: int, small: Record) -> None:
+def _set_own(branch: Branch, loads: Load, j: int, small: Small) -> None:
     """Write what its own motion and that of its base change of the load of a branch itself."""
     n, ahead, drag, seen = branch.n_coordinates, small.ahead, small.drag, small.seen
     centre, damped, force, wrench = small.centre, small.damped, small.force, small.wrench

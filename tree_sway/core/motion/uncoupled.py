@@ -17,14 +17,22 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Record, Records
+from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
-from tree_sway.core.motion.records import LANES, OSCILLATORS, WORK
+from tree_sway.core.motion.records import (
+    Banks,
+    Branches,
+    LANES,
+    OSCILLATORS,
+    Oscillators,
+    WORK,
+    Works,
+)
 from tree_sway.core.motion.tree_passes import own_loads, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
-from tree_sway.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force
+from tree_sway.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force, within_guard
 
 
 class UncoupledBank(Branchwise):
@@ -114,7 +122,7 @@ class UncoupledBank(Branchwise):
 
 @fused
 def _advance(
-    branches: Records, work: Records, banks: Records, state: Floats,
+    branches: Branches, work: Works, banks: Banks, state: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     x, v = state[0], state[1]
@@ -144,20 +152,22 @@ def _advance(
 
 
 @fused
-def _to_middle(bank: Record) -> None:
+def _to_middle(bank: Oscillators) -> None:
     """State of sixteen branches half a step on, under the last step's load."""
     x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
     middle_x, middle_v = bank.x, bank.v
     for j in range(LANES):
         mx, my = true_force(x[0, j], x[1, j], load[0, j], load[1, j], load[2, j])
-        middle_x[0, j] = h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx
-        middle_x[1, j] = h[0, j] * x[1, j] + h[1, j] * v[1, j] + h[2, j] * my
+        middle_x[0, j], middle_x[1, j], _ = within_guard(
+            h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx,
+            h[0, j] * x[1, j] + h[1, j] * v[1, j] + h[2, j] * my,
+        )
         middle_v[0, j] = h[3, j] * x[0, j] + h[4, j] * v[0, j] + h[5, j] * mx
         middle_v[1, j] = h[3, j] * x[1, j] + h[4, j] * v[1, j] + h[5, j] * my
 
 
 @fused
-def _step(bank: Record) -> int:
+def _step(bank: Oscillators) -> int:
     """Step sixteen branches; return how many loads were held."""
     x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard
     is_solved, held = bank.is_solved, 0

@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats, Record, Singles
+from tree_sway.core.arrays import Floats, Singles
 from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
@@ -123,7 +123,7 @@ class WindBasisTable:
         """Slopes of the modal loads at x, (N,), by the coordinates and by their rates, (m, m)."""
         return self._loads.slopes(x, wind, self._single_shapes)
 
-    def _fit_harmonics(self, table: Record, degree: int) -> None:
+    def _fit_harmonics(self, table: np.void, degree: int) -> None:
         """Fit the load at rest in winds of all azimuths, level ones to count for most."""
         elevation, azimuth = np.meshgrid(
             _ELEVATIONS, 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, indexing='ij'
@@ -136,7 +136,7 @@ class WindBasisTable:
         fitted = np.linalg.lstsq(values, np.array(loads) * weight[:, None], rcond=None)[0]
         table['harmonics'][:, : table['n_modes']] = fitted
 
-    def _fill_standing(self, table: Record, pressures: list[float]) -> None:
+    def _fill_standing(self, table: np.void, pressures: list[float]) -> None:
         """Find the loads of the tree, and their slopes, where winds of each speed hold it."""
         shapes, m = self._shapes, int(table['n_modes'])
         stiffness = table['stiffness'][:m]
@@ -201,7 +201,7 @@ class WindBasisTable:
             at = here
         return at
 
-    def _fill_aslant(self, table: Record) -> None:
+    def _fill_aslant(self, table: np.void) -> None:
         """Fill what winds aslant change in the slopes of an upright tree, and steep winds."""
         m, azimuths = int(table['n_modes']), self._asked
         rising = [self._slopes(self._still, direction(a, _SLOPE_AT))[0] for a in azimuths]
@@ -213,7 +213,7 @@ class WindBasisTable:
         table['steep_turning'][:, :m, :m] = -turning, turning
         table['steep_damping'][:, :m, :m] = damping
 
-    def _tried(self, table: Record, degree: int, storm: float) -> float:
+    def _tried(self, table: np.void, degree: int, storm: float) -> float:
         """Try the table at leans and winds between those that it is made of."""
         rng = np.random.default_rng(7)
         m, stiffness = int(table['n_modes']), table['stiffness']

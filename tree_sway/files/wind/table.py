@@ -30,7 +30,6 @@ import re
 import numpy as np
 
 from tree_sway.core.wind.convention import WindConvention
-from tree_sway.errors import FormatError
 from tree_sway.files.table_file import Column, COLUMNS, parse_table, split_row, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.wind.record import WindRecord, WindRows
@@ -43,8 +42,9 @@ LOOKS_LIKE_WIND = rf'(?i)^(?!#)([^\n]*[,;\t])?\s*"?({_TIMES})\b[^\n]*[,;\t]'
 _LOGGER = re.compile(r'(\d{4})(\d\d)(\d\d)(\d\d)(\d\d)?', re.ASCII)
 
 
-def read_csv_wind(
+def read_table_wind(
     path: Path,
+    columns: tuple[str, ...] | None = None,
     direction_convention: str | None = None,
     yaw: float = 0.0,
     turbulence: bool = True,
@@ -53,42 +53,30 @@ def read_csv_wind(
     """
     Read the wind of a table, given as components (``to``) or as a direction (``from``).
 
+    ``columns`` are the two or three of the components, found by their usual names if None.
     ``yaw`` is from east to the sensor's x axis, counter-clockwise, in [rad]; for a direction, from
     north to the sensor's zero, likewise. Means get ``turbulence`` of a ``seed``. A `FormatError`
     reports a column that is missing, a unit that is not known, or no good row.
     """
     WindConvention(direction_convention or 'to')  # refused before the file is read
     lines = read_lines(path)
-    first = next((i for i, line in enumerate(lines[:40]) if _CLOCK.search(line)), 0)
-    lines[:first] = [''] * first
-    table = parse_table(lines, str(path))
-    return _wind(table, direction_convention, yaw, None, turbulence, seed)
+    if lines[0].lstrip('"').startswith('TOA5') and len(lines) > 3:
+        table = _toa5(lines, str(path))
+    else:
+        first = next((i for i, line in enumerate(lines[:40]) if _CLOCK.search(line)), 0)
+        lines[:first] = [''] * first
+        table = parse_table(lines, str(path))
+    chosen = None if columns is None else [table.index_of(name) for name in columns]
+    return _wind(table, direction_convention, yaw, chosen, turbulence, seed)
 
 
-def read_toa5_wind(
-    path: Path,
-    columns: tuple[str, str, str] | None = None,
-    yaw: float = 0.0,
-    direction_convention: str | None = None,
-    turbulence: bool = True,
-    seed: float = 0,
-) -> WindRecord:
-    """
-    Read the wind of a TOA5 table, from ``Ux Uy Uz`` or a usual variant if no columns are named.
-
-    ``yaw`` and the convention are as of `read_csv_wind`. Raises a `FormatError` for what is not
-    TOA5, of no such columns, or no good row.
-    """
-    WindConvention(direction_convention or 'to')  # refused before the file is read
-    lines, split = read_lines(path), partial(split_row, separator=',')
-    if len(lines) < 4 or not lines[0].lstrip('"').startswith('TOA5'):
-        raise FormatError('not TOA5: its 4 header lines are missing', where=f'{path}:1')
+def _toa5(lines: list[str], source: str) -> TextTable:
+    """Table below the four header lines of a logger."""
+    split = partial(split_row, separator=',')
     kept = [number for number, line in enumerate(lines[4:], start=5) if line.strip()]
     texts = [lines[number - 1] for number in kept]
     names, units = tuple(split(lines[1])), tuple(split(lines[2]))
-    table = TextTable(names, kept, texts, split, str(path), 2, 3, units)
-    chosen = None if columns is None else [table.index_of(name) for name in columns]
-    return _wind(table, direction_convention, yaw, chosen, turbulence, seed)
+    return TextTable(names, kept, texts, split, source, 2, 3, units)
 
 
 def _wind(
@@ -109,12 +97,10 @@ def _wind(
     if not has_components:
         found = [table.find('wind_speed'), table.find('wind_direction')]
     if clock is None or None in found[:2]:
-        raise FormatError(
-            'no time with u and v, or with speed and direction, among '
-            f'{", ".join(table.columns[:20])}',
-            where=table.where(),
-            cure='name the columns so in the header, or by the option columns of TOA5',
-        )
+        names = ', '.join(table.columns[:20])
+        what = f'no time with u and v, or with speed and direction, among {names}'
+        cure = 'name the columns so in the header, or by the option columns'
+        raise table.error(what, cure=cure)
     columns = [column for column in found if column is not None]
     indices = [column.index for column in columns]
     values = table.values(indices) * [column.factor for column in columns]
@@ -140,8 +126,8 @@ def _wind(
         convention, yaw = 'to', 0.0
     kept = np.flatnonzero(good)
     seconds, epoch = table.seconds(_stamps(table, clock, kept.tolist()), clock.factor)
-    rows.add_block(np.array(table.numbers, dtype=np.int64)[kept], velocity[kept])
-    rows.time = array('d', seconds.tolist())
+    rows.number = array('q', [table.numbers[row] for row in kept.tolist()])
+    rows.velocity, rows.time = array('d', velocity[kept].ravel()), array('d', seconds)
     gust = table.find('gust')
     if gust is not None:
         rows.gust = table.values([gust.index])[kept, 0] * gust.factor
