@@ -32,7 +32,13 @@ from tree_sway.core.motion.records import (
 )
 from tree_sway.core.motion.tree_passes import own_loads, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
-from tree_sway.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force, within_guard
+from tree_sway.core.oscillators.two_axis import (
+    fill_guards,
+    LOAD_MAX,
+    step_branch,
+    true_force,
+    within_guard,
+)
 
 
 class UncoupledBank(Branchwise):
