@@ -130,8 +130,8 @@ def _started(given: dict[str, list[str]], environment: dict[str, str]) -> Iterat
     try:
         for name, parameters in given.items():
             program = f'from tree_sway_ros.nodes.executables import {name} as run; run()'
-            told = [part for each in parameters for part in ('-p', each)]
-            command = [sys.executable, '-c', program, '--ros-args', *told]
+            pairs = [part for each in parameters for part in ('-p', each)]
+            command = [sys.executable, '-c', program, '--ros-args', *pairs]
             children.append(subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL))
         yield
     finally:
