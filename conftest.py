@@ -3,6 +3,7 @@
 """For all tests: Hypothesis that repeats, a thread and a ROS domain each, limits, small trees."""
 
 import contextlib
+import functools
 import os
 from pathlib import Path
 import random
@@ -19,8 +20,10 @@ import numpy as np  # noqa: E402
 import pytest  # noqa: E402
 
 from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
+from tree_sway.core.simulator.simulator import SwaySimulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
 from tree_sway.errors import MissingDependencyError  # noqa: E402
+from tree_sway.files.kept_set_ups import KeptSetUps  # noqa: E402
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)
@@ -56,6 +59,23 @@ def _claimed_domain():
             yield domain
             return
     pytest.fail('all ROS domains are taken by other tests on this machine')
+
+
+@pytest.fixture(scope='session', autouse=True)
+def set_ups_are_made_once(tmp_path_factory):
+    """Keep the set-ups of trees for the tests that make the same ones, of all workers of a run."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if 'PYTEST_XDIST_WORKER' in os.environ else base) / 'set_ups'
+    folder.mkdir(exist_ok=True)
+    make, cache = SwaySimulator.__init__, KeptSetUps(folder)
+
+    @functools.wraps(make)
+    def make_from_cache(self, *arguments, **options):
+        make(self, *arguments, **{'cache': cache} | options)
+
+    SwaySimulator.__init__ = make_from_cache
+    yield
+    SwaySimulator.__init__ = make
 
 
 @pytest.fixture(scope='session')

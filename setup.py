@@ -73,7 +73,7 @@ extras = {
     # colcon runs pytest only where an extra of this name asks for it.
     'test': [
         *('pytest>=7,<9', 'pytest-xdist>=3.2', 'pytest-cov>=4', 'hypothesis>=6.60', 'mpmath>=1.2'),
-        *('pygltflib>=1.16', 'trimesh>=4.0'),
+        *('pygltflib>=1.16', 'trimesh>=4.0', 'usd-core>=24.5'),
     ],
     'lint': ['ruff>=0.8', 'mypy>=1.11', 'types-PyYAML', 'types-jsonschema'],
     # Studies on all cores or a cluster, and their tables as Parquet.

@@ -75,6 +75,7 @@ OPTIONAL = {
         'dask',
         'distributed',
         'h5py',
+        'imageio_ffmpeg',
         'mpl_toolkits',
         'mpmath',
         'mujoco',

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from tree_sway.core.scene.make import make_simulator as make_simulator
     from tree_sway.core.scene.placed_tree import PlacedTree as PlacedTree
     from tree_sway.core.scene.scene import Scene as Scene
+    from tree_sway.core.scene.scene_simulator import Simulator as Simulator
     from tree_sway.core.scene.simulate import simulate as simulate
     from tree_sway.core.scene.sway_record import SwayRecord as SwayRecord
-    from tree_sway.core.simulator.protocol import Simulator as Simulator
     from tree_sway.core.simulator.settings import Settings as Settings
     from tree_sway.core.tree.building import tree_from_segments as tree_from_segments
     from tree_sway.core.tree.species import species_named as species_named
@@ -44,29 +44,30 @@ if TYPE_CHECKING:
 
 __version__ = '0.1.0'
 
-_MODULES = {
-    'core.growth.grow': ('grow',),
-    'core.identification.calibration': ('calibrate',),
-    'core.scene.make': ('make_simulator',),
-    'core.scene.placed_tree': ('PlacedTree',),
-    'core.scene.scene': ('Scene',),
-    'core.scene.simulate': ('simulate',),
-    'core.scene.sway_record': ('SwayRecord',),
-    'core.simulator.protocol': ('Simulator',),
-    'core.simulator.settings': ('Settings',),
-    'core.tree.building': ('tree_from_segments',),
-    'core.tree.species': ('species_named',),
-    'core.tree.tree': ('Tree',),
-    'core.tree.wood': ('Species',),
-    'core.wind.averaging': ('WindAverage',),
-    'core.wind.simulated.turbulence': ('simulate_turbulence',),
-    'errors': ('TreeSwayError',),
-    'files.export.tree_export': ('write_tree',),
-    'files.trees.source': ('open_scene', 'open_tree'),
-    'files.wind.wind_file': ('read_wind',),
-    'page.client': ('StreamClient',),
+_HOMES = {
+    'PlacedTree': 'core.scene.placed_tree',
+    'Scene': 'core.scene.scene',
+    'Settings': 'core.simulator.settings',
+    'Simulator': 'core.scene.scene_simulator',
+    'Species': 'core.tree.wood',
+    'StreamClient': 'page.client',
+    'SwayRecord': 'core.scene.sway_record',
+    'Tree': 'core.tree.tree',
+    'TreeSwayError': 'errors',
+    'WindAverage': 'core.wind.averaging',
+    'calibrate': 'core.identification.calibration',
+    'grow': 'core.growth.grow',
+    'make_simulator': 'core.scene.make',
+    'open_scene': 'files.trees.source',
+    'open_tree': 'files.trees.source',
+    'read_wind': 'files.wind.wind_file',
+    'simulate': 'core.scene.simulate',
+    'simulate_turbulence': 'core.wind.simulated.turbulence',
+    'species_named': 'core.tree.species',
+    'tree_from_segments': 'core.tree.building',
+    'write_tree': 'files.export.tree_export',
 }
-_HOMES = {name: module for module, names in _MODULES.items() for name in names}
+"""Module that each public name lives in."""
 
 __all__ = sorted((*_HOMES, '__version__'))
 

@@ -115,10 +115,20 @@ def test_a_tree_that_sways_by_a_skin_or_by_weights(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ('suffix', 'start'), [('.usda', '#usda 1.0'), ('.xml', '<mujoco'), ('.sdf', '<sdf')]
+)
+def test_a_tree_for_another_program(tmp_path: Path, suffix: str, start: str) -> None:
+    path = tmp_path / f'tree{suffix}'
+    assert cli.main(['convert', SEEDLING, '-o', str(path)]) == 0
+    assert path.read_text().startswith(start)
+
+
+@pytest.mark.parametrize(
     ('arguments', 'message'),
     [
         ([SEEDLING, '-o', 'tree.yaml', '--sway'], "--sway: 'tree.yaml' cannot sway; write a .glb"),
-        (['FOREST', '-o', 'trees.glb', '--sway', 'morph'], '--sway: a forest by morph targets'),
+        (['FOREST', '-o', 'trees.glb', '--sway', 'morph'], 'trees.glb: a forest to sway'),
+        (['FOREST', '-o', 'trees.usda'], 'trees.usda: a forest to sway in another program'),
     ],
 )
 def test_what_cannot_sway(

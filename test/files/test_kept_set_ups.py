@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator import assembly
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.files import kept_set_ups
 from tree_sway.files.kept_set_ups import KeptSetUps
@@ -44,17 +44,17 @@ def none_is_made(monkeypatch):
 
     def start():
         for name in ('_modal_arrays', '_table'):
-            monkeypatch.setattr(CalibratedTree, name, lambda *_: pytest.fail('made anew'))
+            monkeypatch.setattr(assembly, name, lambda *_: pytest.fail('made anew'))
 
     return start
 
 
 @pytest.mark.parametrize('model', ['full', 12])
 def test_a_set_up_that_is_kept_gives_the_same_bits(fork, kept, files, none_is_made, model):
-    alone, first = (SwaySimulator(fork(), model=model, **given) for given in ({}, {'kept': kept}))
+    alone, first = (SwaySimulator(fork(), model=model, **given) for given in ({}, {'cache': kept}))
     assert len(files()) == 1
     none_is_made()
-    second = SwaySimulator(fork(), model=model, kept=kept)
+    second = SwaySimulator(fork(), model=model, cache=kept)
     assert poses_of(alone) == poses_of(first) == poses_of(second)
     assert second.mass == alone.mass
     assert second.frequencies().tobytes() == alone.frequencies().tobytes()
@@ -74,14 +74,14 @@ def test_another_tree_or_setting_has_another_set_up(fork, stem, kept, files):
         ],
         start=1,
     ):
-        SwaySimulator(tree, kept=kept, **given)
+        SwaySimulator(tree, cache=kept, **given)
         assert len(files()) == count
 
 
 def test_a_set_up_of_other_source_is_not_taken(fork, kept, files, monkeypatch):
-    SwaySimulator(fork(), kept=kept)
+    SwaySimulator(fork(), cache=kept)
     monkeypatch.setattr(kept_set_ups, 'source_digest', lambda _path: 'of an edited file')
-    SwaySimulator(fork(), kept=kept)
+    SwaySimulator(fork(), cache=kept)
     assert len(files()) == 2
 
 
@@ -110,26 +110,26 @@ def one_array(path):
     ids=['empty', 'text', 'cut off', 'altered', 'pickle', 'one array'],
 )
 def test_a_damaged_set_up_is_made_anew(fork, kept, files, none_is_made, damage):
-    expected = poses_of(SwaySimulator(fork(), kept=kept))
+    expected = poses_of(SwaySimulator(fork(), cache=kept))
     (path,) = files()
     damage(path)
-    assert poses_of(SwaySimulator(fork(), kept=kept)) == expected
+    assert poses_of(SwaySimulator(fork(), cache=kept)) == expected
     none_is_made()
-    assert poses_of(SwaySimulator(fork(), kept=kept)) == expected
+    assert poses_of(SwaySimulator(fork(), cache=kept)) == expected
 
 
 def test_a_set_up_under_the_name_of_another_is_not_taken(fork, stem, kept, files):
-    SwaySimulator(fork(), kept=kept)
+    SwaySimulator(fork(), cache=kept)
     (one,) = files()
-    SwaySimulator(stem(), kept=kept)
+    SwaySimulator(stem(), cache=kept)
     (other,) = set(files()) - {one}
     one.replace(other)
-    assert poses_of(SwaySimulator(stem(), kept=kept)) == poses_of(SwaySimulator(stem()))
+    assert poses_of(SwaySimulator(stem(), cache=kept)) == poses_of(SwaySimulator(stem()))
 
 
 def test_what_cannot_be_written_is_left(fork, tmp_path):
     nowhere = KeptSetUps(tmp_path / 'is not there')
-    assert poses_of(SwaySimulator(fork(), kept=nowhere)) == poses_of(SwaySimulator(fork()))
+    assert poses_of(SwaySimulator(fork(), cache=nowhere)) == poses_of(SwaySimulator(fork()))
 
 
 def test_the_oldest_go_first(kept, files, monkeypatch):

@@ -71,7 +71,7 @@ def test_two_of_a_kind_in_one_namespace_are_named(compose, observer, statuses, m
     status = statuses('oak/wind: topics')
     assert status.level[0] == WARN
     assert '2 nodes publish /oak/wind/filtered: /oak/wind and /oak/wind' in status.message
-    nodes['oak/wind'].reporter.report()
+    nodes['oak/wind'].report()
     assert nodes['oak/wind']._alone['/oak/wind/filtered'].said == {status.message}
 
 

@@ -10,12 +10,12 @@ from tree_sway_ros.process.topics import CLOCK, SEGMENT_POSES, WIND_FILTERED  # 
 from tree_sway_ros.wire.wind_messages import (  # noqa: E402
     clock_message,
     stamp_to_ns,
-    wind_class,
+    WIND_CLASSES,
     wind_to_message,
     WindSample,
 )
 
-VECTOR = wind_class('geometry_msgs/Vector3Stamped')
+VECTOR = WIND_CLASSES['geometry_msgs/Vector3Stamped']
 START = 1_000 * 10**9
 STEP = 4_000_000  # of /clock
 
@@ -97,4 +97,4 @@ def test_a_clock_set_forward_is_no_explosion(world, observer):
     world.run(0.1)
     observer.until(lambda: world.stamps[-1] > START + 3600 * 10**9, 'a frame of the new time')
     assert 0.0 < world.sway() < 2.0 * before
-    assert world.nodes['solver'].pacer.pace().clamped == 1
+    assert world.nodes['solver'].pacer.timing().clamped == 1

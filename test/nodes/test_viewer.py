@@ -41,8 +41,8 @@ def test_poses_are_rebuilt_from_state_and_description(compose, observer, tree_fi
     solved = by_stamp[stamp_to_ns(state.header.stamp)].poses
     exact = np.array([[p.position.x, p.position.y, p.position.z] for p in solved])
     placer = Placer(description)
-    rebuilt = placer.place_coordinates(np.array(state.position[3:]))
-    at_rest = placer.place_coordinates(np.zeros(len(description.scale)))
+    rebuilt = placer.place(np.array(state.position[3:]))
+    at_rest = placer.place(np.zeros(len(description.scale)))
     moved = np.linalg.norm(exact - at_rest[:, :3])
     assert moved > 1e-4
     assert np.linalg.norm(rebuilt[:, :3] - exact, axis=1).max() < 1e-3
@@ -51,7 +51,7 @@ def test_poses_are_rebuilt_from_state_and_description(compose, observer, tree_fi
 def test_the_page_is_fed_and_passes_changes_on(compose, observer, tree_file):
     nodes = compose(anemometer={}, wind={}, solver={'tree': tree_file}, viewer=QUIET)
     url = nodes['viewer'].server.url
-    told = []
+    said = []
 
     async def look():
         async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream') as ws:
@@ -66,16 +66,16 @@ def test_the_page_is_fed_and_passes_changes_on(compose, observer, tree_file):
                 else:
                     frame = decode_frame(message.data)
                     frames += 1
-            Placer(description).place(frame)
+            Placer(description).place(description.coordinates(frame))
             for name, value in (('mean_speed', 11.5), ('mean_speed', 500.0), ('reset', None)):
                 await ws.send_json({'set': {'name': name, 'value': value}})
-            while not told or 'refused' not in told[-1]:
+            while not said or 'refused' not in said[-1]:
                 message = await asyncio.wait_for(ws.receive(), DEADLINE)
                 if message.type is aiohttp.WSMsgType.TEXT:
-                    told.append(message.data)
+                    said.append(message.data)
 
     asyncio.run(look())
-    assert 'out of range' in told[-1]
+    assert 'out of range' in said[-1]
     end = time.monotonic() + DEADLINE
     while nodes['anemometer'].values['mean_speed'] != 11.5:
         assert time.monotonic() < end

@@ -29,7 +29,6 @@ from tree_sway_ros.wire import frames  # noqa: E402
 from tree_sway_ros.wire.wind_messages import (  # noqa: E402
     fill_stamp,
     stamp_to_ns,
-    wind_class,
     WIND_CLASSES,
     wind_from_message,
     wind_to_message,
@@ -44,7 +43,7 @@ class Mast:
     """An anemometer in the hand of the test: it says when and what."""
 
     def __init__(self, observer, type_name='geometry_msgs/Vector3Stamped'):
-        self._kind = wind_class(type_name)
+        self._kind = WIND_CLASSES[type_name]
         self._publisher = observer.publisher(WIND, self._kind)
         self._clock = observer.node.get_clock()
 
@@ -72,7 +71,7 @@ def test_a_westerly_bends_the_tree_to_the_east(
         anemometer={'output_type': type_name, 'turbulence': 'none', **kind},
     )
     frames = observer.listen(SEGMENT_POSES)
-    said = observer.listen(WIND, wind_class(type_name))
+    said = observer.listen(WIND, WIND_CLASSES[type_name])
     observer.until(lambda: said and frames, 'wind and frames')
     sign = 1.0 if convention == 'to' else -1.0
     assert wind_from_message(said[-1]).u == pytest.approx(sign * 6.0)

@@ -4,6 +4,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
+import "./files.mjs";
 import { Camera } from "../../tree_sway/page/static/drawing/camera.js";
 import { Detail, levelsOf } from "../../tree_sway/page/static/drawing/detail.js";
 import {

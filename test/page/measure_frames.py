@@ -70,8 +70,9 @@ async def look(url: str, name: str, session: Session, seconds: float, is_profile
         frames = await browser.run('treeSway.scene._frame') - drawn
         cpu = 1e3 * (cpu_time(browser) - cpu) / max(frames, 1)
         status = session.status()
+        segments = await browser.run('treeSway.connection.description.nSegments')
         print(
-            f'{name}: {status["segments"]} segments, {statistics.median(found):.0f} frames/s '
+            f'{name}: {segments} segments, {statistics.median(found):.0f} frames/s '
             f'({min(found):.0f} .. {max(found):.0f}), {cpu:.1f} ms of a core per frame, '
             f'{await browser.run("treeSway.scene.leftOut") or "nothing left out"}; '
             f'{status["rate"]:.0f} steps/s of {status["work_us"] / 1e3:.2f} ms',

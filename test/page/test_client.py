@@ -103,7 +103,7 @@ def test_poses_are_those_of_the_sender_a_delay_ago(server: PageServer) -> None:
         assert moment is not None and poses is not None  # noqa: PT018
         assert 0.1 < now - moment.stamp < 0.5
         scale = PLACER.description.scale
-        exact = PLACER.place_coordinates(scale * shape(moment.stamp % 1e4))
+        exact = PLACER.place(scale * shape(moment.stamp % 1e4))
         assert np.linalg.norm(poses[:, :3] - exact[:, :3], axis=1).max() < 1e-3
         assert client.round_trip < 1.0
         assert client.state == 'open'

@@ -163,7 +163,7 @@ def test_a_damaged_description_is_refused_in_javascript(
 @pytest.mark.parametrize('name', SOUND)
 def test_a_sound_description_is_read_in_both(name: str, answers: dict[str, str]) -> None:
     description = decode_description(SOUND[name])
-    assert np.isfinite(Placer(description).place_coordinates(description.scale)).all()
+    assert np.isfinite(Placer(description).place(description.scale)).all()
     assert answers[name] == ''
 
 
@@ -257,7 +257,7 @@ def test_a_bomb_is_refused_within_time_and_memory(bomb: str, tmp_path: Path) -> 
 
 
 def test_a_described_tree_still_places_after_all_checks() -> None:
-    assert np.isfinite(Placer(WHOLE).place_coordinates(WHOLE.scale)).all()
+    assert np.isfinite(Placer(WHOLE).place(WHOLE.scale)).all()
 
 
 if __name__ == '__main__':

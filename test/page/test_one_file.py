@@ -92,7 +92,7 @@ def test_it_is_small_and_sways(file: Path, visit: Callable[..., None]) -> None:
         await browser.until(LIVE)
         before = picture(await browser.screenshot())
         tip = await browser.run('treeSway.scene.tip()')
-        moved = "Math.hypot(...treeSway.scene.tip().map((x, c) => x - {}[c])) > 0.002"
+        moved = 'Math.hypot(...treeSway.scene.tip().map((x, c) => x - {}[c])) > 0.002'
         await browser.until(moved.format(json.dumps(tip)))
         assert (np.abs(picture(await browser.screenshot()) - before) > 30).mean() > 1e-3
         await browser.run("treeSway.stream.set('mean_speed', 20)")

@@ -55,7 +55,10 @@ def test_the_vectors_read_as_they_were_written(number: int) -> None:
     assert frame.stamp == int(expected['stamp_ns'])
     assert frame.flags == expected['flags']
     np.testing.assert_allclose(frame.wind, expected['wind'], atol=0.5 * WIND_UNIT + 1e-9)
-    poses, exact = Placer(description).place(frame), np.array(expected['poses'])
+    poses, exact = (
+        Placer(description).place(description.coordinates(frame)),
+        np.array(expected['poses']),
+    )
     np.testing.assert_allclose(poses[:, :3], exact[:, :3], atol=2e-6)
     dots = np.abs((poses[:, 3:] * exact[:, 3:]).sum(axis=1))
     np.testing.assert_allclose(dots, 1.0, atol=1e-6)
@@ -85,7 +88,8 @@ def test_the_program_of_the_vectors_still_makes_such(tmp_path: Path) -> None:
     expected = json.loads((tmp_path / 'expected.json').read_text(encoding='utf-8'))
     placer = Placer(made)
     for number, each in enumerate(expected['frames']):
-        poses = placer.place(decode_frame((tmp_path / f'frame{number}.bin').read_bytes()))
+        data = (tmp_path / f'frame{number}.bin').read_bytes()
+        poses = placer.place(made.coordinates(decode_frame(data)))
         exact = np.array(each['poses'])
         np.testing.assert_allclose(poses[:, :3], exact[:, :3], atol=2e-6)
 
@@ -141,7 +145,7 @@ def test_a_frame_of_another_tree_is_refused() -> None:
     description = decode_description(vector('description.bin'))
     other = decode_frame(vector('frame0.bin'))._replace(identity=1)
     with pytest.raises(FormatError, match='description 00000001'):
-        Placer(description).place(other)
+        description.coordinates(other)
 
 
 def test_a_description_with_an_array_missing_is_refused() -> None:

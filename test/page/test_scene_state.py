@@ -78,7 +78,9 @@ def gaps(rebuilt: list[Any], exact: list[Any]) -> Any:
 def test_python_rebuilds_a_tree_of_8_m_within_a_millimetre(tall: Any) -> None:
     state, frames, exact = tall
     placer = Placer(decode_description(state.description))
-    rebuilt = [placer.place(decode_frame(frame)) for frame in frames]
+    rebuilt = [
+        placer.place(placer.description.coordinates(decode_frame(frame))) for frame in frames
+    ]
     rest = np.linalg.norm(exact[-1][:, :3] - exact[0][:, :3], axis=1).max()
     assert rest > 0.01
     assert np.quantile(gaps(rebuilt, exact), 0.99) < 1e-3
@@ -122,7 +124,9 @@ def test_every_model_can_be_told(model: str) -> None:
     state = SceneState(simulator)
     frames, exact = swayed(simulator, state, 4.0)
     placer = Placer(decode_description(state.description))
-    rebuilt = [placer.place(decode_frame(frame)) for frame in frames]
+    rebuilt = [
+        placer.place(placer.description.coordinates(decode_frame(frame))) for frame in frames
+    ]
     assert np.quantile(gaps(rebuilt, exact), 0.99) < 1e-3
 
 
@@ -137,7 +141,9 @@ def test_trees_of_one_kind_share_a_basis_wherever_they_are() -> None:
     assert [kind.numbers for kind in state.kinds] == [[0, 1, 2]]
     frames, exact = swayed(simulator, state, 5.0)
     placer = Placer(decode_description(state.description))
-    rebuilt = [placer.place(decode_frame(frame)) for frame in frames]
+    rebuilt = [
+        placer.place(placer.description.coordinates(decode_frame(frame))) for frame in frames
+    ]
     assert np.quantile(gaps(rebuilt, exact), 0.99) < 1e-3
     assert json.dumps(state.coordinate_names).startswith('["t0/c0"')
 
@@ -166,7 +172,9 @@ def test_a_stand_is_told_on_a_basis_per_kind() -> None:
     assert [kind.numbers for kind in state.kinds] == [[0, 1, 3], [2]]
     frames, exact = swayed(stand, state, 5.0)
     placer = Placer(decode_description(state.description))
-    rebuilt = [placer.place(decode_frame(frame)) for frame in frames]
+    rebuilt = [
+        placer.place(placer.description.coordinates(decode_frame(frame))) for frame in frames
+    ]
     moved = np.ptp(np.array(exact)[:, :, :3], axis=0).max(axis=1)
     for told in trees[:3]:
         rows = stand.segments_of(told.name)
@@ -214,9 +222,9 @@ def test_a_thousand_trees_are_described_once_per_kind(avenue: Any, tmp_path: Pat
     frame = state.frame(0)
     assert len(frame) == 28 + 2 * len(described.scale)
     exact = stand.place()
-    rebuilt = Placer(described).place(decode_frame(frame))
+    rebuilt = Placer(described).place(described.coordinates(decode_frame(frame)))
     assert np.linalg.norm(rebuilt[:, :3] - exact[:, :3], axis=1).max() < 2e-4
-    rest = Placer(described).place_coordinates(np.zeros(len(described.scale)))
+    rest = Placer(described).place(np.zeros(len(described.scale)))
     for name in ('t0', 't7', 't8', 't501', 't700', 't999'):
         rows = stand.segments_of(name)
         assert np.linalg.norm(rest[rows, :3] - exact[rows, :3], axis=1).max() > 2e-3

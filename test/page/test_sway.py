@@ -19,7 +19,7 @@ pytest.importorskip('numba', reason='numba is not installed')
 from tree_sway.core.growth.builtin import BUILTIN_TREES  # noqa: E402
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
-from tree_sway.core.simulator.protocol import Simulator  # noqa: E402
+from tree_sway.core.scene.scene_simulator import Simulator  # noqa: E402
 from tree_sway.core.simulator.settings import Settings  # noqa: E402
 from tree_sway.errors import FormatError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402

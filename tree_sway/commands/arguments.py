@@ -177,20 +177,11 @@ def add_sway_arguments(parser: argparse.ArgumentParser, record: str = '') -> Non
     add_leaves_argument(parser, 'on')
 
 
-def model_argument(text: str) -> int | str:
-    """Read a model as `Settings` takes it; what it refuses is a mistake of usage."""
-    try:
-        return model_of(text)
-    except ParameterError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-
-
 def add_model_argument(parser: argparse.ArgumentParser) -> None:
     """Add the model of the sway, of all that there are."""
     parser.add_argument(
         '--model',
-        dest='model',
-        type=model_argument,
+        type=model_of,
         default=Settings().model,
         metavar='MODEL',
         help='number of coordinates, auto, branch or full (%(default)s)',

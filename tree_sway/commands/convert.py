@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 import sys
 
@@ -21,12 +22,15 @@ from tree_sway.commands.arguments import (
     what_was_written,
 )
 from tree_sway.commands.progress import waiting
+from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
+from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
 from tree_sway.files.export.tree_export import GLTF_SUFFIXES, write_gltf, write_tree
+from tree_sway.files.export.usd_tree import usd_of_tree
 from tree_sway.files.whole_file import write_text_whole
 
 
@@ -35,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
     add_model_argument(parser)
-    add_output_arguments(parser, f'{OUTPUT_HELP}, .html')
+    add_output_arguments(parser, f'{OUTPUT_HELP}, .html, .usda, .xml (MJCF), .sdf')
     parser.add_argument(
         '--sway',
         nargs='?',
@@ -49,8 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Read a tree and write it."""
     output = output_path(arguments)
-    is_gltf = Path(output).suffix.lower() in GLTF_SUFFIXES
-    if arguments.sway is not None and not is_gltf:
+    suffix = Path(output).suffix.lower()
+    if arguments.sway is not None and suffix not in GLTF_SUFFIXES:
         raise ParameterError(
             f"'{output}' cannot sway", where='--sway', cure='write a .glb or .gltf file'
         )
@@ -59,16 +63,23 @@ def run(arguments: argparse.Namespace) -> int:
         print(f'note: {note}', file=sys.stderr)
     for oddity in scene.warnings:
         print(f'warning: {oddity}', file=sys.stderr)
-    if Path(output).suffix.lower() == '.html':
+    if suffix == '.html':
         _write_page(scene, arguments)
-    elif arguments.sway == 'morph':
-        _write_morphing(scene, arguments)
+    elif suffix in _OF_ONE_TREE or arguments.sway == 'morph':
+        _write_swaying(scene, arguments, suffix)
     else:
         species = scene.species if scene.is_one_tree else None
-        leaves = drawn_leaves(scene, arguments) if is_gltf else None
+        leaves = drawn_leaves(scene, arguments) if suffix in GLTF_SUFFIXES else None
         write_tree(output, scene.tree, species, leaves)
     print(what_was_written(output, scene.tree))
     return 0
+
+
+_OF_ONE_TREE: dict[str, Callable[[SwaySimulator, LeafClusters | None], str]] = {
+    '.usda': usd_of_tree,
+    '.xml': lambda simulator, _leaves: mjcf_of_tree(simulator),
+    '.sdf': lambda simulator, _leaves: sdf_of_tree(simulator),
+}
 
 
 def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
@@ -82,14 +93,19 @@ def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
     write_text_whole(arguments.output, page)
 
 
-def _write_morphing(scene: Scene, arguments: argparse.Namespace) -> None:
-    """Write a tree with morph targets, and an animation of a breeze."""
+def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> None:
+    """Write one tree with what it needs to sway in another program."""
     if not scene.is_one_tree:
         raise ParameterError(
-            'a forest by morph targets', where='--sway', cure='convert its trees one by one'
+            'a forest to sway in another program',
+            where=arguments.output,
+            cure='convert its trees one by one',
         )
-    settings = Settings(in_leaf=told_leaves(arguments))
+    settings = Settings(model=arguments.model, in_leaf=told_leaves(arguments))
     with waiting('finding what sways'):
         simulator = SwaySimulator(scene.tree, scene.species, settings)
-        document = morphing_tree(simulator, drawn_leaves(scene, arguments))
-    write_gltf(arguments.output, document)
+        leaves = drawn_leaves(scene, arguments)
+        if suffix in GLTF_SUFFIXES:
+            write_gltf(arguments.output, morphing_tree(simulator, leaves))
+        else:
+            write_text_whole(arguments.output, _OF_ONE_TREE[suffix](simulator, leaves))

@@ -16,7 +16,7 @@ from tree_sway.commands.arguments import (
     write_tree_file,
 )
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.grown_tree import rooted
 from tree_sway.core.tree.species import species_keys
@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
     for oddity in grown.warnings:
         print(f'warning: {oddity}', file=sys.stderr)
     try:
-        CalibratedTree(tree, species, Settings(in_leaf=True)).natural_frequencies(1)
+        TreeReductions(tree, species, Settings(in_leaf=True)).natural_frequencies(1)
     except TreeError as error:
         print(f'warning: in leaf it cannot stand: {error}', file=sys.stderr)
     write_tree_file(output, tree, species)

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.bank import Bank
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.species import Species
@@ -39,8 +40,8 @@ def mode_table(
     A mode has frequency [Hz] and damping ratio of wood and leaves, both without air, the axis that
     most of the moving mass sways along, and the branch that bends most.
     """
-    whole = CalibratedTree(tree, species, settings)
-    bank = whole.bank(0)
+    whole = TreeReductions(tree, species, settings)
+    bank = assembled(whole, 0)
     modes = whole.natural_modes(min(count, whole.coupled.reduction.n_coordinates))
     reduced = whole.coupled
     owner = np.repeat(reduced.branch, reduced.branches['n_coordinates'])

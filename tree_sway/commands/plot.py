@@ -26,8 +26,8 @@ from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.simulate import Rig
-from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.wind.convention import velocity_of_bearing
 from tree_sway.errors import ParameterError, TreeError
 from tree_sway.page.wind_source import RecordedWind

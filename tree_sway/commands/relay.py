@@ -33,7 +33,7 @@ from tree_sway.commands.page_arguments import add_page_arguments, page_settings
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.wind.intake import GoodWind, WindIntake
 from tree_sway.errors import MissingDependencyError, StateError, TreeSwayError

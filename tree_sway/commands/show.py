@@ -23,7 +23,7 @@ from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.simulator.settings import MODELS, Settings, USUAL
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene

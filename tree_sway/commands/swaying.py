@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from tree_sway.commands.progress import bar
 from tree_sway.core.scene.run import Run
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.limits import FASTEST_WIND

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Array types: float64, int64, and the records of the hot path, one and an array of them."""
+"""Array types: float64, int64, and the records of the hot path, whose fields are typed."""
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any, get_args, get_type_hints, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,30 @@ Ints = NDArray[np.int64]
 Records = NDArray[np.void]
 
 
-class Record(Protocol):
-    """One of them, as kernels read it: its fields are attributes, or items by their names."""
+#: Code of a field's numbers by its type.
+_CODES = {int: 'i8', float: 'f8', Ints: 'i8', Floats: 'f8', Singles: 'f4'}
 
-    def __getattr__(self, field: str) -> Any: ...
+_Record = TypeVar('_Record', covariant=True)
 
-    def __setattr__(self, field: str, value: object) -> None: ...
 
-    def __getitem__(self, field: str) -> Any: ...
+class RecordsOf(Protocol[_Record]):
+    """Records as kernels read them: fields of one are attributes, of the types of its class."""
 
-    def __setitem__(self, field: str, value: object) -> None: ...
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, index: int, /) -> _Record: ...
+
+
+def fields_of(record: type, **sizes: int) -> list[tuple[Any, ...]]:
+    """
+    Return name, code and shape of each field of a record, as `numpy.dtype` takes them.
+
+    Fields are the annotations of a class: a number, or ``Annotated[Floats, ...]`` with its shape;
+    ``sizes`` are the numbers for what is a name there.
+    """
+    fields: list[tuple[Any, ...]] = []
+    for name, hint in get_type_hints(record, include_extras=True).items():
+        kind, *shape = get_args(hint) or (hint,)
+        size = tuple(sizes.get(each, each) for each in shape)
+        fields.append((name, _CODES[kind], size) if shape else (name, _CODES[kind]))
+    return fields

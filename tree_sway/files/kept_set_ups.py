@@ -34,7 +34,7 @@ _SUFFIX = '.set_up.npz'
 
 
 class KeptSetUps:
-    """What `SwaySimulator` and others take as ``kept``; in the folder of the kernels if None."""
+    """What `SwaySimulator` and others take as ``cache``; in the folder of the kernels if None."""
 
     def __init__(self, folder: Path | None = None) -> None:
         self._folder = folder or kernel_folder()

@@ -6,9 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-import os
 from pathlib import Path
-import tempfile
+from uuid import uuid4
 
 from tree_sway.errors import FormatError
 from tree_sway.files.text_file import path_of
@@ -32,13 +31,12 @@ def whole_file(path: str | Path) -> Iterator[Path]:
             yield target
             return
         # The name of a temporary file is short, so that a long name of the target still fits.
-        number, name = tempfile.mkstemp(target.suffix[:16], '.part-', target.parent)
-        os.close(number)
-        partial = Path(name)
+        partial = target.with_name(f'.part-{uuid4().hex[:16]}{target.suffix[:16]}')
+        partial.touch(exist_ok=False)
         yield partial
-        mode = target.stat().st_mode if target.exists() else 0o666 & ~_umask()
-        partial.chmod(mode & 0o777)
-        os.replace(partial, target)
+        if target.exists():
+            partial.chmod(target.stat().st_mode & 0o777)
+        partial.replace(target)
     except OSError as error:
         raise FormatError(
             f'cannot be written: {error.strerror or error}',
@@ -54,10 +52,3 @@ def write_text_whole(path: str | Path, text: str) -> None:
     """Write a text file in UTF-8 whole or not at all; see `whole_file`."""
     with whole_file(path) as partial:
         partial.write_text(text, encoding='utf-8')
-
-
-def _umask() -> int:
-    """Bits that new files are made without."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -119,13 +119,12 @@ class StreamClient:
         self._placer: Placer | None = None
         self._more = threading.Condition()
         self._loop = asyncio.new_event_loop()
-        self._ending = asyncio.Event()
-        self._task: asyncio.Task[None] | None = None
         self._thread = threading.Thread(target=self._run, name='stream', daemon=True)
         self._socket: aiohttp.ClientWebSocketResponse | None = None
         self._awaited, self._credit = 0, _MOST_CREDIT
 
     def __enter__(self) -> StreamClient:
+        self._task = self._loop.create_task(self._connect_again_and_again())
         self._thread.start()
         return self
 
@@ -135,13 +134,8 @@ class StreamClient:
     def close(self) -> None:
         """Close the line and end the thread; may be called twice."""
         if self._thread.is_alive():
-            self._loop.call_soon_threadsafe(self._end)
+            self._loop.call_soon_threadsafe(self._task.cancel)
             self._thread.join(timeout=5.0)
-
-    def _end(self) -> None:
-        self._ending.set()
-        if self._task is not None:
-            self._task.cancel()
 
     def wait(self, seconds: float = 30.0, *, frames: int = 1) -> None:
         """
@@ -185,23 +179,16 @@ class StreamClient:
         moment, placer = self.sample(now), self._placer
         if moment is None or placer is None:
             return None
-        return placer.place_coordinates(moment.coordinates)
+        return placer.place(moment.coordinates)
 
     def _run(self) -> None:
-        asyncio.set_event_loop(self._loop)
-        self._task = self._loop.create_task(self._keep())
-        try:
+        with contextlib.closing(self._loop), contextlib.suppress(asyncio.CancelledError):
             self._loop.run_until_complete(self._task)
-        except asyncio.CancelledError:
-            pass
-        finally:
-            self._loop.close()
 
-    async def _keep(self) -> None:
-        """Connect again and again."""
+    async def _connect_again_and_again(self) -> None:
         wait = _SHORTEST_WAIT
         async with aiohttp.ClientSession(headers=self._headers) as session:
-            while not self._ending.is_set():
+            while True:
                 self.state, received = 'connecting', self.playout.received
                 try:
                     async with session.ws_connect(
@@ -215,9 +202,7 @@ class StreamClient:
                 if self.playout.received > received:
                     wait = _SHORTEST_WAIT
                 # Many clients that lose one server do not come back in one instant.
-                with contextlib.suppress(asyncio.TimeoutError):
-                    pause = wait * random.uniform(0.75, 1.25)
-                    await asyncio.wait_for(self._ending.wait(), pause)
+                await asyncio.sleep(wait * random.uniform(0.75, 1.25))
                 wait = min(2.0 * wait, _LONGEST_WAIT)
 
     async def _follow(self, socket: aiohttp.ClientWebSocketResponse) -> None:

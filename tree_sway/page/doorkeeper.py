@@ -4,7 +4,7 @@
 Sockets before they are clients: how many may be open, and how long one may take to ask.
 
 An HTTP server waits for a handshake and a request as long as they take; a thousand sockets that
-send a byte now and then would hold it forever. So sockets are counted when they are accepted.
+send a byte now and then would occupy it forever. So sockets are counted when they are accepted.
 Those that have shown the token have places of their own, and a new one takes the place of the
 oldest that has not: whoever fills the server with sockets shuts out nobody who may come in.
 """
@@ -14,7 +14,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 import contextlib
-from dataclasses import dataclass
 import socket
 import ssl
 
@@ -25,19 +24,6 @@ _PAUSE = 1.0
 """After the system refused a socket [s]."""
 
 MakeProtocol = Callable[[], asyncio.BaseProtocol]
-
-
-@dataclass(eq=False)
-class _Visitor:
-    """One socket, from when it is accepted."""
-
-    socket: socket.socket
-    timer: asyncio.TimerHandle | None = None
-    task: asyncio.Task[None] | None = None
-    transport: asyncio.Transport | None = None
-
-    def is_open(self) -> bool:
-        return self.transport is None or not self.transport.is_closing()
 
 
 class Doorkeeper:
@@ -57,78 +43,68 @@ class Doorkeeper:
         self.most, self._complain = most, complain
         self.n_closed = 0
         """Sockets that were closed as too slow or too many."""
-        self._visitors: dict[asyncio.BaseProtocol, _Visitor] = {}
-        self._strangers: dict[_Visitor, None] = {}
-        self._known: set[_Visitor] = set()
+        self._strangers: dict[socket.socket, asyncio.TimerHandle] = {}
+        self._known: set[socket.socket] = set()
+        self._tasks: set[asyncio.Task[None]] = set()
 
     @property
     def n_open(self) -> int:
         """Sockets that are open."""
-        return sum(visitor.is_open() for visitor in (*self._strangers, *self._known))
+        return sum(map(_is_open, (*self._strangers, *self._known)))
 
     async def admit(
         self, listener: socket.socket, make: MakeProtocol, tls: ssl.SSLContext | None
     ) -> None:
-        """Accept sockets until cancelled, and hand each to a protocol of an HTTP server."""
+        """Accept sockets until cancelled, and connect each to a protocol of an HTTP server."""
         loop = asyncio.get_running_loop()
         while True:
             try:
-                accepted, _ = await loop.sock_accept(listener)
+                visitor, _ = await loop.sock_accept(listener)
             except OSError as error:
                 self._complain(f'no further connection can be taken: {error.strerror}')
                 await asyncio.sleep(_PAUSE)
                 continue
             self._make_room()
-            visitor = _Visitor(accepted)
-            self._strangers[visitor] = None
-            visitor.timer = loop.call_later(ASKING_TIME, self._turn_away, visitor)
-            visitor.task = loop.create_task(self._hand_over(visitor, make, tls))
+            self._strangers[visitor] = loop.call_later(ASKING_TIME, self._turn_away, visitor)
+            task = loop.create_task(self._connect(visitor, make, tls))
+            self._tasks.add(task)
+            task.add_done_callback(self._tasks.discard)
 
-    def let_in(self, protocol: asyncio.BaseProtocol, *, is_known: bool) -> None:
+    def let_in(self, transport: asyncio.BaseTransport | None, *, is_known: bool) -> None:
         """Note that a whole request has come, and whether it showed the token."""
-        visitor = self._visitors.get(protocol)
-        if visitor is None:
-            return
-        if visitor.timer is not None:
-            visitor.timer.cancel()
-        if is_known and visitor in self._strangers:
-            if len(self._known) < self.most:
+        own = None if transport is None else transport.get_extra_info('socket')
+        number = -1 if own is None else own.fileno()
+        for visitor in [each for each in self._strangers if each.fileno() == number != -1]:
+            self._strangers[visitor].cancel()
+            if is_known and len(self._known) < self.most:
                 del self._strangers[visitor]
                 self._known.add(visitor)
 
-    async def _hand_over(
-        self, visitor: _Visitor, make: MakeProtocol, tls: ssl.SSLContext | None
+    async def _connect(
+        self, visitor: socket.socket, make: MakeProtocol, tls: ssl.SSLContext | None
     ) -> None:
-        def made() -> asyncio.BaseProtocol:
-            protocol = make()
-            self._visitors[protocol] = visitor
-            return protocol
-
-        try:
-            transport, _ = await asyncio.get_running_loop().connect_accepted_socket(
-                made, visitor.socket, ssl=tls, ssl_handshake_timeout=ASKING_TIME if tls else None
+        limit = ASKING_TIME if tls else None
+        with contextlib.suppress(OSError):  # a handshake that failed or was broken off
+            await asyncio.get_running_loop().connect_accepted_socket(
+                make, visitor, ssl=tls, ssl_handshake_timeout=limit
             )
-            visitor.transport = transport
-        except OSError:  # a handshake that failed or was broken off
-            self._turn_away(visitor)
 
     def _make_room(self) -> None:
         """Forget sockets that are closed, then close the oldest without the token if need be."""
-        self._strangers = {each: None for each in self._strangers if each.is_open()}
-        self._known = {each for each in self._known if each.is_open()}
-        self._visitors = {key: each for key, each in self._visitors.items() if each.is_open()}
+        for visitor in [each for each in self._strangers if not _is_open(each)]:
+            self._strangers.pop(visitor).cancel()
+        self._known = set(filter(_is_open, self._known))
         if len(self._strangers) >= self.most:
             self._turn_away(next(iter(self._strangers)))
 
-    def _turn_away(self, visitor: _Visitor) -> None:
-        """Close a socket at once."""
-        self._strangers.pop(visitor, None)
+    def _turn_away(self, visitor: socket.socket) -> None:
+        """Close a socket at once: whatever waits for it sees its end."""
+        self._strangers.pop(visitor).cancel()
         self.n_closed += 1
-        if visitor.timer is not None:
-            visitor.timer.cancel()
-        if visitor.transport is not None:
-            visitor.transport.abort()
-        elif visitor.task is not None:
-            visitor.task.cancel()
         with contextlib.suppress(OSError):
-            visitor.socket.shutdown(socket.SHUT_RDWR)
+            visitor.shutdown(socket.SHUT_RDWR)
+
+
+def _is_open(visitor: socket.socket) -> bool:
+    """Whether a socket is not closed, by us or by whoever has it."""
+    return visitor.fileno() != -1

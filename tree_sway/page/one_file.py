@@ -15,13 +15,14 @@ import gzip
 from importlib import resources
 import json
 import math
-from pathlib import Path, PurePosixPath
+from pathlib import Path
+import posixpath
 import re
 import struct
 
 import numpy as np
 
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import ParameterError
 from tree_sway.page.scene_state import SceneState
 from tree_sway.page.tables import tables_of
@@ -31,7 +32,6 @@ _LEAVES = 1000
 _BOOT = 'boot.js'
 _BITS = 14
 """Of the fraction of each number; what is drawn is right to some hundredths of a millimetre."""
-
 
 
 def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
@@ -101,18 +101,22 @@ def _in_planes(message: bytes) -> bytes:
 
 
 def _modules(folder: Path) -> bytes:
-    """Every module by its name, as JSON; what they import are names too."""
-    modules = {}
-    for path in sorted(folder.rglob('*.js')):
-        name = path.relative_to(folder).as_posix()
-        if name == _BOOT:
-            continue
+    """Every module and every file that these read, by their names, as JSON."""
+    modules, files = {}, {}
+    for path in sorted(folder.rglob('*.*')):
+        name = path.relative_to(folder)
+        text = path.read_text(encoding='utf-8')
+        if path.suffix in ('.json', '.glsl'):
+            files[name.as_posix()] = text
+        elif path.suffix == '.js' and path.name != _BOOT:
+            modules[f'tree-sway/{name.as_posix()}'] = _with_full_names(text, name.parent)
+    return json.dumps({'modules': modules, 'files': files}).encode()
 
-        def named(found: re.Match[str], name: str = name) -> str:
-            parts: list[str] = []
-            for part in (PurePosixPath(name).parent / found[2]).parts:
-                parts = parts[:-1] if part == '..' else [*parts, part]
-            return f'{found[1]}"tree-sway/{"/".join(parts)}"'
 
-        modules[f'tree-sway/{name}'] = _IMPORT.sub(named, path.read_text(encoding='utf-8'))
-    return json.dumps(modules).encode()
+def _with_full_names(text: str, folder: Path) -> str:
+    """Source of a module of a folder, with the full names of what it imports."""
+
+    def full(found: re.Match[str]) -> str:
+        return f'{found[1]}"tree-sway/{posixpath.normpath((folder / found[2]).as_posix())}"'
+
+    return _IMPORT.sub(full, text)

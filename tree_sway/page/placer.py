@@ -23,7 +23,7 @@ from tree_sway.core.motion.placing import place_standing_at
 from tree_sway.core.motion.records import BRANCH, head_layout, SEGMENT
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array
-from tree_sway.page.protocol import Description, Frame
+from tree_sway.page.protocol import Description
 
 MOST_MEMORY = 512 * 2**20
 """Of the records of a kind in [bytes]."""
@@ -57,27 +57,12 @@ class Placer:
         self._trees = list(zip(places, kind_of, strict=True))
         self.n_segments = sum(kind.n_segments for kind in kind_of)
 
-    def place(self, frame: Frame) -> Floats:
+    def place(self, coordinates: Floats) -> Floats:
         """
-        Poses of a frame, (n, 7): x y z in [m] and the quaternion's x y z w.
+        Poses (n, 7) of coordinates (m,) in their own unit, as of `Description.coordinates`.
 
-        Raises
-        ------
-        FormatError
-            A frame of another description.
-
+        They are x y z in [m] and the quaternion's x y z w.
         """
-        description = self.description
-        if frame.identity != description.short_identity:
-            raise FormatError(
-                f'a frame of description {frame.identity:08x}',
-                where='tree state',
-                cure=f'this one has {description.short_identity:08x}: ask for the new one',
-            )
-        return self.place_coordinates(description.coordinates(frame))
-
-    def place_coordinates(self, coordinates: Floats) -> Floats:
-        """Poses of coordinates in their own unit (m,), (n, 7)."""
         poses, row, first = np.empty((self.n_segments, 7)), 0, 0
         for (x, y, z, yaw, scale), kind in self._trees:
             last, end = first + kind.matrix.shape[1], row + kind.n_segments

@@ -146,7 +146,11 @@ class Description:
         return np.concatenate(scales).astype(np.float64)
 
     def coordinates(self, frame: Frame) -> Floats:
-        """Coordinates of a frame in their own unit, (m,); a `FormatError` if it has others."""
+        """Coordinates of a frame in their own unit, (m,); a `FormatError` for one not its own."""
+        if frame.identity != self.short_identity:
+            what = f'a frame of description {frame.identity:08x}'
+            cure = f'this one has {self.short_identity:08x}: ask for the new one'
+            raise FormatError(what, where='tree state', cure=cure)
         count, most = len(frame.coordinates), len(self.scale)
         part = slice(frame.first, frame.first + count)
         if part.stop > most or (count not in (0, most) and not frame.flags & PART):

@@ -15,9 +15,8 @@ from functools import partial
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.scene.scene_simulator import SceneSimulator
+from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.find_basis import state_basis
-from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.simulator.settings import USUAL
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.state.state_basis import StateBasis
@@ -65,7 +64,7 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
     """
     if not isinstance(simulator, SceneSimulator):
         return [_alone(0, each, is_running) for each in simulator.simulators]
-    kinds, trees = [], simulator.trees
+    kinds, trees = [], simulator.scene.trees
     for model, bank, numbers in simulator.shared:
         # The model stays at rest: the scene steps its table.
         basis = state_basis(model)

@@ -8,8 +8,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
-from tree_sway.core.scene.scene_simulator import SceneSimulator
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.page.description import describe_scene
 from tree_sway.page.protocol import (
@@ -64,11 +63,9 @@ class SceneState:
         self.simulator = simulator
         self.kinds = scene_kinds(simulator, is_running=is_running)
         if isinstance(simulator, SceneSimulator):
-            self.names, name = simulator.names, simulator.name
+            self.names, name = simulator.names, simulator.scene.name
         else:
             self.names, name = (simulator.tree.name,), simulator.tree.name
-        self.n_branches = sum(len(k.numbers) * k.simulator.tree.n_branches for k in self.kinds)
-        self.n_segments = sum(len(k.numbers) * k.simulator.tree.n_segments for k in self.kinds)
         self._lay_out()
         count = FULLY_LEAVED * n_leaves // max(FULLY_LEAVED, len(self.kinds))
         leaves = [_leaves(kind, count) for kind in self.kinds]

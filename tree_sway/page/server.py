@@ -13,7 +13,6 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Callable, Mapping
-import contextlib
 from dataclasses import dataclass, field
 from html import escape
 from importlib import resources
@@ -142,6 +141,11 @@ class _Client:
             self.first = 0
         return part
 
+    def say(self, content: Mapping[str, object]) -> None:
+        """Have a text sent, soon."""
+        self.texts.append(json.dumps(content))
+        self.wake.set()
+
     def ring(self) -> None:
         """Look again at what is to be sent."""
         self.timer = None
@@ -180,13 +184,14 @@ class PageServer:
         require_token(settings.address, self._token)
         self._panel = panel or ControlPanel()
         self._status = status or dict
-        self._description, self._tables = b'', _no_tables
+        self._description = b''
+        self._tables: Callable[[], bytes | None] = lambda: None
         self._frame: tuple[int, bytes] = (-1, b'')
         self._clients: set[_Client] = set()
         self._loop = asyncio.new_event_loop()
         self._started = threading.Event()
         self._failure: Exception | None = None
-        self._ending: asyncio.Event | None = None
+        self._ending = asyncio.Event()
         self._is_woken = False
         self.n_refused = 0
         """Requests and messages that were refused."""
@@ -219,7 +224,7 @@ class PageServer:
     def close(self) -> None:
         """Close every client and stop; may be called twice."""
         if self._thread.is_alive():
-            self._loop.call_soon_threadsafe(self._end)
+            self._loop.call_soon_threadsafe(self._ending.set)
             self._thread.join(timeout=10.0)
 
     def __enter__(self) -> PageServer:
@@ -243,14 +248,14 @@ class PageServer:
         return len(self._clients)
 
     def describe(
-        self, description: bytes, tables: Callable[[], bytes | None] | None = None
+        self, description: bytes, tables: Callable[[], bytes | None] = lambda: None
     ) -> None:
         """
         Send all pages, now and later, what the frames that follow belong to.
 
         Clients that ask for the wind alone are sent what `tables` returns, and solve by it.
         """
-        self._description, self._tables = description, tables or _no_tables
+        self._description, self._tables = description, tables
         self._call(self._wake_all)
 
     def publish(self, frame: bytes) -> None:
@@ -290,10 +295,6 @@ class PageServer:
         for client in self._clients:
             client.wake.set()
 
-    def _end(self) -> None:
-        if self._ending is not None:
-            self._ending.set()
-
     def _run(self) -> None:
         asyncio.set_event_loop(self._loop)
         self._loop.set_exception_handler(lambda _, context: self._complain(context['message']))
@@ -306,7 +307,6 @@ class PageServer:
             self._loop.close()
 
     async def _serve(self) -> None:
-        self._ending = asyncio.Event()
         app = web.Application(middlewares=[self._guard])
         app.router.add_get('/', _index)
         app.router.add_get('/stream', self._stream)
@@ -314,7 +314,7 @@ class PageServer:
         app.router.add_static('/static/', _STATIC)
         app.on_response_prepare.append(_add_headers)
         logger = logging.Logger('page')
-        logger.addHandler(_Complaints(self._complain))
+        logger.addFilter(self._complain_of)
         runner = web.AppRunner(
             app, access_log=None, keepalive_timeout=15.0, lingering_time=0.5, shutdown_timeout=1.0,
             logger=logger,
@@ -338,6 +338,12 @@ class PageServer:
             await client.socket.close(code=WSCloseCode.GOING_AWAY, message=b'server ends')
         await runner.cleanup()
 
+    def _complain_of(self, record: logging.LogRecord) -> bool:
+        """Complain in one sentence of what the HTTP server would log with a traceback."""
+        error = record.exc_info[1] if record.exc_info else None
+        self._complain(f'{record.getMessage()}: {error!a}')
+        return False
+
     def _complain(self, what: str) -> None:
         """Count what was refused, and log a line now and then."""
         self.n_refused += 1
@@ -350,7 +356,7 @@ class PageServer:
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         settings, given = self.settings, given_token(request.headers, request.query)
         is_known = not self._token or is_token(given, self._token)
-        self._doors.let_in(request.protocol, is_known=is_known)
+        self._doors.let_in(request.transport, is_known=is_known)
         if request.can_read_body:
             return self._refused(413, 'nothing here takes a body')
         try:
@@ -390,7 +396,8 @@ class PageServer:
         )
         await socket.prepare(request)
         client = _Client(socket, request.transport)
-        client.texts.append(self._hello())
+        hello = {'controls': self._panel.entries(), 'address': self.settings.address}
+        client.say({'hello': hello})
         self._clients.add(client)
         sender = self._loop.create_task(self._send(client))
         try:
@@ -412,11 +419,6 @@ class PageServer:
                 client.timer.cancel()
         return socket
 
-    def _hello(self) -> str:
-        return json.dumps(
-            {'hello': {'controls': self._panel.entries(), 'address': self.settings.address}}
-        )
-
     def _take(self, client: _Client, text: str) -> None:
         """Take a message of a client; a `ValueError` or `TypeError` for anything else."""
         message = json.loads(text)
@@ -429,7 +431,7 @@ class PageServer:
             client.period = 1.0 / _number(message, 'rate', SLOWEST, FASTEST)
         if 'ping' in message:
             ping = _number(message, 'ping', -_LARGEST_PING, _LARGEST_PING)
-            client.texts.append(json.dumps({'pong': ping, 'time': time.time_ns() / 1e6}))
+            client.say({'pong': ping, 'time': time.time_ns() / 1e6})
         if message.get('wind') is True:
             client.wants_wind, client.description = True, b''
         if 'set' in message:
@@ -443,15 +445,13 @@ class PageServer:
         if why is not None:
             self.n_refused += 1
             refused = {'name': str(name)[:80], 'reason': why[:400]}
-            client.texts.append(json.dumps({'refused': refused, 'values': self._panel.values()}))
-            return
-        self._send_all({'values': self._panel.values()})
+            client.say({'refused': refused, 'values': self._panel.values()})
+        else:
+            self._send_all({'values': self._panel.values()})
 
     def _send_all(self, content: Mapping[str, object]) -> None:
-        text = json.dumps(content)
         for client in self._clients:
-            client.texts.append(text)
-            client.wake.set()
+            client.say(content)
 
     async def _send(self, client: _Client) -> None:
         """Send a client what is new, as its credit allows."""
@@ -499,13 +499,11 @@ class PageServer:
             await client.socket.send_bytes(tables)
             return
         reason = 'this scene cannot be solved elsewhere: it is sent state by state'
-        client.texts.append(json.dumps({'refused': {'name': 'wind', 'reason': reason}}))
+        client.say({'refused': {'name': 'wind', 'reason': reason}})
 
     async def _send_status(self) -> None:
-        assert self._ending is not None
-        while not self._ending.is_set():
-            with contextlib.suppress(asyncio.TimeoutError):
-                await asyncio.wait_for(self._ending.wait(), STATUS_PERIOD)
+        while True:
+            await asyncio.sleep(STATUS_PERIOD)
             now = time.monotonic()
             for client in tuple(self._clients):
                 if client.is_lost(now):
@@ -518,24 +516,6 @@ class PageServer:
         self._clients.discard(client)
         if client.transport is not None:
             client.transport.abort()
-
-
-def _no_tables() -> bytes | None:
-    """Return no tables."""
-    return None
-
-
-class _Complaints(logging.Handler):
-    """Takes what the HTTP server would log with a traceback, as one sentence."""
-
-    def __init__(self, complain: Callable[[str], None]) -> None:
-        super().__init__()
-        self._complain = complain
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Complain of the error, or of what was to be logged."""
-        error = record.exc_info[1] if record.exc_info else None
-        self._complain(f'{record.getMessage()}: {error!a}')
 
 
 def _number(message: dict[str, Any], name: str, low: float, high: float) -> float:

@@ -17,7 +17,7 @@ import time
 
 from tree_sway.core.scene.demand import set_demand
 from tree_sway.core.scene.run import Run
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
@@ -107,7 +107,7 @@ class Session:
         self._stop = threading.Event()
         self._is_paused = self._resets = False
         self._ticks, self._steps = 0, 0
-        self._work, self._spacing, self._late = 0.0, self._period, 0
+        self._work, self._spacing = 0.0, self._period
         self._last = time.perf_counter()
         self._builder: threading.Thread | None = None
         self._wanted: Choices | None = None
@@ -167,13 +167,8 @@ class Session:
             'model': simulator.model,
             'rate': round(1.0 / max(self._spacing, 1e-6), 1),
             'work_us': round(1e6 * self._work, 1),
-            'late': self._late,
             'trees': len(self._scene.names),
-            'branches': self._scene.n_branches,
-            'segments': self._scene.n_segments,
-            'solved': simulator.n_solved,
             'building': self._wanted is not None,
-            'paused': self._is_paused,
         }
 
     def _made(self, choices: Choices) -> tuple[SceneState, Run]:
@@ -215,9 +210,7 @@ class Session:
                 self._step(time.perf_counter())
                 due += self._period
                 now = time.perf_counter()
-                if now - due > _MOST_LATE:
-                    self._late += 1
-                    due = now
+                due = now if now - due > _MOST_LATE else due
                 self._stop.wait(max(0.0, due - now))
         except Exception as error:
             self.failure = error

@@ -8,8 +8,7 @@ import numpy as np
 
 from tree_sway.core.motion.exported_table import exported_table
 from tree_sway.core.motion.wind_basis import WindBasisBank
-from tree_sway.core.scene.scene_simulator import SceneSimulator
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import encode_description, TABLES
@@ -42,8 +41,8 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
     header |= {'kinds': entries, 'anemometer': None, 'convection_ratio': 1.0}
     if isinstance(simulator, SceneSimulator):
         arrays['tree_speed'][:] = simulator.speeds
-        ratio = simulator.convection_ratio
-        anemometer = simulator.anemometer
+        ratio = simulator.scene.convection_ratio
+        anemometer = simulator.scene.anemometer
         header['anemometer'] = None if anemometer is None else np.asarray(anemometer).tolist()
         header['convection_ratio'] = ratio if np.isfinite(ratio) else None
     return encode_description(header, arrays, TABLES)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 import json
 
@@ -14,11 +15,10 @@ from tree_sway.core.growth.grow import grow
 from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.tree.species import species_named
-from tree_sway.core.wind.frame_means import recorded_means
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.errors import FormatError
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_tree
+from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.studies.plan import Case, Plain
 
@@ -68,7 +68,7 @@ def _rig(asked: str) -> tuple[Rig, float]:
     """Tree and settings set up, as what comes next is often the same; its frequency in [Hz]."""
     tree, settings, _ = json.loads(asked)
     rig = Rig(_tree(tree), **settings)
-    return rig, float(rig.calibrated.natural_frequencies(1)[0])
+    return rig, float(rig.reductions.natural_frequencies(1)[0])
 
 
 def _tree(asked: Plain) -> TreeFile:
@@ -76,16 +76,13 @@ def _tree(asked: Plain) -> TreeFile:
         species = species_named(asked['species'])
         rng = np.random.default_rng(asked['seed'])
         return TreeFile(grow(species.key, asked['height'], rng=rng), species, 'grown')
-    opened = open_tree(asked.get('file') or asked['name'])
-    if not isinstance(opened, TreeFile):
-        raise FormatError('is a forest', where=opened.source, cure='name its trees one by one')
-    return opened
+    return open_tree(asked.get('file') or asked['name'])
 
 
-def _wind(case: Case) -> Floats:
+def _wind(case: Case) -> WindRecord | Floats:
     if 'file' in case.wind:
         record = read_wind(case.wind['file'])
-        return case.wind['scale'] * recorded_means(record.time, record.velocity, 1.0 / case.rate)
+        return replace(record, velocity=case.wind['scale'] * record.velocity)
     rng = np.random.default_rng(case.wind['seed'])
     return simulate_turbulence(
         case.wind['speed'],

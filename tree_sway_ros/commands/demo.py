@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 from contextlib import ExitStack
-import math
 from pathlib import Path
 import sys
 import tempfile
@@ -19,14 +18,13 @@ import webbrowser
 from tree_sway.commands.arguments import add_sway_arguments, opened_scene
 from tree_sway.commands.ending import Ending, LONGEST
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings
-from tree_sway.core.checks import within
 from tree_sway.core.scene.scene import Scene
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.parameters.parameter import Value
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
-from tree_sway_ros.commands.watch import watch
+from tree_sway_ros.commands.watch import add_seconds, seconds_of, watch
 from tree_sway_ros.process.composition import Composition
 
 
@@ -35,19 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add_sway_arguments(parser)
     add('--start', type=float, default=0.0, metavar='T', help='time skipped of the record [s]')
-    add(
-        '--sensor',
-        metavar='ADDRESS',
-        help='of an anemometer in place of both: serial:/dev/ttyUSB0:4800, tcp://host:port, '
-        'udp://:port',
-    )
-    add(
-        '--seconds',
-        type=float,
-        default=math.inf,
-        metavar='N',
-        help='end after this time [s]; else by Ctrl-C',
-    )
+    kinds = 'serial:/dev/ttyUSB0:4800, tcp://host:port, udp://:port'
+    add('--sensor', metavar='ADDRESS', help=f'anemometer in place of both: {kinds}')
+    add_seconds(parser)
     add('--rate', type=float, default=60.0, help='poses per second [Hz] (%(default)s)')
     add('--gravity', choices=('on', 'off'), default='on', help='its own weight (%(default)s)')
     add('--no-page', action='store_true', help='serve no page')
@@ -56,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the demo until its time is over, the record ends, or Ctrl-C."""
-    seconds = within('--seconds', arguments.seconds, 0.0, math.inf, 's', above=True)
+    seconds = seconds_of(arguments)
     scene = opened_scene(arguments)
     for warning in scene.warnings:
         print(f'warning: {warning}', file=sys.stderr)
@@ -115,8 +103,8 @@ def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Valu
         'species': '' if tree != arguments.tree else arguments.species or '',
         'rate': arguments.rate,
         'model': arguments.model,
+        'leaves': arguments.leaves,
     }
-    solver['leaves'] = arguments.leaves
     if arguments.gravity == 'off':
         solver['gravity'] = 0.0
     if arguments.sensor is not None:

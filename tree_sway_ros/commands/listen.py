@@ -9,36 +9,24 @@
 from __future__ import annotations
 
 import argparse
-import math
 
 from tree_sway.commands.ending import Ending, LONGEST
-from tree_sway.core.checks import within
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
-from tree_sway_ros.commands.watch import watch
+from tree_sway_ros.commands.watch import add_seconds, seconds_of, watch
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument('--namespace', default='', help="of the tree's nodes")
-    parser.add_argument(
-        '--seconds',
-        type=float,
-        default=math.inf,
-        metavar='N',
-        help='end after this time [s]; else by Ctrl-C',
-    )
-    parser.add_argument(
-        '--rate',
-        type=float,
-        default=60.0,
-        help='poses per second that should come [Hz] (%(default)s)',
-    )
+    parser.add_argument('--namespace', default='', help="namespace of the tree's nodes")
+    add_seconds(parser)
+    text = 'poses per second that should come [Hz] (%(default)s)'
+    parser.add_argument('--rate', type=float, default=60.0, help=text)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Listen until the time is over or Ctrl-C."""
-    seconds = within('--seconds', arguments.seconds, 0.0, math.inf, 's', above=True)
+    seconds = seconds_of(arguments)
     with Ending() as ending, StreamMonitor(None, None, arguments.namespace) as monitor:
         ending.limit = LONGEST
         watch(monitor, seconds, lambda: True)

@@ -10,14 +10,13 @@ again.
 from __future__ import annotations
 
 import argparse
-import math
 from pathlib import Path
 import time
 from typing import Any
 
 from tree_sway.commands.ending import Ending
-from tree_sway.core.checks import within
 from tree_sway.files.recording.bag_writer import BagWriter, FORMATS
+from tree_sway_ros.commands.watch import add_seconds, seconds_of
 from tree_sway_ros.process.listener import Listener
 from tree_sway_ros.process.topics import (
     DIAGNOSTICS,
@@ -32,7 +31,6 @@ from tree_sway_ros.process.topics import (
     WIND,
     WIND_FILTERED,
 )
-from tree_sway_ros.wire.wind_messages import wind_class
 
 _USUAL = (WIND, WIND_FILTERED, TREE_STATE, TREE_DESCRIPTION)
 _MORE = (FORCE_PLANE, SEGMENT_POSES, MARKERS, DIAGNOSTICS)
@@ -43,21 +41,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add('-o', '--output', required=True, metavar='FOLDER', help='bag to make')
-    add('--format', choices=FORMATS, default=FORMATS[0], help='of the bag (%(default)s)')
-    add('--namespace', default='', help="of the tree's nodes")
+    add('--format', choices=FORMATS, default=FORMATS[0], help='format of the bag (%(default)s)')
+    add('--namespace', default='', help="namespace of the tree's nodes")
     add('--poses', action='store_true', help='also poses, markers and diagnostics: GB per hour')
-    add(
-        '--seconds',
-        type=float,
-        default=math.inf,
-        metavar='N',
-        help='time from the first message; else until Ctrl-C',
-    )
+    add_seconds(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Record until the time is over or Ctrl-C."""
-    seconds = within('--seconds', arguments.seconds, 0.0, math.inf, 's', above=True)
+    seconds = seconds_of(arguments)
     topics = _USUAL + (_MORE if arguments.poses else ())
     with (
         BagWriter(Path(arguments.output), arguments.format) as bag,
@@ -105,8 +97,5 @@ class Recorder(Listener):
             if self._began is None:
                 self._began = time.monotonic()
 
-        of_wind = topic is WIND
-        message = wind_class(kind.replace('/msg/', '/')) if of_wind else message_class(topic)
-        self.node.create_subscription(
-            message, name, write, qos_profile(topic, is_input=True), raw=True
-        )
+        message, profile = message_class(topic, kind), qos_profile(topic, is_input=True)
+        self.node.create_subscription(message, name, write, profile, raw=True)

@@ -9,13 +9,13 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 import importlib
 import socket
-import threading
 import time
 from typing import Any
 
 from tree_sway.errors import MissingDependencyError
 from tree_sway_ros.link.address import Address
 from tree_sway_ros.link.lines import Lines
+from tree_sway_ros.timing.worker import Worker
 
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
 """Between two attempts [s]: doubled from the first to the longest while nothing comes."""
@@ -28,7 +28,7 @@ Read = Callable[[], bytes | None]
 
 
 @dataclass(eq=False)
-class LineSource:
+class LineSource(Worker):
     """
     Listens to an instrument at an address; hands each line to `take`, in a thread of its own.
 
@@ -46,25 +46,14 @@ class LineSource:
         """Prepare the thread."""
         if self.address.kind == 'serial':
             _pyserial()
-        self._ending = threading.Event()
-        self._thread = threading.Thread(target=self._run, name='instrument', daemon=True)
+        super().__init__('instrument')
         self.is_up = False
         self.links = self.lines = 0
         self.failure = ''
 
-    def start(self) -> None:
-        """Start listening."""
-        self._thread.start()
-
-    def stop(self) -> None:
-        """Stop listening; may be called twice."""
-        self._ending.set()
-        if self._thread.is_alive():
-            self._thread.join(timeout=_CONNECT_FOR + 1.0)
-
     def _run(self) -> None:
         pause = self.first_pause
-        while not self._ending.is_set():
+        while not self._stopping.is_set():
             before = self.lines
             try:
                 with _LINKS[self.address.kind](self.address) as read:
@@ -73,7 +62,7 @@ class LineSource:
                 why = f'{type(error).__name__}: {error}'
             self._lose(why)
             pause = self.first_pause if self.lines > before else min(2.0 * pause, LONGEST_PAUSE)
-            self._ending.wait(pause)
+            self._stopping.wait(pause)
 
     def _listen(self, read: Read) -> str:
         """Read until the link ends; return why it did."""
@@ -81,7 +70,7 @@ class LineSource:
         self.is_up, self.failure = True, ''
         self.links += 1
         self.log(f'listening to {self.address}')
-        while not self._ending.is_set():
+        while not self._stopping.is_set():
             data = read()
             if data is None:
                 return 'closed by the other side'
@@ -95,7 +84,7 @@ class LineSource:
         return ''
 
     def _lose(self, why: str) -> None:
-        if not self._ending.is_set() and (self.is_up or why != self.failure):
+        if not self._stopping.is_set() and (self.is_up or why != self.failure):
             self.log(f'{self.address}: {why}; trying again')
         self.is_up, self.failure = False, why
 

@@ -13,7 +13,7 @@ from tree_sway.errors import ParameterError
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import WIND
 from tree_sway_ros.reports.diagnostics import OK, Status
-from tree_sway_ros.timing.pacer import Pacer, Tick
+from tree_sway_ros.timing.pacer import Tick
 from tree_sway_ros.wire.wind_messages import WindWriter
 
 
@@ -31,16 +31,11 @@ class AnemometerNode(TreeSwayNode):
         self._ticks = self._faulty_since = 0
         self._publisher = self.publisher(WIND, self._writer.message_class, alone=True)
         self.report_with('simulated anemometer', self._report)
-        self._pacer = self._make_pacer()
+        self._pacer = self.pacer_of(self._tick)
 
     def activate(self) -> None:
         """Blow."""
-        self._pacer = self._make_pacer()
-        self.on_close(self._pacer.stop)
-        self._pacer.start()
-
-    def _make_pacer(self) -> Pacer:
-        return Pacer(self.get_clock(), self.values['rate'], self._tick, self.fail, self.slip)
+        self.run_worker(self._pacer)
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse gusts and faults that overlap."""
@@ -86,6 +81,6 @@ class AnemometerNode(TreeSwayNode):
             self._publisher.publish(self._writer.message(*sample))
 
     def _report(self) -> list[Status]:
-        pace = self._pacer.pace()
-        values = {'fault': self.values['fault'], **pace._asdict()}
-        return [Status('output', OK, f'{pace.rate:.1f} Hz', values)]
+        timing = self._pacer.timing()
+        values = {'fault': self.values['fault'], **timing._asdict()}
+        return [Status('output', OK, f'{timing.rate:.1f} Hz', values)]

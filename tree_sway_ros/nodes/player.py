@@ -78,7 +78,14 @@ class PlayerNode(TreeSwayNode):
             self._answers = Answers(_SLACK)
             self.subscription(SEGMENT_POSES, self._hear, raw=True)
             self.subscription(WIND_FILTERED, self._hear_wind, raw=True)
-        self._thread = self._make_thread()
+        self._thread = PlaybackThread(
+            self._playback,
+            self.values['rate'],
+            publish=self._publish,
+            may_start=self._may_start,
+            on_end=self._end,
+            on_error=self.fail,
+        )
         self.report_with(self._record.source, self._report)
 
     def _open_wind(self) -> None:
@@ -93,20 +100,8 @@ class PlayerNode(TreeSwayNode):
 
     def activate(self) -> None:
         """Play from the start, once those who must listen do."""
-        self._thread = self._make_thread()
         self._expect()
-        self.on_close(self._thread.stop)
-        self._thread.start()
-
-    def _make_thread(self) -> PlaybackThread:
-        return PlaybackThread(
-            self._playback,
-            self.values['rate'],
-            publish=self._publish,
-            may_start=self._may_start,
-            on_end=self._end,
-            on_error=self.fail,
-        )
+        self.run_worker(self._thread)
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a clock in steps so long that nodes would take them for a clock set forward."""

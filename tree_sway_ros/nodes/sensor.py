@@ -30,26 +30,21 @@ class SensorNode(TreeSwayNode):
         self._kind = self.values['sentence']
         self._accepted = self._other = 0
         self._refused: dict[str, int] = {}
-        self._source = self._make_source()
-        self.report_with(self.values['address'], self._report)
-
-    def activate(self) -> None:
-        """Listen."""
-        self._source = self._make_source()
-        self.on_close(self._source.stop)
-        self._source.start()
-
-    def check_values(self, values: dict[str, Any]) -> None:
-        """Refuse what is no address."""
-        read_address(values['address'])
-
-    def _make_source(self) -> LineSource:
-        return LineSource(
+        self._source = LineSource(
             read_address(self.values['address']),
             self.guard.wrapped(self._take),
             self.get_logger().info,
             silence=self.values['silence'],
         )
+        self.report_with(self.values['address'], self._report)
+
+    def activate(self) -> None:
+        """Listen."""
+        self.run_worker(self._source)
+
+    def check_values(self, values: dict[str, Any]) -> None:
+        """Refuse what is no address."""
+        read_address(values['address'])
 
     def _take(self, line: str) -> None:
         said = self._parsed(line)

@@ -13,9 +13,9 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.shard import dealt
 from tree_sway.core.simulator.live_tuning import LIVE
-from tree_sway.core.simulator.protocol import Simulator
 from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
@@ -33,7 +33,7 @@ from tree_sway_ros.process.topics import CAMERA, PUSH, WIND_FILTERED
 from tree_sway_ros.reports.diagnostics import Status, WARN
 from tree_sway_ros.reports.sway_report import SwayReport
 from tree_sway_ros.timing.handshake import Reach
-from tree_sway_ros.timing.pacer import Pacer, Tick
+from tree_sway_ros.timing.pacer import Tick
 from tree_sway_ros.wire.pose_stream import PoseStream
 from tree_sway_ros.wire.wind_messages import wind_from_message
 
@@ -74,15 +74,10 @@ class SolverNode(TreeSwayNode):
 
     def activate(self) -> None:
         """Sway, from rest."""
-        self.pacer = self._make_pacer()
-        self.on_close(self.pacer.stop)
         self._reach = Reach()
+        self.run_worker(self.pacer)
         self.on_close(self._reach.end)
-        self.pacer.start()
         self._state.start()
-
-    def _make_pacer(self) -> Pacer:
-        return Pacer(self.get_clock(), self.values['rate'], self._tick, self.fail, self.slip)
 
     def _open(self) -> Any:
         source = open_scene(self.values['tree'])
@@ -102,18 +97,18 @@ class SolverNode(TreeSwayNode):
             profile=WindProfile(self.values['profile'], self.values['anemometer_height']),
         )
         self.simulator: Simulator = source.simulator(
-            settings, kept=KeptSetUps(), **self.values('tolerance')
+            settings, cache=KeptSetUps(), **self.values('tolerance')
         )
         if self.values['stiffness_factor'] != 1.0:
             self.simulator.tune(**self.values('stiffness_factor'))
         self._camera: Any = None
         self._refused: dict[str, tuple[int, str]] = {}
-        self.pacer = self._make_pacer()
+        self.pacer = self.pacer_of(self._tick)
         self._run = Run(
             self.simulator,
             self.values['rate'],
             intake=WindIntake.of_velocities(),
-            make_wind=self._make_wind,
+            make_wind=WindAverage,
             timer=time.perf_counter,
         )
         set_cost_scale(self.simulator.simulators, self._run.warm_up())
@@ -133,9 +128,6 @@ class SolverNode(TreeSwayNode):
         self.create_service(Trigger, '~/reset', self._reset)
         self.create_service(SetBool, '~/pause', self._pause)
         self.report_with(source.tree.name, self._statuses)
-
-    def _make_wind(self) -> WindAverage:
-        return WindAverage()
 
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)

@@ -8,7 +8,7 @@ import math
 import threading
 from typing import Any
 
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import TreeSwayError
 from tree_sway.page.scene_state import SceneState
 from tree_sway_ros.process.topics import TREE_STATE

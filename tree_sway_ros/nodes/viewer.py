@@ -4,9 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 import json
-import threading
 from typing import Any
 
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -59,21 +57,20 @@ class ViewerNode(TreeSwayNode):
         self._described = ''
         self._sequence = 0
         self._subscription: Any = None
-        self._lock = threading.Lock()
         self._setters = {
             node: self.create_client(SetParameters, f'{node}/set_parameters')
             for node in ('anemometer', 'solver')
         }
         self._reset = self.create_client(Trigger, 'solver/reset')
         self._pause = self.create_client(SetBool, 'solver/pause')
-        self.server = PageServer(self._settings, self._panel, self._status)
+        self.server = self._make_server()
         self.subscription(TREE_DESCRIPTION, self._describe)
         self.create_timer(_CHECK_PERIOD, self._look)
         self.report_with('page', self._statuses)
 
     def activate(self) -> None:
         """Serve the page."""
-        self.server = PageServer(self._settings, self._panel, self._status)
+        self.server = self._make_server()
         self.server.start()
         self.on_close(self.server.close)
         self._described = ''
@@ -108,14 +105,13 @@ class ViewerNode(TreeSwayNode):
                 f'{len(coordinates)} coordinates of a tree with {len(scale)}', where='tree_state'
             )
         steps, is_cut = quantised(coordinates, scale)
-        flags = BEYOND_SCALE if is_cut else 0
-        stamp = stamp_to_ns(message.header.stamp)
+        flags, stamp = BEYOND_SCALE * is_cut, stamp_to_ns(message.header.stamp)
         frame = Frame(description.short_identity, self._sequence, stamp, flags, wind, steps)
         self._sequence += 1
         self.server.publish(encode_frame(frame))
 
-    def _status(self) -> dict[str, Any]:
-        return {'source': 'ROS 2'}
+    def _make_server(self) -> PageServer:
+        return PageServer(self._settings, self._panel, lambda: {'source': 'ROS 2'})
 
     def _statuses(self) -> list[Status]:
         values = {'pages': self.server.n_clients, 'frames': self._sequence}
@@ -124,32 +120,26 @@ class ViewerNode(TreeSwayNode):
     def _apply(self, name: str, value: Any) -> None:
         """Pass a viewer's change on to the node it concerns; its refusal comes later."""
         if name == 'reset':
-            self._ask(self._reset, Trigger.Request(), lambda answer: '')
+            self._ask(self._reset, Trigger.Request())
         elif name == 'pause':
-            self._ask(self._pause, SetBool.Request(data=bool(value)), lambda answer: '')
+            self._ask(self._pause, SetBool.Request(data=bool(value)))
         else:
             number = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value))
             request = SetParameters.Request(parameters=[ParameterMessage(name=name, value=number)])
-            self._ask(self._setters[_LIVE[name][0]], request, _reason)
+            self._ask(self._setters[_LIVE[name][0]], request)
 
-    def _ask(self, client: Any, request: Any, reason: Callable[[Any], str]) -> None:
+    def _ask(self, client: Any, request: Any) -> None:
         if not client.service_is_ready():
             raise ParameterError(
                 f'nothing offers {client.srv_name}', cure='start the node, or leave this as it is'
             )
 
         def answered(future: Any) -> None:
-            why = reason(future.result())
-            if why:
-                self.server.announce({'refused': {'name': '', 'reason': why}})
+            for result in getattr(future.result(), 'results', ()):  # of parameters
+                if not result.successful:
+                    self.server.announce({'refused': {'name': '', 'reason': result.reason}})
 
-        with self._lock:
-            client.call_async(request).add_done_callback(answered)
-
-
-def _reason(answer: Any) -> str:
-    """Why parameters were refused; empty if they were not."""
-    return next((str(each.reason) for each in answer.results if not each.successful), '')
+        client.call_async(request).add_done_callback(answered)
 
 
 def _controls() -> tuple[Control, ...]:

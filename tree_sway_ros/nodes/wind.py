@@ -19,7 +19,7 @@ from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.wind_report import WindReport
 from tree_sway_ros.wire.wind_messages import (
     plane_message,
-    wind_class,
+    WIND_CLASSES,
     wind_from_message,
     wind_to_message,
     WindSample,
@@ -50,7 +50,7 @@ class WindNode(TreeSwayNode):
         self._frames: Any = None
         self._filtered = self.publisher(WIND_FILTERED, alone=True)
         self._plane = self.publisher(FORCE_PLANE)
-        kind = wind_class(self.values['input_type'])
+        kind = WIND_CLASSES[self.values['input_type']]
         self._topic = self.subscription(WIND, self._receive, kind, alone=True).topic_name
         self.report_with('wind', self._statuses)
         self.get_logger().info(self._convention.describe())
@@ -85,9 +85,9 @@ class WindNode(TreeSwayNode):
         good = self._intake.offer(
             sample.stamp, components, arrival, lead=self.clock_lead, rotation=turn
         )
-        self._report.add(good is not None)
         if good is None:
             return
+        self._report.add()
         time, vector = good
         self._filtered.publish(
             wind_to_message(Vector3Stamped, WindSample(time, frame_id, *vector))

@@ -7,7 +7,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.callback_groups import CallbackGroup
+from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNodeMixin, TransitionCallbackReturn
 from rclpy.node import Node
 from rclpy.qos import qos_check_compatible, QoSCompatibility
@@ -18,10 +20,14 @@ from tree_sway.errors import TreeSwayError
 from tree_sway_ros.parameters.declaration import ParameterValues
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.process.guard import CallbackGuard
-from tree_sway_ros.process.reporter import Reporter
 from tree_sway_ros.process.rivals import Rivals
-from tree_sway_ros.process.topics import message_class, qos_profile, Topic
-from tree_sway_ros.reports.diagnostics import Status, WARN
+from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile, Topic
+from tree_sway_ros.reports.diagnostics import Status, status_array, WARN
+from tree_sway_ros.timing.pacer import Pacer, Tick
+from tree_sway_ros.timing.worker import Worker
+
+REPORT_PERIOD = 1.0
+"""From one report to the next [s], of wall time: reports go on while simulated time is paused."""
 
 _ENTITIES = {
     'publishers': 'destroy_publisher',
@@ -243,8 +249,27 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         return LARGEST_LEAD if self.get_clock().ros_time_is_active else 0
 
     def report_with(self, hardware: str, collect: Callable[[], list[Status]]) -> None:
-        """Publish what `collect` returns on `/diagnostics`."""
-        self.reporter = Reporter(self, hardware, lambda: [*collect(), *self._own_statuses()])
+        """
+        Publish what `collect` returns on `/diagnostics` from now on.
+
+        ``hardware`` is what is reported on, for example the tree's name.
+        """
+        self._hardware, self._collect = hardware, collect
+        profile = qos_profile(DIAGNOSTICS)
+        self._diagnostics = self.create_publisher(DiagnosticArray, DIAGNOSTICS.name, profile)
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(REPORT_PERIOD, self.report, clock=steady)
+
+    def report(self) -> None:
+        """Publish one report."""
+        self._diagnostics.publish(
+            status_array(
+                [*self._collect(), *self._own_statuses()],
+                prefix=self.get_fully_qualified_name().lstrip('/'),
+                hardware=self._hardware,
+                stamp=self.get_clock().now().to_msg(),
+            )
+        )
 
     def _own_statuses(self) -> list[Status]:
         """Failures of callbacks, and other publishers where there should be none."""
@@ -269,6 +294,15 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Take live changes of parameters; by default whoever needs a value reads it again."""
+
+    def pacer_of(self, work: Callable[[Tick], None]) -> Pacer:
+        """Make what calls `work` at the parameter `rate`, by the clock of the node."""
+        return Pacer(self.get_clock(), self.values['rate'], work, self.fail, self.slip)
+
+    def run_worker(self, worker: Worker) -> None:
+        """Start what works in a thread; it stops with the node."""
+        self.on_close(worker.stop)
+        worker.start()
 
     def on_close(self, closer: Callable[[], None]) -> None:
         """Have something called when the node closes, last come first served."""

@@ -31,12 +31,8 @@ class Topic:
     any_input: bool = False
 
 
-_BY_NAME = {
-    name: Topic(name, **keys)
-    for name, keys in yaml.safe_load(
-        Path(__file__).with_name('topics.yaml').read_text(encoding='utf-8')
-    ).items()
-}
+_TABLE = yaml.safe_load(Path(__file__).with_name('topics.yaml').read_text(encoding='utf-8'))
+_BY_NAME = {name: Topic(name, **keys) for name, keys in _TABLE.items()}
 TOPICS = tuple(_BY_NAME.values())
 
 WIND = _BY_NAME['wind']
@@ -66,7 +62,7 @@ def qos_profile(topic: Topic, *, is_input: bool = False) -> Any:
     )
 
 
-def message_class(topic: Topic) -> Any:
-    """Class of a topic's messages."""
-    package, _, name = topic.type_name.split('/')
+def message_class(topic: Topic, type_name: str = '') -> Any:
+    """Class of a topic's messages, or of those of a type that a program chose for it."""
+    package, _, name = (type_name or topic.type_name).split('/')
     return getattr(importlib.import_module(f'{package}.msg'), name)

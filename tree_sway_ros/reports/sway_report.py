@@ -8,11 +8,11 @@ import time
 
 from tree_sway.core.scene.demand import adaptive_among
 from tree_sway.core.scene.run import Run
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.gate import GateCounts
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
-from tree_sway_ros.timing.pacer import Pace, Pacer
+from tree_sway_ros.timing.pacer import Pacer, Timing
 
 _WIND = {
     'none': (WARN, 'no wind yet: the tree is at rest'),
@@ -36,23 +36,24 @@ class SwayReport:
 
     def statuses(self, run: Run, pacer: Pacer, frames: int) -> list[Status]:
         """Report on the wind, the output and the model, after a number of pose arrays."""
-        output = self._output(pacer.pace(), 1e9 / pacer.period, frames, pacer.is_simulated)
+        output = self._output(pacer.timing(), 1e9 / pacer.period, frames, pacer.is_simulated)
         statuses = [_wind(run.wind_state, run.counts), output, _model(run.simulator)]
         gusts = run.simulator.gusts
         return statuses if gusts is None else [*statuses, _gusts(gusts)]
 
-    def _output(self, pace: Pace, rate: float, frames: int, is_simulated: bool) -> Status:
+    def _output(self, timing: Timing, rate: float, frames: int, is_simulated: bool) -> Status:
         now = time.monotonic()
         published = (frames - self._frames) / max(1e-9, now - self._time)
-        skipped = pace.skipped - self._skipped
-        self._time, self._frames, self._skipped = now, frames, pace.skipped
-        values = {**pace._asdict(), 'wanted': rate, 'published': published, 'frames': frames}
-        if pace.silence > max(_SILENCE, 3.0 / rate) and not is_simulated:
-            return Status('output', WARN, f'no frame for {pace.silence:.1f} s', values)
-        if skipped > 0.01 * rate:
-            late = f'{1e3 * pace.late_p95:.1f} ms late (p95)'
-            return Status('output', WARN, f'{skipped} frames skipped, {late}', values)
-        return Status('output', OK, f'{pace.rate:.1f} Hz', values)
+        skipped = timing.skipped - self._skipped
+        self._time, self._frames, self._skipped = now, frames, timing.skipped
+        level, text = OK, f'{timing.rate:.1f} Hz'
+        if timing.silence > max(_SILENCE, 3.0 / rate) and not is_simulated:
+            level, text = WARN, f'no frame for {timing.silence:.1f} s'
+        elif skipped > 0.01 * rate:
+            late = f'{1e3 * timing.late_p95:.1f} ms late (p95)'
+            level, text = WARN, f'{skipped} frames skipped, {late}'
+        values = {**timing._asdict(), 'wanted': rate, 'published': published, 'frames': frames}
+        return Status('output', level, text, values)
 
 
 def _wind(state: str, counts: GateCounts) -> Status:
@@ -76,22 +77,23 @@ def _model(simulator: Simulator) -> Status:
     if not adaptive:
         return Status('model', OK, simulator.model, values)
     worst = max(adaptive, key=lambda each: float(each.choice.error / each.tolerance))
-    cost, budget = sum(a.frame_cost for a in adaptive), sum(a.budget for a in adaptive)
+    error, cost = worst.choice.error, sum(each.frame_cost for each in adaptive)
+    budget = sum(each.budget for each in adaptive)
+    chosen = ', '.join(dict.fromkeys(each.choice.name for each in adaptive))
     values |= {
-        'chosen': ', '.join(dict.fromkeys(each.choice.name for each in adaptive)),
-        'estimated error [m]': worst.choice.error,
+        'chosen': chosen,
+        'estimated error [m]': error,
         'tolerance [m]': worst.tolerance,
         'estimated cost [us]': cost,
         'budget [us]': budget,
     }
-    if 0.0 < budget < cost:
-        what = f'no model is within the budget; allow {cost:.3g} us for {values["chosen"]}'
-        return Status('model', WARN, what, values)
-    if worst.choice.error > worst.tolerance:
-        nearest = f'allow {worst.choice.error:.2g} m for {worst.choice.name}'
-        what = f'{worst.tree.name}: no model is within the tolerance; {nearest}'
-        return Status('model', WARN, what, values)
-    return Status('model', OK, simulator.model, values)
+    level, text = WARN, f'no model is within the budget; allow {cost:.3g} us for {chosen}'
+    if not 0.0 < budget < cost:
+        text = f'{worst.tree.name}: no model is within the tolerance; allow {error:.2g} m for '
+        text += worst.choice.name
+        if error <= worst.tolerance:
+            level, text = OK, simulator.model
+    return Status('model', level, text, values)
 
 
 def _gusts(history: GustHistory) -> Status:

@@ -8,11 +8,14 @@ from collections import deque
 from collections.abc import Sequence
 import time
 
+import numpy as np
+
 from tree_sway.core.wind.gate import WindGate
 from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
 
 _WINDOW = 5.0
 _PERIODS = 3.0
+_LATEST = 21
 _SHORTER = 0.8
 """Share of the gaps between samples that are shorter than the period: some come in bursts."""
 STALE_AFTER = 5.0
@@ -20,30 +23,23 @@ STALE_AFTER = 5.0
 
 
 class WindReport:
-    """Counts samples by arrival, in wall time: stamps do not show whether a sensor is alive."""
+    """Good samples by arrival, in wall time: stamps do not show whether a sensor is alive."""
 
     def __init__(self) -> None:
         self._arrivals: deque[float] = deque(maxlen=1000)
-        self._latest: float | None = None
-        self._gaps: deque[float] = deque(maxlen=20)
 
-    def add(self, is_accepted: bool) -> None:
-        """Count a sample."""
-        now = time.monotonic()
-        self._arrivals.append(now)
-        if is_accepted:
-            if self._latest is not None:
-                self._gaps.append(now - self._latest)
-            self._latest = now
+    def add(self) -> None:
+        """Count a good sample."""
+        self._arrivals.append(time.monotonic())
 
     @property
     def age(self) -> float | None:
         """Time since the last good sample in [s]; None if there was none."""
-        return None if self._latest is None else time.monotonic() - self._latest
+        return time.monotonic() - self._arrivals[-1] if self._arrivals else None
 
     @property
     def rate(self) -> float:
-        """Return the samples per second over the last five seconds in [Hz]."""
+        """Good samples per second over the last five seconds [Hz]."""
         now = time.monotonic()
         recent = [arrival for arrival in list(self._arrivals) if now - arrival <= _WINDOW]
         if len(recent) < 2 or now - recent[-1] > 1.0 + 2.0 * (recent[-1] - recent[-2]):
@@ -52,9 +48,9 @@ class WindReport:
 
     @property
     def _period(self) -> float:
-        """Of the sensor in [s]; 0 before the second sample. A few dropouts do not change it."""
-        gaps = sorted(self._gaps)
-        return gaps[int(_SHORTER * len(gaps))] if gaps else 0.0
+        """Period of the sensor [s]; 0 before the second sample. Few dropouts do not change it."""
+        gaps = sorted(np.diff(list(self._arrivals)[-_LATEST:]).tolist())
+        return float(gaps[int(_SHORTER * len(gaps))]) if gaps else 0.0
 
     def status(self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()) -> Status:
         """
@@ -70,16 +66,17 @@ class WindReport:
             'refused': gate.counts.refused,
             **vars(gate.counts),
         }
+        level, text = OK, f'{self.rate:.1f} Hz'
         if age is None:
-            refused = f'; {gate.counts.refused} samples refused' if gate.counts.refused else ''
-            others = (
-                f'; set input_type to read {", ".join(types_not_read)}' if types_not_read else ''
-            )
-            return Status('wind', WARN, f'no wind yet{refused}{others}', values)
-        if age > STALE_AFTER * timeout:
-            return Status('wind', STALE, f'no wind for {age:.0f} s', values)
-        if age > timeout:
-            return Status('wind', WARN, f'no wind for {age:.1f} s, its force decays', values)
-        if gate.is_frozen:
-            return Status('wind', WARN, 'frozen: the sensor repeats the same sample', values)
-        return Status('wind', OK, f'{self.rate:.1f} Hz', values)
+            level, text = WARN, 'no wind yet'
+            if gate.counts.refused:
+                text += f'; {gate.counts.refused} samples refused'
+            if types_not_read:
+                text += f'; set input_type to read {", ".join(types_not_read)}'
+        elif age > STALE_AFTER * timeout:
+            level, text = STALE, f'no wind for {age:.0f} s'
+        elif age > timeout:
+            level, text = WARN, f'no wind for {age:.1f} s, its force decays'
+        elif gate.is_frozen:
+            level, text = WARN, 'frozen: the sensor repeats the same sample'
+        return Status('wind', level, text, values)

@@ -21,9 +21,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tree_sway_ros.timing.worker import Worker
+
 LONGEST_STEP = 500_000_000
-"""A tick never covers more time than this [ns]: a clock that jumped forward is no long
-step."""
+"""A tick never covers more time than this [ns]: a clock that jumped forward is no long step."""
 PATIENCE = 10
 """Number of ticks that may fail one after another before the thread gives up."""
 _BACK = 100_000_000
@@ -42,9 +43,9 @@ class Tick(NamedTuple):
     restarted: bool
 
 
-class Pace(NamedTuple):
+class Timing(NamedTuple):
     """
-    How well the pace was kept: rate [Hz], lateness [s], work [s], and counts since the start.
+    How well the rate was kept: rate [Hz], lateness [s], work [s], and counts since the start.
 
     `skipped` are frames on the grid that never came, however many at once; `clamped` are jumps of
     the clock forward, `restarts` jumps back, `silence` is the time since the last tick [s].
@@ -63,7 +64,7 @@ class Pace(NamedTuple):
 
 
 @dataclass(eq=False)
-class Pacer:
+class Pacer(Worker):
     """
     Calls `work` with each tick at a fixed rate [Hz] in a thread of its own, by a node's clock.
 
@@ -79,21 +80,22 @@ class Pacer:
 
     def __post_init__(self) -> None:
         """Prepare the thread."""
+        super().__init__('pacer')
         self.period = round(1e9 / self.rate)
         self._slips = self._last_steady = self._late = 0
         self._last: int | None = None
         self._wake = threading.Event()
-        self._stopping = False
         self._recent: deque[tuple[float, int, float]] = deque(maxlen=_WINDOW)
         self._ticks = self._skipped = self._clamped = self._restarts = 0
-        self._thread = threading.Thread(target=self._run, name='pacer', daemon=True)
         self._jumps: Any = None
 
     def start(self) -> None:
-        """Start ticking."""
+        """Start ticking, as if never before; the counts go on."""
         from rclpy.clock import JumpThreshold
         from rclpy.duration import Duration
 
+        self._last = None
+        self._recent.clear()
         # Simulated time moves by jumps; each wakes the thread.
         smallest = Duration(nanoseconds=1)
         threshold = JumpThreshold(
@@ -102,14 +104,13 @@ class Pacer:
         self._jumps = self.clock.create_jump_callback(
             threshold, post_callback=lambda _jump: self._wake.set()
         )
-        self._thread.start()
+        super().start()
 
     def stop(self) -> None:
-        """Stop ticking and wait for the work under way."""
-        self._stopping = True
+        """Stop ticking, and wait for the work under way."""
+        self._stopping.set()
         self._wake.set()
-        if self._thread.is_alive() and self._thread is not threading.current_thread():
-            self._thread.join(timeout=5.0)
+        super().stop()
         if self._jumps is not None:
             self._jumps.unregister()
             self._jumps = None
@@ -119,22 +120,22 @@ class Pacer:
         """Whether the clock is simulated time, which may stand still."""
         return bool(self.clock.ros_time_is_active)
 
-    def pace(self) -> Pace:
-        """How well the pace was kept over the last 600 ticks."""
+    def timing(self) -> Timing:
+        """How well the rate was kept over the last 600 ticks."""
         silence = 1e-9 * (time.monotonic_ns() - self._last_steady) if self._last_steady else 0.0
         counts = (self._ticks, self._skipped, self._clamped, self._restarts, silence)
         begin, late, work = np.array(list(self._recent) or [(0.0, 0, 0.0)]).T
         rate = (len(begin) - 1) / max(1e-9, begin[-1] - begin[0])
         p50, p95, most = np.quantile(1e-9 * late, (0.5, 0.95, 1.0)).tolist()
-        return Pace(float(rate), p50, p95, most, float(work.mean()), *counts)
+        return Timing(float(rate), p50, p95, most, float(work.mean()), *counts)
 
     def _run(self) -> None:
-        while not self._stopping:
+        while not self._stopping.is_set():
             try:
                 self._go_on()
             except Exception as error:
                 self._slips += 1
-                if self._stopping:
+                if self._stopping.is_set():
                     return
                 if self._slips >= PATIENCE:
                     return self.on_error(error)

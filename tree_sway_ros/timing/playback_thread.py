@@ -6,18 +6,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-import threading
 import time
 
 from tree_sway_ros.timing.handshake import SETTLING
 from tree_sway_ros.timing.playback import Playback
+from tree_sway_ros.timing.worker import Worker
 
 _LATEST = 0.5
 _POLL = 0.02
 
 
 @dataclass(eq=False)
-class PlaybackThread:
+class PlaybackThread(Worker):
     """
     Plays the events of a record at a multiple of real time, once ``may_start`` is true.
 
@@ -36,20 +36,9 @@ class PlaybackThread:
 
     def __post_init__(self) -> None:
         """Prepare the thread."""
-        self._stopping = threading.Event()
+        super().__init__('playback')
         self._position = 0.0
         self._samples = self._stalls = 0
-        self._thread = threading.Thread(target=self._run, name='playback', daemon=True)
-
-    def start(self) -> None:
-        """Start playing, as soon as `may_start` says so."""
-        self._thread.start()
-
-    def stop(self) -> None:
-        """Stop playing and wait for the message under way."""
-        self._stopping.set()
-        if self._thread.is_alive():
-            self._thread.join(timeout=5.0)
 
     def progress(self) -> dict[str, float]:
         """How far it is, for reports."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway_ros.wire.cdr import block_mark, CdrTemplate, mark_stamp
 
@@ -47,10 +48,9 @@ class TreeMarkers:
 
     def to_bytes(self, poses: NDArray[np.float64], stamp: int) -> bytes:
         """Draw poses (n_segments, 7) at a stamp [ns] as a ``visualization_msgs/MarkerArray``."""
-        tips = poses[:, :3] + self._length[:, None] * x_axes(poses[:, 3:])
+        ends = np.stack(ends_of_poses(poses, self._length), axis=1)
         for block, members in zip(self._template.blocks, self._members, strict=True):
-            block[:, 0] = poses[members, :3]
-            block[:, 1] = tips[members]
+            block[...] = ends[members]
         return self._template.to_bytes(stamp)
 
 
@@ -62,11 +62,3 @@ def radius_classes(radius: NDArray[np.float64], n_classes: int) -> list[NDArray[
         return [np.arange(len(radius))]
     place = ((log.max() - log) / span * n_classes).astype(int).clip(0, n_classes - 1)
     return [np.flatnonzero(place == k) for k in range(n_classes) if (place == k).any()]
-
-
-def x_axes(xyzw: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the x axis of each orientation, (n, 3), from quaternions x y z w, (n, 4)."""
-    x, y, z, w = xyzw.T
-    return np.stack(
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)], axis=1
-    )

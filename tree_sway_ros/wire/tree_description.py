@@ -21,11 +21,6 @@ REPEAT_PERIOD = 5.0
 """From one description to the next [s]: bags and bridges lose a latched topic."""
 
 
-def tree_hash(tree: Tree) -> str:
-    """Sixteen hexadecimal digits that change with the tree: with any segment, name or place."""
-    return digest_of(tree)
-
-
 def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> str:
     """
     Describe a tree as JSON of ``doc/tree_description.schema.json``.
@@ -37,7 +32,7 @@ def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> s
             **({} if leaves is None else {'leaves': leaf_list(leaves)}),
             'version': VERSION,
             'name': tree.name,
-            'hash': tree_hash(tree),
+            'hash': digest_of(tree),
             'species': tree.species,
             'frame_id': frame_id,
             'segments': {

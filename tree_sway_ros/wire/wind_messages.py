@@ -23,7 +23,6 @@ from geometry_msgs.msg import (
 from rosgraph_msgs.msg import Clock
 
 from tree_sway.core.wind.convention import WindConvention
-from tree_sway.errors import ParameterError
 
 _SECOND = 1_000_000_000
 
@@ -48,17 +47,8 @@ _VECTORS: dict[Any, Callable[[Any], Any]] = {
     TwistWithCovarianceStamped: lambda message: message.twist.twist.linear,
     Vector3: lambda message: message,
 }
+#: By their names, as parameters have them: ``geometry_msgs/Vector3Stamped``.
 WIND_CLASSES = {f'geometry_msgs/{each.__name__}': each for each in _VECTORS}
-
-
-def wind_class(type_name: str) -> Any:
-    """Class of a wind message, as ``geometry_msgs/Vector3Stamped``; else a `ParameterError`."""
-    try:
-        return WIND_CLASSES[type_name]
-    except KeyError:
-        raise ParameterError(
-            f"'{type_name}' is no wind type", cure=f'use one of: {", ".join(WIND_CLASSES)}'
-        ) from None
 
 
 def wind_from_message(message: Any) -> WindSample:
@@ -92,7 +82,7 @@ class WindWriter:
     """Writes wind as a driver would: one of the four types, vectors ``to`` or ``from``."""
 
     def __init__(self, output_type: str, direction_convention: str, frame_id: str) -> None:
-        self.message_class = wind_class(output_type)
+        self.message_class = WIND_CLASSES[output_type]
         self._convention = WindConvention(direction_convention)
         self._frame_id = frame_id
 

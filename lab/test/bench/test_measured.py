@@ -14,6 +14,7 @@ from tree_sway_lab.bench.stand import time_stand
 
 from tree_sway.commands import cli
 from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.errors import FormatError
@@ -40,7 +41,7 @@ def test_a_file_without_figures_is_no_baseline(tmp_path, text):
 def test_a_stand_is_timed(stem):
     tree = stem()
     trees = [PlacedTree(f't{i}', tree, x=3.0 * i) for i in range(5)]
-    rows = time_stand(lambda: SceneSimulator(trees, Settings()), frames=3)
+    rows = time_stand(lambda: SceneSimulator(Scene(trees), Settings()), frames=3)
     assert rows[0].name == 'solve 5 trees, 30 segments'
     assert all(row.value > 0.0 for row in rows)
     assert rows[2].value == pytest.approx(rows[0].value + rows[1].value)

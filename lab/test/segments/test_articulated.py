@@ -15,6 +15,7 @@ from tree_sway_lab.example_trees import (
     tapered_stem,
 )
 from tree_sway_lab.frame.frame import frame_model
+from tree_sway_lab.frame_means import frame_means
 from tree_sway_lab.segments.articulated import ArticulatedTree
 from tree_sway_lab.segments.articulated_kernel import articulation_of, motion_of
 from tree_sway_lab.segments.articulated_modes import joint_mass, joint_modes, joint_stiffness
@@ -24,7 +25,6 @@ from tree_sway_lab.tip_error import record_tips, tip_error
 
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.tree import tips_of_poses
-from tree_sway.core.wind.frame_means import frame_means
 from tree_sway.errors import TreeError
 
 pytestmark = pytest.mark.compiled

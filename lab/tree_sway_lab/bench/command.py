@@ -138,7 +138,7 @@ def _stand(arguments: argparse.Namespace) -> list[Measured]:
         raise ParameterError(
             f"'{arguments.tree}' is no stand", where='--tree', cure='give config/stand.yaml'
         )
-    return time_stand(partial(SceneSimulator, scene.trees, Settings()))
+    return time_stand(partial(SceneSimulator, scene, Settings()))
 
 
 def _stream(arguments: argparse.Namespace) -> list[Measured]:

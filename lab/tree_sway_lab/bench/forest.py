@@ -10,6 +10,7 @@ import time
 import numpy as np
 
 from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway_lab.bench.bench_tree import bench_tree, SEGMENTS_A_BRANCH
@@ -79,7 +80,7 @@ def bench_forest(
         )
         for i in range(n_trees)
     ]
-    return SceneSimulator(trees, Settings(model=model))
+    return SceneSimulator(Scene(trees), Settings(model=model))
 
 
 def time_forest(forest: SceneSimulator, frames: int = 600) -> ForestTiming:

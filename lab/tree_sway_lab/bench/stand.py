@@ -12,6 +12,7 @@ import numpy as np
 
 from tree_sway.commands.progress import bar
 from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway_lab.bench.bench_tree import bench_tree
@@ -39,7 +40,7 @@ def bench_stand(n_trees: int) -> SceneSimulator:
         )
         for i in range(n_trees)
     ]
-    return SceneSimulator(trees, Settings())
+    return SceneSimulator(Scene(trees), Settings())
 
 
 def time_stand(
@@ -65,7 +66,7 @@ def time_stand(
     """
     begun = time.process_time()
     stand = bench_stand(n_trees) if make is None else make()
-    poses = np.zeros((stand.n_segments, 7))
+    poses = stand.place()
     winds = gusts(frames)
     stand.step(winds[0], _DT)
     stand.place(poses)
@@ -78,13 +79,13 @@ def time_stand(
         stand.place(poses)
         row[:] = stepped - begun, time.thread_time() - stepped
     solve, place = (1e3 * np.median(spent, axis=0)).tolist()
-    what = f'{len(stand.names)} trees, {stand.n_segments} segments'
+    what = f'{len(stand.names)} trees, {len(poses)} segments'
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     return [
         Measured(f'solve {what}', solve, 'ms'),
         Measured(f'place {what}', place, 'ms'),
         Measured('both', solve + place, 'ms'),
-        Measured('place a segment', 1e6 * place / stand.n_segments, 'ns'),
+        Measured('place a segment', 1e6 * place / len(poses), 'ns'),
         Measured('set-up, CPU', set_up, 's'),
         Measured('memory at most', peak, 'GB'),
     ]

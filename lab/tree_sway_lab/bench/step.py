@@ -17,7 +17,6 @@ import time
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.assembly import CalibratedTree
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TreeSwayError
@@ -85,8 +84,7 @@ def time_steps(tree: Tree, model: int | str, rounds: int) -> StepTiming:
 
     """
     simulator = SwaySimulator(tree, model=model, twig_tolerance=-1.0)
-    plain = CalibratedTree(tree, simulator.species, simulator.settings, plain=True)
-    twin = SwaySimulator(tree, settings=simulator.settings, calibrated=plain)
+    twin = SwaySimulator(tree, settings=simulator.settings, plain=True)
     winds = gusts(_STEPS_A_ROUND)
     poses = np.zeros((tree.n_segments, 7))
     difference = _agree(simulator, twin, winds, poses)

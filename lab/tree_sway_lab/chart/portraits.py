@@ -23,7 +23,7 @@ from tree_sway import pictures
 from tree_sway.commands.progress import bar
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, scene_of_files

@@ -7,11 +7,11 @@ from __future__ import annotations
 import argparse
 
 from tree_sway.commands.arguments import add_tree_arguments, opened_tree
-from tree_sway.core.wind.frame_means import frame_means
 from tree_sway.errors import ParameterError
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway_lab.compare.mujoco_tree import FRAME, take_warnings
 from tree_sway_lab.compare.with_mujoco import compare_with_mujoco
+from tree_sway_lab.frame_means import frame_means
 from tree_sway_lab.validation.winds import turbulent
 
 

@@ -86,7 +86,7 @@ def response_slopes(
         mean_speed, rate=_RATE, duration=seconds, rng=np.random.default_rng(seed)
     )
     record = rig.run(wind, rate=_RATE)
-    first = float(rig.calibrated.natural_frequencies(1)[0])
+    first = float(rig.reductions.natural_frequencies(1)[0])
 
     def slopes(signal: Floats) -> tuple[float, float]:
         along, across = (slope_above(signal[:, k], first, _RATE) for k in (0, 1))

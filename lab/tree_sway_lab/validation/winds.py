@@ -15,9 +15,9 @@ import re
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.wind.frame_means import frame_means
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
+from tree_sway_lab.frame_means import frame_means
 
 FRAME = 1.0 / 60.0
 

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 
@@ -32,6 +32,6 @@ def test_conifers_sway_as_often_as_measured_ones(species: str, height: float) ->
     tree, wood = grow(species, height, rng=np.random.default_rng(0)), species_named(species)
     stem = tree.segments_of(0)
     diameter = np.interp(1.3, tree.start[stem][:, 2], tree.base_diameter[stem])
-    whole = CalibratedTree(tree, wood, Settings(in_leaf=True))
+    whole = TreeReductions(tree, wood, Settings(in_leaf=True))
     measured = 0.0766 + 3.1219 * (100.0 * diameter) / height**2
     assert whole.natural_frequencies(1)[0] == pytest.approx(measured, rel=0.15)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.identification.calibration import calibrate
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 from tree_sway.errors import ParameterError, TreeError
@@ -19,7 +19,7 @@ WEIGHTLESS = Settings(gravity=0.0)
 
 
 def slowest(tree, species, settings=COUPLED):
-    return float(CalibratedTree(tree, species, settings).natural_frequencies(1)[0])
+    return float(TreeReductions(tree, species, settings).natural_frequencies(1)[0])
 
 
 @pytest.mark.parametrize('share', [0.2, 0.9, 1.0, 1.5, 20.0])

@@ -9,7 +9,7 @@ import pytest
 
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.motion.drag import AIR_DENSITY, crown_drag, pressure, SHARED_AT
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_keys, species_named
 
@@ -63,7 +63,7 @@ def test_leaves_add_load_and_let_it_grow_as_in_the_field(species, height):
     area = tree.length @ (tree.base_diameter + tree.tip_diameter) / 2.0
     loads = []
     for in_leaf in (True, False):
-        crown = CalibratedTree(tree, wood, Settings(in_leaf=in_leaf))
+        crown = TreeReductions(tree, wood, Settings(in_leaf=in_leaf))
         leaves = crown.leaf_load_area.sum() if in_leaf else 0.0
         pressures = np.array([pressure(speed, *crown.drag_law) for speed in SPEEDS])
         loads.append(pressures * SPEEDS**2 * (area + leaves))

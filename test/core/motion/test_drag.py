@@ -12,7 +12,8 @@ from scipy.integrate import quad
 
 from tree_sway.core.motion.drag import AIR_DENSITY, pressure
 from tree_sway.core.motion.drag import drag as drag_and_slip
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.assembly import assembled
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.species import species_named
@@ -29,7 +30,7 @@ def drag(record, per_speed_squared, *wind, compliance=0.0):
 
 def record_of(tree, **changes):
     chosen = Settings(model='branch', gravity=0.0, **changes)
-    return CalibratedTree(tree, species_named('broadleaf'), chosen).bank().branches[0]
+    return assembled(TreeReductions(tree, species_named('broadleaf'), chosen)).branches[0]
 
 
 @pytest.mark.parametrize('direction', [(0, 0, 1), (1, 0, 0), (1, -2, 0.5)])

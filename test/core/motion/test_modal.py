@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from tree_sway.core.branch.model import branch_models
+from tree_sway.core.branch.model import TreeBeams
 from tree_sway.core.reduction.matrices import reduce_tree
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.assembly import assembled
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 
@@ -21,13 +22,13 @@ DT = 1 / 120
 
 def modal(tree, **changes):
     chosen = {'model': 'full', 'gravity': 0.0, 'enrich': 'none'} | changes
-    bank = CalibratedTree(tree, WOOD, Settings(**chosen)).bank().oscillators
+    bank = assembled(TreeReductions(tree, WOOD, Settings(**chosen))).oscillators
     bank.set_step(DT)
     return bank
 
 
 def stiffness_of(tree):
-    models = branch_models(tree, WOOD.density, carries=True, shear_ratio=WOOD.shear_ratio)
+    models = TreeBeams(tree, WOOD.density, shear_ratio=WOOD.shear_ratio).models(carries=True)
     return reduce_tree(tree, models, WOOD.modulus, WOOD.shear_ratio * WOOD.modulus, 0.0).stiffness
 
 

@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.branch.shapes import across
 from tree_sway.core.motion.placing import place
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.assembly import assembled
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import species_named
@@ -28,7 +29,7 @@ class Puppet:
     def __init__(self, tree, model='full', enrich='none'):
         chosen = Settings(model=model, enrich=enrich, gravity=0.0, twig_tolerance=-1.0)
         self.tree = tree
-        self.bank = CalibratedTree(tree, species_named('broadleaf'), chosen).bank()
+        self.bank = assembled(TreeReductions(tree, species_named('broadleaf'), chosen))
         self.n = len(self.bank.oscillators.rotations())
 
     def poses(self, x):

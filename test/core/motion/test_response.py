@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
 
 from tree_sway.core.motion.response import tip_motion, turn_of_branches
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.assembly import assembled
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 
@@ -20,8 +21,7 @@ DAMPED = Settings(gravity=0.0, damping_ratio=0.2)
 
 @pytest.fixture(scope='module')
 def bank_of(fork):
-    calibrated = CalibratedTree(fork(), OAK, DAMPED)
-    return cache(calibrated.bank)
+    return cache(partial(assembled, TreeReductions(fork(), OAK, DAMPED)))
 
 
 def count(bank):

@@ -12,7 +12,8 @@ from tree_sway.core.branch.beam import cross_matrix
 from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, set_air, wind_forces
 from tree_sway.core.rotation import turned
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.assembly import assembled
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 
@@ -26,7 +27,7 @@ class Loaded:
 
     def __init__(self, tree, enrich='none'):
         chosen = Settings(model='full', enrich=enrich, gravity=0.0)
-        bank = CalibratedTree(tree, species_named('broadleaf'), chosen).bank()
+        bank = assembled(TreeReductions(tree, species_named('broadleaf'), chosen))
         bank.oscillators.set_step(1 / 60)
         self.tree, self.branches, self.work = tree, bank.branches, bank.oscillators.work
         self.loads = load_records(self.branches)
@@ -105,7 +106,7 @@ def test_a_turned_branch_faces_the_wind_as_it_stands(stem):
 
 def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
     tree = crooked_tree(4)
-    reduced = CalibratedTree(tree, species_named('oak'), Settings(in_leaf=False)).coupled
+    reduced = TreeReductions(tree, species_named('oak'), Settings(in_leaf=False)).coupled
     for wind in np.array([[1.0, 0.0, 0.0], [0.6, -0.8, 0.0]]):
         true, fitted, centred = np.zeros((3, len(reduced.branches), 3))
         for b, (model, record) in enumerate(zip(reduced.models, reduced.branches, strict=True)):

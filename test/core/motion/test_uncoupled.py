@@ -9,7 +9,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.assembly import assembled
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 
@@ -19,7 +20,7 @@ DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
 
 def oscillators(tree, dt=1 / 60, **changes):
     chosen = {'model': 'branch', 'gravity': 0.0, 'twig_tolerance': -1.0} | changes
-    bank = CalibratedTree(tree, WOOD, Settings(**chosen)).bank().oscillators
+    bank = assembled(TreeReductions(tree, WOOD, Settings(**chosen))).oscillators
     bank.set_step(dt)
     return bank
 

@@ -7,14 +7,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.branch.model import branch_models
+from tree_sway.core.branch.model import TreeBeams
 from tree_sway.core.reduction.carried_inertia import carried_inertia
 from tree_sway.core.reduction.matrices import reduce_tree
 from tree_sway.core.reduction.modes import natural_modes
 
 
 def reduced(tree):
-    return reduce_tree(tree, branch_models(tree, 900.0, carries=True), 9e9, 3.5e9, 0.0)
+    return reduce_tree(tree, TreeBeams(tree, 900.0).models(carries=True), 9e9, 3.5e9, 0.0)
 
 
 def test_a_twig_that_carries_nothing_keeps_its_own(fork):

@@ -16,7 +16,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from tree_sway_lab.example_trees import forked_tree
 
-from tree_sway.core.branch.model import branch_models
+from tree_sway.core.branch.model import TreeBeams
 from tree_sway.core.motion.fill_records import (
     branch_records,
     head_records,
@@ -37,9 +37,8 @@ class Reduced:
 
     def __init__(self, tree, gravity=9.81, enriched=(), carries=True, **leaves):
         self.tree = tree
-        self.models = branch_models(
-            tree, DENSITY, carries=carries, enriched=frozenset(enriched), **leaves
-        )
+        beams = TreeBeams(tree, DENSITY, **leaves)
+        self.models = beams.models(carries=carries, enriched=frozenset(enriched))
         self.reduction = reduce_tree(tree, self.models, MODULUS, SHEAR, gravity, carries=carries)
         even = np.ones(tree.n_segments)
         places = places_of(tree, self.models, self.reduction)

@@ -9,12 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.sparse import csc_matrix
 from tree_sway_lab.segments.articulated import ArticulatedTree
 
 from tree_sway.core.branch.greenhill import greenhill_length
-from tree_sway.core.branch.model import branch_models
+from tree_sway.core.branch.model import TreeBeams
 from tree_sway.core.reduction import modes as modes_module
-from tree_sway.core.reduction.matrices import reduce_tree
+from tree_sway.core.reduction.matrices import Factors, reduce_tree
 from tree_sway.core.reduction.modes import buckling_factor, natural_modes, refuse_buckling
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
@@ -25,7 +26,7 @@ TREE_121 = Path(__file__).parents[2] / 'files' / 'data' / 'tree121.csv'
 
 
 def reduced(tree, gravity=9.81, modulus=9e9, enriched=()):
-    models = branch_models(tree, 900.0, carries=True, enriched=frozenset(enriched))
+    models = TreeBeams(tree, 900.0).models(carries=True, enriched=frozenset(enriched))
     return reduce_tree(tree, models, modulus, modulus / 2.6, gravity)
 
 
@@ -179,7 +180,7 @@ def test_a_tree_of_121_branches_has_the_modes_of_its_beam_frame():
     for gravity in (0.0, 9.81):
         sim = SwaySimulator(tree, green, gravity=gravity)
         chain = ArticulatedTree(
-            tree, 8e9, 900.0, gravity=gravity, subdivisions=4, twist_ratio=2 / 14
+            tree, 8e9, 900.0, gravity=gravity, subdivisions=2, twist_ratio=2 / 14
         )
         assert sim.frequencies(12) == pytest.approx(chain.linear_modes(12)[0], rel=0.005)
 
@@ -200,9 +201,17 @@ def test_a_mass_at_the_tip_slows_a_stem_as_the_books_say(sketch):
 
 def test_factors_are_no_fuller_than_the_matrix(random_tree):
     tree = tree_from_segments(*random_tree(4, 120)[:3])
-    stiffness = reduced(tree).stiffness
-    factors = modes_module._factors(stiffness)
-    filled = factors.L.nnz + factors.U.nnz
+    matrices = reduced(tree)
+    stiffness, factors = matrices.stiffness, matrices.factors
+    filled = factors._factors.L.nnz + factors._factors.U.nnz
     assert filled <= stiffness.nnz + stiffness.shape[0]
     load = np.random.default_rng(0).normal(0.0, 1.0, stiffness.shape[0])
     assert stiffness @ factors.solve(load) == pytest.approx(load, abs=1e-9)
+
+
+@pytest.mark.parametrize('shift', [-1e-3, 1e-3])
+def test_factors_know_whether_a_matrix_is_positive(random_tree, shift):
+    mass = reduced(tree_from_segments(*random_tree(4, 120)[:3])).mass.toarray()
+    least = np.linalg.eigvalsh(mass)[0]
+    matrix = csc_matrix(mass - (1.0 + shift) * least * np.eye(len(mass)))
+    assert Factors(matrix).is_positive == (shift < 0.0)

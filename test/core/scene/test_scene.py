@@ -23,8 +23,8 @@ DT = 1.0 / 60.0
 
 
 def swaying(trees, *, tolerance=0.005, convection_ratio=1.0, **changes):
-    how = {'tolerance': tolerance, 'convection_ratio': convection_ratio}
-    return SceneSimulator(Scene(trees).trees, Settings(**changes), **how)
+    scene = Scene(trees, convection_ratio=convection_ratio)
+    return SceneSimulator(scene, Settings(**changes), tolerance=tolerance)
 
 
 def gusts(n, mean=8.0):

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import (
@@ -25,7 +26,7 @@ DT = 1.0 / 60.0
 
 def swaying(trees, *, convection_ratio=1.0, **changes):
     settings = Settings(**{'model': 60, **changes})
-    return SceneSimulator(trees, settings, convection_ratio=convection_ratio)
+    return SceneSimulator(Scene(trees, convection_ratio=convection_ratio), settings)
 
 
 EVEN = {'convection_ratio': np.inf}
@@ -84,7 +85,7 @@ def test_a_turned_tree_in_a_turned_wind_is_the_same_tree_turned(kinds):
 def test_a_scaled_tree_sways_as_one_that_is_calibrated_at_its_size(kinds):
     bare = Settings(gravity=0.0)
     stand = swaying([PlacedTree('big', kinds['fork'], scale=1.8)], **vars(bare), **EVEN)
-    alone = SwaySimulator(stand.trees[0].placed(), settings=bare, model=60)
+    alone = SwaySimulator(stand.scene.trees[0].placed(), settings=bare, model=60)
     rest = alone.place()[:, :3].copy()
     for wind in winds(240):
         stand.step(wind, DT)

@@ -9,10 +9,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.simulate import Rig, simulate
 from tree_sway.core.tree.species import species_named
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
 STEADY = np.tile([3.0, 0.0, 0.0], (1200, 1))
@@ -100,6 +102,7 @@ def test_a_second_wind_finds_the_tree_as_the_first_did(fork, model):
     [
         (np.zeros((0, 3)), {}, r'wind of shape \(0, 3\)'),
         (np.zeros(3), {}, r'wind of shape \(3,\)'),
+        (SimpleNamespace(time=np.zeros(1), velocity=np.zeros((1, 3))), {}, 'record of 0 s'),
         (np.full((4, 3), np.nan), {}, 'not finite'),
         (STEADY, {'rate': 0.0}, 'rate: 0.0 is out of range'),
         (STEADY, {'seconds': -1.0}, 'seconds: -1.0 is out of range'),
@@ -110,3 +113,47 @@ def test_a_second_wind_finds_the_tree_as_the_first_did(fork, model):
 def test_what_cannot_be_simulated_is_refused(stem, wind, changes, words):
     with pytest.raises(ParameterError, match=words):
         simulate(stem(), wind, **changes)
+
+
+def winds_of(stem, time, velocity, rate):
+    """Mean winds that a tree is stepped in through a record."""
+    return simulate(stem(), SimpleNamespace(time=time, velocity=velocity), rate=rate, model=2).wind
+
+
+@pytest.mark.parametrize('step', [0.05, 1.0, 2.5])
+def test_means_of_a_record_without_faults_are_those_of_straight_lines(stem, step):
+    rng = np.random.default_rng(0)
+    wind = simulate_turbulence(6.0, rate=1.0 / step, duration=200.0 * step, rng=rng)
+    time = 100.0 + step * np.arange(len(wind))
+    frame = 0.4 * step
+    means = winds_of(stem, time, wind, 1.0 / frame)
+    edges = time[0] + frame * np.arange(len(means) + 1)
+    whole = np.array(
+        [[trapezoid(*finely(time, column, edge)) for edge in edges] for column in wind.T]
+    )
+    np.testing.assert_allclose(means, np.diff(whole).T / frame, atol=1e-6)
+
+
+def finely(time, values, end):
+    """Values and times of a line up to an end."""
+    until = np.append(time[time < end], end)
+    return np.interp(until, time, values), until
+
+
+@pytest.mark.parametrize('bad', [(np.nan, 0.0, 0.0), (999.99, 0.0, 0.0), (5.0, 60.0, 0.0)])
+def test_faults_of_a_record_are_left_out(stem, bad):
+    time = np.arange(0.0, 20.0, 0.05)
+    wind = np.tile([5.0, 0.0, 0.0], (len(time), 1))
+    wind[100:105] = bad
+    np.testing.assert_allclose(winds_of(stem, time, wind, 10.0), np.tile([5.0, 0, 0], (199, 1)))
+
+
+def test_a_gap_of_a_record_is_held_then_fades(stem):
+    time = np.concatenate([np.arange(0.0, 5.0, 0.05), np.arange(25.0, 30.0, 0.05)])
+    means = winds_of(stem, time, np.tile([8.0, 0.0, 0.0], (len(time), 1)), 10.0)[:, 0]
+    np.testing.assert_allclose(means[:68], 8.0)
+    ends = 0.1 * np.arange(1, len(means) + 1)
+    fading = (ends > 7.2) & (ends < 24.8)
+    exact = 8.0 * np.exp(-(ends[fading] - 0.05 - 4.95 - 2.0) / 3.0)
+    np.testing.assert_allclose(means[fading], exact, atol=0.02)
+    np.testing.assert_allclose(means[ends > 25.7], 8.0)  # faded in over half a second

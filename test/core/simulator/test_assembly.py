@@ -12,7 +12,8 @@ import pytest
 from tree_sway.core.kernel import like
 from tree_sway.core.motion.records import BRANCH, branch_layout, SEGMENT, segment_layout, WORK
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.assembly import assembled
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.species import species_named
@@ -23,7 +24,7 @@ OAK = species_named('oak')
 
 def bank_of(tree, **changes):
     chosen = Settings(**changes)
-    return CalibratedTree(tree, OAK, chosen).bank(chosen.model)
+    return assembled(TreeReductions(tree, OAK, chosen), chosen.model)
 
 
 def frequencies(tree, species=OAK, count=100, **changes):
@@ -104,7 +105,7 @@ def test_modes_are_the_coupled_ones(fork):
 @pytest.mark.parametrize('model', [3, 6, 60, 'full'])
 def test_its_frequencies_are_the_natural_ones_whatever_the_number_of_coordinates(fork, model):
     """Shapes that correct the static answer are none of them, and none is left out."""
-    natural = CalibratedTree(fork(), OAK, Settings()).natural_frequencies(6)
+    natural = TreeReductions(fork(), OAK, Settings()).natural_frequencies(6)
     assert len(natural) == 6
     assert frequencies(fork(), count=6, model=model) == pytest.approx(natural, rel=1e-6)
 

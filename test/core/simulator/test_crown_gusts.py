@@ -12,7 +12,6 @@ from tree_sway_lab.validation.truth import WOOD
 from tree_sway_lab.validation.winds import turbulent
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.simulator.assembly import CalibratedTree
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
 
@@ -28,8 +27,7 @@ def tree():
 def test_numpy_meets_the_same_gusts(tree, model):
     settings = Settings(model=model, crown_coherence=0.5)
     sim = SwaySimulator(tree, WOOD, settings)
-    plain = CalibratedTree(tree, WOOD, sim.settings, plain=True)
-    twin = SwaySimulator(tree, WOOD, sim.settings, calibrated=plain)
+    twin = SwaySimulator(tree, WOOD, sim.settings, plain=True)
     for x in turbulent(6.0, 2.0, 1):
         sim.step(x, FRAME)
         twin.step(x, FRAME)

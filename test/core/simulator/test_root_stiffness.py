@@ -14,7 +14,7 @@ from tree_sway_lab.frame.frame import frame_model
 from tree_sway_lab.segments.articulated import ArticulatedTree
 
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named, typical_root_stiffness
 from tree_sway.errors import ParameterError
@@ -47,7 +47,7 @@ def test_a_pole_on_a_spring_sways_as_the_closed_form(ratio, stem):
     known = first_frequency(ratio)
     frame = frame_model(pole, OAK.modulus, OAK.density, root_stiffness=spring)
     assert frame.frequencies(1)[0] == pytest.approx(known, rel=1e-3)
-    found = CalibratedTree(pole, OAK, replace(USUAL, root_stiffness=spring))
+    found = TreeReductions(pole, OAK, replace(USUAL, root_stiffness=spring))
     assert found.natural_frequencies(2) == pytest.approx(known, rel=0.01)
     pieces = ArticulatedTree(pole, OAK.modulus, OAK.density, subdivisions=4, root_stiffness=spring)
     assert pieces.linear_modes(1)[0][0] == pytest.approx(known, rel=0.01)
@@ -58,7 +58,7 @@ def test_a_tree_of_its_own_roots_stands_like_that_in_every_model():
     mass = float(OAK.density * tree.volume[tree.segments_of(0)].sum())
     rooted = replace(OAK, root_stiffness=typical_root_stiffness(mass))
     rigid, soft = (
-        CalibratedTree(tree, wood, USUAL).natural_frequencies(1)[0] for wood in (OAK, rooted)
+        TreeReductions(tree, wood, USUAL).natural_frequencies(1)[0] for wood in (OAK, rooted)
     )
     # Roots of trees take a few per cent of the frequency (Neild & Wood 1999).
     assert 0.90 < soft / rigid < 0.99
@@ -70,7 +70,7 @@ def test_a_tree_of_its_own_roots_stands_like_that_in_every_model():
         for wood in (OAK, rooted)
     ]  # fmt: skip
     assert soft / rigid == pytest.approx(frame[1] / frame[0], rel=0.005)
-    told = CalibratedTree(
+    told = TreeReductions(
         tree, rooted, replace(USUAL, root_stiffness=math.inf)
     ).natural_frequencies(1)[0]
     assert told == pytest.approx(rigid)

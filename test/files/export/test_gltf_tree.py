@@ -14,7 +14,7 @@ from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.errors import FormatError
-from tree_sway.files.export import gltf_tree
+from tree_sway.files.export import breeze, gltf_tree
 from tree_sway.files.export.gltf_tree import morphing_tree, skinned_tree
 from tree_sway.files.export.tree_export import write_gltf, write_tree
 from tree_sway.files.export.tree_mesh import leaf_mesh, wood_mesh
@@ -145,9 +145,7 @@ def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
     changes = np.array([arrays[t['POSITION']] for t in primitive['targets']], dtype=float)
     ours = wood_mesh(simulator.tree)
     simulator.reset()
-    wind = gltf_tree.simulate_turbulence(
-        6.0, rate=60.0, duration=20.0, rng=np.random.default_rng(7)
-    )
+    wind = breeze.simulate_turbulence(6.0, rate=60.0, duration=20.0, rng=np.random.default_rng(7))
     gaps, motions = [], []
     for number, each in enumerate(wind):
         simulator.step(each, 1 / 60)

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from scipy.io import loadmat, savemat
 
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.trees.tree_file import read_tree
@@ -241,7 +241,7 @@ class TestScansByOthers:
         """f1 within 1.2 to 1.9 Hz, 20 modes or more below 2.9 Hz, with the table's walnut."""
         tree_file = read_tree(TREES / 'walnut.mtg', species='walnut')
         settings = Settings(model=20)
-        slowest = CalibratedTree(tree_file.tree, tree_file.species, settings).natural_frequencies(
+        slowest = TreeReductions(tree_file.tree, tree_file.species, settings).natural_frequencies(
             20
         )
         assert 1.2 <= slowest[0] <= 1.9

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.files.wind.table import read_csv_wind
+from tree_sway.files.wind.table import read_table_wind
 
 DATA = Path(__file__).parents[1] / 'data'
 
 
 def test_speed_and_direction():
-    record = read_csv_wind(DATA / 'wind.csv')
+    record = read_table_wind(DATA / 'wind.csv')
     np.testing.assert_allclose(record.time, [0, 0.5, 1.5])
     np.testing.assert_allclose(record.velocity, [[10, 0, 0], [0, 5, 0], [-2.5, 0, 0]], atol=1e-12)
     assert record.refused == 1
@@ -22,14 +22,14 @@ def test_speed_and_direction():
 
 
 def test_direction_it_blows_to_and_turned_sensor():
-    against = read_csv_wind(DATA / 'wind.csv', direction_convention='to')
+    against = read_table_wind(DATA / 'wind.csv', direction_convention='to')
     np.testing.assert_allclose(against.velocity[0], [-10, 0, 0], atol=1e-12)
-    turned = read_csv_wind(DATA / 'wind.csv', yaw=pi / 2)
+    turned = read_table_wind(DATA / 'wind.csv', yaw=pi / 2)
     np.testing.assert_allclose(turned.velocity[0], [0, 10, 0], atol=1e-12)
 
 
 def test_components_with_dates():
-    record = read_csv_wind(DATA / 'wind_components.csv')
+    record = read_table_wind(DATA / 'wind_components.csv')
     knot = 1852 / 3600
     np.testing.assert_allclose(record.velocity, [[10 * knot, 0, 0], [10 * knot, 5 * knot, 0]])
     assert record.epoch == 1709290800.0
@@ -50,18 +50,18 @@ def test_components_with_dates():
 def test_errors(tmp_path, text, message):
     (tmp_path / 'wind.csv').write_text(text)
     with pytest.raises(FormatError, match=message):
-        read_csv_wind(tmp_path / 'wind.csv')
+        read_table_wind(tmp_path / 'wind.csv')
 
 
 def test_convention_is_checked():
     with pytest.raises(ParameterError, match='use one of: to, from'):
-        read_csv_wind(DATA / 'wind.csv', direction_convention='in')
+        read_table_wind(DATA / 'wind.csv', direction_convention='in')
 
 
 @pytest.mark.parametrize('stamp', ['2024-13-01 00:00:00', 'now', '2024-03-01 25:00', 'NaT', ''])
 def test_a_wrong_date_costs_one_row(tmp_path, stamp):
     rows = [f'{date},1,2' for date in ('2024-03-01 00:00', stamp, '2024-03-01 00:01:00.5Z')]
     (tmp_path / 'wind.csv').write_text('\n'.join(['time,u,v', *rows]))
-    record = read_csv_wind(tmp_path / 'wind.csv')
+    record = read_table_wind(tmp_path / 'wind.csv')
     assert list(record.time) == [0.0, 60.5]
     assert record.refused == 1

@@ -34,7 +34,7 @@ def test_line_ends_and_byte_order_mark(tmp_path):
 
 
 def test_options_and_formats_are_checked():
-    with pytest.raises(ParameterError, match="no option 'rate'; it has: columns, yaw"):
+    with pytest.raises(ParameterError, match="no option 'rate'; it has: columns, dir"):
         read_wind(DATA / 'sonic.toa5.dat', rate=2.0)
     with pytest.raises(
         ParameterError, match="unknown wind format 'grib'; use toa5, nmea, sonic, bag, metar, csv"

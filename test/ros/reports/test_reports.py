@@ -21,7 +21,7 @@ from tree_sway_ros.reports.diagnostics import (  # noqa: E402
 )
 from tree_sway_ros.reports.sway_report import SwayReport  # noqa: E402
 from tree_sway_ros.reports.wind_report import STALE_AFTER, WindReport  # noqa: E402
-from tree_sway_ros.timing.pacer import Pace  # noqa: E402
+from tree_sway_ros.timing.pacer import Timing  # noqa: E402
 
 TIMEOUT = 2.0
 
@@ -63,7 +63,7 @@ def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
     assert report.age is None
     for _ in range(21):
         clock.now += 0.05
-        report.add(True)
+        report.add()
     status = report.status(TIMEOUT, gate)
     assert status.level == OK
     assert report.rate == pytest.approx(20.0)
@@ -72,7 +72,7 @@ def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
     assert report.rate == 0.0
     clock.now += STALE_AFTER * TIMEOUT
     assert report.status(TIMEOUT, gate).level == STALE
-    report.add(True)
+    report.add()
     assert report.status(TIMEOUT, gate).level == OK
 
 
@@ -82,7 +82,7 @@ def test_a_slow_sensor_is_late_by_its_own_periods(clock, burst):
     report, gate, timeout = WindReport(), WindGate(), 0.5
     for number in range(30):
         clock.now += 0.999 if number % burst == 0 else 0.001
-        report.add(True)
+        report.add()
     clock.now += 0.99
     assert report.status(timeout, gate).level == OK
     clock.now += 2.1
@@ -95,7 +95,7 @@ def test_dropouts_make_no_slow_sensor(clock):
     report, gate = WindReport(), WindGate()
     for number in range(100):
         clock.now += 10.0 if number in (0, 90, 95) else 0.01
-        report.add(True)
+        report.add()
     clock.now += 1.1 * TIMEOUT
     assert report.status(TIMEOUT, gate).level == WARN
 
@@ -103,7 +103,6 @@ def test_dropouts_make_no_slow_sensor(clock):
 def test_refused_samples_are_no_wind(clock):
     report, gate = WindReport(), WindGate()
     gate.offer(SECOND, (float('nan'), 0.0, 0.0))
-    report.add(False)
     status = report.status(TIMEOUT, gate)
     assert status.level == WARN
     assert '1 samples refused' in status.message
@@ -114,13 +113,13 @@ def test_a_frozen_sensor_is_named(clock):
     report, gate = WindReport(), WindGate(frozen_after=1.0)
     for k in range(30):
         gate.offer(SECOND + k * SECOND // 20, (3.0, 0.0, 0.0))
-        report.add(True)
+        report.add()
     status = report.status(TIMEOUT, gate)
     assert (status.level, status.message[:6]) == (WARN, 'frozen')
 
 
 def pace(skipped, silence=0.0):
-    return Pace(60.0, 1e-4, 2e-3, 5e-3, 1e-3, 600, skipped, 0, 0, silence)
+    return Timing(60.0, 1e-4, 2e-3, 5e-3, 1e-3, 600, skipped, 0, 0, silence)
 
 
 def test_frames_that_are_skipped_are_a_warning_until_it_keeps_up():
@@ -151,7 +150,7 @@ def test_every_state_of_the_wind_has_a_level(state, level):
     assert (status.values['refused'], status.values['spike']) == (3, 2)
 
 
-def test_trees_that_the_gusts_do_not_reach_in_time_are_told_of():
+def test_trees_that_the_gusts_do_not_reach_in_time_are_reported():
     for x, level in ((40.0, OK), (-40.0, WARN), (4000.0, WARN)):
         history = GustHistory([[0.0, 0.0, 0.0], [x, 0.0, 0.0]], (0.0, 0.0, 0.0))
         history.push((8.0, 0.0, 0.0), 1.0 / 60.0)

@@ -72,7 +72,7 @@ def test_wall_time_ticks_on_the_grid_at_the_rate(ticks):
     paced.pacer.start()
     paced.wait(100)
     paced.pacer.stop()
-    pace = paced.pacer.pace()
+    pace = paced.pacer.timing()
     times = np.array([tick.time for tick in paced.seen])
     periods = np.array([tick.periods for tick in paced.seen])
     assert (times % paced.pacer.period == 0).all()
@@ -89,7 +89,7 @@ def test_simulated_time_is_followed(ticks):
         paced.set(10**9 + k * PERIOD, wait_for=k + 1)
     assert [tick.time for tick in paced.seen] == [10**9 + k * PERIOD for k in range(5)]
     assert [tick.restarted for tick in paced.seen] == [True] + [False] * 4
-    assert paced.pacer.pace().skipped == 0
+    assert paced.pacer.timing().skipped == 0
 
 
 def test_paused_time_ticks_nothing(ticks):
@@ -122,7 +122,7 @@ def test_a_jump_back_restarts_at_once(ticks):
     paced.set(100 * 10**9, wait_for=1)
     paced.set(10**9, wait_for=2)
     assert paced.seen[1] == (10**9, 1, True)
-    assert paced.pacer.pace().restarts == 1
+    assert paced.pacer.timing().restarts == 1
 
 
 def test_a_jump_forward_is_no_long_step(ticks):
@@ -130,7 +130,7 @@ def test_a_jump_forward_is_no_long_step(ticks):
     paced.set(10**9, wait_for=1)
     paced.set(1000 * 10**9, wait_for=2)
     assert paced.seen[1].periods * PERIOD <= LONGEST_STEP
-    assert paced.pacer.pace().clamped == 1
+    assert paced.pacer.timing().clamped == 1
 
 
 def test_work_that_takes_too_long_skips_frames_without_a_backlog(ticks):
@@ -140,7 +140,7 @@ def test_work_that_takes_too_long_skips_frames_without_a_backlog(ticks):
     late = [tick.periods for tick in paced.seen[1:]]
     assert min(late) >= 2
     assert max(late) <= LONGEST_STEP / paced.pacer.period
-    pace = paced.pacer.pace()
+    pace = paced.pacer.timing()
     assert pace.skipped > 0
     assert pace.late_p50 < 0.01  # of the newest period: nothing queues up
 
@@ -191,12 +191,12 @@ def test_what_is_skipped_is_counted_whatever_its_length(monkeypatch):
     paced = Pacer(wall, 60.0, print, print)
     paced._due(wall.wall)
     seen = [paced._due(wall.go(1.0 / 1.2)) for _ in range(12)]
-    assert paced.pace().skipped == pytest.approx(600 - 12, abs=1)
-    assert paced.pace().clamped == 0
+    assert paced.timing().skipped == pytest.approx(600 - 12, abs=1)
+    assert paced.timing().clamped == 0
     assert all(tick.periods * paced.period <= LONGEST_STEP for tick in seen)
-    assert paced.pace().silence == 0.0
+    assert paced.timing().silence == 0.0
     wall.go(3.0)
-    assert paced.pace().silence == pytest.approx(3.0)
+    assert paced.timing().silence == pytest.approx(3.0)
 
 
 def test_a_wall_clock_set_forward_skips_nothing(monkeypatch):
@@ -204,7 +204,7 @@ def test_a_wall_clock_set_forward_skips_nothing(monkeypatch):
     paced = Pacer(wall, 50.0, print, print)
     paced._due(wall.wall)
     paced._due(wall.go(0.02, wall=3600.0))
-    assert (paced.pace().skipped, paced.pace().clamped) == (0, 1)
+    assert (paced.timing().skipped, paced.timing().clamped) == (0, 1)
 
 
 def test_stopping_twice_or_before_the_start_is_harmless(ticks):
@@ -218,4 +218,4 @@ def test_stopping_twice_or_before_the_start_is_harmless(ticks):
 
 
 def test_a_pace_of_nothing_is_zero(ticks):
-    assert ticks().pacer.pace() == (0.0,) * 5 + (0,) * 4 + (0.0,)
+    assert ticks().pacer.timing() == (0.0,) * 5 + (0,) * 4 + (0.0,)

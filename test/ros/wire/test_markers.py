@@ -9,13 +9,12 @@ pytest.importorskip('rclpy')
 pytestmark = pytest.mark.ros
 
 from rclpy.serialization import deserialize_message  # noqa: E402
-from scipy.spatial.transform import Rotation  # noqa: E402
 from visualization_msgs.msg import Marker, MarkerArray  # noqa: E402
 
 from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402, I100
 from tree_sway.core.simulator.simulator import SwaySimulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
-from tree_sway_ros.wire.markers import radius_classes, TreeMarkers, x_axes  # noqa: E402
+from tree_sway_ros.wire.markers import radius_classes, TreeMarkers  # noqa: E402
 
 TREE = builtin_tree('goldcrest')
 
@@ -63,10 +62,3 @@ def test_classes_hold_every_segment_once():
     members = radius_classes(radius, 8)
     assert sorted(np.concatenate(members)) == list(range(200))
     assert all(radius[a].min() >= radius[b].max() for a, b in pairwise(members))
-
-
-def test_x_axes_are_those_of_the_rotation():
-    rotation = Rotation.random(50, random_state=1)
-    np.testing.assert_allclose(
-        x_axes(rotation.as_quat()), rotation.as_matrix()[:, :, 0], atol=1e-12
-    )

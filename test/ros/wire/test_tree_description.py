@@ -9,8 +9,9 @@ import numpy as np
 
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.placed_tree import joined, PlacedTree
+from tree_sway.core.state.tree_state import digest_of
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway_ros.wire.tree_description import describe, tree_hash, VERSION
+from tree_sway_ros.wire.tree_description import describe, VERSION
 
 TREE = tree_from_segments(
     [[0, 0, 0], [0, 0, 1], [0, 0, 1]], [[0, 0, 1], [0, 0, 2], [1, 0, 1]], [0.1, 0.08, 0.03]
@@ -56,5 +57,5 @@ def test_it_says_what_the_tree_says():
 
 
 def test_another_tree_has_another_hash():
-    assert tree_hash(TREE) == json.loads(describe(TREE, 'map'))['hash']
-    assert tree_hash(replace(TREE, end=TREE.end * (1.0 + 1e-12))) != tree_hash(TREE)
+    assert digest_of(TREE) == json.loads(describe(TREE, 'map'))['hash']
+    assert digest_of(replace(TREE, end=TREE.end * (1.0 + 1e-12))) != digest_of(TREE)

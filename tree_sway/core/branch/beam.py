@@ -274,37 +274,10 @@ class SlopeShape:
         self.segment_slope = beam.over_segments(self.slope)
         self.deflection, self.node_deflection, self.child_deflection = beam.from_base(self.slope)
 
-    def stiffness(self, other: SlopeShape, modulus: float) -> float:
-        """Bending energy between two shapes, the integral of E I kappa kappa', in [N m/rad]."""
-        return float(
-            self.beam.integral(
-                modulus * self.beam.second_moment * self.curvature * other.curvature
-            )
-        )
-
-    def displacement(self, rotation: Floats) -> tuple[Floats, Floats, Floats]:
-        """
-        Displacement for a unit of the coordinate about a rotation axis.
-
-        Parameters
-        ----------
-        rotation
-            Unit rotation vector, (3,).
-
-        Returns
-        -------
-        tuple
-            At the points (p, 5, 3), nodes (p + 1, 3) and children (c, 3), in [m/rad].
-
-        """
-        about = cross_matrix(rotation).T
-        points, nodes, children = self._reach
-        return points @ about, nodes @ about, children @ about
-
-    @cached_property
-    def _reach(self) -> tuple[Floats, Floats, Floats]:
-        """Integral of the slope along the branch: its product with a turn is the displacement."""
-        return self.beam.from_base(self.slope[..., None] * self.beam.tangent[:, None, :])
+    def stiffness(self, modulus: float) -> float:
+        """Return twice its bending energy, the integral of E I kappa^2, in [N m/rad]."""
+        rigidity = modulus * self.beam.second_moment
+        return float(self.beam.integral(rigidity * self.curvature * self.curvature))
 
 
 class RotationField:

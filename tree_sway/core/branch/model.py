@@ -36,7 +36,6 @@ from tree_sway.core.branch.shapes import (
     shape_fields,
     wind_loads,
 )
-from tree_sway.core.checks import one_of_each
 from tree_sway.core.tree.tree import Tree
 
 _LEFT = 1e-4
@@ -94,31 +93,6 @@ class BranchModel:
         return static / _square_frequency(beam, shape, self.mass)
 
 
-def branch_models(
-    tree: Tree,
-    density: float,
-    *,
-    carries: bool,
-    shear_ratio: float = 1.0 / 14.0,
-    enriched: frozenset[int] = frozenset(),
-    speed_profile: Floats | None = None,
-    leaf_mass: Floats | None = None,
-    leaf_area: Floats | None = None,
-    root_compliance: float = 0.0,
-) -> list[BranchModel]:
-    """Model each branch of a tree; parameters are those of `TreeBeams` and its `models`."""
-    beams = TreeBeams(
-        tree,
-        density,
-        shear_ratio=shear_ratio,
-        speed_profile=speed_profile,
-        leaf_mass=leaf_mass,
-        leaf_area=leaf_area,
-        root_compliance=root_compliance,
-    )
-    return beams.models(carries=carries, enriched=enriched)
-
-
 class TreeBeams:
     """
     Every branch of a tree as a beam, and what it hands down: the same for every model.
@@ -156,19 +130,14 @@ class TreeBeams:
     ) -> None:
         """Sum up what hangs on each branch."""
         n = tree.n_branches
-        if leaf_mass is not None:
-            leaf_mass = one_of_each('leaf_mass', leaf_mass, n, 'branch')
-        if leaf_area is not None:
-            leaf_area = one_of_each('leaf_area', leaf_area, n, 'branch')
-        self._tree, self._shear_ratio = tree, shear_ratio
-        self._bare: list[tuple[BranchBeam, Floats, Floats, Ints]] = []
+        self._tree, self._density, self._shear_ratio = tree, density, shear_ratio
+        self._leaf_mass = np.zeros(n) if leaf_mass is None else leaf_mass
+        self._leaf_area = np.zeros(n) if leaf_area is None else leaf_area
+        self._speed = np.ones(tree.n_segments) if speed_profile is None else speed_profile
+        self._bare: list[tuple[BranchBeam, Floats, Floats, Ints, Floats]] = []
         self._known: dict[tuple[int, ...], BranchModel] = {}
-        area, area_moment = np.zeros(n), np.zeros((n, 3))
-        weight, weight_moment, weight_second = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
-        force, torque = np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
-        self._sums = Carried(
-            area, area_moment, force, torque, weight, weight_moment, weight_second
-        )
+        self._blown: dict[tuple[int, int], Floats] = {}
+        self._sums = Carried.of_none(n)
         children_of: list[list[int]] = [[] for _ in range(n)]
         for branch in range(1, n):
             children_of[tree.branch_parent[branch]].append(branch)
@@ -176,36 +145,30 @@ class TreeBeams:
             children = np.array(children_of[branch], dtype=np.int64)
             same = known[1][branch] if known is not None else -1
             if known is not None and same >= 0:
-                beam, drag_area, mass, _ = known[0]._bare[same]
+                beam, drag_area, mass, _, loads = known[0]._bare[same]
             else:
                 beam, drag_area, mass = self._beam(
-                    branch, children, density, leaf_mass, leaf_area, speed_profile,
-                    root_compliance if branch == 0 else 0.0,
-                )  # fmt: skip
-            self._bare.append((beam, drag_area, mass, children))
+                    branch, children, root_compliance if branch == 0 else 0.0
+                )
+                loads = wind_loads(beam, drag_area)
+            self._bare.append((beam, drag_area, mass, children, loads))
             point = beam.point.reshape(-1, 3)
             dm, load = beam.weight * mass, beam.weight * drag_area
-            area[branch] = load.sum() + area[children].sum()
-            area_moment[branch] = load.ravel() @ point + area_moment[children].sum(axis=0)
-            loads = wind_loads(beam, drag_area)
-            force[branch] = beam.integral(loads) + force[children].sum(axis=0)
-            torque[branch] = beam.integral(cross(beam.point[:, :, None], loads))
-            torque[branch] += torque[children].sum(axis=0)
-            weight[branch] = dm.sum() + weight[children].sum()
-            weight_moment[branch] = dm.ravel() @ point + weight_moment[children].sum(axis=0)
-            weight_second[branch] = (dm.reshape(-1, 1) * point).T @ point
-            weight_second[branch] += weight_second[children].sum(axis=0)
+            own = Carried(
+                area=load.sum(),
+                area_moment=load.ravel() @ point,
+                force=beam.integral(loads),
+                moment=beam.integral(cross(beam.point[:, :, None], loads)),
+                mass=dm.sum(),
+                mass_moment=dm.ravel() @ point,
+                mass_second=(dm.reshape(-1, 1) * point).T @ point,
+            )
+            for total, here in zip(self._sums, own, strict=True):
+                total[branch] = here + total[children].sum(axis=0)
         self._bare.reverse()
 
     def _beam(
-        self,
-        branch: int,
-        children: Ints,
-        density: float,
-        leaf_mass: Floats | None,
-        leaf_area: Floats | None,
-        speed_profile: Floats | None,
-        root_compliance: float,
+        self, branch: int, children: Ints, root_compliance: float
     ) -> tuple[BranchBeam, Floats, Floats]:
         """Lay a branch out: its beam, and drag area [m] and mass [kg/m] per length."""
         tree = self._tree
@@ -219,14 +182,9 @@ class TreeBeams:
             root_compliance,
         )
         length = float(beam.node[-1])
-        mass = density * beam.area
-        drag_area = beam.diameter.copy()
-        if leaf_mass is not None:
-            mass += leaf_mass[branch] / length
-        if leaf_area is not None:
-            drag_area += leaf_area[branch] / length
-        if speed_profile is not None:
-            drag_area *= (speed_profile[here] ** 2)[beam.segment, None]
+        mass = self._density * beam.area + self._leaf_mass[branch] / length
+        drag_area = beam.diameter + self._leaf_area[branch] / length
+        drag_area *= (self._speed[here] ** 2)[beam.segment, None]
         return beam, drag_area, mass
 
     def turns(self, modulus: float) -> Floats:
@@ -237,15 +195,22 @@ class TreeBeams:
         that bend and do not hang.
         """
         turns = np.zeros(len(self._bare))
-        for branch, (beam, drag_area, _, children) in enumerate(self._bare):
-            carried = self._sums[children]
-            moments = beam.moment_in_space(
-                wind_loads(beam, drag_area)[:, :, :2], carried.force[:, :2], carried.moment[:, :2]
-            )
-            slopes = beam.from_base(beam.curvature_in_space(moments, self._shear_ratio))[0]
+        for branch, (beam, *_, children, _) in enumerate(self._bare):
+            curvatures = self._curvatures(branch, len(children))[:, :, :2]
+            slopes = beam.from_base(curvatures)[0]
             ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
             turns[branch] = np.sqrt(np.square(ends).sum(axis=1).max()) / beam.chord_length
         return turns / modulus
+
+    def _curvatures(self, branch: int, n_carried: int) -> Floats:
+        """Curvatures (p, 5, 3, 3) by `wind_loads` of a branch and its first children."""
+        key = branch, n_carried
+        if key not in self._blown:
+            beam, _, _, children, loads = self._bare[branch]
+            carried = self._sums.of(children[:n_carried])
+            moments = beam.moment_in_space(loads, carried.force, carried.moment)
+            self._blown[key] = beam.curvature_in_space(moments, self._shear_ratio)
+        return self._blown[key]
 
     def models(
         self, *, carries: bool, enriched: frozenset[int] = frozenset()
@@ -302,18 +267,19 @@ class TreeBeams:
         return frozenset((0, *needed[:most].tolist()))
 
     def _shaken(self, branch: int) -> tuple[float, float]:
-        beam, _, mass, children = self._bare[branch]
+        beam, _, mass, children, _ = self._bare[branch]
         fields = self._model(branch, len(children), 1, 0).fields
-        return shaken_energies(beam, mass, self._sums[children], self._shear_ratio, fields)
+        return shaken_energies(beam, mass, self._sums.of(children), self._shear_ratio, fields)
 
     def _model(self, branch: int, n_carried: int, n_pairs: int, n_turns: int) -> BranchModel:
         """Model a branch, unless that is done."""
         key = branch, n_carried, n_pairs, n_turns
         if key not in self._known:
-            beam, drag_area, mass, children = self._bare[branch]
-            carried = self._sums[children[:n_carried]]
+            beam, drag_area, mass, children, _ = self._bare[branch]
+            carried = self._sums.of(children[:n_carried])
+            curvatures = self._curvatures(branch, n_carried)
             shape, fields = shape_fields(
-                beam, drag_area, mass, carried, self._shear_ratio, n_pairs, n_turns
+                beam, drag_area, mass, carried, curvatures, self._shear_ratio, n_pairs, n_turns
             )
             self._known[key] = BranchModel(beam, drag_area, mass, shape, fields, children)
         return self._known[key]
@@ -336,4 +302,4 @@ def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
 
 def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:
     """Rayleigh's quotient of a shape for a modulus of 1, in [1/s^2]."""
-    return shape.stiffness(shape, 1.0) / float(beam.integral(mass * shape.deflection**2))
+    return shape.stiffness(1.0) / float(beam.integral(mass * shape.deflection**2))

@@ -14,8 +14,8 @@ twists in one: no coordinate of its own is spent on twist.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -51,8 +51,7 @@ _UPWARD = 0.3
 _WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
 
 
-@dataclass(frozen=True)
-class Carried:
+class Carried(NamedTuple):
     """
     What each child of a branch hands down: sums over its subtree, about the root of the tree.
 
@@ -76,17 +75,15 @@ class Carried:
     mass_moment: Floats
     mass_second: Floats
 
-    def __getitem__(self, children: Ints) -> Carried:
+    @classmethod
+    def of_none(cls, count: int) -> Carried:
+        """Make sums over a number of subtrees, all of them zero."""
+        shapes: tuple[tuple[int, ...], ...] = (), (3,), (3, 3), (3, 3), (), (3,), (3, 3)
+        return cls(*(np.zeros((count, *shape)) for shape in shapes))
+
+    def of(self, children: Ints) -> Carried:
         """Pick some of the subtrees."""
-        return Carried(
-            self.area[children],
-            self.area_moment[children],
-            self.force[children],
-            self.moment[children],
-            self.mass[children],
-            self.mass_moment[children],
-            self.mass_second[children],
-        )
+        return Carried(*(sums[children] for sums in self))
 
 
 def across(chord: Floats) -> tuple[Floats, Floats]:
@@ -106,6 +103,7 @@ def shape_fields(
     drag_area: Floats,
     mass: Floats,
     carried: Carried,
+    curvatures: Floats,
     shear_ratio: float,
     n_pairs: int = 1,
     n_turns: int = 0,
@@ -121,6 +119,8 @@ def shape_fields(
         Per length at its points in [m] and [kg/m], (p, 5).
     carried
         What its children hand down; none for a branch that is taken alone.
+    curvatures
+        Of the branch by `wind_loads` on it and on these, for a modulus of 1, (p, 5, 3, 3).
     shear_ratio
         Shear modulus over Young's in [-].
     n_pairs, n_turns
@@ -134,8 +134,6 @@ def shape_fields(
 
     """
     e1, e2 = across(beam.chord)
-    moments = beam.moment_in_space(wind_loads(beam, drag_area), carried.force, carried.moment)
-    curvatures = beam.curvature_in_space(moments, shear_ratio)
     pair = _static_pair(beam, curvatures, e1, e2)
     if pair is None:
         drawn = _static_shape(beam, drag_area, carried)
@@ -202,13 +200,11 @@ def _further(
     n_turns: int,
 ) -> list[RotationField]:
     """Ways beyond the static ones, each orthogonal in energy to those before, of unit slope."""
-    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
-    stiff = math.sqrt(2.0 * shear_ratio)
     basis: list[Floats] = []
 
     def rest_of(curvature: Floats) -> RotationField | None:
         """Take what is new in a curvature into the basis, and return it."""
-        vector = (measure * _twisted(beam, curvature, stiff)).ravel()
+        vector = _energy_vector(beam, curvature, shear_ratio)
         whole = float(np.linalg.norm(vector))
         for _ in range(2):
             for other in basis:
@@ -217,7 +213,7 @@ def _further(
         if not size > _NEGLIGIBLE * whole:
             return None
         basis.append(vector / size)
-        new = _twisted(beam, vector.reshape(curvature.shape) / measure, 1.0 / stiff)
+        new = _curvature_of(beam, vector, shear_ratio)
         slope, nodes, _ = beam.from_base(new)
         return RotationField(beam, new / max(np.abs(slope).max(), np.abs(nodes).max()))
 
@@ -239,8 +235,7 @@ def _further(
         sources, turning = [*new[0]], [*new[1]]
     if len(carried.area) > 1:
         apart = np.moveaxis(beam.curvature_in_space(_apart(beam, carried), shear_ratio), 2, 0)
-        vectors = [(measure * _twisted(beam, each, stiff)).ravel() for each in apart]
-        left = np.array(vectors)
+        left = np.array([_energy_vector(beam, each, shear_ratio) for each in apart])
         whole = float(np.square(left).sum())
         for _ in range(2):
             left -= (left @ np.array(basis).T) @ np.array(basis)
@@ -248,8 +243,8 @@ def _further(
         missed = np.cumsum(np.square(sizes[::-1]))[::-1]
         wanted = ways[missed > _LEFT_APART * whole][: MAX_COORDINATES - len(pair) - len(found)]
         for way in wanted:
-            curvature = _twisted(beam, way.reshape(apart[0].shape) / measure, 1.0 / stiff)
-            found += [field for field in [rest_of(curvature)] if field is not None]
+            field = rest_of(_curvature_of(beam, way, shear_ratio))
+            found += [] if field is None else [field]
     return found
 
 
@@ -268,14 +263,38 @@ def _apart(beam: BranchBeam, carried: Carried) -> Floats:
     trace = np.trace(carried.mass_second, axis1=1, axis2=2)
     square = trace - (places * (hung + carried.mass_moment)).sum(axis=1)
     radius = np.sqrt(np.maximum(square, 1e-12) / np.maximum(carried.mass, 1e-300))
-    turn = turn / radius[:, None, None]
-    at_root = moved - cross(turn, places[:, None])
-    mass = carried.mass[:, None, None]
-    force = mass * at_root + cross(turn, carried.mass_moment[:, None])
-    spin = trace[:, None, None] * turn - np.einsum('cij,ckj->cki', carried.mass_second, turn)
-    moment = cross(carried.mass_moment[:, None], at_root) + spin
     load = np.zeros((*beam.weight.shape, _APART, 3))
-    return beam.moment_in_space(load, force, moment)
+    turn = turn / radius[:, None, None]
+    return beam.moment_in_space(load, *_inertial_wrench(places, carried, turn, moved))
+
+
+def _inertial_wrench(
+    places: Floats, carried: Carried, turn: Floats, moved: Floats
+) -> tuple[Floats, Floats]:
+    """
+    Force and moment by the inertia of what is carried, about the root of the tree, (c, k, 3).
+
+    Each subtree turns about its place (c, 3) and moves with it, in k cases, both (c, k, 3).
+    """
+    at_root = moved - cross(turn, places[:, None])
+    force = carried.mass[:, None, None] * at_root + cross(turn, carried.mass_moment[:, None])
+    trace = np.trace(carried.mass_second, axis1=1, axis2=2)[:, None, None]
+    spin = trace * turn - np.einsum('cij,ckj->cki', carried.mass_second, turn)
+    return force, cross(carried.mass_moment[:, None], at_root) + spin
+
+
+def _energy_vector(beam: BranchBeam, curvature: Floats, shear_ratio: float) -> Floats:
+    """Curvature (p, 5, 3) as a vector whose square is twice its energy, for a modulus of 1."""
+    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
+    vector: Floats = measure * _twisted(beam, curvature, math.sqrt(2.0 * shear_ratio))
+    return vector.ravel()
+
+
+def _curvature_of(beam: BranchBeam, vector: Floats, shear_ratio: float) -> Floats:
+    """Return the curvature (p, 5, 3) of an `_energy_vector`."""
+    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
+    curvature = vector.reshape(*beam.weight.shape, 3) / measure
+    return _twisted(beam, curvature, 1.0 / math.sqrt(2.0 * shear_ratio))
 
 
 def _twisted(beam: BranchBeam, curvature: Floats, scale: float) -> Floats:
@@ -315,10 +334,8 @@ def shaken_energies(
     moment = cross(carried.mass_moment[:, None], np.eye(3))
     moments = beam.moment_in_space(mass[..., None, None] * np.eye(3), force, moment)
     curvatures = beam.curvature_in_space(moments, shear_ratio)
-    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
-    stiff = math.sqrt(2.0 * shear_ratio)
     kinds = [*np.moveaxis(curvatures, 2, 0), *(field.curvature for field in fields)]
-    vectors = np.array([(measure * _twisted(beam, each, stiff)).ravel() for each in kinds])
+    vectors = np.array([_energy_vector(beam, each, shear_ratio) for each in kinds])
     basis = np.linalg.qr(vectors[3:].T)[0]
     left = vectors[:3] - vectors[:3] @ basis @ basis.T
     return float(np.square(vectors[:3]).sum()), float(np.square(left).sum())
@@ -335,17 +352,12 @@ def inertial_moment(
     places = beam.child_point[: len(carried.area)]
     if field is None:
         load = np.zeros((*mass.shape, 3))
-        turn = np.broadcast_to(beam.chord, places.shape)
-        moved = np.zeros(places.shape)
+        turn, moved = np.broadcast_to(beam.chord, places.shape), np.zeros(places.shape)
     else:
         load = mass[..., None] * field.points
         turn, moved = field.child_slope[: len(places)], field.children[: len(places)]
-    at_root = moved - cross(turn, places)
-    force = carried.mass[:, None] * at_root + cross(turn, carried.mass_moment)
-    trace = np.trace(carried.mass_second, axis1=1, axis2=2)[:, None]
-    spin = trace * turn - np.einsum('cij,cj->ci', carried.mass_second, turn)
-    moment = cross(carried.mass_moment, at_root) + spin
-    return beam.moment_in_space(load[:, :, None], force[:, None], moment[:, None])[:, :, 0]
+    wrench = _inertial_wrench(places, carried, turn[:, None], moved[:, None])
+    return beam.moment_in_space(load[:, :, None], *wrench)[:, :, 0]
 
 
 def _static_shape(beam: BranchBeam, drag_area: Floats, carried: Carried) -> SlopeShape:

@@ -30,7 +30,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import three_numbers
 from tree_sway.core.fidelity.estimate import dialled, ErrorEstimator, Estimate
-from tree_sway.core.simulator.assembly import Kept
+from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings, settings_with, USUAL
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.state.tree_state import TreeState
@@ -70,7 +70,7 @@ class AdaptiveSimulator(SwaySimulator):
 
     Parameters
     ----------
-    tree, species, settings, kept
+    tree, species, settings, cache
         As for `SwaySimulator`; the model of the settings does not matter.
     tolerance
         Largest error of the tips in [m], root mean square over time and tips.
@@ -90,11 +90,11 @@ class AdaptiveSimulator(SwaySimulator):
         *,
         tolerance: float = 0.005,
         budget: float = 0.0,
-        kept: Kept | None = None,
+        cache: SetUpCache | None = None,
     ) -> None:
         """Make the tree on all coordinates, and judge how many the expected wind asks for."""
         chosen = replace(settings_with(settings, {}), model=USUAL)
-        super().__init__(tree, species, chosen, kept=kept)
+        super().__init__(tree, species, chosen, cache=cache)
         self._estimator = ErrorEstimator(self.tree, self.bank, self.drag_law)
         self.tolerance, self.budget = tolerance, budget
         self.cost_scale = 1.0

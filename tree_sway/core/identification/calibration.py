@@ -19,7 +19,7 @@ import numpy as np
 
 from tree_sway.core.checks import within
 from tree_sway.core.reduction.modes import buckling_factor, natural_modes
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
@@ -170,9 +170,8 @@ class _ScaledTree:
     def __init__(
         self, tree: Tree, species: Species, settings: Settings, branch: str | None
     ) -> None:
-        calibrated = CalibratedTree(tree, species, settings)
         self.tree, self._branch = tree, branch
-        self.reduction = calibrated.coupled.reduction
+        self.reduction = TreeReductions(tree, species, settings).coupled.reduction
         factor, coordinate = buckling_factor(self.reduction)
         #: Scale at which the tree just stands, and the branch that gives way first.
         self.least = _STANDS / factor

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats, Ints, Record, Records
+from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.branch.beam import cross, cross_matrix
 from tree_sway.core.branch.model import BranchModel
 from tree_sway.core.branch.shapes import across, exposure, MAX_COORDINATES
@@ -231,7 +231,7 @@ def branch_records(
     layout = branch_layout(2) if places.turn.shape[1] == 2 else branch_layout()
     records = np.zeros(tree.n_branches, dtype=layout)
     for branch, model in enumerate(models):
-        record: Record = records[branch]
+        record = records[branch]
         for i, field in enumerate(model.fields):
             record['tip_mode'][i] = field.nodes[-1]
         _fill_load(model, speed_profile[tree.segments_of(branch)], record)
@@ -251,7 +251,7 @@ _STRAIGHT = 0.03
 """Share of the wind along a branch below which this is not distinguished from none."""
 
 
-def _fill_load(model: BranchModel, speed_profile: Floats, record: Record) -> None:
+def _fill_load(model: BranchModel, speed_profile: Floats, record: np.void) -> None:
     """Fill what the wind load reads; wind speed at its segments over that at the anemometer."""
     beam = model.beam
     weight = model.drag_area * beam.weight
@@ -295,7 +295,7 @@ def _cubes(squares: Floats) -> Floats:
     return cubes
 
 
-def _fit_load(model: BranchModel, share: Floats, record: Record) -> None:
+def _fit_load(model: BranchModel, share: Floats, record: np.void) -> None:
     """Fit projector, push and couple of a crooked branch to the drag on it (least squares)."""
     tangent = model.beam.tangent
     slanting = _SlantingWinds(model.beam.chord)
@@ -317,7 +317,7 @@ def _fit_load(model: BranchModel, share: Floats, record: Record) -> None:
     record['load_mode'][:k] += (fit @ (pushed - force @ record['load_mode'][:k].T)).T
 
 
-def _fill_flow(record: Record, mean: Floats, square: float, cube: float) -> None:
+def _fill_flow(record: np.void, mean: Floats, square: float, cube: float) -> None:
     """
     Scale the displacement across the branch to that at which drag damps as its mean square does.
 

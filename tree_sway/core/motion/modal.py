@@ -28,7 +28,7 @@ from tree_sway.core.branch.beam import cross_matrix
 from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
-from tree_sway.core.motion.records import LANES, WORK
+from tree_sway.core.motion.records import Branches, LANES, Loads, WORK, Works
 from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
@@ -256,7 +256,7 @@ def _to_middle(modal: Floats, state: Floats, shapes: Floats, half: Floats) -> No
 
 @fused
 def wind_moments(
-    branches: Records, work: Records, loads: Records, x: Floats, v: Floats, moment: Floats,
+    branches: Branches, work: Works, loads: Loads, x: Floats, v: Floats, moment: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> None:  # fmt: skip
     """
@@ -276,7 +276,7 @@ def wind_moments(
 
 @fused
 def _advance(
-    branches: Records, work: Records, loads: Records, modal: Floats, state: Floats, shapes: Floats,
+    branches: Branches, work: Works, loads: Loads, modal: Floats, state: Floats, shapes: Floats,
     limit: Floats, whole: Floats, half: Floats, tried: Floats, momentum: Floats, fastest: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip

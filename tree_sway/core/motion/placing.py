@@ -20,10 +20,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Record, Records
+from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import fused, inlined
 from tree_sway.core.motion.lanes import put_four, take_four
-from tree_sway.core.motion.records import LANES
+from tree_sway.core.motion.records import Branch, Branches, Head, Heads, LANES, Segment, Segments
 from tree_sway.core.rotation import (
     half_angle,
     half_angle_near,
@@ -43,7 +43,7 @@ _STRETCH_TO = np.deg2rad(90.0) ** 2
 
 @fused
 def place(
-    branches: Records, segments: Records, heads: Records, bases: Floats,
+    branches: Branches, segments: Segments, heads: Heads, bases: Floats,
     x: Floats, origin: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """
@@ -71,7 +71,7 @@ def place(
 
 @fused
 def place_standing_at(
-    branches: Records, segments: Records, heads: Records, bases: Floats, x: Floats,
+    branches: Branches, segments: Segments, heads: Heads, bases: Floats, x: Floats,
     east: float, north: float, up: float, cosine: float, sine: float, scale: float, out: Floats,
 ) -> None:  # fmt: skip
     """
@@ -117,7 +117,7 @@ def place_standing_at(
 
 
 @fused
-def turn_at(parent: Record, turns: Floats, x: Floats) -> tuple[float, float, float, float]:
+def turn_at(parent: Branch, turns: Floats, x: Floats) -> tuple[float, float, float, float]:
     """
     Rotation of a place on a branch, as quaternion w x y z from rest.
 
@@ -138,7 +138,7 @@ def turn_at(parent: Record, turns: Floats, x: Floats) -> tuple[float, float, flo
 
 @fused
 def _read_parents(
-    branches: Records, head: Record, scratch: Record, bases: Floats, x: Floats,
+    branches: Branches, head: Head, scratch: Head, bases: Floats, x: Floats,
     east: float, north: float, up: float, cosine: float, sine: float, out: Floats,
 ) -> None:  # fmt: skip
     """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
@@ -172,9 +172,9 @@ def _read_parents(
             parent_key[0, j], parent_key[1, j] = base[4, j], base[5, j]
         for j in range(head.n_lanes):
             parent = branches[parents[j]]
-            i = parent.coordinate
+            own = parent.coordinate
             for c in range(2, parent.n_coordinates):
-                parent_key[c, j] = 0.5 * x[i + c]
+                parent_key[c, j] = 0.5 * x[own + c]
 
 
 @inlined
@@ -196,7 +196,7 @@ def _is_beyond(turned: Floats, key: Floats, j: int) -> int:
 
 
 @fused
-def _turn_on_parents(head: Record, scratch: Record) -> bool:
+def _turn_on_parents(head: Head, scratch: Head) -> bool:
     """
     Find how sixteen branches are turned from the bases of their parents, by half the vector.
 
@@ -226,7 +226,7 @@ def _turn_on_parents(head: Record, scratch: Record) -> bool:
 
 
 @fused
-def _turn_bases(head: Record, scratch: Record, scale: float, is_near: bool) -> float:
+def _turn_bases(head: Head, scratch: Head, scale: float, is_near: bool) -> float:
     """
     Turn the bases of sixteen branches, place them, and set how their first shape bends.
 
@@ -289,7 +289,7 @@ def _turn_bases(head: Record, scratch: Record, scale: float, is_near: bool) -> f
 
 
 @fused
-def _write_bases(head: Record, scratch: Record, bases: Floats) -> None:
+def _write_bases(head: Head, scratch: Head, bases: Floats) -> None:
     """Leave their turned bases to the children."""
     branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
     for j in range(0, whole, 4):
@@ -302,7 +302,7 @@ def _write_bases(head: Record, scratch: Record, bases: Floats) -> None:
 
 
 @fused
-def _set_further_keys(branches: Records, head: Record, scratch: Record, x: Floats) -> float:
+def _set_further_keys(branches: Branches, head: Head, scratch: Head, x: Floats) -> float:
     """Set the further coordinates; return as `_turn_bases`, of the branches that have them."""
     farthest, half_key = 0.0, scratch.half_key
     half_key[2:] = 0.0
@@ -323,7 +323,7 @@ def _set_further_keys(branches: Records, head: Record, scratch: Record, x: Float
 
 
 @fused
-def _write_poses(head: Record, scratch: Record, rank: int, n_lanes: int, out: Floats) -> None:
+def _write_poses(head: Head, scratch: Head, rank: int, n_lanes: int, out: Floats) -> None:
     """Write the poses of sixteen segments, each behind the one before it on its branch."""
     pose, first = scratch.pose, head.first
     whole = n_lanes - n_lanes % 4
@@ -338,7 +338,7 @@ def _write_poses(head: Record, scratch: Record, rank: int, n_lanes: int, out: Fl
 
 @inlined
 def _half_vector(
-    segment: Record, scratch: Record, j: int, is_near: bool
+    segment: Segment, scratch: Head, j: int, is_near: bool
 ) -> tuple[float, float, float]:
     """Half the rotation vector of a segment of the lane j, by all its coordinates."""
     turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
@@ -355,7 +355,7 @@ def _half_vector(
 
 @inlined
 def _turn(
-    segment: Record, scratch: Record, j: int, qw: float, qx: float, qy: float, qz: float
+    segment: Segment, scratch: Head, j: int, qw: float, qx: float, qy: float, qz: float
 ) -> None:
     """Turn the segment of the lane j from rest."""
     rest, pose = segment.rest, scratch.pose
@@ -386,7 +386,7 @@ def _reach(pose: Floats, to: Floats, scale: float, own: Floats, j: int) -> None:
 
 
 @inlined
-def _join_lane(segment: Record, scratch: Record, scale: float, is_joined: bool, j: int) -> None:
+def _join_lane(segment: Segment, scratch: Head, scale: float, is_joined: bool, j: int) -> None:
     """Put the turned segment of the lane j behind that before it, and find where the next is."""
     pose, following, reach = scratch.pose, scratch.next, segment.reach
     pose[0, j], pose[1, j], pose[2, j] = following[0, j], following[1, j], following[2, j]
@@ -397,14 +397,14 @@ def _join_lane(segment: Record, scratch: Record, scale: float, is_joined: bool, 
 
 
 @fused
-def _join(segment: Record, scratch: Record, scale: float, is_joined: bool) -> None:
+def _join(segment: Segment, scratch: Head, scale: float, is_joined: bool) -> None:
     """Put sixteen turned segments behind those before them, and find where the next ones are."""
     for j in range(LANES):
         _join_lane(segment, scratch, scale, is_joined, j)
 
 
 @inlined
-def _swing(segment: Record, scratch: Record, j: int, c: float, s: float) -> None:
+def _swing(segment: Segment, scratch: Head, j: int, c: float, s: float) -> None:
     """Turn the segment of the lane j about the one axis of its branch."""
     base, swing = scratch.base, scratch.swing
     _turn(
@@ -415,7 +415,7 @@ def _swing(segment: Record, scratch: Record, j: int, c: float, s: float) -> None
 
 
 @fused
-def _bend_and_join(segment: Record, scratch: Record, scale: float) -> None:
+def _bend_and_join(segment: Segment, scratch: Head, scale: float) -> None:
     """Turn and join sixteen segments, each of a branch that bends a little about one axis."""
     for j in range(LANES):
         slope = segment.slope[j]
@@ -425,7 +425,7 @@ def _bend_and_join(segment: Record, scratch: Record, scale: float) -> None:
 
 
 @fused
-def _bend_in_plane(segment: Record, scratch: Record) -> None:
+def _bend_in_plane(segment: Segment, scratch: Head) -> None:
     """Turn sixteen segments, each of a branch that bends about one axis."""
     slope = segment.slope
     for j in range(LANES):
@@ -435,7 +435,7 @@ def _bend_in_plane(segment: Record, scratch: Record) -> None:
 
 
 @fused
-def _bend(segment: Record, scratch: Record, n_lanes: int, is_near: bool) -> None:
+def _bend(segment: Segment, scratch: Head, n_lanes: int, is_near: bool) -> None:
     """Turn segments of branches with further coordinates, in the first lanes."""
     base = scratch.base
     for j in range(n_lanes):
@@ -450,7 +450,7 @@ def _bend(segment: Record, scratch: Record, n_lanes: int, is_near: bool) -> None
 
 
 @fused
-def _bend_far(segment: Record, scratch: Record, n_rows: int) -> None:
+def _bend_far(segment: Segment, scratch: Head, n_rows: int) -> None:
     """Turn sixteen segments, some of a branch that bends beyond the series."""
     base, half_turn = scratch.base, scratch.half_turn
     for j in range(segment.n_lanes):

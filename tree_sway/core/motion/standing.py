@@ -13,30 +13,36 @@ but that the speed is that at its own height.)
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf
 from tree_sway.core.kernel import fused, inlined
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.motion.lanes import settle, write_past_caches
 from tree_sway.core.motion.placing import place_standing_at
-from tree_sway.core.motion.wind_basis import expand, step_instance
+from tree_sway.core.motion.records import Branches, Heads, Segments
+from tree_sway.core.motion.wind_basis import expand, Instances, step_instance
+from tree_sway.core.motion.wind_basis_force import Paces, Tables
 
-STANDING = np.dtype(
-    [
-        ('kind', 'i8'),  # its row among the tables
-        ('pace', 'i8'),  # its row among the paces
-        ('is_still', 'i8'),  # whether it is not solved
-        ('is_held', 'i8'),  # whether its last wind was held at the limit of its table
-        ('scale', 'f8'),  # its height over that of its kind
-        ('speed', 'f8'),  # wind at its height over that at its kind's
-        ('cosine', 'f8'),  # of half the angle that it is turned by
-        ('sine', 'f8'),
-        ('at', 'f8', (3,)),  # its root node [m]
-    ]
-)
-"""How a tree of a stand stands."""
+
+class Standing:
+    """How a tree of a stand is placed."""
+
+    kind: int  # its row among the tables
+    pace: int  # its row among the paces
+    is_still: int  # whether it is not solved
+    is_held: int  # whether its last wind was held at the limit of its table
+    scale: float  # its height over that of its kind
+    speed: float  # wind at its height over that at its kind's
+    cosine: float  # of half the angle that it is turned by
+    sine: float
+    at: Annotated[Floats, 3]  # its root node [m]
+
+
+Stand = RecordsOf[Standing]
+STANDING = np.dtype(fields_of(Standing))
 
 _CACHED = 1 << 21
 """Numbers in a pose block up to which it is written to the caches: 16 MB, half of a large one."""
@@ -46,10 +52,10 @@ _pressure = inlined(pressure)
 
 @fused
 def step_standing(
-    tables: Records,
-    paces: Records,
-    standing: Records,
-    instances: Records,
+    tables: Tables,
+    paces: Paces,
+    standing: Stand,
+    instances: Instances,
     drag_laws: Floats,
     winds: Floats,
 ) -> tuple[int, int]:
@@ -101,8 +107,8 @@ def step_standing(
 
 @fused
 def place_standing(
-    standing: Records, instances: Records, which: Ints, shapes: Floats,
-    branches: Records, segments: Records, heads: Records, bases: Floats, x: Floats, poses: Floats,
+    standing: Stand, instances: Instances, which: Ints, shapes: Floats,
+    branches: Branches, segments: Segments, heads: Heads, bases: Floats, x: Floats, poses: Floats,
     out: Floats,
 ) -> None:  # fmt: skip
     """

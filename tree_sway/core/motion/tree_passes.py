@@ -13,15 +13,15 @@ do work at, however far the tree is bent; so no drag ever feeds motion.
 
 from __future__ import annotations
 
-from tree_sway.core.arrays import Floats, Record, Records
+from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import fused, kernel
 from tree_sway.core.motion.drag import drag
-from tree_sway.core.motion.records import LANES
+from tree_sway.core.motion.records import Branches, LANES, Load, Loads, Works
 from tree_sway.core.rotation import product, quaternion, rotated, turned
 
 
 @fused
-def outward_pass(branches: Records, work: Records, x: Floats, v: Floats) -> None:
+def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
     """
     Hand rotation [rad] and velocity [rad/s], (N,), of every parent to the bases of its children.
 
@@ -60,10 +60,11 @@ def outward_pass(branches: Records, work: Records, x: Floats, v: Floats) -> None
             below.velocity[0], below.velocity[1], below.velocity[2],
             below.velocity[3], below.velocity[4], below.velocity[5],
         )  # fmt: skip
-        # A rotation on top of one by t turns by half of t more than its own vector says.
-        kx = px + wx + 0.5 * (ty * wz - tz * wy)
-        ky = py + wy + 0.5 * (tz * wx - tx * wz)
-        kz = pz + wz + 0.5 * (tx * wy - ty * wx)
+        # A rotation on top of one by t spins by t x w / 2 + t x (t x w) / 6 more than its rate w.
+        gx, gy, gz = ty * wz - tz * wy, tz * wx - tx * wz, tx * wy - ty * wx
+        kx = px + wx + 0.5 * gx + (ty * gz - tz * gy) / 6.0
+        ky = py + wy + 0.5 * gy + (tz * gx - tx * gz) / 6.0
+        kz = pz + wz + 0.5 * gz + (tx * gy - ty * gx) / 6.0
         vx += py * az - pz * ay + ux - gone * branch.arm[0]
         vy += pz * ax - px * az + uy - gone * branch.arm[1]
         vz += px * ay - py * ax + uz - gone * branch.arm[2]
@@ -76,7 +77,7 @@ def outward_pass(branches: Records, work: Records, x: Floats, v: Floats) -> None
 
 
 @fused
-def set_air(work: Records, loads: Records, wx: float, wy: float, wz: float) -> None:
+def set_air(work: Works, loads: Loads, wx: float, wy: float, wz: float) -> None:
     """Give every branch the wind [m/s] that blows at it, as its turned base sees it."""
     for b in range(len(work)):
         here, j, q = loads[b // LANES], b % LANES, work[b].attitude
@@ -90,7 +91,7 @@ def set_air(work: Records, loads: Records, wx: float, wy: float, wz: float) -> N
 
 
 @kernel
-def set_gusts(loads: Records, apart: Floats) -> None:
+def set_gusts(loads: Loads, apart: Floats) -> None:
     """Give every branch the wind of its delay: by how much it differs from the tree's (d, 3)."""
     for block in range(len(loads)):
         here = loads[block]
@@ -101,7 +102,7 @@ def set_gusts(loads: Records, apart: Floats) -> None:
 
 
 @fused
-def wind_forces(loads: Records, per_speed_squared: float) -> None:
+def wind_forces(loads: Loads, per_speed_squared: float) -> None:
     """
     Find the wind's force on every branch.
 
@@ -120,7 +121,7 @@ def wind_forces(loads: Records, per_speed_squared: float) -> None:
 
 
 @fused
-def _drag_forces(loads: Record, per_speed_squared: float) -> None:
+def _drag_forces(loads: Load, per_speed_squared: float) -> None:
     """Find the force on sixteen branches, drag in the frame of each as it is turned."""
     speed, air, turn, slip, couple = (
         loads.velocity, loads.air, loads.turned, loads.drag_impulse, loads.coupling,
@@ -170,7 +171,7 @@ def _drag_forces(loads: Record, per_speed_squared: float) -> None:
 
 
 @fused
-def own_loads(loads: Records) -> None:
+def own_loads(loads: Loads) -> None:
     """
     Turn the wind's own forces on branches into loads on their key rotations.
 
@@ -182,7 +183,7 @@ def own_loads(loads: Records) -> None:
 
 
 @fused
-def _own_loads(loads: Record) -> None:
+def _own_loads(loads: Load) -> None:
     """Turn the wind's own forces on sixteen branches into loads on their coordinates."""
     force, push, along, load = loads.force, loads.load_mode, loads.along, loads.load
     for j in range(LANES):
@@ -193,7 +194,7 @@ def _own_loads(loads: Record) -> None:
 
 
 @fused
-def bent_loads(branches: Records, work: Records, loads: Records, moment: Floats) -> None:
+def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) -> None:
     """
     Turn forces into moments on the coordinates of a tree as it is bent and turned.
 
@@ -223,8 +224,8 @@ def bent_loads(branches: Records, work: Records, loads: Records, moment: Floats)
             q[0], q[1], q[2], q[3], wrench[0], wrench[1], wrench[2]
         )
     for b in range(len(branches) - 1, 0, -1):
-        branch, here = branches[b], work[b]
-        wrench, turn, shift, now = here.wrench, here.turn, here.shift, here.arm
+        branch, base = branches[b], work[b]
+        wrench, turn, shift, now = base.wrench, base.turn, base.shift, base.arm
         tx, ty, tz, dx, dy, dz = turn[0], turn[1], turn[2], shift[0], shift[1], shift[2]
         fx, fy, fz = turned(tx, ty, tz, wrench[0], wrench[1], wrench[2])
         mx, my, mz = turned(tx, ty, tz, wrench[3], wrench[4], wrench[5])
@@ -237,9 +238,10 @@ def bent_loads(branches: Records, work: Records, loads: Records, moment: Floats)
         below[5] += mz + ax * fy - ay * fx
         pull = 2.0 * branch.per_arm * (arm[0] * fx + arm[1] * fy + arm[2] * fz)
         fx, fy, fz = fx - pull * dx, fy - pull * dy, fz - pull * dz
-        px = mx + 0.5 * (my * tz - mz * ty) + at[1] * fz - at[2] * fy
-        py = my + 0.5 * (mz * tx - mx * tz) + at[2] * fx - at[0] * fz
-        pz = mz + 0.5 * (mx * ty - my * tx) + at[0] * fy - at[1] * fx
+        gx, gy, gz = my * tz - mz * ty, mz * tx - mx * tz, mx * ty - my * tx
+        px = mx + 0.5 * gx + (gy * tz - gz * ty) / 6.0 + at[1] * fz - at[2] * fy
+        py = my + 0.5 * gy + (gz * tx - gx * tz) / 6.0 + at[2] * fx - at[0] * fz
+        pz = mz + 0.5 * gz + (gx * ty - gy * tx) / 6.0 + at[0] * fy - at[1] * fx
         parent = branches[branch.parent]
         i = parent.coordinate
         for c in range(parent.n_coordinates):
@@ -250,7 +252,7 @@ def bent_loads(branches: Records, work: Records, loads: Records, moment: Floats)
 
 
 @fused
-def _turned_loads(loads: Record) -> None:
+def _turned_loads(loads: Load) -> None:
     """Turn the wind's forces on sixteen branches into loads and moments about their bases."""
     force, push, load, couple = loads.own_force, loads.load_mode, loads.load, loads.coupling
     turn, moment = loads.turned, loads.moment

@@ -17,11 +17,19 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Record, Records
+from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
-from tree_sway.core.motion.records import LANES, OSCILLATORS, WORK
+from tree_sway.core.motion.records import (
+    Banks,
+    Branches,
+    LANES,
+    OSCILLATORS,
+    Oscillators,
+    WORK,
+    Works,
+)
 from tree_sway.core.motion.tree_passes import own_loads, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
 from tree_sway.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force
@@ -114,7 +122,7 @@ class UncoupledBank(Branchwise):
 
 @fused
 def _advance(
-    branches: Records, work: Records, banks: Records, state: Floats,
+    branches: Branches, work: Works, banks: Banks, state: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     x, v = state[0], state[1]
@@ -144,7 +152,7 @@ def _advance(
 
 
 @fused
-def _to_middle(bank: Record) -> None:
+def _to_middle(bank: Oscillators) -> None:
     """State of sixteen branches half a step on, under the last step's load."""
     x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
     middle_x, middle_v = bank.x, bank.v
@@ -157,7 +165,7 @@ def _to_middle(bank: Record) -> None:
 
 
 @fused
-def _step(bank: Record) -> int:
+def _step(bank: Oscillators) -> int:
     """Step sixteen branches; return how many loads were held."""
     x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard
     is_solved, held = bank.is_solved, 0

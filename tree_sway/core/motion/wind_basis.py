@@ -15,10 +15,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property, partial
 import math
+from typing import Annotated
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Record, Records
+from tree_sway.core.arrays import fields_of, Floats, Records, RecordsOf, Singles
 from tree_sway.core.kernel import entry_of, fused, inlined
 from tree_sway.core.motion.branchwise import Tunable
 from tree_sway.core.motion.drag import DragLaw, pressure
@@ -26,31 +27,45 @@ from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.lanes import add_shapes, shapes_together, TOGETHER
 from tree_sway.core.motion.modal import add_force, ModalBank
 from tree_sway.core.motion.placing import place
-from tree_sway.core.motion.wind_basis_force import pace_layout, table_layout, wind_force
+from tree_sway.core.motion.records import Branches, Heads, Segments
+from tree_sway.core.motion.wind_basis_force import (
+    Pace,
+    pace_layout,
+    Paces,
+    Table,
+    table_layout,
+    Tables,
+    wind_force,
+)
 from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
 
-def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
+class Instance:
     """State of one tree on a table, and scratch."""
+
+    outside: int  # whether the last wind was outside of the table
+    eta: Annotated[Floats, 'modes']
+    rate: Annotated[Floats, 'modes']
+    force: Annotated[Floats, 'modes']
+    wind: Annotated[Floats, 3]  # [m/s]
+    pressure: float  # drag per area and speed squared [kg/m^3]
+    middle: Annotated[Floats, 'modes']
+    middle_rate: Annotated[Floats, 'modes']
+    wanted: Annotated[Floats, 'modes']
+    diagonal: Annotated[Floats, 'modes']
+    scratch: Annotated[Singles, 4, 'modes']
+    values: Annotated[Floats, 'harmonics']
+    left_out: int  # coordinates, the last ones, that are not shown and not felt
+    faded: Annotated[Floats, 'modes']  # share of each that is not shown
+
+
+Instances = RecordsOf[Instance]
+
+
+def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
+    """Lay out `Instance`."""
     m = table_layout(n_modes, n_harmonics)['stiffness'].shape[0]
-    return np.dtype(
-        [
-            ('outside', 'i8'),  # whether the last wind was outside of the table
-            ('eta', 'f8', (m,)),
-            ('rate', 'f8', (m,)),
-            ('force', 'f8', (m,)),
-            ('wind', 'f8', (3,)),  # [m/s]
-            ('pressure', 'f8'),  # drag per area and speed squared [kg/m^3]
-            ('middle', 'f8', (m,)),
-            ('middle_rate', 'f8', (m,)),
-            ('wanted', 'f8', (m,)),
-            ('diagonal', 'f8', (m,)),
-            ('scratch', 'f4', (4, m)),
-            ('values', 'f8', (n_harmonics,)),
-            ('left_out', 'i8'),  # coordinates, the last ones, that are not shown and not felt
-            ('faded', 'f8', (m,)),  # share of each that is not shown
-        ]
-    )
+    return np.dtype(fields_of(Instance, modes=m, harmonics=n_harmonics))
 
 
 _pressure = inlined(pressure)
@@ -210,7 +225,7 @@ def fill_pace(pace: np.void, modal: ModalBank) -> None:
     )  # fmt: skip
 
 
-def step_branches(instance: Record, modal: ModalBank) -> int:
+def step_branches(instance: np.void, modal: ModalBank) -> int:
     """Step the modes from where an instance is, in its wind, on the loads of all branches."""
     m = modal.shapes.shape[1]
     eta, rate, force = (instance[name][:m] for name in ('eta', 'rate', 'force'))
@@ -220,7 +235,7 @@ def step_branches(instance: Record, modal: ModalBank) -> int:
 
 
 @fused
-def expand(instance: Record, shapes: Floats, x: Floats) -> None:
+def expand(instance: Instance, shapes: Floats, x: Floats) -> None:
     """Key rotations (N,) of an instance, by shapes as of `shapes_together`."""
     eta, faded, shown = instance.eta, instance.faded, instance.wanted
     for k in range(len(eta)):
@@ -232,8 +247,8 @@ def expand(instance: Record, shapes: Floats, x: Floats) -> None:
 
 @fused
 def place_one(
-    instances: Records, shapes: Floats, x: Floats,
-    branches: Records, segments: Records, heads: Records, bases: Floats,
+    instances: Instances, shapes: Floats, x: Floats,
+    branches: Branches, segments: Segments, heads: Heads, bases: Floats,
     origin: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """Do what `expand` does for the first instance, then what `place` does."""
@@ -242,14 +257,14 @@ def place_one(
 
 
 @fused
-def expand_one(instances: Records, shapes: Floats, x: Floats) -> None:
+def expand_one(instances: Instances, shapes: Floats, x: Floats) -> None:
     """Do what `expand` does, for the first instance."""
     expand(instances[0], shapes, x)
 
 
 @fused
 def step_instance(
-    table: Record, pace: Record, instance: Record, is_held: bool,
+    table: Table, pace: Pace, instance: Instance, is_held: bool,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     """
@@ -319,7 +334,7 @@ def step_instance(
 
 @fused
 def _advance(
-    tables: Records, paces: Records, instances: Records,
+    tables: Tables, paces: Paces, instances: Instances,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     return step_instance(tables[0], paces[0], instances[0], False, wx, wy, wz, per_speed_squared)
@@ -327,7 +342,7 @@ def _advance(
 
 @fused
 def step_in_wind(
-    tables: Records, paces: Records, instances: Records, limits: Floats, kept: Floats,
+    tables: Tables, paces: Paces, instances: Instances, limits: Floats, kept: Floats,
     x: float, y: float, z: float,
 ) -> int:  # fmt: skip
     """

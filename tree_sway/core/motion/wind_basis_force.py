@@ -6,10 +6,11 @@ from __future__ import annotations
 
 from functools import cache
 import math
+from typing import Annotated
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Record, Singles
+from tree_sway.core.arrays import fields_of, Floats, RecordsOf, Singles
 from tree_sway.core.kernel import fused, inlined
 from tree_sway.core.motion.harmonics import fill_harmonics
 
@@ -23,58 +24,63 @@ _MODES_TOGETHER = 8
 _LEAST_MODES = 24
 
 
+class Table:
+    """
+    Table of one tree, by azimuth, level of the lean, and coordinate.
+
+    What a step reads whole is in single precision.
+    """
+
+    n_modes: int
+    degree: int
+    levels: Annotated[Floats, N_AZIMUTHS, N_LEVELS]  # leans of a tree in steady winds, rising
+    most_pressure: float  # up to which the table holds [kg/m/s^2]
+    most_energy: float  # of strain and motion, twice, up to which a wind takes it [J]
+    stiffness: Annotated[Floats, 'modes']
+    motion: Annotated[Floats, 'modes']  # mean square of what the wind meets moves at
+    harmonics: Annotated[Floats, 'harmonics', 'modes']
+    standing: Annotated[Floats, N_AZIMUTHS, N_LEVELS, 'modes']  # coordinates in steady winds
+    amount: Annotated[Floats, N_AZIMUTHS, 'modes']  # weights of the coordinates in the lean
+    load: Annotated[Floats, N_AZIMUTHS, N_LEVELS, 'modes']
+    # By the coordinate that moves, then the one that is loaded:
+    lean: Annotated[Singles, N_AZIMUTHS, 'modes', 'modes']
+    turning: Annotated[Singles, N_AZIMUTHS, N_LEVELS, 'modes', 'modes']
+    damping: Annotated[Singles, N_AZIMUTHS, N_LEVELS, 'modes', 'modes']
+    steep_turning: Annotated[Singles, 2, 'modes', 'modes']  # in winds straight down and up
+    steep_damping: Annotated[Singles, 2, 'modes', 'modes']
+
+
+class Pace:
+    """How the coordinates of a table go on in a time step."""
+
+    whole: Annotated[Floats, 8, 'modes']  # columns of the propagator of a step
+    half: Annotated[Floats, 6, 'modes']  # of half a step under a constant load
+
+
+Tables = RecordsOf[Table]
+Paces = RecordsOf[Pace]
+
+
 @cache
 def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
     """
-    Table of one tree; coordinates are filled up to a multiple of eight, at least 24.
+    Lay out `Table`; coordinates are filled up to a multiple of eight, at least 24.
 
-    One layout serves most trees, so that the kernel is compiled once. What a step reads whole is
-    in single precision.
+    One layout serves most trees, so that the kernel is compiled once.
     """
     m = max(_LEAST_MODES, -(-n_modes // _MODES_TOGETHER) * _MODES_TOGETHER)
-    a, n = N_AZIMUTHS, N_LEVELS
-    return np.dtype(
-        [
-            ('n_modes', 'i8'),
-            ('degree', 'i8'),
-            ('levels', 'f8', (a, n)),  # leans of a tree held in winds, rising
-            ('most_pressure', 'f8'),  # up to which the table holds [kg/m/s^2]
-            ('most_energy', 'f8'),  # of strain and motion, twice, up to which a wind takes it [J]
-            ('stiffness', 'f8', (m,)),
-            (
-                'motion',
-                'f8',
-                (m,),
-            ),  # mean square of what the wind meets moves at
-            ('harmonics', 'f8', (n_harmonics, m)),
-            ('standing', 'f8', (a, n, m)),  # the coordinates of a tree held in winds
-            ('amount', 'f8', (a, m)),  # weights of the coordinates in the lean
-            ('load', 'f8', (a, n, m)),
-            # By the coordinate that moves, then the one that is loaded:
-            ('lean', 'f4', (a, m, m)),
-            ('turning', 'f4', (a, n, m, m)),
-            ('damping', 'f4', (a, n, m, m)),
-            ('steep_turning', 'f4', (2, m, m)),  # in winds straight down and up
-            ('steep_damping', 'f4', (2, m, m)),
-        ]
-    )
+    return np.dtype(fields_of(Table, modes=m, harmonics=n_harmonics))
 
 
 @cache
 def pace_layout(n_modes: int) -> np.dtype[np.void]:
-    """How the coordinates of a table go on in a time step."""
-    m = table_layout(n_modes, 0)['stiffness'].shape[0]
-    return np.dtype(
-        [
-            ('whole', 'f8', (8, m)),  # columns of the propagator of a step
-            ('half', 'f8', (6, m)),  # of half a step under a constant load
-        ]
-    )
+    """Lay out `Pace`."""
+    return np.dtype(fields_of(Pace, modes=table_layout(n_modes, 0)['stiffness'].shape[0]))
 
 
 @inlined
 def table_corners(
-    table: Record, x: float, y: float, eta: Floats
+    table: Table, x: float, y: float, eta: Floats
 ) -> tuple[int, int, int, float, float]:
     """
     Where a wind and a lean are in a table.
@@ -108,7 +114,7 @@ def table_corners(
 
 @fused
 def wind_force(
-    table: Record, x: float, y: float, z: float, push: float, per_speed_squared: float,
+    table: Table, x: float, y: float, z: float, push: float, per_speed_squared: float,
     eta: Floats, rate: Floats, values: Floats, scratch: Singles, force: Floats, diagonal: Floats,
     n_felt: int,
 ) -> None:  # fmt: skip

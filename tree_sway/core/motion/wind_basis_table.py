@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats, Record
+from tree_sway.core.arrays import Floats, Singles
 from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
@@ -47,7 +47,6 @@ _ELEVATION_SPREAD = 0.25
 _SLOPE_AT = 0.35
 _MOST_ENERGY = 3.0
 _RAISES, _TURNS, _FARTHEST, _AT_REST = 4, 10, 0.3, 0.01
-_DIFFERENCE = 1e-7
 _TRIALS = 200
 
 _LARGE = 2000
@@ -96,6 +95,7 @@ class WindBasisTable:
     ) -> None:
         """Find the loads of the tree in all winds."""
         self._shapes, self._loads = bank.shapes, wind_moments
+        self._single_shapes = np.ascontiguousarray(bank.shapes, dtype=np.float32)
         n, m = bank.shapes.shape
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m, COUNT[degree]))
@@ -119,18 +119,11 @@ class WindBasisTable:
     def _moments(self, x: Floats, v: Floats, wind: Floats) -> Floats:
         return self._loads(x, v, wind)
 
-    def _slopes(self, at: Floats, wind: Floats, *, rates: bool = False) -> Floats:
-        """Slope of the modal loads by the coordinates of a tree, or by their rates, (m, m)."""
-        shapes = self._shapes.T
-        slopes, here = np.zeros((len(shapes), len(at))), self._moments(at, self._still, wind)
-        for row, shape in zip(slopes, shapes, strict=True):
-            size = _DIFFERENCE / max(float(np.abs(shape).max()), 1e-12)
-            x, v = (at, size * shape) if rates else (at + size * shape, self._still)
-            row[:] = (self._moments(x, v, wind) - here) / size
-        found: Floats = slopes @ self._shapes
-        return found
+    def _slopes(self, x: Floats, wind: Floats) -> tuple[Singles, Singles]:
+        """Slopes of the modal loads at x, (N,), by the coordinates and by their rates, (m, m)."""
+        return self._loads.slopes(x, wind, self._single_shapes)
 
-    def _fit_harmonics(self, table: Record, degree: int) -> None:
+    def _fit_harmonics(self, table: np.void, degree: int) -> None:
         """Fit the load at rest in winds of all azimuths, level ones to count for most."""
         elevation, azimuth = np.meshgrid(
             _ELEVATIONS, 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, indexing='ij'
@@ -143,7 +136,7 @@ class WindBasisTable:
         fitted = np.linalg.lstsq(values, np.array(loads) * weight[:, None], rcond=None)[0]
         table['harmonics'][:, : table['n_modes']] = fitted
 
-    def _fill_standing(self, table: Record, pressures: list[float]) -> None:
+    def _fill_standing(self, table: np.void, pressures: list[float]) -> None:
         """Find the loads of the tree, and their slopes, where winds of each speed hold it."""
         shapes, m = self._shapes, int(table['n_modes'])
         stiffness = table['stiffness'][:m]
@@ -162,8 +155,7 @@ class WindBasisTable:
                 x = shapes @ at
                 standing[k, j] = at
                 load[k, j] = self._moments(x, self._still, ahead) @ shapes - upright
-                turning[k, j] = self._slopes(x, ahead)
-                damping[k, j] = self._slopes(x, ahead, rates=True)
+                turning[k, j], damping[k, j] = self._slopes(x, ahead)
         found = {'standing': standing, 'amount': amount, 'load': load}
         for name, values in found.items():
             table[name][..., :m] = _between(values)
@@ -209,21 +201,19 @@ class WindBasisTable:
             at = here
         return at
 
-    def _fill_aslant(self, table: Record) -> None:
+    def _fill_aslant(self, table: np.void) -> None:
         """Fill what winds aslant change in the slopes of an upright tree, and steep winds."""
-        m = int(table['n_modes'])
-        lean = np.zeros((len(self._asked), m, m))
-        for k, azimuth in enumerate(self._asked):
-            for sign in (1.0, -1.0):
-                slopes = self._slopes(self._still, direction(azimuth, sign * _SLOPE_AT))
-                lean[k] += sign * slopes / (2.0 * np.sin(_SLOPE_AT))
+        m, azimuths = int(table['n_modes']), self._asked
+        rising = [self._slopes(self._still, direction(a, _SLOPE_AT))[0] for a in azimuths]
+        # A falling wind is the opposite of one that rises from the other side.
+        falling = -np.roll(rising, len(azimuths) // 2, axis=0)
+        lean = (np.array(rising) - falling) / (2.0 * np.sin(_SLOPE_AT))
         table['lean'][:, :m, :m] = _between(lean)
-        for row, way in enumerate((-1.0, 1.0)):
-            steep = np.array([0.0, 0.0, way])
-            table['steep_turning'][row, :m, :m] = self._slopes(self._still, steep)
-            table['steep_damping'][row, :m, :m] = self._slopes(self._still, steep, rates=True)
+        turning, damping = self._slopes(self._still, direction(0.0, np.pi / 2.0))
+        table['steep_turning'][:, :m, :m] = -turning, turning
+        table['steep_damping'][:, :m, :m] = damping
 
-    def _tried(self, table: Record, degree: int, storm: float) -> float:
+    def _tried(self, table: np.void, degree: int, storm: float) -> float:
         """Try the table at leans and winds between those that it is made of."""
         rng = np.random.default_rng(7)
         m, stiffness = int(table['n_modes']), table['stiffness']

@@ -22,6 +22,7 @@ coordinates on each child. SI units.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -72,12 +73,44 @@ class Reduction:
         """Elastic and geometric stiffness, sparse (N, N), in [N m/rad]."""
         return (self.elastic + self.gravity).tocsc()
 
+    @cached_property
+    def factors(self) -> Factors:
+        """Factors of the stiffness, found once."""
+        return Factors(self.stiffness)
+
     @property
     def flexibility(self) -> Floats:
         """Of each coordinate alone [rad/(N m)], (N,): both axes as one, however they are laid."""
         diagonal = np.asarray(self.stiffness.diagonal())
         mean: Floats = 2.0 / (diagonal + diagonal[self.partner])
         return mean
+
+
+class Factors:
+    """
+    Factors of a sparse symmetric matrix of coordinates, parents before children.
+
+    Eliminated from the twigs to the stem, they have no more entries than the matrix itself.
+    """
+
+    def __init__(self, matrix: Any) -> None:
+        """Factorise; a singular matrix raises `RuntimeError`."""
+        from scipy.sparse.linalg import splu
+
+        self._factors = splu(
+            matrix.tocsc()[::-1, ::-1], permc_spec='NATURAL', diag_pivot_thresh=0.0,
+            options={'SymmetricMode': True},
+        )  # fmt: skip
+
+    @property
+    def is_positive(self) -> bool:
+        """Whether the matrix is positive definite: as many pivots are (Sylvester's law)."""
+        return bool((self._factors.U.diagonal() > 0.0).all())
+
+    def solve(self, right: Floats) -> Floats:
+        """Solve for one right side, (N,)."""
+        solved: Floats = self._factors.solve(right[::-1])[::-1]
+        return solved
 
 
 def reduce_tree(

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.reduction.matrices import Reduction
+from tree_sway.core.reduction.matrices import Factors, Reduction
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 
@@ -80,8 +80,6 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
 
     """
     from scipy import linalg
-    from scipy.sparse import csc_matrix
-    from scipy.sparse import linalg as sparse_linalg
 
     n = reduction.n_coordinates
     wanted = n if count is None else count
@@ -107,15 +105,8 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
             subset_by_index=[n - wanted, n - 1],
         )
     else:
-        stiffness = csc_matrix(reduction.stiffness)
-        solve = _factors(stiffness)
-        inverse_squares, shapes = sparse_linalg.eigsh(
-            reduction.mass,
-            k=wanted,
-            M=stiffness,
-            Minv=sparse_linalg.LinearOperator((n, n), matvec=solve.solve, dtype=np.float64),
-            which='LA',
-            v0=np.ones(n),
+        inverse_squares, shapes = _largest(
+            reduction.mass, reduction.stiffness, reduction.factors, wanted
         )
     # Below rounding a mode is as good as rigid.
     inverse_squares = np.maximum(inverse_squares, 1e-16 * inverse_squares.max())
@@ -200,32 +191,9 @@ def with_answers(
     return Modes(whole[slowest_first], np.ascontiguousarray(both[:, slowest_first]))
 
 
-def factors(reduction: Reduction) -> Any:
-    """Factorise the stiffness of a tree: what solves for static answers, by its `solve`."""
-    from scipy.sparse import csc_matrix
-
-    return _factors(csc_matrix(reduction.stiffness))
-
-
-def _factors(matrix: Any) -> Any:
-    """
-    Factorise a sparse matrix that is symmetric and positive definite.
-
-    Eliminated from the twigs to the stem, its factors have no more entries than itself.
-    """
-    from scipy.sparse import linalg as sparse_linalg
-
-    options = {'SymmetricMode': True}
-    return sparse_linalg.splu(
-        matrix, permc_spec='MMD_AT_PLUS_A', diag_pivot_thresh=0.0, options=options
-    )
-
-
 def buckling_factor(reduction: Reduction) -> tuple[float, int]:
     """Critical over real weight, infinite without gravity; the coordinate that gives way most."""
     from scipy import linalg
-    from scipy.sparse import csc_matrix
-    from scipy.sparse import linalg as sparse_linalg
 
     n = reduction.n_coordinates
     softening = -reduction.gravity
@@ -236,18 +204,21 @@ def buckling_factor(reduction: Reduction) -> tuple[float, int]:
             softening.toarray(), reduction.elastic.toarray(), subset_by_index=[n - 1, n - 1]
         )
     else:
-        elastic = csc_matrix(reduction.elastic)
-        solve = _factors(elastic)
-        values, vectors = sparse_linalg.eigsh(
-            softening,
-            k=1,
-            M=elastic,
-            Minv=sparse_linalg.LinearOperator((n, n), matvec=solve.solve, dtype=np.float64),
-            which='LA',
-            v0=np.ones(n),
-        )
+        values, vectors = _largest(softening, reduction.elastic, Factors(reduction.elastic), 1)
     worst = int(np.argmax(np.abs(vectors[:, 0])))
     return (1.0 / float(values[0]) if values[0] > 0.0 else float('inf')), worst
+
+
+def _largest(matrix: Any, against: Any, factors: Factors, count: int) -> tuple[Floats, Floats]:
+    """Find the largest ratios of a matrix to another one, and their vectors, by Lanczos."""
+    from scipy.sparse import linalg as sparse_linalg
+
+    n = matrix.shape[0]
+    inverse = sparse_linalg.LinearOperator((n, n), matvec=factors.solve, dtype=np.float64)
+    values, vectors = sparse_linalg.eigsh(
+        matrix, k=count, M=against, Minv=inverse, which='LA', v0=np.ones(n)
+    )
+    return values, vectors
 
 
 def refuse_buckling(tree: Tree, reduction: Reduction) -> None:
@@ -259,6 +230,8 @@ def refuse_buckling(tree: Tree, reduction: Reduction) -> None:
             where=_branch_name(tree, reduction, int(coordinate)),
             cure='give its segments a diameter and the wood a density above 0',
         )
+    if reduction.factors.is_positive:
+        return
     factor, coordinate = buckling_factor(reduction)
     if factor <= 1.0:
         raise TreeError(

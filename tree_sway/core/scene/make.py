@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tree_sway.core.simulator.assembly import Kept
+from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
@@ -21,7 +21,7 @@ def make_simulator(
     *,
     tolerance: float = 0.005,
     budget: float = 0.0,
-    kept: Kept | None = None,
+    cache: SetUpCache | None = None,
     **changes: Any,
 ) -> SwaySimulator:
     """
@@ -36,8 +36,8 @@ def make_simulator(
     budget
         Largest cost of a frame in [us] that ``auto`` may allow itself, which comes before the
         tolerance; 0 for none.
-    kept
-        Where the set-ups of `SwaySimulator` are kept; nowhere if None.
+    cache
+        Where set-ups are written and found again; nowhere if None.
     **changes
         Fields of the settings.
 
@@ -54,5 +54,6 @@ def make_simulator(
     if chosen.model == 'auto':
         from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 
-        return AdaptiveSimulator(bare, wood, chosen, tolerance=tolerance, budget=budget, kept=kept)
-    return SwaySimulator(bare, wood, chosen, kept=kept)
+        asked = {'tolerance': tolerance, 'budget': budget}
+        return AdaptiveSimulator(bare, wood, chosen, **asked, cache=cache)
+    return SwaySimulator(bare, wood, chosen, cache=cache)

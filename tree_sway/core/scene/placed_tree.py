@@ -138,20 +138,6 @@ class Kind(NamedTuple):
         return replace(scene, in_leaf=self.leaf_on, leaf_mass=None, leaf_area=None)
 
 
-def kinds_of(trees: Sequence[PlacedTree]) -> tuple[list[Kind], Ints]:
-    """Return the kinds of trees in the order of their first, and each tree's number there."""
-    found: dict[tuple[int, int, bool | None], int] = {}
-    kinds: list[Kind] = []
-    numbers = np.empty(len(trees), dtype=np.int64)
-    for t, tree in enumerate(trees):
-        key = id(tree.tree), id(tree.species), tree.leaf_on
-        if key not in found:
-            found[key] = len(kinds)
-            kinds.append(tree.kind)
-        numbers[t] = found[key]
-    return kinds, numbers
-
-
 def joined_where_placed(trees: Sequence[PlacedTree], name: str) -> Tree:
     """Join trees where they are; a `ParameterError` for more than `MOST_SEGMENTS`."""
     n_segments = sum(each.tree.n_segments for each in trees)

@@ -25,7 +25,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.demand import adaptive_among
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.gate import GateCounts
 from tree_sway.core.wind.intake import GoodWind, WindIntake
@@ -151,7 +151,7 @@ class Run:
         to
             The time in [ns].
         delay
-            How much later the wind is felt, in [s].
+            How much later the wind is felt, in [s]; below 0 where samples to come are known.
         most
             Periods that are solved at most, the last ones; as `LONGEST_JUMP` says if None.
         may_join
@@ -183,6 +183,11 @@ class Run:
         # Asked for here, in the thread that changes it: reports come from another.
         self.wind_state = self._wind.state(self._felt)
         return periods
+
+    def step(self, wind: Floats) -> None:
+        """Take the next step in a mean wind (3,) in [m/s] that is known, whatever was offered."""
+        self._index = 1 if self._index is None else self._index + 1
+        self._solve(self._index * self.period, wind, self.period * 1e-9)
 
     def memory(self) -> tuple[int, int, list[float], list[tuple[int, list[float]]]]:
         """Time, origin and wind between steps, and the samples to come, for `recall`."""
@@ -216,8 +221,10 @@ class Run:
             time, velocity = samples.popleft()
             self._wind.add(self._seconds(time), velocity)
         wind = self._wind.mean(self._felt - dt, self._felt)
-        if self.is_paused:
-            return
+        if not self.is_paused:
+            self._solve(end, wind, dt)
+
+    def _solve(self, end: int, wind: Floats, dt: float) -> None:
         begin = self._timer() if self._timer is not None else 0.0
         self.simulator.step(wind, dt)
         if self._timer is not None:

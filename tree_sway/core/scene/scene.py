@@ -4,16 +4,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 import math
 from typing import Any
 
 import numpy as np
 
-from tree_sway.core.arrays import Ints
 from tree_sway.core.leaves.foliage import (
     foliage_of,
     joined_clusters,
@@ -21,19 +18,18 @@ from tree_sway.core.leaves.foliage import (
     LeafClusters,
 )
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.scene.placed_tree import joined_where_placed, Kind, kinds_of, PlacedTree
-from tree_sway.core.scene.scene_simulator import SceneSimulator
-from tree_sway.core.simulator.assembly import Kept
-from tree_sway.core.simulator.protocol import Simulator
+from tree_sway.core.scene.placed_tree import Kind
+from tree_sway.core.scene.placed_trees import PlacedTrees
+from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
+from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.tree.plausibility import oddities, refuse_nonsense
 from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import ParameterError, TreeError, TreeSwayError
+from tree_sway.errors import TreeSwayError
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(PlacedTrees):
     """
     Trees in one wind.
 
@@ -70,66 +66,11 @@ class Scene:
 
     """
 
-    trees: Sequence[PlacedTree]
-    name: str = 'scene'
-    source: str = ''
-    notes: tuple[str, ...] = ()
-    anemometer: tuple[float, float, float] | None = None
-    convection_ratio: float = 1.0
-
-    def __post_init__(self) -> None:
-        """Refuse what is no scene."""
-        object.__setattr__(self, 'trees', tuple(self.trees))
-        if not self.trees:
-            raise TreeError('no trees', where=self.name, cure='give at least one')
-        for number, each in enumerate(self.trees):
-            if not isinstance(each, PlacedTree):
-                raise ParameterError(
-                    f'a {type(each).__name__}, where a PlacedTree is asked for',
-                    where=f'trees[{number}]',
-                    cure='give PlacedTree(name, tree, x, y) each',
-                )
-        name, count = Counter(each.name for each in self.trees).most_common(1)[0]
-        if count > 1:
-            raise ParameterError(
-                f"{count} trees called '{name}'", where=self.name, cure='give each its own name'
-            )
-
-    @cached_property
-    def tree(self) -> Tree:
-        """
-        All trees as one record where they are, named ``tree/branch``; one tree as it is.
-
-        A `ParameterError` for more than `MOST_SEGMENTS`.
-        """
-        if self.is_one_tree:
-            return self.trees[0].placed()
-        return joined_where_placed(self.trees, self.name)
-
-    @property
-    def is_one_tree(self) -> bool:
-        """Whether the scene has one tree alone."""
-        return len(self.trees) == 1
-
     @property
     def species(self) -> Species | None:
         """Species of all trees; None where they differ."""
         found = {id(kind.species): kind.species for kind in self.kinds}
         return next(iter(found.values())) if len(found) == 1 else None
-
-    @cached_property
-    def _sorted(self) -> tuple[list[Kind], Ints]:
-        return kinds_of(self.trees)
-
-    @property
-    def kinds(self) -> list[Kind]:
-        """The kinds of trees, in the order of their first."""
-        return self._sorted[0]
-
-    @property
-    def kind_numbers(self) -> Ints:
-        """Number of each tree's kind, (t,)."""
-        return self._sorted[1]
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -182,7 +123,7 @@ class Scene:
         settings: Settings | None = None,
         *,
         tolerance: float = 0.005,
-        kept: Kept | None = None,
+        cache: SetUpCache | None = None,
         progress: Callable[[int], object] = lambda done: None,
         **changes: Any,
     ) -> Simulator:
@@ -193,7 +134,7 @@ class Scene:
         ----------
         settings, **changes
             How trees are modelled, but for what a tree has of its own.
-        tolerance, kept
+        tolerance, cache
             As for `make_simulator`, for each tree.
         progress
             Called with the number of kinds and trees that are ready.
@@ -207,18 +148,11 @@ class Scene:
         chosen = settings_with(settings, changes)
         if not self.is_one_tree:
             return SceneSimulator(
-                self.trees,
-                chosen,
-                name=self.name,
-                anemometer=self.anemometer,
-                convection_ratio=self.convection_ratio,
-                tolerance=tolerance,
-                kept=kept,
-                progress=progress,
+                self, chosen, tolerance=tolerance, cache=cache, progress=progress
             )
         one = self.trees[0]
         where = one.settings_where_it_stands(chosen)
-        return make_simulator(one.placed(), one.species, where, tolerance=tolerance, kept=kept)
+        return make_simulator(one.placed(), one.species, where, tolerance=tolerance, cache=cache)
 
     def leaves(self, in_leaf: bool | None, count: int) -> LeafClusters | None:
         """

@@ -11,11 +11,12 @@ tree is, so that no wind need be turned into its frame.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 import math
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,9 +34,9 @@ from tree_sway.core.motion.wind_basis import (
 )
 from tree_sway.core.motion.wind_basis_force import pace_layout
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.scene.placed_tree import joined_where_placed, kinds_of, PlacedTree
-from tree_sway.core.simulator.assembly import Kept
+from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.simulator.live_tuning import Tuning
+from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import (
     Counts,
@@ -63,13 +64,11 @@ class SceneSimulator:
 
     Parameters
     ----------
-    trees
-        The trees, each with a name of its own.
+    scene
+        The trees, and where their wind is measured.
     settings
         How trees are modelled, but for what a tree has of its own.
-    name, anemometer, convection_ratio
-        As of `Scene`.
-    tolerance, kept, progress
+    tolerance, cache, progress
         As of `Scene.simulator`.
 
     Raises
@@ -81,23 +80,18 @@ class SceneSimulator:
 
     def __init__(
         self,
-        trees: Sequence[PlacedTree],
+        scene: PlacedTrees,
         settings: Settings,
         *,
-        name: str = 'scene',
-        anemometer: ArrayLike | None = None,
-        convection_ratio: float = 1.0,
         tolerance: float = 0.005,
-        kept: Kept | None = None,
+        cache: SetUpCache | None = None,
         progress: Callable[[int], object] = lambda done: None,
     ) -> None:
         """Make a table for every kind that needs one, and a simulator for every other tree."""
-        self.trees, self.settings, self.name = tuple(trees), settings, name
-        self.anemometer, self.convection_ratio = anemometer, convection_ratio
+        self.scene, self.settings, trees = scene, settings, scene.trees
         self.names = tuple(each.name for each in trees)
         models = [settings.model if each.model is None else each.model for each in trees]
-        self._kinds, self._kind_numbers = kinds_of(trees)
-        kind = self._kind_numbers
+        kind = scene.kind_numbers
         counts = np.array([each if isinstance(each, int) else -1 for each in models])
         # Without a compiler there is no table: each tree is stepped on its branches.
         is_own = np.ones(len(models), dtype=bool) if WHY_PLAIN else counts < 0
@@ -107,9 +101,9 @@ class SceneSimulator:
             those = np.flatnonzero((kind == k) & ~is_own)
             most = int(counts[those].max()) or 1
             with _called(self.names[those[0]]):
-                tree, species, _ = self._kinds[k]
-                chosen = replace(self._kinds[k].settings(settings), model=most)
-                self._models.append(SwaySimulator(tree, species, chosen, kept=kept))
+                tree, species, _ = scene.kinds[k]
+                chosen = replace(scene.kinds[k].settings(settings), model=most)
+                self._models.append(SwaySimulator(tree, species, chosen, cache=cache))
             progress(len(self._models))
         self._banks: list[WindBasisBank] = [_oscillators(model) for model in self._models]
         self._standing = np.zeros(len(models), dtype=STANDING)
@@ -122,15 +116,17 @@ class SceneSimulator:
         self.own: dict[int, SwaySimulator] = {}
         """Simulators of the trees that share no table, by their numbers."""
         for t in np.flatnonzero(is_own).tolist():
-            with _called(self.names[t]):
-                where = trees[t].settings_where_it_stands(settings)
-                tree, species = trees[t].placed(), trees[t].species
-                self.own[t] = make_simulator(tree, species, where, tolerance=tolerance, kept=kept)
+            one = trees[t]
+            with _called(one.name):
+                where = one.settings_where_it_stands(settings)
+                self.own[t] = make_simulator(
+                    one.placed(), one.species, where, tolerance=tolerance, cache=cache
+                )
             progress(len(self._models) + len(self.own))
-        sizes = np.array([each.tree.n_segments for each in self._kinds])
+        sizes = np.array([each.tree.n_segments for each in scene.kinds])
         self._ends = np.concatenate([[0], np.cumsum(sizes[kind])])
         self.gusts = GustHistory(
-            self._standing['at'], anemometer, convection_ratio=convection_ratio
+            self._standing['at'], scene.anemometer, convection_ratio=scene.convection_ratio
         )
         self._counts = Counts()
         self._wind, self._dt = np.zeros(3), math.nan
@@ -157,38 +153,29 @@ class SceneSimulator:
         return tuple(self.own.values())
 
     @property
-    def n_segments(self) -> int:
-        """Segments of all trees, rows of the pose block."""
-        return int(self._ends[-1])
-
-    @property
     def n_solved(self) -> int:
         """Branches that are solved, of kinds once for each tree."""
-        shared = sum(m.n_solved * n for m, n in self._moving())
-        return shared + sum(sim.n_solved for sim in self.own.values())
-
-    def _moving(self) -> list[tuple[SwaySimulator, int]]:
-        """Return each table's model, and how many trees sway on it."""
         moving = self._standing['kind'][self._standing['is_still'] == 0]
-        counts = np.bincount(moving, minlength=len(self._models)).tolist()
-        return list(zip(self._models, counts, strict=True))
+        counts = np.bincount(moving, minlength=len(self._models))
+        shared = int(counts @ [model.n_solved for model in self._models])
+        return shared + sum(simulator.n_solved for simulator in self.own.values())
 
     @property
     def wind(self) -> Floats:
         """Wind at the anemometer in the last step in [m/s], (3,)."""
         return self._wind
 
-    @cached_property
+    @property
     def tree(self) -> Tree:
         """All trees in one record, to be described or drawn."""
-        return joined_where_placed(self.trees, self.name)
+        return self.scene.tree
 
     def segments_of(self, name: str) -> slice:
         """Return the rows of a tree in the pose block; a `ParameterError` for another name."""
         if name not in self.names:
             raise ParameterError(
                 f"no tree is called '{name}'",
-                where=self.name,
+                where=self.scene.name,
                 cure=f'{nearest(name, self.names)} use one of: {", ".join(self.names[:20])}',
             )
         number = self.names.index(name)
@@ -272,7 +259,7 @@ class SceneSimulator:
             An array that cannot hold the poses.
 
         """
-        shape = (self.n_segments, 7)
+        shape = (int(self._ends[-1]), 7)
         poses = np.zeros(shape) if out is None else array_to_fill('out', out, shape)
         for kind, (_, _, those) in enumerate(self.shared):
             self._place_kind(kind, np.stack([those, self._ends[those]], axis=1), poses)
@@ -340,9 +327,9 @@ class SceneSimulator:
     @cached_property
     def _highest(self) -> tuple[int, Tree]:
         """Number of the tree whose tip is the highest, and the tree where it is."""
-        heights = np.array([each.tree.height for each in self._kinds])[self._kind_numbers]
-        number = int(np.argmax(self._standing['at'][:, 2] + self._standing['scale'] * heights))
-        return number, self.trees[number].placed()
+        tops = self._standing['at'][:, 2] + self._standing['scale'] * self._heights()
+        number = int(np.argmax(tops))
+        return number, self.scene.trees[number].placed()
 
     @property
     def tip_displacement(self) -> Floats:
@@ -366,15 +353,18 @@ class SceneSimulator:
 
     def _fill_standing(self) -> None:
         """Write where and how large the trees are, and how much stronger their wind is."""
-        rows, trees, profile = self._standing, self.trees, self.settings.profile
+        rows, trees, profile = self._standing, self.scene.trees, self.settings.profile
         rows['at'] = [(each.x, each.y, each.z) for each in trees]
         scale = rows['scale'] = np.array([each.scale for each in trees])
         half = 0.5 * np.array([each.yaw for each in trees])
         rows['cosine'], rows['sine'] = np.cos(half), np.sin(half)
-        heights = np.array([each.tree.height for each in self._kinds])[self._kind_numbers]
-        crown = profile.ground + _CROWN * heights * np.array([np.ones(len(trees)), scale])
+        crown = profile.ground + _CROWN * self._heights() * np.array([np.ones(len(trees)), scale])
         own, scaled = profile.over_anemometer(crown)
         rows['speed'] = np.where(own > 0.0, scaled / np.where(own > 0.0, own, 1.0), 1.0)
+
+    def _heights(self) -> Floats:
+        """Heights of the trees' kinds in [m], (t,)."""
+        return np.array([each.tree.height for each in self.scene.kinds])[self.scene.kind_numbers]
 
     def _set_step(self, dt: float) -> None:
         """Fill a pace for every kind and scale that there is, to a hundredth."""
@@ -389,6 +379,10 @@ class SceneSimulator:
             fill_pace(pace, modal)
         self._standing['pace'][rows] = number.ravel()
         self._dt = dt
+
+
+Simulator: TypeAlias = SwaySimulator | SceneSimulator
+"""A tree that sways, whatever its model, or the trees of a scene: both are used alike."""
 
 
 def _oscillators(model: SwaySimulator) -> WindBasisBank:

@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+import itertools
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -13,14 +15,18 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.sway_record import SwayRecord
-from tree_sway.core.simulator.assembly import CalibratedTree
-from tree_sway.core.simulator.settings import Settings, settings_with
+from tree_sway.core.simulator.reductions import TreeReductions
+from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
-from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
+from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.tree import tips_of_poses, Tree
-from tree_sway.core.wind.frame_means import recorded_means
+from tree_sway.core.wind.averaging import LONGEST_HOLD, WindAverage
+from tree_sway.core.wind.gate import WindGate
+from tree_sway.core.wind.intake import WindIntake
+from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
@@ -58,7 +64,7 @@ def simulate(
         A tree, or one with its species.
     wind
         A record with ``time`` and ``velocity``, which passes the gate and fades in gaps as a live
-        one does (`recorded_means`); or the mean wind of each step in [m/s], (t, 3), as it is.
+        one does (`Run`); or the mean wind of each step in [m/s], (t, 3), as it is.
     rate
         Steps per second in [Hz].
     seconds
@@ -94,12 +100,9 @@ class Rig:
     def __init__(
         self, tree: Tree | GrownTree, settings: Settings | None = None, **changes: Any
     ) -> None:
-        """Calibrate the tree, once for the simulator and for what is measured on it."""
-        self.tree, self.species = tree_and_species(tree)
-        self.settings = settings_with(settings, changes)
-        self.calibrated = CalibratedTree(self.tree, self.species, self.settings)
-        self._simulator: SwaySimulator | None = None
-        self._per_rotation = moment_per_rotation(self.calibrated)
+        """Reduce the tree, once for the simulator and for what is measured on it."""
+        self.simulator = make_simulator(tree, settings=settings, **changes)
+        self.tree, self.reductions = self.simulator.tree, self.simulator.reductions
 
     def run(
         self,
@@ -111,29 +114,35 @@ class Rig:
         progress: Callable[[float], None] | None = None,
     ) -> SwayRecord:
         """Sway the tree in a wind from rest, as `simulate`, whatever it went through before."""
-        means, chosen = _step_means(wind, rate, seconds), _chosen(self.tree, branches)
-        simulator, gauge = self._at_rest(), StrengthGauge(self.calibrated)
-        strain = np.empty((len(means), len(chosen)))
-        rest = tips_of_poses(self.tree, simulator.place(), chosen)
-        tips, moment = np.empty((len(means), len(chosen), 3)), np.empty((len(means), 3))
-        poses, every = np.empty((self.tree.n_segments, 7)), max(len(means) // 100, 1)
-        for step, mean in enumerate(means):
-            simulator.step(mean, 1.0 / rate)
-            tips[step] = tips_of_poses(self.tree, simulator.place(poses), chosen) - rest
+        tree, simulator, chosen = self.tree, self.simulator, _chosen(self.tree, branches)
+        simulator.reset()
+        gauge, per_rotation = StrengthGauge(self.reductions), moment_per_rotation(self.reductions)
+        poses, rows = np.empty((tree.n_segments, 7)), list[tuple[Floats, ...]]()
+        rest = tips_of_poses(tree, simulator.place(), chosen)
+
+        def measure(end: int, mean: Floats) -> None:
+            tips = tips_of_poses(tree, simulator.place(poses), chosen) - rest
             rotations = simulator.rotations()
-            moment[step] = rotations[: len(self._per_rotation)] @ self._per_rotation
-            strain[step] = gauge.read(rotations, moment[step])[chosen]
-            if progress is not None and step % every == 0:
-                progress(step / len(means))
-        radius = 0.5 * float(self.tree.base_diameter[0])
-        per_moment = radius / (self.species.modulus * np.pi / 4.0 * radius**4)
+            moment = rotations[: len(per_rotation)] @ per_rotation
+            rows.append((mean, tips, moment, gauge.read(rotations, moment)[chosen]))
+
+        count, steps = _steps(simulator, wind, within('rate', rate, 1.0, 10_000.0, 'Hz'), measure)
+        if seconds is not None:
+            within('seconds', seconds, 0.0, 1e9, 's', above=True)
+            count = min(count, max(round(seconds * rate), 1))
+        for step, _ in zip(range(count), steps, strict=False):
+            if progress is not None and step % max(count // 100, 1) == 0:
+                progress(step / count)
+        means, tips, moment, strain = (np.array(column) for column in zip(*rows, strict=True))
+        radius = 0.5 * float(tree.base_diameter[0])
+        per_moment = radius / (self.reductions.species.modulus * np.pi / 4.0 * radius**4)
         return SwayRecord(
-            self.tree.name,
+            tree.name,
             simulator.model,
-            np.arange(1, len(means) + 1) / rate,
+            np.arange(1, count + 1) / rate,
             means,
             chosen,
-            tuple(self.tree.branch_names[branch] for branch in chosen),
+            tuple(tree.branch_names[branch] for branch in chosen),
             tips,
             moment,
             per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1),
@@ -164,53 +173,72 @@ class Rig:
             used.append(self.run(wind).strength)
         return used
 
-    def _at_rest(self) -> SwaySimulator:
-        """Return the simulator at rest; one that chooses its model by its winds is made again."""
-        if self.settings.model == 'auto':
-            return make_simulator(self.tree, self.species, self.settings)
-        if self._simulator is None:
-            self._simulator = SwaySimulator(
-                self.tree, self.species, self.settings, calibrated=self.calibrated
-            )
-        self._simulator.reset()
-        return self._simulator
 
-
-def moment_per_rotation(calibrated: CalibratedTree) -> Floats:
+def moment_per_rotation(reductions: TreeReductions) -> Floats:
     """
     Bending moment at the base of the stem per key rotation of it, in [N m/rad], (k, 3).
 
     It is by the curvature of the stem's shapes there, and so what a strain gauge measures: the
     moment of wind and inertia together, as the wood carries it.
     """
-    stem = calibrated.reduced(calibrated.settings.model).models[0]
+    stem = reductions.reduced(reductions.settings.model).models[0]
     along, found = stem.beam.tangent[0], []
     for field in stem.fields:
         across = field.curvature[0] - np.outer(field.curvature[0] @ along, along)
         bending = stem.beam.second_moment[0][:, None] * across
-        found.append(calibrated.species.modulus * np.polyfit(stem.beam.place[0], bending, 2)[-1])
+        found.append(reductions.species.modulus * np.polyfit(stem.beam.place[0], bending, 2)[-1])
     return np.array(found)
 
 
-def _step_means(wind: WindSamples | ArrayLike, rate: float, seconds: float | None) -> Floats:
-    """Mean wind of each step in [m/s], (t, 3)."""
-    within('rate', rate, 1.0, 10_000.0, 'Hz')
+def _steps(
+    simulator: SwaySimulator,
+    wind: WindSamples | ArrayLike,
+    rate: float,
+    measure: Callable[[int, Floats], None],
+) -> tuple[int, Iterator[None]]:
+    """Return the number of steps in a wind, and an iterator that takes them."""
     if isinstance(wind, WindSamples):
-        means = recorded_means(wind.time, wind.velocity, 1.0 / rate)
+        duration = float(wind.time[-1] - wind.time[0]) if len(wind.time) else 0.0
+        count, what = int(duration * rate + 1e-6), f'a wind record of {duration:g} s'
+        steps = _through_record(simulator, wind, rate, measure)
     else:
         means = np.asarray(wind, dtype=np.float64)
-    if means.ndim != 2 or means.shape[1:] != (3,) or not len(means):
-        raise ParameterError(
-            f'wind of shape {means.shape}',
-            where='wind',
-            cure='give a record of two samples or more, or the mean of each step, (t, 3)',
-        )
-    if not np.isfinite(means).all():
-        raise ParameterError('wind that is not finite', where='wind', cure='leave such rows out')
-    if seconds is None:
-        return np.asarray(means)
-    within('seconds', seconds, 0.0, 1e9, 's', above=True)
-    return np.asarray(means[: max(round(seconds * rate), 1)])
+        is_long = means.ndim == 2 and means.shape[1] == 3
+        count, what = len(means) if is_long else 0, f'wind of shape {means.shape}'
+        if not np.isfinite(means).all():
+            count, what = 0, 'wind that is not finite'
+        run = Run(simulator, rate, stepped=measure)
+        steps = map(run.step, means)
+    if not count:
+        cure = 'give a record of one step at least, or the mean of each step, (t, 3)'
+        raise ParameterError(what, where='wind', cure=cure)
+    return count, steps
+
+
+def _through_record(
+    simulator: SwaySimulator,
+    wind: WindSamples,
+    rate: float,
+    measure: Callable[[int, Floats], None],
+) -> Iterator[None]:
+    """Step through a record as through a live wind, but with each sample known before its time."""
+    ahead = float(np.median(np.diff(wind.time)))
+    hold = max(LONGEST_HOLD, 3.0 * ahead) + ahead
+    run = Run(
+        simulator,
+        rate,
+        intake=WindIntake(gate=WindGate(max_speed=FASTEST_WIND)),
+        make_wind=lambda: WindAverage(hold),
+        stepped=measure,
+    )
+    stamps = np.rint(1e9 * (wind.time - wind.time[0])).astype(np.int64).tolist()
+    samples = deque(zip(stamps, wind.velocity.tolist(), strict=True))
+    for step in itertools.count(1):
+        end = step * run.period
+        while samples and samples[0][0] <= end + 1e9 * ahead:
+            run.offer(*samples.popleft())
+        run.advance(end, delay=-ahead)
+        yield
 
 
 def _chosen(tree: Tree, branches: Sequence[int] | None) -> Ints:

@@ -13,11 +13,11 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
-from tree_sway.core.motion.branchwise import Tunable
 from tree_sway.core.motion.drag import DragLaw
 from tree_sway.core.motion.placing import place
 
 if TYPE_CHECKING:
+    from tree_sway.core.motion.branchwise import Tunable
     from tree_sway.core.motion.plain.numpy_placing import NumpyPlacing
 
 

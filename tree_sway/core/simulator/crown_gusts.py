@@ -18,29 +18,31 @@ from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
 from tree_sway.core.motion.plain.numpy_passes import into_lanes
 from tree_sway.core.motion.tree_passes import set_gusts
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind, push_wind
 
 
-def delays_of(tree: Tree, leaf_area: Floats | None) -> CrownDelays:
+def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
     """Deal delays to the branches of a tree, whose leaves catch as much as areas (b,) of wood."""
     first = tree.branch_first[:-1]
     area = tree.length * 0.5 * (tree.base_diameter + tree.tip_diameter)
     middle = 0.5 * (tree.start + tree.end) * area[:, None]
     wood = np.add.reduceat(area, first)
     centre = np.add.reduceat(middle, first, axis=0) / np.maximum(wood, 1e-12)[:, None]
-    return crown_delays(
-        tree.branch_parent, centre, wood if leaf_area is None else wood + leaf_area
-    )
+    return crown_delays(tree.branch_parent, centre, wood + leaf_area)
 
 
 class CrownGusts:
     """The wind of a crown and the loads it goes to; None for a model of even winds alone."""
 
-    def __init__(self, delays: CrownDelays, coherence: float, loads: Records | None) -> None:
+    def __init__(self, reductions: TreeReductions, loads: Records | None) -> None:
         """Start without wind."""
-        self.wind, self._delays = CrownWind(delays.spread, coherence), delays
-        self._loads = loads
+        settings = reductions.settings
+        whole = delays_of(reductions.tree, reductions.leaf_load_area)
+        pieces = reductions.reduced(settings.model).branch
+        self._delays = delays = whole._replace(of_branch=whole.of_branch[pieces])
+        self.wind, self._loads = CrownWind(delays.spread, settings.crown_coherence), loads
         self._compiled: Callable[[float, float, float, float], None] | None = None
         if loads is not None:
             into_lanes(delays.of_branch, loads['delay'])

@@ -16,9 +16,9 @@ from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.checks import array_to_fill, array_to_read, three_numbers
 from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.drag import pressure
-from tree_sway.core.simulator.assembly import CalibratedTree, Kept
+from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.bank import Bank
-from tree_sway.core.simulator.season import in_season
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.state.tree_state import digest_of, refuse_version, TreeState
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
@@ -31,6 +31,7 @@ from tree_sway.errors import ParameterError, StateError
 if TYPE_CHECKING:
     from tree_sway.core.simulator.crown_gusts import CrownGusts
     from tree_sway.core.simulator.live_tuning import LiveTuning, Tuning
+    from tree_sway.core.simulator.set_up_cache import SetUpCache
     from tree_sway.core.simulator.touch import Touch
     from tree_sway.core.wind.gust_travel import GustHistory
 
@@ -67,10 +68,10 @@ class SwaySimulator:
         Its wood, damping and drag; the tree's own if None.
     settings
         How it is modelled, on any model but ``auto``; `make_simulator` makes that too.
-    calibrated
-        The same tree, species and settings calibrated before, to share the work among models.
-    kept
-        Where set-ups are kept and found again; nowhere if None.
+    cache
+        Where set-ups are written and found again; nowhere if None.
+    plain
+        Whether it runs in numpy, as it does where numba is missing.
     **changes
         Fields of the settings, as keywords: ``SwaySimulator(tree, model="branch")``.
 
@@ -101,18 +102,18 @@ class SwaySimulator:
         species: Species | None = None,
         settings: Settings | None = None,
         *,
-        calibrated: CalibratedTree | None = None,
-        kept: Kept | None = None,
+        cache: SetUpCache | None = None,
+        plain: bool = False,
         **changes: Any,
     ) -> None:
-        """Calibrate the tree; nothing is left to do at the first step but to compile."""
+        """Reduce the tree; nothing is left to do at the first step but to compile."""
         self.tree, self.species = tree, species = tree_and_species(tree, species)
-        self.settings = in_season(tree, self.species, settings_with(settings, changes))
+        chosen = settings_with(settings, changes)
+        self.reductions = TreeReductions(tree, species, chosen, plain=plain)
+        self.settings = self.reductions.settings
         self.counts = Counts()
-        if calibrated is None:
-            calibrated = CalibratedTree(tree, self.species, self.settings, kept=kept)
-        self.bank: Bank = calibrated.bank(self.settings.model)
-        self.drag_law = calibrated.drag_law
+        self.bank: Bank = assembled(self.reductions, cache=cache)
+        self.drag_law = self.reductions.drag_law
         self._pressure = entry_of(_pressure, 0.0, 0.0, 0.0, 0.0)
         self._advance = self.bank.oscillators.advance
         self._in_one_call: Callable[[float, float, float], int] | None = None
@@ -121,12 +122,8 @@ class SwaySimulator:
         if self.settings.crown_coherence < 1.0:
             from tree_sway.core.simulator import crown_gusts
 
-            self._gusts = crown_gusts.CrownGusts(
-                calibrated.crown_delays(self.settings.model),
-                self.settings.crown_coherence,
-                self.bank.oscillators.loads,
-            )
-        self._calibrated = calibrated
+            loads = self.bank.oscillators.loads
+            self._gusts = crown_gusts.CrownGusts(self.reductions, loads)
         self._tuning: LiveTuning | None = None
         self._touch: Touch | None = None
         self._dt = math.nan
@@ -172,7 +169,7 @@ class SwaySimulator:
             tunable = self.bank.oscillators.tunable
             circular = np.sort(np.sqrt(tunable.stiffness / tunable.inertia))[:count]
             return np.asarray(circular / (2.0 * np.pi))
-        return self._calibrated.natural_frequencies(count)
+        return self.reductions.natural_frequencies(count)
 
     @property
     def joints(self) -> Records:
@@ -405,7 +402,7 @@ class SwaySimulator:
         from tree_sway.core.simulator.live_tuning import LiveTuning
 
         if self._tuning is None:
-            tunable, ratio = self.bank.oscillators.tunable, self._calibrated.damping_ratio
+            tunable, ratio = self.bank.oscillators.tunable, self.reductions.damping_ratio
             self._tuning = LiveTuning(tunable, self.settings, ratio)
         return self._tuning.changed(**changes)
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.strength.wood_strain import WoodStrain
 
 WOOD_BAND = (0.85 * (1.0 - 0.16), 1.0 + 0.16)
@@ -66,10 +66,10 @@ class StrengthUse:
 class StrengthGauge:
     """The largest strain of each segment and the largest moment at the foot, as a tree sways."""
 
-    def __init__(self, calibrated: CalibratedTree) -> None:
+    def __init__(self, reductions: TreeReductions) -> None:
         """Begin at rest."""
-        self._calibrated = calibrated
-        self._strain = WoodStrain(calibrated)
+        self._reductions = reductions
+        self._strain = WoodStrain(reductions)
         self._largest, self._moment = np.zeros(len(self._strain.branch)), 0.0
 
     def read(self, rotations: Floats, base_moment: Floats) -> Floats:
@@ -92,13 +92,13 @@ class StrengthGauge:
         strain = self._strain.of(rotations)
         np.maximum(self._largest, strain, out=self._largest)
         self._moment = max(self._moment, float(np.linalg.norm(base_moment)))
-        of_branch = np.zeros(self._calibrated.tree.n_branches)
+        of_branch = np.zeros(self._reductions.tree.n_branches)
         np.maximum.at(of_branch, self._strain.branch, strain)
         return of_branch
 
     def use(self) -> StrengthUse:
         """Return what was used since the beginning."""
-        tree, species = self._calibrated.tree, self._calibrated.species
+        tree, species = self._reductions.tree, self._reductions.species
         at = int(np.argmax(self._largest))
         stem_mass = species.density * float(tree.volume[tree.segments_of(0)].sum())
         held = np.nan if species.habit == 'pot' else ROOT_MOMENT * stem_mass

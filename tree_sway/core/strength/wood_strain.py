@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 
 
 class WoodStrain:
@@ -17,8 +17,8 @@ class WoodStrain:
 
     Parameters
     ----------
-    calibrated
-        The tree, ready for the model of its settings.
+    reductions
+        The tree's reductions, of which that of the model of its settings is taken.
 
     """
 
@@ -27,9 +27,9 @@ class WoodStrain:
     height: Floats
     """Of the middle of each segment above the foot of the tree, at rest in [m], (m,)."""
 
-    def __init__(self, calibrated: CalibratedTree) -> None:
+    def __init__(self, reductions: TreeReductions) -> None:
         """Gather what each coordinate bends."""
-        reduced = calibrated.reduced(calibrated.settings.model)
+        reduced = reductions.reduced(reductions.settings.model)
         blocks, radii = [], []
         for model in reduced.models:
             beam = model.beam

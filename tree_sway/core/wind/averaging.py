@@ -42,6 +42,9 @@ that fades in over its own length.
 
 """
 
+LONGEST_HOLD = 2.0
+"""Time in [s] for which the last sample is held, where no other is given."""
+
 CAPACITY = 512
 """Number of samples kept. A step must not span more."""
 
@@ -67,7 +70,7 @@ class WindAverage:
 
     """
 
-    def __init__(self, timeout: float = 2.0, decay: float = 3.0) -> None:
+    def __init__(self, timeout: float = LONGEST_HOLD, decay: float = 3.0) -> None:
         """Start without a sample."""
         self._timeout = within('timeout', timeout, 0.0, 3600.0, 's', above=True)
         self._decay = within('decay', decay, 0.0, 3600.0, 's', above=True)

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Trees to files: YAML, OBJ, glTF.
+Trees to files: YAML, glTF, USD, MJCF, SDF.
 
 One function per format.
-Pictures are made in ``view``.
 """

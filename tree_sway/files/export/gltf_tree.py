@@ -24,8 +24,8 @@ from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.state.state_basis import MARGIN, StateBasis
 from tree_sway.core.tree.species import bark_color, leaf_traits
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import FormatError
+from tree_sway.files.export.breeze import in_breeze, RATE
 from tree_sway.files.export.gltf_document import (
     ARRAY_BUFFER,
     ELEMENT_ARRAY_BUFFER,
@@ -38,7 +38,7 @@ _Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 _MAX_JOINTS = 65536
 _SWING = 0.5
 """Part of a coordinate's unit at which a target has the slope: between a breeze and a storm."""
-_BREEZE, _SECONDS, _RATE, _DT = 6.0, 20.0, 15, 1.0 / 60.0
+_SECONDS = 20.0
 
 
 def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument:
@@ -109,7 +109,10 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     shown = document.add('nodes', name=tree.name, mesh=body, rotation=_Y_UP)
     document.add('scenes', nodes=[shown])
     document.set(scene=0)
-    _add_animation(document, shown, _breeze(simulator, basis, unit))
+    weights = in_breeze(
+        simulator, _SECONDS, lambda: basis.coordinates(simulator.rotations()) / unit
+    )
+    _add_animation(document, shown, np.array(weights))
     return document
 
 
@@ -172,22 +175,8 @@ def _change(mesh: TreeMesh, step: tuple[Floats, Floats]) -> Floats:
     return (0.5 / _SWING) * (mesh.placed(step[0]) - mesh.placed(step[1]))
 
 
-def _breeze(simulator: SwaySimulator, basis: StateBasis, unit: Floats) -> Floats:
-    """Weights of the frames of a gusty wind, (f, m)."""
-    before = simulator.state()
-    rng = np.random.default_rng(7)
-    wind = simulate_turbulence(_BREEZE, rate=1.0 / _DT, duration=_SECONDS, rng=rng)
-    weights = []
-    for number, each in enumerate(wind):
-        simulator.step(each, _DT)
-        if number % round(1.0 / (_DT * _RATE)) == 0:
-            weights.append(basis.coordinates(simulator.rotations()) / unit)
-    simulator.set_state(before)
-    return np.array(weights)
-
-
 def _add_animation(document: GltfDocument, node: int, weights: Floats) -> None:
-    times = np.arange(len(weights), dtype=np.float32) / np.float32(_RATE)
+    times = np.arange(len(weights), dtype=np.float32) / np.float32(RATE)
     sampler = {
         'input': document.add_array(times, bounds=True),
         'output': document.add_array(weights.ravel().astype(np.float32)),

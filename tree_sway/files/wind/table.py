@@ -43,8 +43,9 @@ LOOKS_LIKE_WIND = rf'(?i)^(?!#)([^\n]*[,;\t])?\s*"?({_TIMES})\b[^\n]*[,;\t]'
 _LOGGER = re.compile(r'(\d{4})(\d\d)(\d\d)(\d\d)(\d\d)?', re.ASCII)
 
 
-def read_csv_wind(
+def read_table_wind(
     path: Path,
+    columns: tuple[str, ...] | None = None,
     direction_convention: str | None = None,
     yaw: float = 0.0,
     turbulence: bool = True,
@@ -53,42 +54,30 @@ def read_csv_wind(
     """
     Read the wind of a table, given as components (``to``) or as a direction (``from``).
 
+    ``columns`` are the two or three of the components, found by their usual names if None.
     ``yaw`` is from east to the sensor's x axis, counter-clockwise, in [rad]; for a direction, from
     north to the sensor's zero, likewise. Means get ``turbulence`` of a ``seed``. A `FormatError`
     reports a column that is missing, a unit that is not known, or no good row.
     """
     WindConvention(direction_convention or 'to')  # refused before the file is read
     lines = read_lines(path)
-    first = next((i for i, line in enumerate(lines[:40]) if _CLOCK.search(line)), 0)
-    lines[:first] = [''] * first
-    table = parse_table(lines, str(path))
-    return _wind(table, direction_convention, yaw, None, turbulence, seed)
+    if lines[0].lstrip('"').startswith('TOA5') and len(lines) > 3:
+        table = _toa5(lines, str(path))
+    else:
+        first = next((i for i, line in enumerate(lines[:40]) if _CLOCK.search(line)), 0)
+        lines[:first] = [''] * first
+        table = parse_table(lines, str(path))
+    chosen = None if columns is None else [table.index_of(name) for name in columns]
+    return _wind(table, direction_convention, yaw, chosen, turbulence, seed)
 
 
-def read_toa5_wind(
-    path: Path,
-    columns: tuple[str, str, str] | None = None,
-    yaw: float = 0.0,
-    direction_convention: str | None = None,
-    turbulence: bool = True,
-    seed: float = 0,
-) -> WindRecord:
-    """
-    Read the wind of a TOA5 table, from ``Ux Uy Uz`` or a usual variant if no columns are named.
-
-    ``yaw`` and the convention are as of `read_csv_wind`. Raises a `FormatError` for what is not
-    TOA5, of no such columns, or no good row.
-    """
-    WindConvention(direction_convention or 'to')  # refused before the file is read
-    lines, split = read_lines(path), partial(split_row, separator=',')
-    if len(lines) < 4 or not lines[0].lstrip('"').startswith('TOA5'):
-        raise FormatError('not TOA5: its 4 header lines are missing', where=f'{path}:1')
+def _toa5(lines: list[str], source: str) -> TextTable:
+    """Table below the four header lines of a logger."""
+    split = partial(split_row, separator=',')
     kept = [number for number, line in enumerate(lines[4:], start=5) if line.strip()]
     texts = [lines[number - 1] for number in kept]
     names, units = tuple(split(lines[1])), tuple(split(lines[2]))
-    table = TextTable(names, kept, texts, split, str(path), 2, 3, units)
-    chosen = None if columns is None else [table.index_of(name) for name in columns]
-    return _wind(table, direction_convention, yaw, chosen, turbulence, seed)
+    return TextTable(names, kept, texts, split, source, 2, 3, units)
 
 
 def _wind(
@@ -113,7 +102,7 @@ def _wind(
             'no time with u and v, or with speed and direction, among '
             f'{", ".join(table.columns[:20])}',
             where=table.where(),
-            cure='name the columns so in the header, or by the option columns of TOA5',
+            cure='name the columns so in the header, or by the option columns',
         )
     columns = [column for column in found if column is not None]
     indices = [column.index for column in columns]

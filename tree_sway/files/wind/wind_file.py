@@ -19,10 +19,10 @@ from tree_sway.files.wind.metar import METAR, read_metar_wind
 from tree_sway.files.wind.nmea import read_nmea_wind
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sonic_ascii import read_sonic_wind
-from tree_sway.files.wind.table import LOOKS_LIKE_WIND, read_csv_wind, read_toa5_wind
+from tree_sway.files.wind.table import LOOKS_LIKE_WIND, read_table_wind
 
 WIND_FORMATS = (
-    FileFormat('toa5', ('.dat', '.toa5'), contains(r'\A"?TOA5"?,'), read_toa5_wind),
+    FileFormat('toa5', ('.dat', '.toa5'), contains(r'\A"?TOA5"?,'), read_table_wind),
     FileFormat('nmea', ('.nmea', '.log'), contains(r'\$[A-Z]{5},'), read_nmea_wind),
     FileFormat(
         'sonic',
@@ -34,7 +34,7 @@ WIND_FORMATS = (
         'bag', ('.db3', '.mcap'), contains(r'\A(SQLite format 3\0|\ufffdMCAP0\r\n)'), read_bag_wind
     ),
     FileFormat('metar', ('.metar',), lambda head: METAR.search(head) is not None, read_metar_wind),
-    FileFormat('csv', ('.csv', '.tsv', '.txt'), contains(LOOKS_LIKE_WIND), read_csv_wind),
+    FileFormat('csv', ('.csv', '.tsv', '.txt'), contains(LOOKS_LIKE_WIND), read_table_wind),
 )
 
 EXAMPLES = ('canopy',)

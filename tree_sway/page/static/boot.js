@@ -6,8 +6,9 @@
   const text = document.getElementById("modules")?.textContent ?? "";
   const packed = new Blob([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))]);
   const stream = packed.stream().pipeThrough(new DecompressionStream("gzip"));
-  const modules = Object.entries(JSON.parse(await new Response(stream).text()));
-  const imports = modules.map(([name, source]) =>
+  const { modules, files } = JSON.parse(await new Response(stream).text());
+  Object.assign(window, { treeSwayFiles: files });
+  const imports = Object.entries(modules).map(([name, source]) =>
     [name, `data:text/javascript;charset=utf-8,${encodeURIComponent(source)}`]);
   const map = document.createElement("script");
   map.type = "importmap";

@@ -1,8 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * The line to the server: opens it, asks for frames by credit, opens it again when it is lost.
- */
+/** The line to the server: opens it, asks for frames by credit, opens it again when it is lost. */
 
 import { checkMessage } from "./checks.js";
 import {

@@ -10,7 +10,7 @@ import numpy as np
 
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.growth.thickness import BREAST_HEIGHT
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
@@ -50,8 +50,8 @@ def over_measured(case: tuple[str, float]) -> float:
 
 def first_frequency(tree: Tree, species: Species) -> float:
     """First natural frequency of a tree in leaf in [Hz]."""
-    calibrated = CalibratedTree(tree, species, Settings(in_leaf=True))
-    return float(calibrated.natural_frequencies(1)[0])
+    reductions = TreeReductions(tree, species, Settings(in_leaf=True))
+    return float(reductions.natural_frequencies(1)[0])
 
 
 def diameter_at_breast(tree: Tree) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.motion.drag import pressure
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 from tree_sway_lab.validation.response_slopes import SPECIES
@@ -56,7 +56,7 @@ def _loaded(case: tuple[str, float]) -> tuple[float, float, float]:
     area = tree.length @ (tree.base_diameter + tree.tip_diameter) / 2.0
     loads = []
     for in_leaf in (True, False):
-        crown = CalibratedTree(tree, wood, Settings(in_leaf=in_leaf))
+        crown = TreeReductions(tree, wood, Settings(in_leaf=in_leaf))
         leaves = crown.leaf_load_area if in_leaf else None
         total = area + (0.0 if leaves is None else float(leaves.sum()))
         per_area = np.array([pressure(speed, *crown.drag_law) for speed in SPEEDS])

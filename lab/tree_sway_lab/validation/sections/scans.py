@@ -7,7 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from tree_sway.core.simulator.assembly import CalibratedTree
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.errors import TreeError
 from tree_sway.files.trees.source import open_tree
@@ -80,7 +80,7 @@ def first_frequencies(file: Path) -> Frequencies:
         has_weight, gravity = False, 0.0
         frame = _of_frame(file, gravity)
     settings = Settings(gravity=gravity, in_leaf=False)
-    model = float(CalibratedTree(tree, wood, settings).natural_frequencies(1)[0])
+    model = float(TreeReductions(tree, wood, settings).natural_frequencies(1)[0])
     return Frequencies(tree.n_branches, tree.n_segments, model, frame, has_weight)
 
 

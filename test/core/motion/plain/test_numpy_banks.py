@@ -14,7 +14,6 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.simulator.assembly import CalibratedTree
 from tree_sway.core.simulator.simulator import LOAD_HELD, SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
 
@@ -39,8 +38,7 @@ def tree():
 def pair(tree, model, **changes):
     """Make a simulator on compiled kernels, and one in numpy."""
     sim = SwaySimulator(tree, model=model, gravity=0.0, **changes)
-    plain = CalibratedTree(tree, sim.species, sim.settings, plain=True)
-    return sim, SwaySimulator(tree, settings=sim.settings, calibrated=plain)
+    return sim, SwaySimulator(tree, settings=sim.settings, plain=True)
 
 
 @pytest.mark.parametrize(

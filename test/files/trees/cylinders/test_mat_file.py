@@ -76,13 +76,13 @@ def test_cells_in_cells_without_end(file):
     def element(kind, body):
         return struct.pack('<II', kind, len(body)) + body + b'\0' * (-len(body) % 8)
 
-    def array(kind, inside, name=b''):
-        head = element(6, struct.pack('<II', kind, 0)) + element(5, struct.pack('<2i', 1, 1))
+    def array(kind, inside, name=b'', count=1):
+        head = element(6, struct.pack('<II', kind, 0)) + element(5, struct.pack('<2i', 1, count))
         return element(14, head + element(1, name) + inside)
 
-    inside = array(6, element(9, bytes(8)))
+    inside = leaf = array(6, element(9, bytes(8)))
     for _ in range(200):
-        inside = array(1, inside)
+        inside = array(1, inside + leaf, count=2)
     file.write_bytes(mat_bytes({})[:128] + array(1, inside, b'QSM'))
     with pytest.raises(FormatError, match='nested deeper than 8'):
         read_mat(file)

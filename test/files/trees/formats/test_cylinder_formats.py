@@ -65,12 +65,7 @@ def test_matlab_structs(tmp_path, compressed):
     assert_is_the_fork(read_tree(path))
 
 
-def test_matlab_loose_variables_and_arrays_of_structs(tmp_path):
-    names = {'radius': 'Rad', 'length': 'Len', 'start': 'Sta', 'axis': 'Axe', 'parent': 'CPar',
-             'extension': 'CExt'}  # fmt: skip
-    loose = {names[key]: value for key, value in columns_of_fork().items()}
-    savemat(tmp_path / 'loose.mat', loose)
-    assert_is_the_fork(read_tree(tmp_path / 'loose.mat'))
+def test_matlab_arrays_of_structs(tmp_path):
     cells = np.array([{'cylinder': columns_of_fork()}, {'cylinder': columns_of_fork()}])
     structs = np.array([(columns_of_fork(),), (columns_of_fork(),)], dtype=[('cylinder', object)])
     for models in (cells, structs):
@@ -152,7 +147,7 @@ def test_errors_name_the_line(tmp_path, name, old, new, kind, message):
 
 
 def cyl_data():
-    """Make the fork as a bare matrix of 14 columns, as TreeQSM 2.0 and older keep it."""
+    """Make the fork as a bare matrix of 14 columns, as TreeQSM 2.0 and older saved it as text."""
     columns = columns_of_fork()
     branch, order = [1, 2, 1, 2], [0, 1, 0, 1]
     return np.column_stack([columns['radius'], columns['length'], columns['start'],
@@ -164,8 +159,6 @@ def cyl_data():
 def test_a_bare_matrix_of_cylinders(tmp_path, stretch):
     matrix = cyl_data()
     matrix[:, 5:8] *= stretch  # axes need not be of length 1
-    savemat(tmp_path / 'a.mat', {'CylData': matrix, 'Other': np.zeros((20, 14))})
-    assert_is_the_fork(read_tree(tmp_path / 'a.mat'))
     for separator in ('\t', ' ', ',', '; '):
         rows = [separator.join(f'{value:.9g}' for value in row) for row in matrix]
         (tmp_path / 'a.txt').write_text('\n'.join(rows))

@@ -120,7 +120,7 @@ BRANCH = '  nodes: [[0, 0, 1, .05], [1, 0, 1, .05]]\n'
         ('- name: a\n  parent: stem\n  at: 2\n' + BRANCH, FormatError,
          "at is '2'; give a number of at least 0 and at most 1"),
         ('- name: a\n  parent: stem\n  at: [0, 0, 0]\n' + BRANCH, FormatError,
-         'at is a list of 3; give a number'),
+         'at is a list of 3; give a number of'),
         ('- name: a\n  parent: stem\n  at: 1\n  segment: 0\n' + BRANCH, FormatError,
          'both at and segment'),
         ('- name: a\n  parent: stem\n' + BRANCH.replace('[[0', '[[.5'), TreeError,

@@ -83,7 +83,8 @@ class NumpyPasses:
             now = arm * (1.0 - per * np.square(shift).sum(axis=1, keepdims=True)) + shift
             gone -= 2.0 * per * (shift * gone).sum(axis=1, keepdims=True) * arm
             below = bases.velocity[parent]
-            spin = below[:, 3:] + spin + 0.5 * cross(turn, spin)
+            lag = cross(turn, spin)
+            spin = below[:, 3:] + spin + 0.5 * lag + cross(turn, lag) / 6.0
             place = below[:, :3] + cross(below[:, 3:], now) + gone
             bases.velocity[level] = np.hstack([turned_by(-turn, place), turned_by(-turn, spin)])
             turned = quaternion_product(bases.attitude[parent], quaternions_of(turn))
@@ -152,7 +153,8 @@ class NumpyPasses:
             f, m = (turned_by(turn, wrench[level][:, k : k + 3]) for k in (0, 3))
             np.add.at(wrench, parent, np.hstack([f, m + cross(bases.arm[level], f)]))
             f = f - 2.0 * per * (arm * f).sum(axis=1, keepdims=True) * shift
-            m = m + 0.5 * cross(m, turn) + cross(at, f)
+            lag = cross(m, turn)
+            m = m + 0.5 * lag + cross(lag, turn) / 6.0 + cross(at, f)
             np.add.at(own, parent, np.einsum('bck,bk->bc', twist, np.hstack([f, m])))
         moment[self._column[self.is_there]] = own[self.is_there]
         return world

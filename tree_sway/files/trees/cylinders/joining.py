@@ -63,21 +63,14 @@ def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | N
     return JoinedBranches(joined, len(loose), farthest)
 
 
-def continuations(cylinders: Cylinders) -> Ints:
-    """
-    Which child goes on with each cylinder's branch, -1 where none does, (n,).
-
-    Where the file does not say, the thickest child. Where it names several, the thickest of them.
-    """
-    may = cylinders.parent >= 0
-    if cylinders.continues is not None:
-        may &= cylinders.continues
-    child = np.flatnonzero(may)
-    return first_of_each(cylinders.parent, child, -cylinders.diameter[child, 0], child)
-
-
 def branch_keys(cylinders: Cylinders) -> Ints | None:
-    """Branch of each cylinder, (n,); None if the file does not say what goes on with what."""
+    """
+    Branch of each cylinder, (n,); None if the file does not say what goes on with what.
+
+    Where it names several children that continue a branch, the thickest does.
+    """
     if cylinders.continues is None:
         return None
-    return chain_starts(cylinders.parent, continuations(cylinders))
+    child = np.flatnonzero((cylinders.parent >= 0) & cylinders.continues)
+    thickest = first_of_each(cylinders.parent, child, -cylinders.diameter[child, 0], child)
+    return chain_starts(cylinders.parent, thickest)

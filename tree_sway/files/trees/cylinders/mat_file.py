@@ -68,25 +68,20 @@ def numbers_of_mat(path: str) -> Arrays:
         return
     from scipy.io import loadmat
 
-    for name, value in loadmat(path, chars_as_strings=False).items():
-        if name[:2] != '__':
-            yield from _of_matlab(name, value, 0)
+    found = loadmat(path, simplify_cells=True)
+    yield from _of_matlab('', {name: each for name, each in found.items() if name[:2] != '__'}, 0)
 
 
 def _of_matlab(name: str, value: Any, depth: int) -> Arrays:
     """Arrays of numbers in a variable; structs and cells of several have numbers in their path."""
     _check_depth(depth)
-    if not isinstance(value, np.ndarray):
-        return
-    if value.dtype.kind in 'fiub':
-        yield name, value
-    elif value.dtype.kind in 'OV':
-        for number, one in enumerate(value.ravel(order='F')):
-            inner = name if value.dtype.names and value.size == 1 else f'{name}/{number}'
-            if not value.dtype.names:
-                yield from _of_matlab(inner, one, depth + 1)
-            for each in value.dtype.names or ():
-                yield from _of_matlab(f'{inner}/{each}', one[each], depth + 1)
+    inside: Any = enumerate(value) if isinstance(value, list) else ()
+    if isinstance(value, np.ndarray) and value.dtype.kind == 'O':
+        inside = enumerate(value.ravel(order='F'))
+    for each, one in value.items() if isinstance(value, dict) else inside:
+        yield from _of_matlab(f'{name}/{each}'.lstrip('/'), one, depth + 1)
+    if isinstance(value, np.ndarray | float | int) and np.asarray(value).dtype.kind in 'fiub':
+        yield name, np.asarray(value)
 
 
 def _of_hdf5(node: Any, name: str, depth: int) -> Arrays:

@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
@@ -13,40 +11,47 @@ from tree_sway.errors import FormatError
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 
 
-@dataclass(frozen=True)
-class Skeleton:
-    """Nodes of a tree: positions (n, 3) and diameters (n,) in [m], parents (n,), the root's -1."""
+def cylinders_of_nodes(
+    point: Floats, diameter: Floats, parent: Ints, labels: list[str], source: str, *, cones: bool
+) -> Cylinders:
+    """
+    Segments of a tree with one root: one from its parent to each node but the root.
 
-    point: Floats
-    diameter: Floats
-    parent: Ints
-    labels: list[str]
+    Several segments may begin at the root node: the thickest is the stem, the others sit on it.
 
-    def cylinders(self, source: str, *, cones: bool) -> Cylinders:
-        """
-        Segments of a tree with one root: one from its parent to each node but the root.
+    Parameters
+    ----------
+    point, diameter
+        Positions (n, 3) and diameters (n,) of the nodes in [m].
+    parent
+        Node that each one follows, (n,), -1 for the root.
+    labels, source
+        How an error calls each node, and the file.
+    cones
+        Whether a segment has the diameters of its two nodes; that of the outer one if not.
 
-        Several segments may begin at the root node: the thickest is the stem, the others sit on
-        it. Cones have the diameters of their two nodes, others that of the outer one. A
-        `FormatError` is raised for nothing but a root.
-        """
-        outer = np.flatnonzero(self.parent >= 0)
-        if len(outer) == 0:
-            raise FormatError(
-                'a root with nothing on it', where=source, cure='give at least two nodes'
-            )
-        inner, width = self.parent[outer], self.diameter
-        number = np.full(len(self.parent), -1, dtype=np.int64)
-        number[outer] = np.arange(len(outer))
-        parent, base = number[inner], width[inner] if cones else width[outer]
-        roots = np.flatnonzero(parent < 0)
-        stem = roots[np.argmax(width[outer][roots])]
-        parent[roots[roots != stem]] = stem
-        return Cylinders(
-            self.point[inner],
-            self.point[outer],
-            np.stack([base, width[outer]], axis=1),
-            parent,
-            None,
-            [self.labels[index] for index in outer],
-        )
+    Raises
+    ------
+    FormatError
+        Nothing but a root.
+
+    """
+    outer = np.flatnonzero(parent >= 0)
+    if len(outer) == 0:
+        what = 'a root with nothing on it'
+        raise FormatError(what, where=source, cure='give at least two nodes')
+    inner = parent[outer]
+    number = np.full(len(parent), -1, dtype=np.int64)
+    number[outer] = np.arange(len(outer))
+    base, above = diameter[inner] if cones else diameter[outer], number[inner]
+    roots = np.flatnonzero(above < 0)
+    stem = roots[np.argmax(diameter[outer][roots])]
+    above[roots[roots != stem]] = stem
+    return Cylinders(
+        point[inner],
+        point[outer],
+        np.stack([base, diameter[outer]], axis=1),
+        above,
+        None,
+        [labels[index] for index in outer],
+    )

@@ -19,7 +19,7 @@ from tree_sway.errors import FormatError
 from tree_sway.files.table_file import filled_lines, parse_columns
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.cylinders.skeleton import Skeleton
+from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 from tree_sway.files.trees.tree_format import TreeFormat
 
 _COLUMNS = ('number', 'type', 'x', 'y', 'z', 'radius', 'parent')
@@ -50,10 +50,10 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     trees = []
     for rows in members.values():
         above = np.where(parent[rows] >= 0, place[parent[rows]], -1)
-        skeleton = Skeleton(
-            nodes[rows, :3], 2.0 * nodes[rows, 3], above, [labels[i] for i in rows]
+        own, called = nodes[rows], [labels[i] for i in rows]
+        trees.append(
+            cylinders_of_nodes(own[:, :3], 2.0 * own[:, 3], above, called, str(path), cones=True)
         )
-        trees.append(skeleton.cylinders(str(path), cones=True))
     return tuple(trees)
 
 

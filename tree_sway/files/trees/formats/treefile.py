@@ -20,7 +20,7 @@ from tree_sway.files.file_format import contains
 from tree_sway.files.table_file import filled_lines, split_row, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.cylinders.skeleton import Skeleton
+from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
 from tree_sway.files.trees.tree_format import TreeFormat
 
 _FIELDS = ('x', 'y', 'z', 'radius', 'parent_id')
@@ -47,13 +47,12 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     trees = []
     for number, line in zip(numbers[1:], lines[1:], strict=True):
         cells = [cell for cell in split_row(line, ',') if cell][n_of_tree:]
-        skeleton = _skeleton(cells, columns, f'{path}:{number}')
-        trees.append(skeleton.cylinders(f'{path}:{number}', cones=False))
+        trees.append(_tree(cells, columns, f'{path}:{number}'))
     return tuple(trees)
 
 
-def _skeleton(cells: list[str], columns: list[str], where: str) -> Skeleton:
-    """Nodes of a line, as the rows of a table."""
+def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
+    """Cylinders of a line, whose nodes are the rows of a table."""
     size = len(columns)
     if not cells or len(cells) % size:
         raise FormatError(
@@ -75,7 +74,8 @@ def _skeleton(cells: list[str], columns: list[str], where: str) -> Skeleton:
                 where=labels[row],
                 cure='the first node has -1, every other the number of a node of its line',
             )
-    return Skeleton(values[:, :3], 2.0 * values[:, 3], np.maximum(parent, -1), labels)
+    radius, above = values[:, 3], np.maximum(parent, -1)
+    return cylinders_of_nodes(values[:, :3], 2.0 * radius, above, labels, where, cones=False)
 
 
 FORMAT = TreeFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read)

@@ -8,11 +8,10 @@ version. Cylinders are numbered from 1, parent 0 at the root; PyTLidar writes th
 numbered from 0, parent -1 at the root. A cylinder that is the extension of its parent goes on with
 the branch; any other starts one, on its parent's axis or skin and not at its end.
 
-MATLAB: structs with a field ``cylinder``; version 2.0 saves loose variables, older ones a matrix
-``CylData`` of a row per cylinder. A file may hold several models, as variables or as an array of
-structs; each is a tree. Text: without a header, or with that of 2.4 and PyTLidar, which names
-start and axis once, though each has three columns; tabs, spaces, commas or semicolons between the
-cells.
+MATLAB: structs with a field ``cylinder``. A file may hold several models, as variables or as an
+array of structs; each is a tree. Text: without a header, or with that of 2.4 and PyTLidar, which
+names start and axis once, though each has three columns; tabs, spaces, commas or semicolons
+between the cells.
 """
 
 from __future__ import annotations
@@ -32,11 +31,8 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.mat_file import looks_like_mat, numbers, read_mat
 from tree_sway.files.trees.tree_format import TreeFormat
 
-_FIELDS = {
-    'radius': ('Rad', 1), 'length': ('Len', 1), 'start': ('Sta', 3), 'axis': ('Axe', 3),
-    'parent': ('CPar', 1), 'extension': ('CExt', 1),
-}  # fmt: skip
-"""Fields of ``cylinder`` in the order of the columns: name as a loose variable, and width."""
+_FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extension': 1}
+"""Fields of ``cylinder`` in the order of the columns, and their widths."""
 _COLUMNS = 10
 _LEAST_COLUMNS = 13
 """Fewer columns do not distinguish a matrix of cylinders from other tables."""
@@ -73,16 +69,13 @@ def _read_mat(path: Path) -> tuple[Cylinders, ...]:
     """Every cylinder model of a MATLAB file."""
     source, trees = str(path), list[Cylinders]()
     for name, model in _models(read_mat(path)):
-        is_matrix = isinstance(model, np.ndarray)
-        table = (
-            model[:, :_COLUMNS].astype(np.float64) if is_matrix else _table(name, model, source)
-        )
+        table = _table(name, model, source)
         labels = [f'{source}: {name} cylinder {i + 1}' for i in range(len(table))]
         trees.append(_cylinders(table, labels, source))
         trees[-1].name = name
     if not trees:
         raise FormatError(
-            "no struct with a field 'cylinder' and no matrix of cylinders",
+            "no struct with a field 'cylinder'",
             where=source,
             cure='save the QSM struct of TreeQSM',
         )
@@ -116,8 +109,8 @@ def _cells(line: str) -> list[str]:
     return cells if len(cells) >= _COLUMNS else line.replace(',', ' ').split()
 
 
-def _models(variables: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Name and columns of each cylinder model: by field name, or as a matrix."""
+def _models(variables: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Name and columns of each cylinder model, by field name."""
     for name, value in variables.items():
         structs = _structs(value)
         several = len(structs) > 1
@@ -125,12 +118,6 @@ def _models(variables: dict[str, Any]) -> Iterator[tuple[str, Any]]:
             inside = next(iter(_structs(struct.get('cylinder', struct))), {})
             if 'radius' in inside:
                 yield (f'{name}{number}' if several else name), inside
-    if 'Rad' in variables:
-        yield 'QSM', variables
-    for name, value in variables.items():
-        if isinstance(value, np.ndarray) and value.dtype.kind == 'f' and value.ndim == 2:
-            if _are_cylinders(value):
-                yield name, value
 
 
 def _structs(value: Any) -> list[dict[str, Any]]:
@@ -142,16 +129,15 @@ def _structs(value: Any) -> list[dict[str, Any]]:
 def _table(name: str, fields: dict[str, Any], source: str) -> Floats:
     """Columns of the table of cylinders from fields of their names."""
     columns = []
-    for field, (loose, width) in _FIELDS.items():
-        found = next((key for key in (field, loose) if key in fields), None)
-        if found is None:
+    for field, width in _FIELDS.items():
+        if field not in fields:
             raise FormatError(f"{name} has no numbers '{field}'", where=source)
         try:
-            column = numbers(fields[found], found)
+            column = numbers(fields[field], field)
         except FormatError as error:
             raise error.at(f'{source}: {name}') from None
         if column.size % width:
-            raise FormatError(f'{name}.{found} has {column.size} values', where=source)
+            raise FormatError(f'{name}.{field} has {column.size} values', where=source)
         columns.append(column.reshape(-1, width))
     if len({len(column) for column in columns}) > 1:
         raise FormatError('columns of different lengths', where=source, cure='export it again')

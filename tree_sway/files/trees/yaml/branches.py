@@ -132,27 +132,23 @@ def _attachment(branch: Values, on: _Placed, first_node: Floats, where: str) -> 
     """Return the parent's segment, and the point that the branch's own points are offsets from."""
     axis = on.end - on.start
     length = np.linalg.norm(axis, axis=1)
-    place = branch.get('at')
-    if place is not None and 'segment' in branch:
+    if 'at' in branch and 'segment' in branch:
         raise FormatError('both at and segment', where=where, cure='give one of the two')
-    if isinstance(place, (int, float)):
+    if 'at' in branch:
         reach = np.cumsum(length)
-        along = place * reach[-1]
+        along = branch['at'] * reach[-1]
         segment = int(min(np.searchsorted(reach, along), len(length) - 1))
         fraction = 1.0 - (reach[segment] - along) / max(length[segment], 1e-12)
         return segment, on.start[segment] + fraction * axis[segment]
-    if place is not None or 'segment' in branch:
-        segment = place['segment'] if place is not None else branch['segment']
-        if segment >= len(length):
-            raise FormatError(
-                f"no segment {segment} on its parent '{branch['parent']}'",
-                where=where,
-                cure=f'name a segment from 0 to {len(length) - 1}',
-            )
-        if place is None:
-            return segment, np.zeros(3)
-        return segment, on.start[segment] + place.get('fraction', 1.0) * axis[segment]
-    return _nearest(branch, on, first_node, where), np.zeros(3)
+    if 'segment' not in branch:
+        return _nearest(branch, on, first_node, where), np.zeros(3)
+    if branch['segment'] >= len(length):
+        raise FormatError(
+            f"no segment {branch['segment']} on its parent '{branch['parent']}'",
+            where=where,
+            cure=f'name a segment from 0 to {len(length) - 1}',
+        )
+    return branch['segment'], np.zeros(3)
 
 
 def _nearest(branch: Values, on: _Placed, point: Floats, where: str) -> int:

@@ -6,17 +6,7 @@ import { KindPlacer, STRIDE } from "../placing.js";
 import { Backdrop, DAYLIGHT, GROUNDS } from "./backdrop.js";
 import { Camera } from "./camera.js";
 import { Detail, levelsOf } from "./detail.js";
-import {
-  canvasTexture,
-  discard,
-  drawable,
-  drawPart,
-  filled,
-  isSoftware,
-  pictureTexture,
-  program,
-  use,
-} from "./gl.js";
+import { canvasTexture, discard, drawable, drawPart, filled, isSoftware, pictureTexture, use } from "./gl.js";
 import { Impostor } from "./impostors.js";
 import {
   barkMesh, boxOf, branchOrder, conjugate, highestOf, leafMesh, multiply, quaternion, shadeOf,
@@ -113,11 +103,11 @@ export class Scene {
     this._time = 0;
     this._frame = 0;
     this._programs = {
-      bark: program(gl, shaders.BARK_VERTEX, shaders.BARK_FRAGMENT),
-      leaf: program(gl, shaders.LEAF_VERTEX, shaders.LEAF_FRAGMENT),
-      impostor: program(gl, shaders.IMPOSTOR_VERTEX, shaders.IMPOSTOR_FRAGMENT),
-      solid: program(gl, shaders.SOLID_VERTEX, shaders.SOLID_FRAGMENT),
-      shadow: program(gl, shaders.SHADOW_VERTEX, shaders.SHADOW_FRAGMENT),
+      bark: shaders.shaded(gl, "bark"),
+      leaf: shaders.shaded(gl, "leaf"),
+      impostor: shaders.shaded(gl, "impostor"),
+      solid: shaders.shaded(gl, "solid"),
+      shadow: shaders.shaded(gl, "shadow"),
     };
     this._backdrop = new Backdrop(gl);
     /** @type {Map<string, WebGLTexture>} */

@@ -7,11 +7,10 @@ import pytest
 from scipy.integrate import trapezoid
 from scipy.spatial.transform import Rotation
 from tree_sway_lab.example_trees import forked_tree, tapered_stem
+from tree_sway_lab.frame_means import frame_means
 from tree_sway_lab.tip_error import record_tips, tip_error
 
 from tree_sway.core.tree.tree import tips_of_poses
-from tree_sway.core.wind.frame_means import frame_means, recorded_means
-from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
 
 class Turning:
@@ -71,30 +70,3 @@ def test_means_over_frames_keep_the_integral():
     assert steady == pytest.approx(np.tile([3.0, 0.0, 1.0], (3, 1))), (
         'a frame that is not full is left out'
     )
-
-
-def test_a_record_without_faults_is_taken_as_it_is():
-    rng = np.random.default_rng(0)
-    wind = simulate_turbulence(6.0, rate=20.0, duration=60.0, rng=rng)
-    time = 100.0 + np.arange(len(wind)) / 20.0
-    plain = frame_means(time, wind, 1.0 / 60.0)
-    np.testing.assert_array_equal(recorded_means(time, wind, 1.0 / 60.0), plain)
-
-
-@pytest.mark.parametrize('bad', [(np.nan, 0.0, 0.0), (999.99, 0.0, 0.0), (5.0, 60.0, 0.0)])
-def test_faults_of_a_record_are_left_out(bad):
-    time = np.arange(0.0, 20.0, 0.05)
-    wind = np.tile([5.0, 0.0, 0.0], (len(time), 1))
-    wind[100:105] = bad
-    np.testing.assert_allclose(recorded_means(time, wind, 0.1), np.tile([5.0, 0, 0], (199, 1)))
-
-
-def test_a_gap_of_a_record_is_held_then_fades():
-    time = np.concatenate([np.arange(0.0, 5.0, 0.05), np.arange(25.0, 30.0, 0.05)])
-    means = recorded_means(time, np.tile([8.0, 0.0, 0.0], (len(time), 1)), 0.1)[:, 0]
-    np.testing.assert_allclose(means[:68], 8.0)
-    ends = 0.1 * np.arange(1, len(means) + 1)
-    fading = (ends > 7.2) & (ends < 24.8)
-    exact = 8.0 * np.exp(-(ends[fading] - 0.05 - 4.95 - 2.0) / 3.0)
-    np.testing.assert_allclose(means[fading], exact, atol=0.02)
-    np.testing.assert_allclose(means[ends > 25.2], 8.0)

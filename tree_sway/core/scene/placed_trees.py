@@ -1,0 +1,85 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Trees that are placed in one frame, and the kinds that they are of."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tree_sway.core.arrays import Ints
+from tree_sway.core.scene.placed_tree import joined_where_placed, Kind, PlacedTree
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError, TreeError
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedTrees:
+    """
+    The trees of a scene, where their wind is measured, and where they came from.
+
+    Parameters and errors are those of `Scene`.
+    """
+
+    trees: Sequence[PlacedTree]
+    name: str = 'scene'
+    source: str = ''
+    notes: tuple[str, ...] = ()
+    anemometer: tuple[float, float, float] | None = None
+    convection_ratio: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is no scene."""
+        object.__setattr__(self, 'trees', tuple(self.trees))
+        if not self.trees:
+            raise TreeError('no trees', where=self.name, cure='give at least one')
+        for number, each in enumerate(self.trees):
+            if not isinstance(each, PlacedTree):
+                raise ParameterError(
+                    f'a {type(each).__name__}, where a PlacedTree is asked for',
+                    where=f'trees[{number}]',
+                    cure='give PlacedTree(name, tree, x, y) each',
+                )
+        name, count = Counter(each.name for each in self.trees).most_common(1)[0]
+        if count > 1:
+            raise ParameterError(
+                f"{count} trees called '{name}'", where=self.name, cure='give each its own name'
+            )
+
+    @cached_property
+    def tree(self) -> Tree:
+        """
+        All trees as one record where they are, named ``tree/branch``; one tree as it is.
+
+        A `ParameterError` for more than `MOST_SEGMENTS`.
+        """
+        if self.is_one_tree:
+            return self.trees[0].placed()
+        return joined_where_placed(self.trees, self.name)
+
+    @property
+    def is_one_tree(self) -> bool:
+        """Whether the scene has one tree alone."""
+        return len(self.trees) == 1
+
+    @cached_property
+    def _sorted(self) -> tuple[list[Kind], Ints]:
+        # By what they share, not by what is equal to it: trees are large.
+        keys = [(id(each.tree), id(each.species), each.leaf_on) for each in self.trees]
+        kinds = {key: each.kind for key, each in zip(keys[::-1], self.trees[::-1], strict=True)}
+        order = {key: number for number, key in enumerate(dict.fromkeys(keys))}
+        return [kinds[key] for key in order], np.array([order[key] for key in keys])
+
+    @property
+    def kinds(self) -> list[Kind]:
+        """The kinds of trees, in the order of their first."""
+        return self._sorted[0]
+
+    @property
+    def kind_numbers(self) -> Ints:
+        """Number of each tree's kind, (t,)."""
+        return self._sorted[1]

@@ -1,0 +1,243 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+What a tree is reduced to, once for all of its models: beams, key segments, matrices, modes.
+
+Models differ in two ways of reduction: with subtrees, where a branch moves with all that it
+carries, or isolated, where each is by itself (the paper's).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.branch.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
+from tree_sway.core.branch.model import BranchModel, TreeBeams
+from tree_sway.core.checks import one_of_each
+from tree_sway.core.kernel import WHY_PLAIN
+from tree_sway.core.motion.drag import crown_drag, DragLaw, pressure
+from tree_sway.core.motion.fill_records import branch_records, places_of, segment_records
+from tree_sway.core.reduction.matrices import reduce_tree, Reduction
+from tree_sway.core.reduction.modes import (
+    by_importance,
+    Modes,
+    most_driven,
+    natural_modes,
+    solvable,
+    with_answers,
+)
+from tree_sway.core.reduction.one_thread import one_thread
+from tree_sway.core.simulator.season import in_season
+from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+
+if TYPE_CHECKING:
+    from tree_sway.core.motion.static_answers import WindMoments
+
+CUT_FOR = 15.0
+"""Wind in [m/s] whose turns branches are cut for."""
+
+_ONE_ADDED = 3
+"""One of this number of coordinates of a table makes up for what the modes cannot do."""
+
+_FEW_MODES = 6
+"""Coordinates that are static answers alone."""
+
+
+@dataclass(frozen=True)
+class ReducedTree:
+    """
+    A tree reduced in one of the two ways that models differ in.
+
+    Its branches may be pieces of those of the tree as it is given: ``branch`` are these, (p,).
+    """
+
+    tree: Tree
+    branch: Ints
+    models: list[BranchModel]
+    reduction: Reduction
+    branches: Records
+    segments: Records
+    mass: float
+
+
+class TreeReductions:
+    """
+    The reductions of a tree of a species, each made when it is first asked for.
+
+    Nothing is compiled for it if ``plain``.
+    """
+
+    def __init__(
+        self, tree: Tree, species: Species, settings: Settings, *, plain: bool = False
+    ) -> None:
+        if settings.root_stiffness is not None:
+            species = replace(species, root_stiffness=settings.root_stiffness)
+        self.tree, self.species = tree, species
+        self.settings = in_season(tree, species, settings)
+        self.plain = plain or bool(WHY_PLAIN)
+        self.drag_law, self.leaf_load_area = _crown_drag(tree, species, self.settings)
+        """Of the whole tree; wood that the leaves of each branch are equivalent to [m^2], (b,)."""
+        self.circular = np.zeros(0)
+        """Lowest natural circular frequencies that are known in [rad/s]."""
+        self._slowest: Modes | None = None
+
+    @property
+    def damping_ratio(self) -> float:
+        """Damping ratio of every oscillator in [-]."""
+        if self.settings.damping_ratio is not None:
+            return self.settings.damping_ratio
+        return self.species.damping(bool(self.settings.in_leaf))
+
+    def natural_modes(self, count: int | None = None) -> Modes:
+        """Return the slowest natural modes of the tree, or all, found once."""
+        wanted = self.coupled.reduction.n_coordinates if count is None else count
+        if self._slowest is None or len(self._slowest.circular) < wanted:
+            with solvable(self.tree):
+                reduced = self.coupled
+                self._slowest = natural_modes(reduced.tree, reduced.reduction, count)
+            self.circular = self._slowest.circular
+        return self._slowest.slowest(wanted)
+
+    def natural_frequencies(self, count: int) -> Floats:
+        """Lowest natural frequencies in [Hz], (count,) or fewer."""
+        if count > len(self.circular):
+            self.natural_modes(min(count, self.coupled.reduction.n_coordinates))
+        return np.asarray(self.circular[:count] / (2.0 * np.pi))
+
+    def modes(self, model: int | str) -> Modes:
+        """All modes, or of the slowest those the wind drives most and the sway that they lack."""
+        reduction = self.coupled.reduction
+        n = reduction.n_coordinates
+        count = n if isinstance(model, str) else min(model, n)
+        if count in (0, n):
+            return self.natural_modes(1 if count == 0 else None).slowest(count)
+        candidates = min(n, count + min(3 * count, 24))
+        modes = self.natural_modes(None if candidates == n else candidates)
+        from tree_sway.core.motion.plain.numpy_passes import mean_wind_moments
+        from tree_sway.core.motion.response import tip_motion
+
+        branches = self.coupled.branches
+
+        def moved(modes: Modes) -> Floats:
+            return np.asarray(np.square(tip_motion(branches, modes.shapes)).sum(axis=(0, 1)))
+
+        loads = mean_wind_moments(branches, n)
+        n_added = count if count <= _FEW_MODES else count // _ONE_ADDED
+        chosen = most_driven(modes, loads, moved(modes), max(count - n_added, 1))
+        modes = with_answers(
+            chosen.slowest(count - n_added),
+            reduction,
+            self._static_answers(),
+            lambda x: tip_motion(branches, x).reshape(-1, x.shape[1]),
+            n_added,
+        )
+        return by_importance(modes, loads, moved(modes))
+
+    def _static_answers(self) -> Floats:
+        """Key rotations by which the tree answers to winds, for a pressure of 1 kg/m/s^2."""
+        from tree_sway.core.motion.static_answers import static_answers
+
+        law, solve = self.drag_law, self.coupled.reduction.factors.solve
+        return static_answers(self.wind_moments, solve, lambda u: pressure(u, *law) * u * u)
+
+    @cached_property
+    def wind_moments(self) -> WindMoments:
+        """Return the loads of the tree that is reduced with its subtrees."""
+        from tree_sway.core.motion.static_answers import WindMoments
+
+        return WindMoments(self.coupled.branches, plain=self.plain)
+
+    def reduced(self, model: int | str) -> ReducedTree:
+        """Reduction that a model starts from."""
+        return self.isolated if model == 'branch' else self.coupled
+
+    @cached_property
+    def isolated(self) -> ReducedTree:
+        """Every branch on its own."""
+        whole = whole_tree(self.tree)
+        return self._reduced(whole, self._beams, carries=False, enriched=frozenset())
+
+    @cached_property
+    def coupled(self) -> ReducedTree:
+        """
+        Branches that carry their children, those of the enriched ones with further shapes.
+
+        Those that turn far are cut into key segments.
+        """
+        push = pressure(CUT_FOR, *self.drag_law) * CUT_FOR**2
+        turns = push * self._beams.turns(self.species.modulus)
+        cut, beams = cut_tree(self.tree, pieces_by_turn(self.tree, turns)), self._beams
+        if cut.tree.n_branches > self.tree.n_branches:
+            same = np.where(cut.share == 1.0, cut.branch, -1)
+            beams = self._beams_of(cut, (self._beams, same))
+        return self._reduced(
+            cut, beams, carries=True, enriched=beams.enriched(self.settings.enrich)
+        )
+
+    @cached_property
+    def _speed(self) -> Floats:
+        """Wind at each segment's middle over that at the anemometer, (n,)."""
+        middle = 0.5 * (self.tree.start[:, 2] + self.tree.end[:, 2])
+        return self.settings.profile.over_anemometer(middle)
+
+    @cached_property
+    def _beams(self) -> TreeBeams:
+        """Return the beams of whole branches."""
+        return self._beams_of(whole_tree(self.tree))
+
+    def _beams_of(self, cut: CutTree, known: tuple[TreeBeams, Ints] | None = None) -> TreeBeams:
+        species, leaf_mass = self.species, np.zeros(self.tree.n_branches)
+        if self.settings.leaf_mass is not None:
+            leaf_mass = one_of_each(
+                'leaf_mass', self.settings.leaf_mass, self.tree.n_branches, 'branch'
+            )
+        return TreeBeams(
+            cut.tree,
+            species.density,
+            shear_ratio=species.shear_ratio,
+            speed_profile=self._speed[cut.row],
+            leaf_mass=cut.share * leaf_mass[cut.branch],
+            leaf_area=cut.share * self.leaf_load_area[cut.branch],
+            root_compliance=species.modulus / species.root_stiffness,
+            known=known,
+        )
+
+    @one_thread()
+    def _reduced(
+        self, cut: CutTree, beams: TreeBeams, *, carries: bool, enriched: frozenset[int]
+    ) -> ReducedTree:
+        tree, species = cut.tree, self.species
+        models = beams.models(carries=carries, enriched=enriched)
+        shear = species.shear_ratio * species.modulus
+        reduction = reduce_tree(
+            tree, models, species.modulus, shear, self.settings.gravity, carries=carries
+        )
+        places = places_of(tree, models, reduction)
+        records = branch_records(tree, models, reduction, places, self._speed[cut.row])
+        # Poses are those of the whole branches' segments.
+        row, on = cut.row[records['first']], records['base_segment']
+        records['end'] += row - records['first']
+        records['first'], records['base_segment'] = row, np.where(on < 0, -1, cut.row[on])
+        mass = float(sum(model.beam.integral(model.mass) for model in models))
+        segments = segment_records(places)
+        return ReducedTree(tree, cut.branch, models, reduction, records, segments, mass)
+
+
+def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:
+    """Find the drag law of wood and leaves, and the area that leaves add to each branch, (b,)."""
+    if not settings.in_leaf or settings.leaf_area is None:
+        law = DragLaw(*species.drag_law(bool(settings.in_leaf)))
+        return law, np.zeros(tree.n_branches)
+    from tree_sway.core.leaves.foliage import clad_wood
+
+    area = one_of_each('leaf_area', settings.leaf_area, tree.n_branches, 'branch')
+    wood = float(tree.length @ (tree.base_diameter + tree.tip_diameter)) / 2.0
+    laws = species.drag_law(in_leaf=False)[0], species.drag_law(in_leaf=True)
+    return crown_drag(wood, area, clad_wood(tree, species.leaves), *laws)

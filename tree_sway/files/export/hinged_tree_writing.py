@@ -1,0 +1,124 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A tree on hinges as MJCF, which MuJoCo reads, and as SDF, which Gazebo and Drake read.
+
+The rest shape is that of the tree under its own weight, so gravity is taken off its bodies.
+Segments touch other things, and not each other in MuJoCo.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.tree import Tree
+from tree_sway.files.export.hinged_tree import hinged_tree, HingedTree
+
+_USUAL_STEP = 0.002
+
+_BODY = """\
+<body name="{name}" pos="{place}" quat="{wxyz}" gravcomp="1">
+<inertial pos="{centre} 0 0" mass="{mass}" diaginertia="{turning} {across} {across}"/>
+<joint name="{name}_y" axis="0 1 0" stiffness="{stiffness}" damping="{damping}"/>
+<joint name="{name}_z" axis="0 0 1" stiffness="{stiffness}" damping="{damping}"/>
+<geom fromto="0 0 0 {length} 0 0" size="{radius}"/>"""
+
+_SHAPE = """\
+<{kind} name="{kind}"><pose>{middle} 0 0 0 1.5707963 0</pose>
+<geometry><cylinder><radius>{radius}</radius><length>{length}</length></cylinder></geometry>
+</{kind}>"""
+_AXIS = """\
+<{axis}><xyz>{along}</xyz><limit><lower>-1.57</lower><upper>1.57</upper></limit>
+<dynamics><damping>{damping}</damping><spring_reference>0</spring_reference>
+<spring_stiffness>{stiffness}</spring_stiffness></dynamics></{axis}>"""
+_LINK = f"""\
+<link name="{{name}}"><gravity>false</gravity>
+<pose relative_to="{{frame}}" rotation_format="quat_xyzw">{{place}} {{xyzw}}</pose>
+<inertial><pose>{{centre}} 0 0 0 0 0</pose><mass>{{mass}}</mass>
+<inertia><ixx>{{turning}}</ixx><iyy>{{across}}</iyy><izz>{{across}}</izz></inertia></inertial>
+{_SHAPE.replace('{kind}', 'visual')}
+{_SHAPE.replace('{kind}', 'collision')}</link>
+<joint name="{{name}}_joint" type="universal"><parent>{{parent}}</parent><child>{{name}}</child>
+{_AXIS.replace('{axis}', 'axis').replace('{along}', '0 1 0')}
+{_AXIS.replace('{axis}', 'axis2').replace('{along}', '0 0 1')}</joint>"""
+
+
+def mjcf_of_tree(simulator: SwaySimulator) -> str:
+    """Return the tree of a simulator as MJCF, MuJoCo's model file."""
+    tree, hinged = simulator.tree, hinged_tree(simulator)
+    inside: list[list[str]] = [[] for _ in range(tree.n_segments + 1)]  # of bodies, and the world
+    texts = [_BODY.format_map(values) for values in _values(tree, hinged)]
+    for body in range(tree.n_segments - 1, -1, -1):  # what is carried comes after what carries it
+        text = '\n'.join([texts[body], *reversed(inside[body]), '</body>'])
+        inside[int(tree.segment_parent[body])].append(text)
+    # Geometries of one kind touch where a bit of one is in the other's mask: segments have none.
+    return '\n'.join(
+        [
+            f'<mujoco model={quoteattr(tree.name)}>',
+            _comment(simulator, hinged),
+            '<compiler angle="radian"/>',
+            f'<option timestep="{min(_USUAL_STEP, hinged.largest_step):g}" integrator="Euler"/>',
+            '<default><geom type="capsule" contype="0" rgba="0.4 0.3 0.2 1"/></default>',
+            '<worldbody>',
+            *inside[-1],
+            '</worldbody>\n</mujoco>\n',
+        ]
+    )
+
+
+def sdf_of_tree(simulator: SwaySimulator) -> str:
+    """Return the tree of a simulator as a model of SDF 1.9, on universal joints."""
+    tree, hinged = simulator.tree, hinged_tree(simulator)
+    return '\n'.join(
+        [
+            '<sdf version="1.9">',
+            _comment(simulator, hinged),
+            f'<model name={quoteattr(tree.name)}>',
+            *(_LINK.format_map(values) for values in _values(tree, hinged)),
+            '</model>\n</sdf>\n',
+        ]
+    )
+
+
+def _comment(simulator: SwaySimulator, hinged: HingedTree) -> str:
+    return (
+        f'<!-- A tree by tree_sway, in SI units. First natural frequency '
+        f'{simulator.frequencies(1)[0]:.4g} Hz, damping ratio '
+        f'{simulator.check_tuning().damping_ratio:.3g} there and higher above. Largest stable '
+        f'time step {hinged.largest_step:.3g} s by semi-implicit Euler, damping implicit. -->'
+    )
+
+
+def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
+    """Yield what the templates ask for, of each segment."""
+    columns = {
+        'place': hinged.poses[:, :3],
+        'xyzw': hinged.poses[:, 3:],
+        'wxyz': hinged.poses[:, [6, 3, 4, 5]],
+        'centre': hinged.centre,
+        'mass': hinged.mass,
+        'turning': hinged.inertia[:, 0],
+        'across': hinged.inertia[:, 1],
+        'stiffness': hinged.stiffness,
+        'damping': hinged.damping_time * hinged.stiffness,
+        'length': tree.length,
+        'middle': 0.5 * tree.length,
+        'radius': 0.25 * (tree.base_diameter + tree.tip_diameter),
+    }
+    for i, parent in enumerate(tree.segment_parent.tolist()):
+        carrier = hinged.names[parent] if parent >= 0 else ''
+        yield {
+            'name': hinged.names[i],
+            'frame': carrier or '__model__',
+            'parent': carrier or 'world',
+            **{name: _text(column[i]) for name, column in columns.items()},
+        }
+
+
+def _text(values: Floats) -> str:
+    return ' '.join(f'{value:.9g}' for value in np.atleast_1d(values))

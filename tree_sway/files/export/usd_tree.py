@@ -1,0 +1,161 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A tree as USD text: a skeleton with a joint per segment, and ten seconds of its sway in a breeze.
+
+Joints of a branch are a chain, below the joint of the segment that carries it. For Unreal's wind
+the skeleton has the attributes of ``DynamicWindSkeletonAPI`` (plugin DynamicWind, 5.7): joints are
+grouped by the order of their branch, and a group's influence is how far its branches bend by
+themselves in a steady wind, over that of the group that bends most.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.leaves.foliage import LeafClusters
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.species import bark_color, leaf_traits
+from tree_sway.core.tree.tree import Tree
+from tree_sway.files.export.breeze import in_breeze, RATE
+from tree_sway.files.export.hinged_tree import plain_names, poses_on_parents
+from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
+
+_SECONDS = 10.0
+_STEADY, _SETTLED = 8.0, 30.0
+_MAX_GROUPS = 4
+
+
+def usd_of_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) -> str:
+    """
+    Return the tree of a simulator as ``.usda``, maybe in leaf.
+
+    The simulator is run, and then set back to the state that it was in.
+    """
+    tree = simulator.tree
+    frames = in_breeze(simulator, _SECONDS, lambda: poses_on_parents(tree, simulator.place()))
+    rest, name = tree.rest_poses, re.sub(r'\W', '_', tree.name, flags=re.ASCII)
+    joints = f'uniform token[] joints = {_strings(_paths(tree))}'
+    last = len(frames) - 1
+    parts = [
+        f'#usda 1.0\n(\n    defaultPrim = "{name}"\n    upAxis = "Z"\n    metersPerUnit = 1\n'
+        f'    timeCodesPerSecond = {RATE}\n    startTimeCode = 0\n    endTimeCode = {last}\n)\n',
+        f'def SkelRoot "{name}" (prepend apiSchemas = ["SkelBindingAPI"])\n{{',
+        'def Skeleton "Skeleton" (prepend apiSchemas = ["SkelBindingAPI", '
+        '"DynamicWindSkeletonAPI"])\n{',
+        joints,
+        f'uniform matrix4d[] bindTransforms = {_matrices(rest)}',
+        f'uniform matrix4d[] restTransforms = {_matrices(poses_on_parents(tree, rest))}',
+        f'rel skel:animationSource = </{name}/Sway>',
+        *_wind_attributes(simulator),
+        '}\ndef SkelAnimation "Sway"\n{',
+        joints,
+        # A segment sits where it does on the one that carries it: it turns there and no more.
+        f'float3[] translations = {_tuples(frames[0][:, :3])}',
+        f'half3[] scales = {_tuples(np.ones((tree.n_segments, 3)))}',
+        'quatf[] rotations.timeSamples = {',
+        *(f'{k}: {_tuples(frame[:, [6, 3, 4, 5]], "%.5f")},' for k, frame in enumerate(frames)),
+        '}\n}',
+        _mesh('Wood', wood_mesh(tree), rest, bark_color(tree.species), name),
+    ]
+    if leaves is not None:
+        green = leaf_traits(tree.species).green
+        parts.append(_mesh('Leaves', leaf_mesh(leaves), rest, green, name))
+    return '\n'.join([*parts, '}\n'])
+
+
+def _paths(tree: Tree) -> list[str]:
+    """Name each joint after the joints that carry it."""
+    paths: list[str] = []
+    for name, parent in zip(plain_names(tree), tree.segment_parent.tolist(), strict=True):
+        paths.append(f'{paths[parent]}/{name}' if parent >= 0 else name)
+    return paths
+
+
+def branch_groups(tree: Tree) -> Ints:
+    """Group of each segment, (n,): 0 the stem, 1 what sits on it, and so on; the rest is last."""
+    order = np.zeros(tree.n_branches, dtype=np.int64)
+    for branch, parent in enumerate(tree.branch_parent.tolist()):
+        order[branch] = order[parent] + 1 if parent >= 0 else 0
+    return np.minimum(order, _MAX_GROUPS - 1)[tree.branch_of_segment]
+
+
+def influences(simulator: SwaySimulator) -> Floats:
+    """Own turn of the branches' tips in a steady wind by groups, over the largest, (g,)."""
+    tree, before, dt = simulator.tree, simulator.state(), 1.0 / 60.0
+    simulator.reset()
+    for _ in range(round(_SETTLED / dt)):
+        simulator.step((_STEADY, 0.0, 0.0), dt)
+    steady = Rotation.from_quat(simulator.place()[:, 3:])
+    simulator.set_state(before)
+    turned = steady * Rotation.from_quat(tree.rest_poses[:, 3:]).inv()
+    first, last = tree.branch_first[:-1], tree.branch_first[1:] - 1
+    carrier = tree.segment_parent[first]
+    own = turned[np.maximum(carrier, 0)].inv() * turned[last]
+    slope = np.where(carrier < 0, turned[last].magnitude(), own.magnitude())
+    groups = branch_groups(tree)[first]
+    mean = np.sqrt(np.bincount(groups, slope**2) / np.bincount(groups))
+    return np.asarray(mean / mean.max())
+
+
+def _wind_attributes(simulator: SwaySimulator) -> list[str]:
+    groups, found = branch_groups(simulator.tree), influences(simulator)
+    values = {
+        'token[] unreal:dynamicWind:jointNames': _strings(plain_names(simulator.tree)),
+        'int[] unreal:dynamicWind:jointSimulationGroups': groups.tolist(),
+        'float[] unreal:dynamicWind:simulationGroupInfluences': found.round(4).tolist(),
+        'float[] unreal:dynamicWind:simulationGroupShiftTops': [0.0] * len(found),
+        'int[] unreal:dynamicWind:trunkSimulationGroups': [0],
+        'bool unreal:dynamicWind:isGroundCover': 'false',
+        'float unreal:dynamicWind:gustAttenuation': 0.0,
+    }
+    return [f'uniform {name} = {value}' for name, value in values.items()]
+
+
+def _mesh(
+    kind: str, mesh: TreeMesh, poses: Floats, color: tuple[float, float, float], root: str
+) -> str:
+    """Write a mesh of which each vertex goes with one joint."""
+    points = mesh.placed(poses)
+    normals = Rotation.from_quat(poses[mesh.segment, 3:]).apply(mesh.normals)
+    one_each = 'elementSize = 1\n    interpolation = "vertex"'
+    return '\n'.join(
+        [
+            f'def Mesh "{kind}" (prepend apiSchemas = ["SkelBindingAPI"])\n{{',
+            f'float3[] extent = {_tuples(np.array([points.min(axis=0), points.max(axis=0)]))}',
+            f'bool doubleSided = {int(kind == "Leaves")}',
+            'uniform token subdivisionScheme = "none"',
+            f'int[] faceVertexCounts = {[3] * len(mesh.triangles)}',
+            f'int[] faceVertexIndices = {mesh.triangles.ravel().tolist()}',
+            f'point3f[] points = {_tuples(points)}',
+            f'normal3f[] normals = {_tuples(normals)} (interpolation = "vertex")',
+            f'color3f[] primvars:displayColor = {_tuples(np.array([color]))}',
+            f'int[] primvars:skel:jointIndices = {mesh.segment.tolist()} ({one_each})',
+            f'float[] primvars:skel:jointWeights = {[1] * len(mesh.segment)} ({one_each})',
+            f'rel skel:skeleton = </{root}/Skeleton>\n}}',
+        ]
+    )
+
+
+def _matrices(poses: Floats) -> str:
+    """Poses (n, 7) as matrices that rows are multiplied by."""
+    matrices = np.zeros((len(poses), 4, 4))
+    matrices[:, :3, :3] = Rotation.from_quat(poses[:, 3:]).as_matrix().transpose(0, 2, 1)
+    matrices[:, 3] = np.column_stack([poses[:, :3], np.ones(len(poses))])
+    row = '(%.7g, %.7g, %.7g, %.7g)'
+    form = f'({row}, {row}, {row}, {row})'
+    return f'[{", ".join([form] * len(poses))}]' % tuple(matrices.ravel().tolist())
+
+
+def _tuples(values: Floats, number: str = '%.5g') -> str:
+    form = f'({", ".join([number] * values.shape[1])})'
+    return f'[{", ".join([form] * len(values))}]' % tuple(values.ravel().tolist())
+
+
+def _strings(names: Any) -> str:
+    return f'[{", ".join(f"{chr(34)}{name}{chr(34)}" for name in names)}]'

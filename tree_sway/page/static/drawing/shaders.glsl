@@ -1,0 +1,346 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+// Programs of the graphics unit, in parts: `#part NAME BASE` begins one, which has its base before it.
+// Poses lie in a texture, two texels per segment.
+
+#part seen
+precision highp float;
+precision highp int;
+uniform mat4 camera;
+uniform float ground;
+uniform vec3 light; // towards the sun
+uniform vec3 sun; // colours
+uniform vec3 sky;
+uniform vec3 eye;
+uniform float haze; // one over how far one sees [1/m]
+uniform vec4 shadowArea; // middle x, y, one over half its size, 1 when the shadow is drawn
+vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
+vec4 seen(vec3 p) {
+  if (shadowArea.w < 0.5) return camera * vec4(p, 1.0);
+  vec2 flat_ = p.xy - light.xy / light.z * (p.z - ground);
+  return vec4((flat_ - shadowArea.xy) * shadowArea.z, 0.0, 1.0);
+}
+float clearness(vec3 p) { float far = haze * distance(eye, p); return 1.0 / (1.0 + far + 0.5 * far * far); }
+
+#part hung seen
+// What hangs on a segment: its pose, and the scale of its tree.
+uniform highp sampler2D poses;
+uniform uvec4 starts[MOST_COPIES / 4]; // rows of the first segments of the trees of a batch
+in uint segment; // of its tree, and in the upper byte which tree of the batch
+uint start() { return starts[segment >> 26][(segment >> 24) & 3u]; }
+uint rowOf() { return 2u * (start() + (segment & 0xffffffu)); }
+vec4 seenIfAny(vec3 p) { return start() == NOTHING ? vec4(2.0, 2.0, 2.0, 1.0) : seen(p); }
+vec4 texel(uint at) { return texelFetch(poses, ivec2(int(at & 1023u), int(at >> 10)), 0); }
+
+#part lit
+// What is lit; the shadow is its outline.
+precision highp float;
+uniform float isShadow;
+uniform vec3 horizon;
+out vec4 color;
+
+#part bark.vertex hung
+in vec4 ring; // along, across y, across z, thickness; of a ribbon: along, across, 0, thickness - 2
+in vec3 skin; // place on the bark, how open to the sky
+uniform vec2 picked; // rows of the first and the last segment of a branch to show
+out vec3 normal;
+out vec2 at;
+out vec3 tone; // thickness, openness, clearness
+out float mark;
+void main() {
+  uint row = rowOf();
+  vec4 root = texel(row);
+  vec4 q = texel(row + 1u);
+  vec3 p = root.xyz;
+  vec3 axis = turned(q, vec3(1.0, 0.0, 0.0));
+  p += root.w * ring.x * axis;
+  float thickness = ring.w;
+  if (ring.w < -0.5) {
+    // What is too thin to be seen round faces whoever looks, the sun for the shadow.
+    vec3 back = normalize(shadowArea.w < 0.5 ? eye - p : light);
+    vec3 across = normalize(cross(back, axis) + vec3(0.0, 0.0, 1e-6));
+    p += root.w * ring.y * across;
+    normal = back + sign(ring.y) * across;
+    thickness += 2.0;
+  } else {
+    vec3 across = turned(q, vec3(0.0, ring.yz));
+    p += root.w * across;
+    normal = across;
+  }
+  at = skin.xy;
+  tone = vec3(thickness, skin.z, clearness(p));
+  float own = 0.5 * float(row);
+  mark = own > picked.x - 0.5 && own < picked.y + 0.5 ? 1.0 : 0.0;
+  gl_Position = seenIfAny(p);
+}
+
+#part bark.fragment lit
+in vec3 normal;
+in vec2 at;
+in vec3 tone;
+in float mark;
+uniform vec3 light;
+uniform vec3 sun;
+uniform vec3 sky;
+uniform vec3 barkColor;
+uniform vec3 twigColor;
+uniform sampler2D relief;
+void main() {
+  if (isShadow > 0.5) { color = vec4(1.0); return; }
+  vec3 n = normalize(normal);
+  float deep = texture(relief, at).r * 1.28;
+  vec3 base = mix(twigColor, barkColor * mix(1.0, deep, 0.9), tone.x);
+  float open = 0.3 + 0.7 * tone.y;
+  vec3 lit = open * (sky * (0.72 + 0.28 * n.z) + sun * tone.y * max(dot(n, light), 0.0));
+  base = mix(base * lit, vec3(1.0, 0.45, 0.1), 0.75 * mark);
+  color = vec4(mix(horizon, base, tone.z), 1.0);
+}
+
+#part leaf.vertex hung
+in vec3 place;
+in vec3 swing; // how it moves per unit of its flutter
+in vec3 facing;
+in vec3 towards; // where most light comes from, in the shade of the crown
+in vec4 flutter; // frequency, phase, openness, tint
+in vec2 corner;
+uniform float time;
+uniform float speed;
+uniform vec2 law; // gain, largest angle
+uniform float isBaked;
+out vec2 at;
+out vec4 lit; // light, and clearness
+void main() {
+  uint row = rowOf();
+  vec4 root = texel(row);
+  vec4 q = texel(row + 1u);
+  // Nearly the hyperbolic tangent of the law, for less.
+  float wild = law.x * speed * speed / (flutter.x * law.y);
+  float a = law.y * wild * inversesqrt(1.0 + wild * wild) * sin(6.2831853 * flutter.x * time + flutter.y);
+  vec3 p = root.xyz + root.w * turned(q, place + a * swing);
+  at = corner;
+  gl_Position = seenIfAny(p);
+  if (shadowArea.w > 0.5) return;
+  vec3 outward = turned(q, towards);
+  vec3 n = normalize(turned(q, facing) + 0.5 * outward);
+  vec3 back = normalize(eye - p);
+  float side = dot(n, back) < 0.0 ? -1.0 : 1.0;
+  float across = side * dot(n, light);
+  float open = flutter.z;
+  float sunny = clamp(open * (0.55 + 1.3 * dot(outward, light)), 0.0, 1.0);
+  vec3 up = sky * (0.16 + 0.84 * open) * (0.8 + 0.2 * n.z * side);
+  // A leaf with the sun behind it shines yellow.
+  vec3 through = vec3(1.15, 1.3, 0.4) * (0.75 * max(-across, 0.0));
+  vec3 direct = sun * sunny * (0.22 + 0.85 * max(across, 0.0) + through);
+  lit.rgb = flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : up + direct);
+  lit.a = clearness(p);
+}
+
+#part leaf.fragment lit
+in vec2 at;
+in vec4 lit;
+uniform sampler2D leaves;
+void main() {
+  vec4 leaf = texture(leaves, at);
+  if (leaf.a < 0.5) discard;
+  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, leaf.rgb * lit.rgb, lit.a), 1.0);
+}
+
+#part impostor.vertex seen
+// A far tree: a picture of its kind, turned to whoever looks, that leans as its top does.
+uniform highp sampler2D poses;
+uniform vec4 box; // half its width, middle height and full height [m], shade at the foot
+uniform vec3 restTip;
+in vec2 corner;
+in vec4 stand; // x, y, z, yaw
+in vec3 tree; // scale, row of the top, tint
+out vec2 at;
+out vec4 lit;
+void main() {
+  float scale = tree.x;
+  vec3 middle = stand.xyz + vec3(0.0, 0.0, box.y * scale);
+  vec3 back = shadowArea.w < 0.5 ? normalize(eye - middle) : light;
+  vec2 to = normalize(back.xy + vec2(1e-5, 0.0));
+  float view = floor((atan(to.y, to.x) - stand.w) * float(ROUND) / 6.2831853 + 0.5);
+  float high = back.z > sin(0.5 * (LOW + HIGH)) ? 1.0 : 0.0;
+  float e = mix(LOW, HIGH, high);
+  vec3 right = vec3(-to.y, to.x, 0.0);
+  vec3 up = vec3(-sin(e) * to, cos(e));
+  float tall = 0.5 * box.z * cos(e) + box.x * sin(e);
+  vec3 p = middle + scale * (corner.x * box.x * right + corner.y * tall * up);
+  uint row = 2u * uint(tree.y);
+  vec3 tip = texelFetch(poses, ivec2(int(row & 1023u), int(row >> 10)), 0).xyz;
+  vec2 turn = vec2(cos(stand.w), sin(stand.w));
+  vec3 rest = vec3(turn.x * restTip.x - turn.y * restTip.y, turn.y * restTip.x + turn.x * restTip.y,
+    restTip.z);
+  float h = clamp((p.z - stand.z) / (box.z * scale), 0.0, 1.1);
+  p += (tip - stand.xyz - scale * rest) * h * h;
+  vec3 n = normalize(corner.x * right + 0.8 * corner.y * up + 0.6 * vec3(cos(e) * to, sin(e)));
+  float shade = mix(box.w, 1.0, min(1.0, 1.25 * h)) * tree.z;
+  lit.rgb = shade * (sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.2 + 0.8 * dot(n, light)));
+  lit.a = clearness(p);
+  at = (vec2(mod(view, float(ROUND)), high) + 0.5 + 0.5 * corner) / vec2(float(ROUND), 2.0);
+  gl_Position = seen(p);
+}
+
+#part impostor.fragment lit
+in vec2 at;
+in vec4 lit;
+uniform sampler2D picture;
+void main() {
+  vec4 seen = texture(picture, at);
+  if (seen.a < 0.35) discard;
+  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, seen.rgb * lit.rgb, lit.a), 1.0);
+}
+
+#part solid.vertex seen
+in vec3 at;
+in vec3 facing;
+in vec3 tint;
+uniform vec4 placed; // x, y, z, scale
+uniform vec2 heading; // cosine and sine about the vertical
+out vec4 base;
+void main() {
+  vec3 p = at * placed.w;
+  p = vec3(heading.x * p.x - heading.y * p.y, heading.y * p.x + heading.x * p.y, p.z) + placed.xyz;
+  vec3 n = normalize(vec3(heading.x * facing.x - heading.y * facing.y,
+    heading.y * facing.x + heading.x * facing.y, facing.z));
+  base = vec4(tint * (sky * (0.75 + 0.25 * n.z) + sun * max(dot(n, light), 0.0)), clearness(p));
+  gl_Position = seen(p);
+}
+
+#part solid.fragment lit
+in vec4 base;
+void main() {
+  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, base.rgb, base.a), 1.0);
+}
+
+#part shadow.vertex
+precision highp float;
+uniform mat4 camera;
+uniform vec4 area; // middle x, y, half its size, height
+in vec2 corner;
+out vec2 at;
+void main() {
+  at = 0.5 + 0.5 * corner;
+  gl_Position = camera * vec4(area.xy + corner * area.z, area.w, 1.0);
+}
+
+#part shadow.fragment
+precision mediump float;
+in vec2 at;
+uniform sampler2D shadow;
+uniform float softness; // 0 where every pixel counts
+uniform float depth;
+out vec4 color;
+void main() {
+  float dark = texture(shadow, at).r;
+  if (softness > 0.0) {
+    dark = 0.4 * dark + 0.15 * (texture(shadow, at + vec2(softness, 0.0)).r
+      + texture(shadow, at - vec2(softness, 0.0)).r
+      + texture(shadow, at + vec2(0.0, softness)).r
+      + texture(shadow, at - vec2(0.0, softness)).r);
+  }
+  if (dark < 0.01) discard;
+  color = vec4(0.03, 0.04, 0.06, depth * dark);
+}
+
+#part backdrop.vertex
+precision highp float;
+layout(location = 0) in vec2 corner;
+uniform vec3 right;
+uniform vec3 up;
+uniform vec3 back;
+out vec3 ray;
+void main() {
+  ray = corner.x * right + corner.y * up - back;
+  gl_Position = vec4(corner, 0.99999, 1.0);
+}
+
+#part backdrop.fragment
+precision highp float;
+in vec3 ray;
+uniform vec3 eye;
+uniform float ground;
+uniform float haze;
+uniform float kind;
+uniform vec3 light;
+uniform vec3 sun;
+uniform vec3 zenith;
+uniform vec3 horizon;
+uniform float dimmed;
+out vec4 color;
+float hash(vec2 p) {
+  uvec2 q = uvec2(ivec2(p)) * uvec2(1597334673u, 3812015801u);
+  uint n = (q.x ^ q.y) * 1597334673u;
+  return float(n >> 8) / 16777216.0;
+}
+float noise(vec2 p) {
+  vec2 i = floor(p);
+  vec2 f = fract(p);
+  f = f * f * (3.0 - 2.0 * f);
+  return mix(mix(hash(i), hash(i + vec2(1, 0)), f.x),
+    mix(hash(i + vec2(0, 1)), hash(i + vec2(1, 1)), f.x), f.y);
+}
+// Noise of a cell size [m], that vanishes where a pixel is larger.
+float grain(vec2 p, float size, float pixel) {
+  float shown = 1.0 - smoothstep(0.25, 0.8, pixel / size);
+  return shown > 0.0 ? shown * (noise(p / size) - 0.5) : 0.0;
+}
+vec3 heaven(vec3 way) {
+  float high = max(way.z, 0.0);
+  vec3 c = mix(horizon, zenith, 1.0 - exp(-3.2 * high));
+  vec2 at = way.xy / (high + 0.16);
+  float cloud = noise(1.7 * at) + 0.5 * noise(3.6 * at + 7.0) + 0.25 * noise(7.5 * at);
+  c = mix(c, horizon * 1.05, 0.42 * smoothstep(0.85, 1.45, cloud) * smoothstep(0.0, 0.25, high));
+  float glow = max(dot(way, light), 0.0);
+  c += sun * (0.1 * pow(glow, 6.0) + 0.16 * pow(glow, 60.0)) * dimmed;
+  if (kind > 0.5) {
+    // Hills, the nearer ones darker.
+    float turn = 3.0 * atan(way.y, way.x);
+    float far = 0.028 + 0.03 * noise(vec2(turn * 1.3 + 40.0, 3.0)) + 0.006 * noise(vec2(turn * 9.0, 1.0));
+    float near = 0.008 + 0.024 * noise(vec2(turn * 2.1 + 9.0, 8.0)) + 0.008 * noise(vec2(turn * 22.0, 5.0));
+    vec3 blue = mix(zenith, vec3(0.3, 0.4, 0.36) * dimmed, 0.5);
+    if (way.z < far) c = mix(horizon, blue, 0.28);
+    if (way.z < near) c = mix(horizon, blue, 0.5 * smoothstep(-0.004, near, way.z) + 0.06);
+  }
+  return c;
+}
+void main() {
+  vec3 way = normalize(ray);
+  vec3 c = heaven(way);
+  if (way.z < -1e-4) {
+    float far = (ground - eye.z) / way.z;
+    vec2 p = eye.xy + far * way.xy;
+    float pixel = far * length(fwidth(ray)) / max(-way.z, 0.05) * 0.5;
+    vec3 soil;
+    if (kind < 0.5) {
+      vec2 slab = p / 0.6;
+      slab.x += 0.5 * mod(floor(slab.y), 2.0);
+      vec2 edge = abs(fract(slab) - 0.5);
+      float joint = smoothstep(0.485, 0.495, max(edge.x, edge.y)) * (1.0 - smoothstep(0.1, 0.5, pixel / 0.12));
+      soil = vec3(0.7, 0.68, 0.64) * (1.0 + 0.09 * (hash(floor(slab)) - 0.5));
+      soil *= 1.0 + 0.1 * grain(p, 0.35, pixel) + 0.12 * grain(p, 0.03, pixel) + 0.16 * grain(p, 0.006, pixel);
+      soil *= 1.0 - 0.26 * joint;
+    } else {
+      vec3 lush = vec3(0.4, 0.47, 0.24);
+      vec3 dry = vec3(0.54, 0.53, 0.31);
+      float patch_ = 0.5 + 0.5 * grain(p, 14.0, pixel) + 0.45 * grain(p, 3.1, pixel) + 0.3 * grain(p, 0.7, pixel);
+      soil = mix(lush, dry, clamp(patch_, 0.0, 1.0));
+      soil *= 1.0 + 0.42 * grain(p, 0.22, pixel) + 0.5 * grain(p * vec2(1.0, 0.6), 0.06, pixel)
+        + 0.24 * grain(p, 60.0, pixel);
+    }
+    soil *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
+    c = mix(horizon, soil, exp(-haze * far));
+  }
+  color = vec4(c, 1.0);
+}
+
+#part copy.vertex
+layout(location = 0) in vec2 corner;
+void main() { gl_Position = vec4(corner, 0.99999, 1.0); }
+
+#part copy.fragment
+precision mediump float;
+uniform sampler2D picture;
+out vec4 color;
+void main() { color = texelFetch(picture, ivec2(gl_FragCoord.xy), 0); }

@@ -1,0 +1,33 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A thread that is started and stopped with its node, as often as the node is."""
+
+from __future__ import annotations
+
+import threading
+
+_PATIENCE = 6.0
+
+
+class Worker:
+    """Runs `_run` of its subclass in a thread of a name; `_stopping` is set when it has to end."""
+
+    def __init__(self, name: str) -> None:
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(name=name)
+
+    def start(self) -> None:
+        """Start the thread."""
+        self._stopping.clear()
+        self._thread = threading.Thread(target=self._run, name=self._thread.name, daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the thread, and wait for the work under way; may be called twice."""
+        self._stopping.set()
+        if self._thread.is_alive() and self._thread is not threading.current_thread():
+            self._thread.join(timeout=_PATIENCE)
+
+    def _run(self) -> None:
+        """Work until `_stopping` is set."""
+        raise NotImplementedError
