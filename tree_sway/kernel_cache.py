@@ -16,7 +16,6 @@ from collections.abc import Callable
 from functools import cache
 import hashlib
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 import os
 from pathlib import Path
 import pickle
@@ -58,16 +57,14 @@ def why_no_compiler() -> str:
 
 def _what_is_wrong_with_numba() -> str:
     try:
-        found = version('numba')
-    except PackageNotFoundError:
+        found = import_module('numba').__version__
+    except ModuleNotFoundError:
         return 'numba is not installed'
+    except Exception as error:  # whatever a broken installation raises
+        return f'numba cannot be imported ({type(error).__name__})'
     numbers = tuple(int(part) for part in re.findall(r'\d+', found)[:2])
     if numbers < OLDEST_COMPILER:
         return f'numba {found} is older than {".".join(map(str, OLDEST_COMPILER))}'
-    try:
-        import_module('numba')
-    except Exception as error:  # whatever a broken installation raises
-        return f'numba {found} cannot be imported ({type(error).__name__})'
     return ''
 
 

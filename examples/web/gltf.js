@@ -11,15 +11,15 @@ const { scene } = await new GLTFLoader().loadAsync(file);
 stage.scene.add(scene);
 const parts = [];
 scene.traverse((part) => part.morphTargetInfluences && parts.push(part));
-/** What a weight of 1 stands for, per coordinate; three.js has the extras of a mesh on its parts. */
-const { unit } = (parts[0].userData.unit ? parts[0] : parts[0].parent).userData;
+/** Coordinates at a weight of 1 and in a storm; three.js has the extras of a mesh on its parts. */
+const { unit, storm } = (parts[0].userData.unit ? parts[0] : parts[0].parent).userData;
 
 function described(description) {
   stage.frame(description.trees[0].height);
   const { scale } = description;
-  // A description's full scale leaves the same room above every unit.
-  const room = scale[0] / unit[0];
-  const fits = unit.length === scale.length && unit.every((u, k) => Math.abs(scale[k] / u / room - 1) < 1e-3);
+  // A description's full scale leaves the same room above every storm.
+  const room = scale[0] / storm[0];
+  const fits = storm.length === scale.length && storm.every((s, k) => Math.abs(scale[k] / s / room - 1) < 1e-3);
   if (!fits) throw new Error(`${file} is of another tree or model than ${description.name}`);
 }
 

@@ -51,10 +51,10 @@ def one_line(text: str) -> str:
         (['info', 'benjamina', '--species', 'brich'], "did you mean 'birch'? use one of: alder"),
         (['info', 'benjamina', '--modulus', '-1'], '--modulus: -1 is not positive'),
         (['info', 'benjamina', '--density', 'nan'], '--density: nan is not positive'),
-        (['info', 'benjamina', '--count', '0'], '--count: 0 frequencies'),
+        (['info', 'benjamina', '--count', '0'], '--count: 0 is out of range; use 1 to'),
         (['info', 'benjamina', '--seed', '-1'], 'seed: -1 is out of range'),
-        (['plot', '--seconds', '0'], '--seconds: 0 s'),
-        (['plot', '--wind', '/no/such.csv'], '/no/such.csv: no such file'),
+        (['plot', '--seconds', '0', '-o', 'a.png'], '--seconds: 0.0 is out of range'),
+        (['plot', '--wind', '/no/such.csv', '-o', 'a.png'], '/no/such.csv: no such file'),
         (
             ['grow', '--species', 'oak', '--height', 'tall', '-o', 'x'],
             "invalid float value: 'tall'",

@@ -27,5 +27,5 @@ def test_a_curve_is_drawn_and_told(tmp_path, capsys):
 
 
 def test_a_stand_is_refused(capsys):
-    assert main(['plot', 'config/stand.yaml', '--strength']) == 2
+    assert main(['plot', 'config/stand.yaml', '--strength', '-o', 'a.png']) == 2
     assert '--strength: 1000 trees; give 12 or fewer' in capsys.readouterr().err

@@ -78,8 +78,8 @@ def test_the_page_is_served_and_the_tree_moves() -> None:
     ('arguments', 'told'),
     [
         (['--address', '0.0.0.0'], 'without a token'),
-        (['--port', '70000'], 'port 70000'),
-        (['--stand', '0'], 'a stand of 0'),
+        (['--port', '70000'], '--port: 70000 is out of range'),
+        (['--stand', '0'], '--stand: 0 is out of range'),
         (['--speed', '400'], 'out of range'),
         (['--wind', 'no_such.csv'], 'no_such.csv'),
     ],

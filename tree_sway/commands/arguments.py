@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import itertools
 from pathlib import Path
 import sys
 from typing import Any
@@ -188,27 +187,17 @@ def add_model_argument(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_output_arguments(
-    parser: argparse.ArgumentParser, what: str, *, required: bool = True
-) -> None:
+def add_output_arguments(parser: argparse.ArgumentParser, what: str) -> None:
     """Add ``--output`` and ``--force``; `what` is the help of the first."""
-    parser.add_argument('-o', '--output', required=required, metavar='FILE', help=what)
+    parser.add_argument('-o', '--output', required=True, metavar='FILE', help=what)
     parser.add_argument('--force', action='store_true', help='write over a file that is there')
 
 
-def output_path(arguments: argparse.Namespace, default: str = '') -> str:
-    """
-    File to write: the one asked for, or the first of the default's names that is free.
-
-    A `ParameterError` if the one asked for is there already and ``--force`` is not given.
-    """
-    if arguments.output is not None:
-        if not arguments.force:
-            refuse_overwriting(arguments.output, '--output')
-        return str(arguments.output)
-    path = Path(default)
-    names = (path.with_stem(f'{path.stem}_{n}') for n in itertools.count(2))
-    return str(next(name for name in itertools.chain([path], names) if not name.exists()))
+def output_path(arguments: argparse.Namespace) -> str:
+    """File to write; a `ParameterError` if it is there already and ``--force`` is not given."""
+    if not arguments.force:
+        refuse_overwriting(arguments.output, '--output')
+    return str(arguments.output)
 
 
 def refuse_overwriting(path: str | Path, option: str) -> None:

@@ -15,12 +15,13 @@ from tree_sway.commands.arguments import (
     output_path,
     write_tree_file,
 )
+from tree_sway.core.checks import within
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.grown_tree import rooted
 from tree_sway.core.tree.species import species_keys
-from tree_sway.errors import ParameterError, TreeError
+from tree_sway.errors import TreeError
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.species_yaml import open_species
 
@@ -42,10 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Grow a tree and write it."""
-    if arguments.seed < 0:
-        raise ParameterError(
-            f'{arguments.seed} is negative', where='--seed', cure='give 0 or more'
-        )
+    within('--seed', arguments.seed, 0, 2**63)
     output = output_path(arguments)
     species = open_species(arguments.species)
     tree = grow(

@@ -20,13 +20,14 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.commands.mode_table import mode_table
 from tree_sway.commands.progress import bar
+from tree_sway.core.checks import within
 from tree_sway.core.scene.placed_tree import Kind
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import ParameterError, TreeError
+from tree_sway.errors import TreeError
 
 _BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
 _SUMS = ('branches', 'segments', 'volume', 'mass')
@@ -53,10 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print what the trees are."""
-    if arguments.count < 1:
-        raise ParameterError(
-            f'{arguments.count} frequencies', where='--count', cure='ask for 1 or more'
-        )
+    within('--count', arguments.count, 1, 1e6)
     scene = opened_scene(arguments)
     kinds = scene.kinds
     if scene.is_one_tree:

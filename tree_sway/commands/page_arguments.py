@@ -7,7 +7,7 @@ from __future__ import annotations
 import argparse
 import socket
 
-from tree_sway.errors import ParameterError
+from tree_sway.core.checks import within
 from tree_sway.page.server import PageSettings
 
 _PORT = 8765
@@ -45,8 +45,7 @@ def page_settings(arguments: argparse.Namespace) -> PageSettings:
     port = arguments.port
     if port is None:
         port = _PORT if _is_free(arguments.address, _PORT) else 0
-    elif not 0 <= port <= 65535:
-        raise ParameterError(f'port {port}', where='--port', cure='give 0 .. 65535')
+    within('--port', port, 0, 65535)
     return PageSettings(
         arguments.address,
         port,

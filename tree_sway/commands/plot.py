@@ -62,18 +62,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--seconds', type=float, default=60.0, metavar='N', help='how long (%(default)s)'
     )
-    picture = 'picture (sway.png, or the next name that is free)'
-    add_output_arguments(parser, picture, required=False)
+    add_output_arguments(parser, 'picture to write, .png or .pdf')
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw, and say where the picture is."""
-    if not 0.0 < arguments.seconds <= 3600.0:
-        raise ParameterError(f'{arguments.seconds:g} s', where='--seconds', cure='give 0 to 3600')
+    within('--seconds', arguments.seconds, 0.0, 3600.0, 's', above=True)
     if arguments.speed is None:
         arguments.speed = 30.0 if arguments.strength else 10.0 if arguments.portrait else 6.0
     _refuse_bearing(arguments)
-    output = output_path(arguments, 'sway.png')
+    output = output_path(arguments)
     scene = opened_scene(arguments)
     draw = _strength if arguments.strength else _portrait if arguments.portrait else _motion
     draw(scene, arguments, output)

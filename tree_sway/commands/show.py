@@ -19,6 +19,7 @@ from tree_sway.commands.arguments import (
     told_leaves,
 )
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings
+from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
 from tree_sway.core.scene.placed_tree import PlacedTree
@@ -62,8 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Serve the page until the time is over or Ctrl-C."""
     settings = page_settings(arguments)
-    if arguments.stand < 1:
-        raise ParameterError(f'a stand of {arguments.stand}', cure='ask for 1 tree or more')
+    within('--stand', arguments.stand, 1, 1e5)
     wind = opened_wind(arguments)
     print(f'{arguments.tree}: starting (the first start compiles, up to a minute)', flush=True)
     choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))

@@ -27,6 +27,7 @@ from tree_sway.files.text_file import finite, why_no_number
 from tree_sway.files.time_stamps import seconds_of_stamps
 
 _MAX_COLUMNS = 10_000
+_MEND = 'mend the cell or remove the row'
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 _UNIT = re.compile(r'\[(.*)\]|\((.*)\)|')
 _KNOWN = json.loads(files('tree_sway.files').joinpath('columns.json').read_text('utf-8'))
@@ -71,16 +72,17 @@ class TextTable:
         """File and line of a row, or of the header."""
         return f'{self.source}:{self.header_line if row is None else self.numbers[row]}'
 
+    def error(self, what: str, row: int | None = None, cure: str = '') -> FormatError:
+        """Make the error of what is wrong with a row, or with the header."""
+        return FormatError(what, where=self.where(row), cure=cure)
+
     def index_of(self, name: str) -> int:
         """Position of a column, whatever the case of its name; a `FormatError` if it lacks."""
         for index, column in enumerate(self.columns):
             if column.lower() == name.lower():
                 return index
-        raise FormatError(
-            f"no column '{name}' among {', '.join(self.columns[:20])}",
-            where=self.where(),
-            cure='export it with its header line, unchanged',
-        )
+        what = f"no column '{name}' among {', '.join(self.columns[:20])}"
+        raise self.error(what, cure='export it with its header line, unchanged')
 
     @cached_property
     def headings(self) -> list[tuple[str, str]]:
@@ -142,11 +144,7 @@ class TextTable:
         indices = [self.index_of(name) for name in names]
         values = self.values(indices)
         for row, column in np.argwhere(np.isnan(values))[:1]:
-            raise FormatError(
-                self.why_none(row, [indices[column]]),
-                where=self.where(row),
-                cure='mend the cell or remove the row',
-            )
+            raise self.error(self.why_none(row, [indices[column]]), row, _MEND)
         return values
 
     def why_none(self, row: int, indices: Iterable[int]) -> str:
@@ -162,9 +160,7 @@ class TextTable:
     def whole(self, values: Floats, name: str) -> Ints:
         """Return a column of whole numbers; a `FormatError` for fractions or out of reach."""
         for row in np.flatnonzero((values != np.round(values)) | (np.abs(values) > 2**53))[:1]:
-            raise FormatError(
-                f'{name} is {values[row]:g}, not a whole number', where=self.where(row)
-            )
+            raise self.error(f'{name} is {values[row]:g}, not a whole number', row)
         return values.astype(np.int64)
 
     def cells(self, index: int, rows: Iterable[int]) -> list[str]:
@@ -253,12 +249,9 @@ def parse_table(lines: Sequence[str], source: str) -> TextTable:
     table = TextTable(columns, numbers[1:], texts[1:], split, source)
     long = [row for row, text in enumerate(table.texts) if any(split(text)[len(columns) :])]
     if 2 * len(long) > len(table.texts):
-        raise FormatError(
-            f'more cells than the {len(columns)} columns of the header, as in most rows',
-            where=table.where(long[0]),
-            cure='if its numbers have decimal commas, export it with decimal points; '
-            'else name every column in the header',
-        )
+        what = f'more cells than the {len(columns)} columns of the header, as in most rows'
+        cure = 'export decimal commas as points, or name every column in the header'
+        raise table.error(what, long[0], cure)
     return table
 
 

@@ -9,14 +9,13 @@ import re
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Floats
 
 _STAMP = re.compile(
     r'(\d{4}-\d\d-\d\d[ T]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?)(Z|[+-]\d\d:?\d\d)?', re.ASCII
 )
 
 _NONE = np.iinfo(np.int64).min
-_BLOCK = 1 << 16
 
 
 def seconds_of_stamps(stamps: Sequence[str]) -> tuple[Floats, float]:
@@ -33,8 +32,7 @@ def seconds_of_stamps(stamps: Sequence[str]) -> tuple[Floats, float]:
         none.
 
     """
-    blocks = [_microseconds(stamps[i : i + _BLOCK]) for i in range(0, len(stamps), _BLOCK)]
-    microseconds = np.concatenate([np.empty(0, dtype=np.int64), *blocks])
+    microseconds = np.fromiter(map(_microseconds, stamps), np.int64, len(stamps))
     is_good = microseconds != _NONE
     # Differences in whole numbers first: a date in float64 seconds is good to 0.2 us only.
     first = int(microseconds[is_good][0]) if is_good.any() else 0
@@ -43,17 +41,16 @@ def seconds_of_stamps(stamps: Sequence[str]) -> tuple[Floats, float]:
     return seconds, first / 1e6
 
 
-def _microseconds(stamps: Sequence[str]) -> Ints:
-    """Microseconds after 1970-01-01, `_NONE` where it is not a stamp."""
-    matches = [_STAMP.fullmatch(_iso(stamp.strip())) for stamp in stamps]
-    texts = [match[1] if match else 'NaT' for match in matches]
+def _microseconds(stamp: str) -> int:
+    """Microseconds after 1970-01-01, `_NONE` of what is not a stamp."""
+    match = _STAMP.fullmatch(_iso(stamp.strip()))
+    if match is None:
+        return _NONE
     try:
-        dates = np.array(texts, dtype='datetime64[us]')
-    except ValueError:
-        dates = np.array([_date(text) for text in texts], dtype='datetime64[us]')
-    offset = [_offset(match[2]) if match and match[2] else 0 for match in matches]
-    microseconds = dates.astype(np.int64) - 1_000_000 * np.array(offset, dtype=np.int64)
-    return np.where(np.isnat(dates), _NONE, microseconds)
+        microseconds = int(np.datetime64(match[1], 'us').astype(np.int64))
+    except ValueError:  # a month 13 or a February 30
+        return _NONE
+    return microseconds - 1_000_000 * (_offset(match[2]) if match[2] else 0)
 
 
 def _iso(stamp: str) -> str:
@@ -63,13 +60,6 @@ def _iso(stamp: str) -> str:
         day, month, rest = [*stamp.split('.', 2), '', ''][:3]
         return f'{rest[:4]}-{month}-{day}{rest[4:]}' if '.' in stamp[:3] else stamp
     return stamp
-
-
-def _date(text: str) -> np.datetime64:
-    try:
-        return np.datetime64(text, 'us')
-    except ValueError:  # a month 13 or a February 30
-        return np.datetime64('NaT')
 
 
 def _offset(zone: str) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 import time
 
 from tree_sway.commands.arguments import refuse_overwriting
-from tree_sway.errors import ParameterError
+from tree_sway.core.checks import within
 from tree_sway.studies.plan import read_study
 from tree_sway.studies.runner import run_study
 from tree_sway.studies.table import write_table
@@ -35,8 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Compute what is missing, write the table."""
-    if arguments.workers is not None and not 1 <= arguments.workers <= 1024:
-        raise ParameterError(f'{arguments.workers}', where='--workers', cure='give 1 to 1024')
+    if arguments.workers is not None:
+        within('--workers', arguments.workers, 1, 1024)
     cases = read_study(arguments.study)
     output = Path(arguments.output).expanduser()
     kept = output.with_suffix('.cases')

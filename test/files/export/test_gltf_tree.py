@@ -4,6 +4,7 @@
 
 import json
 import struct
+import subprocess
 
 import numpy as np
 import pytest
@@ -20,8 +21,11 @@ from tree_sway.files.export.tree_export import write_gltf, write_tree
 from tree_sway.files.export.tree_mesh import leaf_mesh, wood_mesh
 
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
-KINDS = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
-WIDTHS = {'SCALAR': 1, 'VEC3': 3, 'VEC4': 4, 'MAT4': 16}
+KINDS = {
+    5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32,
+    5126: np.float32,
+}  # fmt: skip
+WIDTHS = {'SCALAR': 1, 'VEC2': 2, 'VEC3': 3, 'VEC4': 4, 'MAT4': 16}
 
 
 @pytest.fixture(scope='module')
@@ -46,15 +50,17 @@ def parsed(glb):
     for accessor in document['accessors']:
         view = document['bufferViews'][accessor['bufferView']]
         assert view['byteOffset'] % 4 == 0
-        width = WIDTHS[accessor['type']]
-        array = np.frombuffer(glb, KINDS[accessor['componentType']], accessor['count'] * width,
-                              begin + view['byteOffset'])  # fmt: skip
-        arrays.append(array.reshape(-1, width) if width > 1 else array)
+        width, kind = WIDTHS[accessor['type']], np.dtype(KINDS[accessor['componentType']])
+        count, stride = accessor['count'], view.get('byteStride', width * kind.itemsize)
+        assert 'target' not in view or view['target'] == 34963 or stride % 4 == 0
+        rows = np.frombuffer(glb, np.uint8, count * stride, begin + view['byteOffset'])
+        array = rows.reshape(count, stride)[:, : width * kind.itemsize].copy().view(kind)
         for name, least in (('min', np.min), ('max', np.max)):
             if name in accessor:
-                np.testing.assert_array_equal(
-                    accessor[name], np.atleast_1d(least(arrays[-1], axis=0))
-                )
+                np.testing.assert_array_equal(accessor[name], least(array, axis=0))
+        if accessor.get('normalized'):
+            array = array / np.iinfo(kind).max
+        arrays.append(array if width > 1 else array[:, 0])
     return document, arrays
 
 
@@ -71,8 +77,7 @@ def skinned_vertices(document, arrays, primitive):
         matrix[:3, 3] = turn.apply(nodes[joint]['translation'])
     matrices = matrices @ inverse
     attributes = {name: arrays[k] for name, k in primitive['attributes'].items()}
-    weights = attributes['WEIGHTS_0'] / 255.0
-    blended = np.einsum('vk,vkij->vij', weights, matrices[attributes['JOINTS_0']])
+    blended = np.einsum('vk,vkij->vij', attributes['WEIGHTS_0'], matrices[attributes['JOINTS_0']])
     points = np.hstack([attributes['POSITION'], np.ones((len(attributes['POSITION']), 1))])
     return np.einsum('vij,vj->vi', blended, points)[:, :3]
 
@@ -127,6 +132,15 @@ def morphing(simulator, leaves):
     return parsed(morphing_tree(simulator, leaves).glb())
 
 
+def placed(document, arrays):
+    """Vertices of the wood, and what targets do to them, in the frame of the tree."""
+    (node,) = document['nodes']
+    primitive, (scale, *_) = document['meshes'][0]['primitives'][0], node['scale']
+    middle = Rotation.from_quat(node['rotation']).inv().apply(node['translation'])
+    changes = np.array([arrays[target['POSITION']] for target in primitive['targets']])
+    return scale * arrays[primitive['attributes']['POSITION']] + middle, scale * changes
+
+
 def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
     document, arrays = morphing
     (mesh,) = document['meshes']
@@ -140,9 +154,7 @@ def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
         arrays[sampler['output']].reshape(-1, count),
     )
     assert len(times) == len(weights) > 100
-    primitive = mesh['primitives'][0]
-    rest = arrays[primitive['attributes']['POSITION']].astype(float)
-    changes = np.array([arrays[t['POSITION']] for t in primitive['targets']], dtype=float)
+    rest, changes = placed(document, arrays)
     ours = wood_mesh(simulator.tree)
     simulator.reset()
     wind = breeze.simulate_turbulence(6.0, rate=60.0, duration=20.0, rng=np.random.default_rng(7))
@@ -151,9 +163,9 @@ def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
         simulator.step(each, 1 / 60)
         if number % 240 == 0:
             drawn = rest + np.einsum('m,mvj->vj', weights[number // 4], changes)
-            placed = ours.placed(simulator.place())
-            gaps.append(np.linalg.norm(drawn - placed, axis=1))
-            motions.append(np.linalg.norm(placed - rest, axis=1))
+            wood = ours.placed(simulator.place())
+            gaps.append(np.linalg.norm(drawn - wood, axis=1))
+            motions.append(np.linalg.norm(wood - rest, axis=1))
     simulator.reset()
     assert 0.0 < np.sqrt(np.mean(np.square(gaps))) < 0.1 * np.sqrt(np.mean(np.square(motions)))
 
@@ -166,10 +178,10 @@ def test_a_weight_is_a_coordinate_over_its_unit(simulator, morphing):
     coordinates = np.zeros(basis.n_coordinates)
     coordinates[2] = 0.01 * extras['unit'][2]
     poses = simulator.place_rotations(basis.rotations(coordinates)).copy()
-    primitive = document['meshes'][0]['primitives'][0]
-    rest = arrays[primitive['attributes']['POSITION']]
-    change = 0.01 * arrays[primitive['targets'][2]['POSITION']]
-    moved = wood_mesh(simulator.tree).placed(poses) - rest
+    rest, changes = placed(document, arrays)
+    wood = wood_mesh(simulator.tree)
+    np.testing.assert_allclose(rest, wood.placed(simulator.tree.rest_poses), atol=1e-4)
+    moved, change = wood.placed(poses) - rest, 0.01 * changes[2]
     assert np.linalg.norm(moved - change) < 0.05 * np.linalg.norm(moved) + 1e-4
 
 
@@ -183,3 +195,59 @@ def test_written_whole(tmp_path, simulator):
     path = tmp_path / 'tree.gltf'
     write_gltf(path, skinned_tree(simulator.tree))
     assert json.loads(path.read_text())['buffers'][0]['uri'].startswith('data:application/octet')
+
+
+def test_textures_and_normals_are_where_viewers_look(simulator, leaves, morphing):
+    for document, arrays in (morphing, parsed(skinned_tree(simulator.tree, leaves).glb())):
+        for primitive in document['meshes'][0]['primitives']:
+            attributes = {name: arrays[k] for name, k in primitive['attributes'].items()}
+            texture, normals = attributes['TEXCOORD_0'], attributes['NORMAL']
+            assert texture.min() >= 0.0
+            assert texture.max() == pytest.approx(1.0)
+            np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=0.01)
+
+
+def test_a_large_tree_is_at_most_four_megabytes():
+    tree = builtin_tree('broadleaf', 0)
+    simulator = make_simulator(tree, species_named('oak'), in_leaf=True)
+    leaves = leaf_clusters(tree, np.random.default_rng(0), count=1500)
+    for document in (skinned_tree(tree, leaves), morphing_tree(simulator, leaves)):
+        assert len(document.glb()) < 4e6
+
+
+VALIDATE = """
+const {validateBytes} = require('gltf-validator');
+const bytes = require('fs').readFileSync(process.argv[1]);
+validateBytes(new Uint8Array(bytes)).then((report) => console.log(JSON.stringify(report.issues)));
+"""
+
+
+@pytest.mark.long
+def test_the_validator_of_khronos_finds_no_fault(tmp_path, simulator, leaves):
+    """Needs Node.js and `npm install gltf-validator`, which NODE_PATH names."""
+    for document in (skinned_tree(simulator.tree, leaves), morphing_tree(simulator, leaves)):
+        write_gltf(tmp_path / 'tree.glb', document)
+        command = ['node', '-e', VALIDATE, str(tmp_path / 'tree.glb')]
+        try:
+            run = subprocess.run(command, capture_output=True, text=True, check=True)
+        except (FileNotFoundError, subprocess.CalledProcessError):
+            pytest.skip('Node.js or its gltf-validator is not installed')
+        issues = json.loads(run.stdout)
+        assert (issues['numErrors'], issues['numWarnings']) == (0, 0)
+
+
+@pytest.mark.long
+def test_blender_reads_it_and_it_moves(tmp_path, simulator, leaves):
+    bpy = pytest.importorskip('bpy', reason='needs Blender as a module (pip install bpy)')
+    write_gltf(tmp_path / 'tree.glb', morphing_tree(simulator, leaves))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.import_scene.gltf(filepath=str(tmp_path / 'tree.glb'))
+    (shown,) = [each for each in bpy.data.objects if each.type == 'MESH']
+    assert shown.dimensions.z == pytest.approx(simulator.tree.height, rel=0.1)
+    places = []
+    for frame in (10, 60):
+        bpy.context.scene.frame_set(frame)
+        drawn = shown.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+        places.append([shown.matrix_world @ vertex.co for vertex in drawn.vertices])
+    moved = max((b - a).length for a, b in zip(*places, strict=True))
+    assert 1e-3 < moved < 0.5 * simulator.tree.height

@@ -53,10 +53,11 @@ def test_cones_are_closed_and_face_outward(tree):
 def test_normals_are_across_the_surface(tree):
     mesh = wood_mesh(tree)
     np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-12)
-    a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
+    sides = mesh.triangles.reshape(tree.n_segments, -1, 3)[:, : 2 * SIDES].reshape(-1, 3)
+    a, b, c = (mesh.points[sides[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
     across /= np.linalg.norm(across, axis=1)[:, None]
-    agreement = np.einsum('ij,ikj->ik', across, mesh.normals[mesh.triangles])
+    agreement = np.einsum('ij,ikj->ik', across, mesh.normals[sides])
     assert agreement.min() > np.cos(np.pi / SIDES) - 1e-6
 
 
@@ -70,3 +71,17 @@ def test_leaves_lie_as_their_clusters(tree):
     np.testing.assert_allclose(
         (mesh.points[::4] + mesh.points[2::4]) / 2, leaves.offset, atol=1e-12
     )
+
+
+def test_a_texture_goes_along_each_branch_once(tree):
+    mesh = wood_mesh(tree)
+    along = mesh.texture[:, 1].reshape(tree.n_segments, 2, SIDES)
+    for branch in range(tree.n_branches):
+        here = along[tree.segments_of(branch)]
+        assert (here[0, 0] == 0.0).all()
+        np.testing.assert_allclose(here[-1, 1], 1.0, rtol=1e-12)
+        np.testing.assert_allclose(here[1:, 0], here[:-1, 1], rtol=1e-12)
+    assert SIDES % 2 == 0
+    around = mesh.texture[:SIDES, 0]  # there and back
+    np.testing.assert_allclose(around[1:], around[:0:-1], atol=1e-12)
+    assert (around[0], around[SIDES // 2]) == (0.0, 1.0)

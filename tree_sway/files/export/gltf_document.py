@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-_COMPONENTS = {'uint8': 5121, 'uint16': 5123, 'uint32': 5125, 'float32': 5126}
-_SHAPES = {(): 'SCALAR', (3,): 'VEC3', (4,): 'VEC4', (4, 4): 'MAT4'}
+_COMPONENTS = {
+    'int8': 5120, 'uint8': 5121, 'int16': 5122, 'uint16': 5123, 'uint32': 5125, 'float32': 5126
+}  # fmt: skip
+_SHAPES = {(): 'SCALAR', (2,): 'VEC2', (3,): 'VEC3', (4,): 'VEC4', (4, 4): 'MAT4'}
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
 
@@ -36,29 +38,39 @@ class GltfDocument:
         self._json.update(properties)
 
     def add_array(
-        self, array: NDArray[Any], *, target: int | None = None, bounds: bool = False
+        self,
+        array: NDArray[Any],
+        *,
+        target: int | None = None,
+        bounds: bool = False,
+        is_share: bool = False,
     ) -> int:
         """
-        Add an array of uint8, uint16, uint32 or float32 as an accessor and return its number.
+        Add an array as an accessor and return its number.
 
-        It is (n,), (n, 3), (n, 4), or matrices by columns (n, 4, 4); for `ARRAY_BUFFER` (vertices)
-        or `ELEMENT_ARRAY_BUFFER` (indices). Bounds are written for positions and times.
+        It is (n,), (n, 2), (n, 3), (n, 4), or matrices by columns (n, 4, 4); for `ARRAY_BUFFER`
+        (vertices) or `ELEMENT_ARRAY_BUFFER` (indices). Bounds are written for positions and times;
+        shares are whole numbers of the largest one of their type.
         """
+        columns = array.reshape(len(array), -1)
+        rows, stride = columns, columns.itemsize * columns.shape[1]
+        if target == ARRAY_BUFFER and stride % 4:  # vertices begin at multiples of 4 bytes
+            rows = np.pad(columns, ((0, 0), (0, -stride % 4 // columns.itemsize)))
         view = self.add(
             'bufferViews',
             buffer=0,
             byteOffset=len(self._bytes),
-            byteLength=array.nbytes,
+            byteLength=rows.nbytes,
+            byteStride=rows.strides[0] if rows is not columns else None,
             target=target,
         )
-        self._bytes += np.ascontiguousarray(array).astype(array.dtype.newbyteorder('<')).tobytes()
+        self._bytes += np.ascontiguousarray(rows).astype(rows.dtype.newbyteorder('<')).tobytes()
         self._bytes += b'\0' * (-len(self._bytes) % 4)
-        columns = array.reshape(len(array), -1)
         return self.add(
             'accessors',
             bufferView=view,
             componentType=_COMPONENTS[array.dtype.name],
-            normalized=True if array.dtype == np.uint8 else None,
+            normalized=is_share or None,
             count=len(array),
             type=_SHAPES[array.shape[1:]],
             min=columns.min(axis=0).tolist() if bounds else None,

@@ -12,6 +12,7 @@ specification, which the node of the tree turns: all inside it keeps our frame.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -62,13 +63,23 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     skin = document.add('skins', joints=joints, skeleton=root, inverseBindMatrices=inverse)
     primitives = []
     for material, mesh in _meshes(tree, leaves):
-        primitive = _primitive(document, material, tree.species, mesh, poses)
+        points, normals = mesh.placed(poses), _normals(mesh, poses)
+        primitive = _primitive(
+            document,
+            material,
+            tree.species,
+            mesh,
+            POSITION=document.add_array(
+                points.astype(np.float32), target=ARRAY_BUFFER, bounds=True
+            ),
+            NORMAL=document.add_array(normals.astype(np.float32), target=ARRAY_BUFFER),
+        )
         joint = np.zeros((len(mesh.points), 4), dtype=np.uint16)
         weight = np.zeros((len(mesh.points), 4), dtype=np.uint8)
         joint[:, 0], weight[:, 0] = mesh.segment, 255
         primitive['attributes'] |= {
             'JOINTS_0': document.add_array(joint, target=ARRAY_BUFFER),
-            'WEIGHTS_0': document.add_array(weight, target=ARRAY_BUFFER),
+            'WEIGHTS_0': document.add_array(weight, target=ARRAY_BUFFER, is_share=True),
         }
         primitives.append(primitive)
     body = document.add('meshes', name=tree.name, primitives=primitives)
@@ -84,19 +95,37 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     Return a tree on any model of a simulator as a mesh with a morph target per coordinate.
 
     A weight is the coordinate over its ``unit``, which the mesh's extras list with the digest of
-    the basis; 1 is as far as it goes in a storm. An animation plays a breeze.
+    the basis and how far the coordinate goes in a ``storm``. Positions are whole numbers which the
+    node scales (KHR_mesh_quantization); that small ones suffice, a weight of 1 moves some vertex
+    by half the size of the tree, and a ring of wood is moved as one. An animation plays a breeze.
     """
     tree, basis = simulator.tree, state_basis(simulator)
-    unit = basis.scale / MARGIN
+    storm = basis.scale / MARGIN
     document, rest = GltfDocument(_GENERATOR), tree.rest_poses
-    steps = [_swung(simulator, basis, k, unit[k]) for k in range(basis.n_coordinates)]
-    names = tuple(f'sway {k + 1}' for k in range(basis.n_coordinates))
+    meshes = _meshes(tree, leaves)
+    steps = [_swung(simulator, basis, k, storm[k]) for k in range(basis.n_coordinates)]
+    changes = [[_change(material, mesh, step) for step in steps] for material, mesh in meshes]
+    places = [mesh.placed(rest) for _, mesh in meshes]
+    low, high = (limit(np.vstack(places), axis=0) for limit in (np.min, np.max))
+    size, middle = 0.5 * float((high - low).max()), 0.5 * (low + high)
+    greatest = np.array([[np.abs(change).max() for change in each] for each in changes]).max(
+        axis=0
+    )
+    unit = storm * size / greatest
+    names = [f'sway {k + 1}' for k in range(basis.n_coordinates)]
     primitives = []
-    for material, mesh in _meshes(tree, leaves):
-        primitive = _primitive(document, material, tree.species, mesh, rest)
+    for (material, mesh), points, moved in zip(meshes, places, changes, strict=True):
+        primitive = _primitive(
+            document,
+            material,
+            tree.species,
+            mesh,
+            POSITION=_add_shares(document, (points - middle) / size, np.int16, bounds=True),
+            NORMAL=_add_shares(document, _normals(mesh, rest), np.int8),
+        )
         primitive['targets'] = [
-            {'POSITION': document.add_array(change, target=ARRAY_BUFFER, bounds=True)}
-            for change in (_change(mesh, step).astype(np.float32) for step in steps)
+            {'POSITION': _add_shares(document, change / most, np.int8, bounds=True)}
+            for change, most in zip(moved, greatest, strict=True)
         ]
         primitives.append(primitive)
     body = document.add(
@@ -104,11 +133,24 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
         name=tree.name,
         primitives=primitives,
         weights=[0.0] * len(names),
-        extras={'targetNames': list(names), 'unit': unit.tolist(), 'basis': basis.digest},
+        extras={
+            'targetNames': names,
+            'unit': unit.tolist(),
+            'storm': storm.tolist(),
+            'basis': basis.digest,
+        },
     )
-    shown = document.add('nodes', name=tree.name, mesh=body, rotation=_Y_UP)
+    shown = document.add(
+        'nodes',
+        name=tree.name,
+        mesh=body,
+        rotation=_Y_UP,
+        scale=[size] * 3,
+        translation=Rotation.from_quat(_Y_UP).apply(middle).tolist(),
+    )
     document.add('scenes', nodes=[shown])
-    document.set(scene=0)
+    quantised = ['KHR_mesh_quantization']
+    document.set(scene=0, extensionsUsed=quantised, extensionsRequired=quantised)
     weights = in_breeze(
         simulator, _SECONDS, lambda: basis.coordinates(simulator.rotations()) / unit
     )
@@ -121,21 +163,31 @@ def _meshes(tree: Tree, leaves: LeafClusters | None) -> list[tuple[str, TreeMesh
     return [wood] if leaves is None else [wood, ('leaves', leaf_mesh(leaves))]
 
 
+def _normals(mesh: TreeMesh, poses: Floats) -> Floats:
+    return np.asarray(Rotation.from_quat(poses[mesh.segment, 3:]).apply(mesh.normals))
+
+
+def _add_shares(document: GltfDocument, values: Floats, kind: Any, **options: bool) -> int:
+    """Add values of vertices, within -1 .. 1, as whole numbers."""
+    most = np.iinfo(kind).max
+    whole = np.rint(np.clip(values, -1.0, 1.0) * most).astype(kind)
+    return document.add_array(whole, target=ARRAY_BUFFER, is_share=True, **options)
+
+
 def _primitive(
-    document: GltfDocument, material: str, species: str, mesh: TreeMesh, poses: Floats
+    document: GltfDocument, material: str, species: str, mesh: TreeMesh, **attributes: int
 ) -> dict[str, Any]:
-    """Part of a mesh at rest, in the frame of the tree."""
+    """Part of a mesh, with its colour, its texture's places and what else its vertices have."""
     is_bark = material == 'bark'
     color = bark_color(species) if is_bark else leaf_traits(species).green
-    normals = Rotation.from_quat(poses[mesh.segment, 3:]).apply(mesh.normals)
-    points = mesh.placed(poses).astype(np.float32)
+    kind = np.uint16 if len(mesh.points) < 65535 else np.uint32  # 65535 starts a new strip
     return {
         'attributes': {
-            'POSITION': document.add_array(points, target=ARRAY_BUFFER, bounds=True),
-            'NORMAL': document.add_array(normals.astype(np.float32), target=ARRAY_BUFFER),
+            **attributes,
+            'TEXCOORD_0': _add_shares(document, mesh.texture, np.uint16),
         },
         'indices': document.add_array(
-            mesh.triangles.ravel().astype(np.uint32), target=ELEMENT_ARRAY_BUFFER
+            mesh.triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER
         ),
         'material': document.add(
             'materials',
@@ -170,8 +222,10 @@ def _swung(
     return there, simulator.place_rotations(basis.rotations(-coordinates)).copy()
 
 
-def _change(mesh: TreeMesh, step: tuple[Floats, Floats]) -> Floats:
+def _change(material: str, mesh: TreeMesh, step: tuple[Floats, Floats]) -> Floats:
     """Return what a coordinate's unit does to vertices, half from each side to the other."""
+    if material == 'bark':  # a ring goes as its centre does: rounded alone it would be crushed
+        mesh = replace(mesh, points=mesh.points * [1.0, 0.0, 0.0])
     return (0.5 / _SWING) * (mesh.placed(step[0]) - mesh.placed(step[1]))
 
 

@@ -143,8 +143,7 @@ class _Inventory:
         texts = self._table.cells(column.index, range(len(self._table.texts)))
         for row, text in enumerate(texts):
             if not text:
-                where = self._table.where(row)
-                raise FormatError(f'no {quantity}', where=where, cure='fill the cell')
+                raise self._table.error(f'no {quantity}', row, 'fill the cell')
         return texts
 
     def optional(self, name: str, otherwise: Floats) -> Floats:
@@ -172,8 +171,7 @@ class _Inventory:
         for row, cell in enumerate(cells):
             found = _NUMBER.findall(cell)
             if len(found) != 2:
-                what = f"'{cell[:40]}' is no latitude and longitude"
-                raise FormatError(what, where=self._table.where(row))
+                raise self._table.error(f"'{cell[:40]}' is no latitude and longitude", row)
             pairs[:, row] = found[::-1] if cell.upper().startswith('POINT') else found
         return list(pairs)
 

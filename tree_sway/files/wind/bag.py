@@ -77,17 +77,12 @@ def _chosen(types: dict[str, str], topic: str | None, source: str) -> str:
                 return name
     elif len(of_wind) == 1:
         return of_wind[0]
-    names = ', '.join(sorted(of_wind)) or 'none'
-    if topic is not None:
-        raise FormatError(f"no wind on topic '{topic}'", where=source, cure=f'wind is on: {names}')
-    if of_wind:
-        raise FormatError('wind on several topics', where=source, cure=f'choose a topic: {names}')
-    there = ', '.join(f'{name} ({kind})' for name, kind in [*types.items()][:10]) or 'nothing'
-    raise FormatError(
-        f'no topic of a wind type; there is {there}',
-        where=source,
-        cure=f'types: {", ".join(WIND_TYPES)}',
-    )
+    what = f"no wind on topic '{topic}'" if topic else f'wind on {len(of_wind)} topics'
+    cure = f'choose a topic: {", ".join(sorted(of_wind))}'
+    if not of_wind:
+        there = ', '.join(f'{name} ({kind})' for name, kind in [*types.items()][:10]) or 'nothing'
+        cure = f'there is {there}; wind is one of {", ".join(WIND_TYPES)}'
+    raise FormatError(what, where=source, cure=cure)
 
 
 def _sample(data: bytes, *, has_header: bool) -> tuple[int, tuple[float, float, float]]:

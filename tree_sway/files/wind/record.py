@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Floats
 from tree_sway.core.wind.convention import WindConvention
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import FormatError
@@ -111,11 +111,6 @@ class WindRows:
         if number < self._first_number:
             self._first_number = number
             self.first_refused = f'{self.row_name} {number}: {reason}'
-
-    def add_block(self, numbers: Ints, velocity: Floats) -> None:
-        """Take many rows, whose times are filled in later."""
-        self.number.frombytes(numbers.astype(np.int64).tobytes())
-        self.velocity.frombytes(velocity.astype(np.float64).tobytes())
 
     def record(
         self,

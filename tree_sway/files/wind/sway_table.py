@@ -20,7 +20,6 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.errors import FormatError
 from tree_sway.files.table_file import COLUMNS, MOTIONS, parse_table, TextTable
 from tree_sway.files.text_file import read_lines
 
@@ -72,29 +71,21 @@ def read_csv_sway(path: Path) -> SwayRecord:
     clock = next((names.index(each) for each in COLUMNS['time']['names'] if each in names), None)
     motion = [(i, q) for i, (name, _) in enumerate(table.headings) if (q := _quantity(name))]
     if clock is None or not motion:
-        raise FormatError(
-            f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}',
-            where=table.where(),
-            cure='name the columns time, x, y or time, tilt_x or time, ax, ay in the header',
-        )
+        what = f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}'
+        cure = 'name the columns time, x, y or time, tilt_x or time, ax, ay in the header'
+        raise table.error(what, cure=cure)
     if 'seconds_elapsed' in names:  # Sensor Logger calls the axes of any of its sensors x, y, z
         motion = [(i, 'acceleration' if q == 'displacement' else q) for i, q in motion]
     quantities = sorted({quantity for _, quantity in motion})
     if len(quantities) > 1:
-        raise FormatError(
-            f'{" and ".join(quantities)} in one file',
-            where=table.where(),
-            cure='keep the columns of one quantity',
-        )
+        what = f'{" and ".join(quantities)} in one file'
+        raise table.error(what, cure='keep the columns of one quantity')
     factors = [table.factor(i, quantities[0]) for i, _ in motion]
     columns = [table.columns[i] for i, _ in motion]
     values = table.strict(columns)
     for row, column in np.argwhere(~(np.abs(values) * factors <= MAX_VALUE))[:1]:
-        raise FormatError(
-            f'{columns[column]} is {values[row, column]:.3g}, which nothing measures',
-            where=table.where(row),
-            cure='mend the cell or remove the row',
-        )
+        what = f'{columns[column]} is {values[row, column]:.3g}, which nothing measures'
+        raise table.error(what, row, 'mend the cell or remove the row')
     times = _times(table, clock)
     return SwayRecord(times, values * factors, quantities[0], tuple(columns), source)
 
@@ -108,15 +99,9 @@ def _times(table: TextTable, clock: int) -> Floats:
     stamps = table.cells(clock, range(len(table.texts)))
     times, _ = table.seconds(stamps, table.factor(clock, 'time'))
     for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
-        raise FormatError(
-            f"time is '{stamps[row][:40]}', neither seconds nor a date",
-            where=table.where(row),
-            cure='mend the cell or remove the row',
-        )
+        what = f"time is '{stamps[row][:40]}', neither seconds nor a date"
+        raise table.error(what, row, 'mend the cell or remove the row')
     for row in np.flatnonzero(np.diff(times) <= 0.0)[:1]:
-        raise FormatError(
-            f'time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}',
-            where=table.where(row + 1),
-            cure='put the rows in the order of time, each time once',
-        )
+        what = f'time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}'
+        raise table.error(what, row + 1, 'put the rows in the order of time, each time once')
     return times

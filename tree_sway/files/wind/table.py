@@ -30,7 +30,6 @@ import re
 import numpy as np
 
 from tree_sway.core.wind.convention import WindConvention
-from tree_sway.errors import FormatError
 from tree_sway.files.table_file import Column, COLUMNS, parse_table, split_row, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.wind.record import WindRecord, WindRows
@@ -98,12 +97,10 @@ def _wind(
     if not has_components:
         found = [table.find('wind_speed'), table.find('wind_direction')]
     if clock is None or None in found[:2]:
-        raise FormatError(
-            'no time with u and v, or with speed and direction, among '
-            f'{", ".join(table.columns[:20])}',
-            where=table.where(),
-            cure='name the columns so in the header, or by the option columns',
-        )
+        names = ', '.join(table.columns[:20])
+        what = f'no time with u and v, or with speed and direction, among {names}'
+        cure = 'name the columns so in the header, or by the option columns'
+        raise table.error(what, cure=cure)
     columns = [column for column in found if column is not None]
     indices = [column.index for column in columns]
     values = table.values(indices) * [column.factor for column in columns]
@@ -129,8 +126,8 @@ def _wind(
         convention, yaw = 'to', 0.0
     kept = np.flatnonzero(good)
     seconds, epoch = table.seconds(_stamps(table, clock, kept.tolist()), clock.factor)
-    rows.add_block(np.array(table.numbers, dtype=np.int64)[kept], velocity[kept])
-    rows.time = array('d', seconds.tolist())
+    rows.number = array('q', [table.numbers[row] for row in kept.tolist()])
+    rows.velocity, rows.time = array('d', velocity[kept].ravel()), array('d', seconds)
     gust = table.find('gust')
     if gust is not None:
         rows.gust = table.values([gust.index])[kept, 0] * gust.factor

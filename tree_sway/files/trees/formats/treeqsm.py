@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
 from tree_sway.files.table_file import parse_columns
-from tree_sway.files.text_file import finite, read_lines, why_no_number
+from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.mat_file import looks_like_mat, numbers, read_mat
 from tree_sway.files.trees.tree_format import TreeFormat
@@ -88,17 +88,10 @@ def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
     first = next((i for i, line in enumerate(lines) if line.strip()), 0)
     if lines and all(finite(cell) is None for cell in _cells(lines[first])):
         lines[first] = ''
-    table = parse_columns(lines, str(path), [''] * _COLUMNS, _cells)
-    values = table.values(range(_COLUMNS))
-    for row in np.flatnonzero(np.isnan(values).any(axis=1))[:1]:
-        bad = next(
-            (f': {why_no_number(c)}' for c in _cells(table.texts[row]) if finite(c) is None), ''
-        )
-        raise FormatError(
-            f'{np.isfinite(values[row]).sum()} good numbers of {_COLUMNS}{bad}',
-            where=table.where(row),
-            cure='a row is radius, length, start, axis, parent, extension ...',
-        )
+    names = [f'{field}{"xyz"[axis] * (width > 1)}' for field, width in _FIELDS.items()
+             for axis in range(width)]  # fmt: skip
+    table = parse_columns(lines, str(path), names, _cells)
+    values = table.strict(names)
     labels = [f'{table.where(row)}: cylinder {row + 1}' for row in range(len(values))]
     return (_cylinders(values, labels, str(path)),)
 
