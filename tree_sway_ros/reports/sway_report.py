@@ -65,7 +65,6 @@ def _wind(state: str, counts: GateCounts) -> Status:
 def _model(simulator: Simulator) -> Status:
     values = {
         'model': simulator.model,
-        'branches solved': simulator.n_solved,
         **vars(simulator.counts),
     }
     trees = simulator.simulators

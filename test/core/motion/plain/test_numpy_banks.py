@@ -62,9 +62,8 @@ def test_two_hundred_random_steps_agree(tree, name, model):
 
 
 @pytest.mark.parametrize('model', ['branch'])
-def test_twigs_that_copy_agree(model):
+def test_a_tree_of_many_twigs_agrees(model):
     sim, twin = pair(builtin_tree('benjamina'), model)
-    assert sim.n_solved < sim.tree.n_branches
     for k in range(60):
         wind = (6.0, np.sin(k), 0.5)
         assert sim.step(wind, 1 / 60) == twin.step(wind, 1 / 60)

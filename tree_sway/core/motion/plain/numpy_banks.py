@@ -58,7 +58,7 @@ class NumpyUncoupledBank(UncoupledBank):
         )
         force = passes.at_bases(middle_x, force)
         load = passes.own_loads(force)
-        self.work['force'] = force[self.branches['source']]
+        self.work['force'] = force
         into_lanes(impulse, self._banks['drag_impulse'])
         into_lanes(load, self._banks['load'])
         return self._step(x, v, load)
@@ -81,12 +81,10 @@ class NumpyUncoupledBank(UncoupledBank):
         then = two_axis_moment(
             ahead_x + c[:, 3] * now, ahead_v + c[:, 7] * now, load, gyro, moment_limit
         )
-        source = self.branches['source']
-        x[:] = (ahead_x + c[:, 3] * then)[source]
-        v[:] = (ahead_v + c[:, 7] * then)[source]
+        x[:], v[:] = ahead_x + c[:, 3] * then, ahead_v + c[:, 7] * then
         if not (np.isfinite(x).all() and np.isfinite(v).all()):
             return -1
-        return int(held[source == np.arange(len(source))].sum())
+        return int(held.sum())
 
 
 class NumpyModalBank(ModalBank):

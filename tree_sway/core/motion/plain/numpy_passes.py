@@ -50,7 +50,7 @@ class NumpyPasses:
     def __init__(self, branches: Records) -> None:
         """Take over columns, and sort the branches by level."""
         names = (
-            'parent', 'source', 'twist', 'damping_mode', 'load_rotation', 'load_mode', 'lever',
+            'parent', 'twist', 'damping_mode', 'load_rotation', 'load_mode', 'lever',
             'speed', 'base', 'arm', 'per_arm',
         )  # fmt: skip
         self._of: dict[str, NDArray[Any]] = {
