@@ -55,7 +55,7 @@ def test_what_is_no_wind_is_refused_and_counted_by_cause(chain, faulty, kind, ca
     [
         ('zero_stamp', ('zero_stamp',)),
         ('future_stamp', ('future_stamp',)),
-        ('reorder', ('out_of_order', 'overtaken_stamp')),
+        ('reorder', ('out_of_order',)),
         ('delay', ('accepted',)),
     ],
 )

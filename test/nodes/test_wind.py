@@ -230,7 +230,7 @@ def test_stamps_that_lie_are_counted_and_never_step_back(compose, observer):
     observer.until(lambda: filtered[-1].vector.x == pytest.approx(3.5), 'every sample')
     counts = nodes['wind']._intake.counts
     assert (counts.zero_stamp, counts.future_stamp, counts.old_stamp) == (1, 1, 1)
-    assert counts.out_of_order + counts.duplicate_stamp == 2
+    assert counts.out_of_order == 2
     assert (np.diff([stamp_to_ns(m.header.stamp) for m in filtered]) > 0).all()
     assert [round(m.vector.x, 1) for m in filtered[-6:]] == [3.0, 3.1, 3.2, 3.3, 3.4, 3.5]
 

@@ -51,7 +51,6 @@ _OPEN = (
     '--zenoh-config names certificates or a password (doc/streaming.md, Security of the relay)'
 )
 _SECOND = 1_000_000_000
-_EVERY = 2  # steps per frame
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -114,13 +113,12 @@ class _Relay:
             print(f'page: {server.url}', flush=True)
             scene = SceneState(simulator, is_running=False)
             server.describe(scene.description)
-            self._outputs.append(partial(self._show, server, scene))
+            self._outputs.append(lambda stamp: server.publish(scene.frame(stamp)))
         simulator.reset()
 
     def send(self, ending: Ending) -> None:
         """Send the wind, and answer those who join."""
         line, site = self._line, self._site
-        line.answer('tree', site.identity)
         line.answer('snapshot', site.snapshot)
         print(f'sending the wind of {site.simulator.tree.name}', flush=True)
         if self._ros is not None:
@@ -153,9 +151,6 @@ class _Relay:
 
     def receive(self, ending: Ending) -> None:
         """Take the wind from where the sender is, or from rest."""
-        if not self._agree(ending):
-            return
-        self._line.hear('wind/filtered', self._take)
         self._join(ending)
         print(f'receiving the wind of {self._site.simulator.tree.name}', flush=True)
         while not ending.is_asked and self._passed < self._seconds:
@@ -169,34 +164,32 @@ class _Relay:
             if good is not None and self._ros is not None:
                 self._ros.publish(_encoded(good))
 
-    def _agree(self, ending: Ending) -> bool:
-        """Wait for a sender; raises a `StateError` if it has another tree. False at the end."""
-        while not ending.is_asked:
-            identity = self._line.ask('tree', 1.0)
-            if identity is None:
+    def _join(self, ending: Ending) -> None:
+        """
+        Wait for a sender and go on from its snapshot, or from rest where none fits in some tries.
+
+        Raises a `StateError` if it has another tree.
+        """
+        tries = 0
+        while tries < _TRIES and not ending.is_asked:
+            snapshot, different = self._line.ask('snapshot', 1.0), ''
+            if snapshot is None:
                 continue
-            different = None
-            with self._refusing('identity of a sender'):
-                different = self._site.differences(identity)
+            tries += 1
+            if tries == 1:  # no sample between a snapshot and the next may be lost
+                self._line.hear('wind/filtered', self._take)
+                continue
+            with self._refusing('snapshot'):
+                different = self._site.differences(snapshot)
+                if not different:
+                    return self._site.join(snapshot, time.time_ns())
             if different:
                 raise StateError(
                     f'the other site has {different}',
                     where=self._site.simulator.tree.name,
                     cure='open the same tree with the same settings and release at both sites',
                 )
-            if different is not None:
-                return True
             self._pause.wait(_LOOK)
-        return False
-
-    def _join(self, ending: Ending) -> None:
-        """Set a snapshot, or go on from rest where none fits in some tries."""
-        for _ in range(_TRIES):
-            if ending.is_asked:
-                return
-            if snapshot := self._line.ask('snapshot', 1.0):
-                with self._refusing('snapshot'):
-                    return self._site.join(snapshot, time.time_ns())
         print('no snapshot that fits: going on from rest', file=sys.stderr, flush=True)
 
     def report(self) -> None:
@@ -224,11 +217,6 @@ class _Relay:
         self._first, self._last = self._first or stamp, stamp
         for output in self._outputs:
             output(stamp)
-
-    def _show(self, server: PageServer, scene: SceneState, stamp: int) -> None:
-        """Publish every second step on the page."""
-        if stamp // self._site.run.period % _EVERY == 0:
-            server.publish(scene.frame(stamp))
 
 
 def _log_tip(log: TextIO, simulator: Simulator, stamp: int) -> None:

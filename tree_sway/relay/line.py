@@ -5,8 +5,7 @@ The line between sites: keys of Zenoh, whose payloads are messages of ROS and JS
 
 ========================= ====================================================
 ``PREFIX/wind/filtered``   the gated wind, ``geometry_msgs/Vector3Stamped`` in CDR
-``PREFIX/tree``            answers what sites must agree in, JSON
-``PREFIX/snapshot``        answers the state of now, JSON
+``PREFIX/snapshot``        answers the state of now, and what sites must agree in, JSON
 ========================= ====================================================
 """
 

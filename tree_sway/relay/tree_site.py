@@ -51,24 +51,25 @@ class Site:
         self.run = Run(simulator, rate, stepped=stepped)
         self._has_wind = False
         self._lock = threading.RLock()
-        self.n_joined = 0
-        """Snapshots that were set."""
 
-    def identity(self) -> str:
-        """Return what sites must agree in, as JSON."""
+    def _identity(self) -> dict[str, Any]:
+        """Return what sites must agree in."""
         simulator = self.simulator
         agreed = {'tree': simulator.tree.name, 'digest': simulator.digest(), 'rate': self.rate}
-        return json.dumps({**agreed, 'model': simulator.model})
+        return {**agreed, 'model': simulator.model}
 
-    def differences(self, identity: bytes | str) -> str:
+    def differences(self, snapshot: bytes | str) -> str:
         """
-        Say in what another site differs, empty if in nothing.
+        Say in what the site of a snapshot differs, empty if in nothing.
 
-        A `StateError` for what is no identity.
+        A `StateError` for what is no snapshot.
         """
-        theirs, own = _object(identity), json.loads(self.identity())
-        different = [f'{key} {str(theirs.get(key))[:60]!r}, not {own[key]!r}' for key in own
-                     if theirs.get(key) != own[key]]  # fmt: skip
+        theirs = _object(snapshot)
+        different = [
+            f'{key} {str(theirs.get(key))[:60]!r}, not {own!r}'
+            for key, own in self._identity().items()
+            if theirs.get(key) != own
+        ]
         return '; '.join(different)
 
     def add_wind(
@@ -93,12 +94,12 @@ class Site:
                 self.run.advance(now - round(PATIENCE * _SECOND), may_join=False)
 
     def snapshot(self) -> str:
-        """State and wind, as JSON; empty before the first step."""
+        """Identity, state and wind, as JSON; empty before the first step."""
         with self._lock:
             if self.run.time is None:
                 return ''
             state = base64.b64encode(self.simulator.state().to_bytes()).decode()
-            return json.dumps({'state': state, 'run': self.run.memory()})
+            return json.dumps({**self._identity(), 'state': state, 'run': self.run.memory()})
 
     def join(self, snapshot: bytes | str, now: int) -> None:
         """
@@ -110,21 +111,18 @@ class Site:
         try:
             state = TreeState.from_bytes(base64.b64decode(content['state'], validate=True))
             time, origin, wind, samples = content['run']
-            waiting = [(int(stamp), [float(x), float(y), float(z)])
-                       for stamp, (x, y, z) in samples]  # fmt: skip
+            waiting = [(int(stamp), [*map(float, velocity)]) for stamp, velocity in samples]
             late = max(abs(int(stamp) - now) for stamp in (time, *(each[0] for each in waiting)))
             is_sound = all(is_wind(*velocity) for _, velocity in waiting)
             is_sound &= 0 <= int(time) - int(origin) < 2 * 10_000 * _SECOND
         except (ValueError, KeyError, TypeError, OverflowError) as error:
             raise StateError(f'a snapshot that cannot be read ({str(error)[:60]})') from error
-        if late > _OLDEST_SNAPSHOT:
+        if late > _OLDEST_SNAPSHOT or not is_sound:
             raise StateError(
-                'a snapshot of another time',
+                'a snapshot of another time, or of a wind that cannot be',
                 where=self.simulator.tree.name,
                 cure='set the clocks of both sites by NTP',
             )
-        if not is_sound:
-            raise StateError('a snapshot whose wind cannot be')
         with self._lock:
             before = self.simulator.state()
             self.simulator.set_state(state)
@@ -134,7 +132,6 @@ class Site:
                 self.simulator.set_state(before)
                 raise StateError(f'a snapshot that cannot be read ({error})') from error
             self._has_wind = True
-            self.n_joined += 1
 
 
 def _object(text: bytes | str) -> dict[str, Any]:

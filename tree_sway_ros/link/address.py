@@ -9,7 +9,7 @@ import re
 
 from tree_sway.errors import ParameterError
 
-_NETWORK = re.compile(r'(tcp|udp)://([^/:\s]*):(\d{1,5})')
+_NETWORK = re.compile(r'(tcp(?=://[^:])|udp)://([^/:\s]*):(\d{1,5})')
 _SERIAL = re.compile(r'serial:(/[^\s:]+|COM\d+)(?::(\d{3,7}))?')
 _BAUD = 4800  # of NMEA 0183
 
@@ -28,19 +28,13 @@ class Address:
 
     def __str__(self) -> str:
         """Return the address as it is written."""
-        if self.kind == 'serial':
-            return f'serial:{self.place}:{self.number}'
-        return f'{self.kind}://{self.place}:{self.number}'
+        return f'{self.kind}:{"" if self.kind == "serial" else "//"}{self.place}:{self.number}'
 
 
 def read_address(text: str) -> Address:
     """Read an address; a `ParameterError` for any other text."""
     network, serial = _NETWORK.fullmatch(text), _SERIAL.fullmatch(text)
-    if (
-        network is not None
-        and 0 < int(network[3]) < 65_536
-        and (network[2] or network[1] == 'udp')
-    ):
+    if network is not None and 0 < int(network[3]) < 65_536:
         return Address(network[1], network[2], int(network[3]))
     if serial is not None:
         return Address('serial', serial[1], int(serial[2] or _BAUD))

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 import importlib
 import socket
@@ -18,7 +18,7 @@ from tree_sway_ros.link.lines import Lines
 from tree_sway_ros.timing.worker import Worker
 
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
-"""Between two attempts [s]: doubled from the first to the longest while nothing comes."""
+"""Pause between two attempts [s]: doubled from the first to the longest while nothing comes."""
 _CONNECT_FOR = 5.0  # [s]
 _READ_FOR = 0.1  # [s]: as soon a silent link sees that it is to end
 _DATAGRAM = 65_536
@@ -30,7 +30,7 @@ Read = Callable[[], bytes | None]
 @dataclass(eq=False)
 class LineSource(Worker):
     """
-    Listens to an instrument at an address; hands each line to `take`, in a thread of its own.
+    Listens to an instrument at an address; gives each line to `take`, in a thread of its own.
 
     A link without a byte for the time of `silence` [s] is given up and opened again, first after
     `first_pause` [s]. A `MissingDependencyError` says that a serial port needs pyserial.
@@ -56,7 +56,7 @@ class LineSource(Worker):
         while not self._stopping.is_set():
             before = self.lines
             try:
-                with _LINKS[self.address.kind](self.address) as read:
+                with _opened(self.address) as read:
                     why = self._listen(read)
             except Exception as error:  # an instrument may fail in any way, and is tried again
                 why = f'{type(error).__name__}: {error}'
@@ -90,38 +90,30 @@ class LineSource(Worker):
 
 
 @contextmanager
-def _tcp(address: Address) -> Iterator[Read]:
-    with socket.create_connection((address.place, address.number), _CONNECT_FOR) as link:
+def _opened(address: Address) -> Iterator[Read]:
+    """Open the link of an address."""
+    where = address.place, address.number
+    if address.kind == 'serial':
+        with _pyserial().Serial(*where, timeout=_READ_FOR) as port:
+            yield lambda: port.read(max(1, port.in_waiting))
+        return
+    is_tcp = address.kind == 'tcp'
+    if is_tcp:
+        link = socket.create_connection(where, _CONNECT_FOR)
+    else:
+        link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    with link:
+        if not is_tcp:
+            link.bind(where)
         link.settimeout(_READ_FOR)
-        yield lambda: _received(link)
 
+        def read() -> bytes | None:
+            try:
+                return link.recv(_DATAGRAM) or (None if is_tcp else b'')
+            except TimeoutError:
+                return b''
 
-@contextmanager
-def _udp(address: Address) -> Iterator[Read]:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
-        link.bind((address.place, address.number))
-        link.settimeout(_READ_FOR)
-        yield lambda: _received(link) or b''
-
-
-@contextmanager
-def _port(address: Address) -> Iterator[Read]:
-    with _pyserial().Serial(address.place, address.number, timeout=_READ_FOR) as port:
-        yield lambda: port.read(max(1, port.in_waiting))
-
-
-def _received(link: socket.socket) -> bytes | None:
-    try:
-        return link.recv(_DATAGRAM) or None
-    except TimeoutError:
-        return b''
-
-
-_LINKS: dict[str, Callable[[Address], AbstractContextManager[Read]]] = {
-    'tcp': _tcp,
-    'udp': _udp,
-    'serial': _port,
-}
+        yield read
 
 
 def _pyserial() -> Any:

@@ -38,9 +38,6 @@ _RECENT = 5.0
 class WindNode(TreeSwayNode):
     """Subscribes `wind`, publishes `wind/filtered` and `wind/force_plane`."""
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__('wind', **options)
-
     def configure(self) -> None:
         """Subscribe and publish; what comes while inactive is dropped."""
         self._report = WindReport()
@@ -53,7 +50,7 @@ class WindNode(TreeSwayNode):
         kind = WIND_CLASSES[self.values['input_type']]
         self._topic = self.subscription(WIND, self._receive, kind, alone=True).topic_name
         self.report_with('wind', self._statuses)
-        self.get_logger().info(self._convention.describe())
+        self.get_logger().info(f'reading wind as {self._convention}')
 
     def activate(self) -> None:
         """Where simulated time is set back, samples of before say nothing of those to come."""

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.identification.ambient_sway import ambient_sway
 from tree_sway.core.identification.measured_sway import estimate_sway
 from tree_sway.errors import FormatError, ParameterError
 
@@ -145,12 +144,6 @@ def test_too_short_a_release():
     time, motion = release(damping=0.02, held=0.0, duration=2.4 / 0.7, second=0.0)
     with pytest.raises(FormatError, match='cycles'):
         estimate_sway(time, motion)
-
-
-def test_too_short_an_ambient_record():
-    _, motion = ambient()
-    with pytest.raises(FormatError, match='an ambient record takes at least 20 cycles'):
-        ambient_sway(motion[:400, None], 1.0 / RATE, 0.7)
 
 
 def test_noise_has_no_sway():

@@ -152,12 +152,3 @@ def test_what_cannot_be_read_is_refused(options, match):
 def test_a_normal_of_any_length_will_do():
     for length in (1e-11, 1.0, 1e200):
         np.testing.assert_allclose(WindConvention(plane_normal=(0, length, 0)).normal, (0, 1, 0))
-
-
-def test_describe_says_it_in_one_line():
-    assert WindConvention().describe() == 'reading wind as: blows TO, ENU, m/s'
-    text = WindConvention('from', 0.514444, math.radians(10.0), (0.0, 1.0, 0.0)).describe()
-    assert text == (
-        'reading wind as: comes FROM, ENU, 0.514444 m/s a unit, turned by 10 degrees, '
-        'on the plane across (0, 1, 0)'
-    )

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.wind import gate as gate_module
-from tree_sway.core.wind.gate import LARGEST_LEAD, Reason, SECOND, WindGate
+from tree_sway.core.wind.gate import LARGEST_LEAD, SECOND, WindGate
 from tree_sway.core.wind.simulated.gust_event import GustEvent
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
@@ -84,26 +84,26 @@ def test_plain_turbulence_is_never_refused(rate, mean_speed):
 @pytest.mark.parametrize(
     ('bad', 'reason'),
     [
-        ((math.nan, 0.0, 0.0), Reason.NOT_FINITE),
-        ((0.0, math.inf, 0.0), Reason.NOT_FINITE),
-        ((0.0, 0.0, -math.inf), Reason.NOT_FINITE),
-        ((1e300, 1e300, 0.0), Reason.TOO_FAST),
-        ((1e6, 0.0, 0.0), Reason.TOO_FAST),
-        ((40.1, 0.0, 0.0), Reason.TOO_FAST),
-        ((999.99, 0.0, 0.0), Reason.SENTINEL),
-        ((3.0, 0.0, 999.99), Reason.SENTINEL),
-        ((-9999.0, -9999.0, 0.0), Reason.SENTINEL),
-        ((-32768.0, 0.0, 0.0), Reason.SENTINEL),
-        ((-327.68, -327.68, -327.68), Reason.SENTINEL),
-        ((20.0, 0.0, 0.0), Reason.SPIKE),
-        ((-3.0, 0.0, 0.0), Reason.SPIKE),
+        ((math.nan, 0.0, 0.0), 'not_finite'),
+        ((0.0, math.inf, 0.0), 'not_finite'),
+        ((0.0, 0.0, -math.inf), 'not_finite'),
+        ((1e300, 1e300, 0.0), 'too_fast'),
+        ((1e6, 0.0, 0.0), 'too_fast'),
+        ((40.1, 0.0, 0.0), 'too_fast'),
+        ((999.99, 0.0, 0.0), 'sentinel'),
+        ((3.0, 0.0, 999.99), 'sentinel'),
+        ((-9999.0, -9999.0, 0.0), 'sentinel'),
+        ((-32768.0, 0.0, 0.0), 'sentinel'),
+        ((-327.68, -327.68, -327.68), 'sentinel'),
+        ((20.0, 0.0, 0.0), 'spike'),
+        ((-3.0, 0.0, 0.0), 'spike'),
     ],
 )
 def test_a_fault_is_refused_counted_and_leaves_no_trace(bad, reason):
     gate, untouched = warmed_up(), warmed_up()
     verdict = offer(gate, 1.05, bad)
     assert (verdict.accepted, verdict.reason) == (False, reason)
-    assert getattr(gate.counts, reason.value) == gate.counts.refused == 1
+    assert getattr(gate.counts, reason) == gate.counts.refused == 1
     for i in range(2, 20):
         wind = (3.0 + 0.3 * i, 0.1 * i, 0.0)
         assert offer(gate, 1.0 + i * PERIOD, wind) == offer(untouched, 1.0 + i * PERIOD, wind)
@@ -174,7 +174,7 @@ class TestStamps:
     def test_zero_stamp_takes_the_arrival(self):
         gate = WindGate()
         verdict = offer(gate, 0.0, (1, 0, 0), 100.0)
-        assert verdict[:3] == (True, Reason.ACCEPTED, ns(100.0))
+        assert verdict[:3] == (True, 'accepted', ns(100.0))
         assert gate.counts.zero_stamp == 1
 
     def test_a_stamp_before_all_time_takes_the_arrival(self):
@@ -194,8 +194,8 @@ class TestStamps:
         gate = WindGate()
         offer(gate, 100.0, (1, 0, 0), 100.01)
         verdict = offer(gate, 100.0, (1, 0, 0), 100.02)
-        assert (verdict.accepted, verdict.reason) == (False, Reason.REPEATED)
-        assert gate.counts.duplicate_stamp == gate.counts.repeated == 1
+        assert (verdict.accepted, verdict.reason) == (False, 'repeated')
+        assert gate.counts.out_of_order == gate.counts.repeated == 1
 
     def test_equal_readings_without_stamps_are_no_repeats(self):
         gate = WindGate()
@@ -219,21 +219,21 @@ class TestStamps:
             offer(gate, stamp, (1.0, 0.1 * i, 0.0), 100.1 + i * PERIOD).time
             for i, stamp in enumerate((100.0, 100.1, 100.05, 100.15, 100.2))
         ]
-        assert gate.counts.out_of_order == 1
+        assert gate.counts.out_of_order == 3  # the late one, and two not after the time it got
         assert gate.counts.accepted == 5
         assert (np.diff(times) > 0.0).all()
 
     def test_without_arrivals_out_of_order_is_refused(self):
         gate = WindGate()
         offer(gate, 100.0, (1, 0, 0))
-        assert offer(gate, 99.9, (1.1, 0, 0)).reason is Reason.NO_TIME
-        assert offer(gate, 100.0, (1.2, 0, 0)).reason is Reason.NO_TIME
+        assert offer(gate, 99.9, (1.1, 0, 0)).reason == 'no_time'
+        assert offer(gate, 100.0, (1.2, 0, 0)).reason == 'no_time'
 
-    def test_a_clock_set_back_starts_anew(self):
+    def test_a_clock_set_back_starts_again(self):
         gate = warmed_up()
         offer(gate, 900.0, (3.0, 0.0, 0.0))
         verdict = offer(gate, 0.05, (20.0, 0.0, 0.0))
-        assert verdict[:3] == (True, Reason.ACCEPTED, ns(0.05))
+        assert verdict[:3] == (True, 'accepted', ns(0.05))
         assert gate.counts.clock_back == 1
 
     @given(
@@ -270,9 +270,7 @@ class TestStamps:
             verdict = offer(gate, stamp, (3.0 + 0.01 * i, 0.0, 0.0), arrival)
             assert verdict.accepted
             assert lead < 0.06 or verdict.time == ns(arrival - latency)
-        counts = gate.counts
-        assert counts.ahead_stamp + counts.future_stamp == (0 if lead < 0.06 else 25)
-        assert bool(counts.future_stamp) == (ns(lead) > LARGEST_LEAD)
+        assert gate.counts.future_stamp == (0 if lead < 0.06 else 25)
 
     def test_a_clock_that_is_ahead_is_believed_as_it_goes(self):
         gate = WindGate()
@@ -280,7 +278,7 @@ class TestStamps:
             arrival = 100.0 + i * PERIOD + 0.002 * (i % 3)
             stamp = 100.0 + i * PERIOD + min(0.4, 0.05 * i)
             assert offer(gate, stamp, (3.0 + 0.01 * i, 0.0, 0.0), arrival).time == ns(stamp)
-        assert gate.counts.ahead_stamp == 0
+        assert gate.counts.future_stamp == 0
 
     @pytest.mark.parametrize('lead', [0.03, 0.055, 0.1])
     def test_two_senders_at_one_rate_block_each_other_never(self, lead):
@@ -296,7 +294,7 @@ class TestStamps:
             arrival = 100.0 + i * PERIOD / 2
             stamp = arrival + 0.45 if i % 2 else arrival - 0.002
             assert offer(gate, stamp, (3.0 + 0.001 * i, 0.0, 0.0), arrival).accepted
-        assert gate.counts.ahead_stamp == 200
+        assert gate.counts.future_stamp == 200
 
     def test_on_a_simulated_clock_stamps_ahead_of_its_tick_are_believed(self):
         gate = WindGate()
@@ -304,7 +302,7 @@ class TestStamps:
             stamp = 100 * SECOND + i * SECOND // 20
             tick = stamp - stamp % (SECOND // 10)  # two samples for each tick of the clock
             verdict = gate.offer(stamp, (3.0 + 0.01 * i, 0.0, 0.0), tick, lead=LARGEST_LEAD)
-            assert verdict[:3] == (True, Reason.ACCEPTED, stamp)
+            assert verdict[:3] == (True, 'accepted', stamp)
 
     def test_why_a_stamp_was_not_believed_is_counted(self):
         gate = WindGate()
@@ -320,11 +318,8 @@ class TestStamps:
         ):
             assert offer(gate, stamp, (arrival - 97.0, 0.0, 0.0), arrival).accepted
         counts = gate.counts
-        causes = (
-            *(counts.zero_stamp, counts.ahead_stamp, counts.future_stamp, counts.old_stamp),
-            *(counts.duplicate_stamp, counts.out_of_order, counts.overtaken_stamp),
-        )
-        assert causes == (1, 1, 1, 1, 1, 1, 1)
+        causes = counts.zero_stamp, counts.future_stamp, counts.old_stamp, counts.out_of_order
+        assert causes == (1, 2, 1, 3)
 
 
 @given(st.floats(-math.pi, math.pi), st.integers(0, 5))

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import signal
 
 from tree_sway.core.arrays import Floats
@@ -36,7 +36,7 @@ _STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
 
 def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> SwayEstimate:
     """
-    Find frequency and damping of the slowest sway in a record.
+    Find frequency and damping of the slowest sway in a record, and of which kind the record is.
 
     Parameters
     ----------
@@ -116,7 +116,8 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
         )
     if len(t) < _MIN_SAMPLES:
         raise FormatError(f'{len(t)} samples', cure=f'record {_MIN_SAMPLES} at the very least')
-    for bad in np.flatnonzero(~(_is_measurable(t) & _is_measurable(x).all(axis=1)))[:1]:
+    # Far enough from overflow that sums of squares are too.
+    for bad in np.flatnonzero(~(np.abs(np.column_stack([t, x])) < _LARGEST).all(axis=1))[:1]:
         raise FormatError(
             'not a finite number, or one that nothing measures',
             where=f'sample {bad}',
@@ -131,11 +132,6 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
     if not (np.ptp(x, axis=0) > 1e-12 * np.abs(x).max(axis=0)).any():
         raise FormatError('nothing moves', cure='check the sensor and the column')
     return t, x
-
-
-def _is_measurable(values: Floats) -> NDArray[np.bool_]:
-    """Whether each value is finite, and far enough from overflow that sums of squares are too."""
-    return np.abs(values) < _LARGEST
 
 
 def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:

@@ -114,13 +114,11 @@ class WindAverage:
 
         """
         value = np.array(three_numbers('wind', vector))
-        if not (math.isfinite(time) and np.isfinite(value).all()):
+        is_late = self._newest - CLOCK_RESET < time <= self._newest
+        if is_late or not (math.isfinite(time) and np.isfinite(value).all()):
             self.refused += 1
             return False
         if time <= self._newest:
-            if time > self._newest - CLOCK_RESET:
-                self.refused += 1
-                return False
             self._set_clock_back(time)
         self._clamp_clock(time)
         gap = silence = math.inf
@@ -191,25 +189,22 @@ class WindAverage:
         return 'decaying' if overdue <= _STALE_DECAYS * self._decay else 'stale'
 
     def memory(self) -> list[float]:
-        """Return all that is carried from step to step as numbers, NaN for what is not yet."""
-        times = self._newest, self._passed, self._timing.period or math.nan
+        """Return all that is carried from step to step as numbers, NaN for an unknown period."""
+        timing = self._timing.period or math.nan, self._timing.lateness
         fade = self._fade_start, self._fade_end, *self._before.tolist()
-        return [
-            *(time if math.isfinite(time) else math.nan for time in times),
-            *(float(self._is_new_clock), self._timing.lateness, *fade),
-            *(number for time, value in self._curve.knots for number in (time, *value.tolist())),
-        ]
+        knots = [number for time, value in self._curve.knots for number in (time, *value.tolist())]
+        return [self._newest, self._passed, *timing, float(self._is_new_clock), *fade, *knots]
 
     def recall(self, memory: Sequence[float]) -> None:
         """Continue from another's memory; a `ParameterError` for numbers that are no memory."""
         try:
             numbers = np.array(memory, dtype=np.float64).reshape(-1)
-            newest, passed, period, is_new, lateness, start, end = numbers[:7].tolist()
+            newest, passed, period, lateness, is_new, start, end = numbers[:7].tolist()
             before, knots = numbers[7:10], numbers[10:].reshape(-1, 4)
-            is_sound = all(is_wind(*value) for value in (before, *knots[:, 1:]))
-            is_sound &= bool(np.isfinite(knots[:, 0]).all() and (np.diff(knots[:, 0]) > 0.0).all())
-            is_sound &= 0.0 <= lateness < math.inf and not period <= 0.0
-            is_sound &= start <= end < math.inf and len(knots) > 0 and math.isfinite(newest)
+            is_sound = len(knots) > 0 and all(is_wind(*value) for value in (before, *knots[:, 1:]))
+            is_sound &= bool(np.isfinite([newest, lateness, *knots[:, 0]]).all())
+            is_sound &= bool((np.diff(knots[:, 0]) > 0.0).all()) and lateness >= 0.0
+            is_sound &= start <= end < math.inf and passed < math.inf and not period <= 0.0
         except (ValueError, TypeError, OverflowError) as error:
             raise ParameterError('numbers that are no wind', where='wind average') from error
         if not is_sound:
@@ -220,7 +215,7 @@ class WindAverage:
         self._before, self._fade_start, self._fade_end = before, start, end
         self._timing.period = None if math.isnan(period) else period
         self._timing.lateness, self._is_new_clock = lateness, bool(is_new)
-        self._newest, self._passed = newest, -math.inf if math.isnan(passed) else passed
+        self._newest, self._passed = newest, passed
 
     def _draw_to(self, time: float, value: Floats) -> None:
         """Draw the curve on to a new sample, from where the solver has passed at the earliest."""

@@ -164,17 +164,6 @@ class WindConvention:
             along = east if np.linalg.norm(east) > 0.1 else north
         return quaternions_of_axes(along / math.hypot(*along), self.normal)
 
-    def describe(self) -> str:
-        """Return one line that says how the wind is read."""
-        sense = 'blows TO' if self.direction_convention == 'to' else 'comes FROM'
-        unit = 'm/s' if self.speed_scale == 1.0 else f'{self.speed_scale:g} m/s a unit'
-        text = f'reading wind as: {sense}, ENU, {unit}'
-        if self.yaw_offset != 0.0:
-            text += f', turned by {math.degrees(self.yaw_offset):g} degrees'
-        if not np.array_equal(self.normal, (0.0, 0.0, 1.0)):
-            text += ', on the plane across ({:g}, {:g}, {:g})'.format(*self.normal)
-        return text
-
 
 def quaternions_of_axes(along: Floats, normal: Floats) -> Floats:
     """Return unit quaternions w, x, y, z (..., 4) that turn x and z into unit vectors (..., 3)."""

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections import deque
+from itertools import takewhile
 
 import numpy as np
 
@@ -70,16 +71,8 @@ class WindCurve:
         if start == end:
             return self.value(start)
         # From the newest knot back: a solver asks for the last step, which holds one knot or none.
-        total, to, to_value = np.zeros(3), end, self.value(end)
-        for time, knot in reversed(self.knots):
-            if time >= end:
-                continue
-            since = max(time, start)
-            first = knot if since == time else self.value(since)
-            total += (to - since) * (first + to_value)
-            to, to_value = since, first
-            if since == start:
-                break
-        else:
-            total += 2.0 * (to - start) * self.knots[0][1]
-        return total / (2.0 * (end - start))
+        later = takewhile(lambda knot: knot[0] > start, reversed(self.knots))
+        times = np.array([end, *(time for time, _ in later if time < end), start])
+        values = np.array([self.value(time) for time in times])
+        mean: Floats = 0.5 * np.diff(times) @ (values[1:] + values[:-1]) / (start - end)
+        return mean

@@ -20,7 +20,6 @@ would shut out the good samples that follow it. All times are whole nanoseconds 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 import math
 from typing import NamedTuple
 
@@ -31,10 +30,8 @@ from tree_sway.core.wind.limits import FASTEST_WIND, is_wind
 
 # What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
 # 0x8000, which is 327.68 where the count is 0.01 m/s.
-SENTINELS = (
-    *(999.0, 999.9, 999.99, 6999.0, 7999.0, 9999.0, 99999.0),
-    *(32767.0, 32768.0, 327.67, 327.68),
-)
+_INTEGER_CODES = 6999.0, 7999.0, 9999.0, 32767.0, 32768.0, 99999.0
+SENTINELS = (327.67, 327.68, 999.0, 999.9, 999.99, *_INTEGER_CODES)
 
 SECOND = 1_000_000_000
 """One second in [ns]."""
@@ -54,27 +51,16 @@ JUMP_FRACTION = 0.25
 """Such a change, in addition, as a fraction of the speed in [-]; eddies grow with the wind."""
 
 
-class Reason(str, Enum):
-    """Why a sample was refused, or ``accepted``."""
-
-    ACCEPTED = 'accepted'
-    NOT_FINITE = 'not_finite'
-    SENTINEL = 'sentinel'
-    TOO_FAST = 'too_fast'
-    SPIKE = 'spike'
-    REPEATED = 'repeated'
-    NO_TIME = 'no_time'
-
-
 class Verdict(NamedTuple):
     """
     What became of a sample: whether it is good, why, and the time [ns] and wind to use for it.
 
-    The wind [m/s] is the sample itself but while a new level fades in after a refused run.
+    The reason is ``accepted`` or the name of a count of refused samples in `GateCounts`. The wind
+    [m/s] is the sample itself but while a new level fades in after a refused run.
     """
 
     accepted: bool
-    reason: Reason
+    reason: str
     time: int
     wind: tuple[float, float, float]
 
@@ -94,12 +80,9 @@ class GateCounts:
         one.
     forced
         Accepted ones that were let in because refusing had lasted long enough.
-    zero_stamp, ahead_stamp, future_stamp, old_stamp, duplicate_stamp, out_of_order,
-    overtaken_stamp
+    zero_stamp, future_stamp, old_stamp, out_of_order
         Stamps not believed, though the sample itself may be good: none at all; ahead of the
-        arrival by up to `LARGEST_LEAD`, and by more; older than `LONGEST_TRANSPORT`; that of the
-        sample before; before that of the sample before; not after the time given to the sample
-        before.
+        arrival; older than `LONGEST_TRANSPORT`; not after the time given to the sample before.
     clock_back
         Times the clock was set back.
     frozen
@@ -116,19 +99,21 @@ class GateCounts:
     no_time: int = 0
     forced: int = 0
     zero_stamp: int = 0
-    ahead_stamp: int = 0
     future_stamp: int = 0
     old_stamp: int = 0
-    duplicate_stamp: int = 0
     out_of_order: int = 0
-    overtaken_stamp: int = 0
     clock_back: int = 0
     frozen: int = 0
 
     @property
     def refused(self) -> int:
         """Return the number of samples refused, for any reason."""
-        return sum(getattr(self, reason.value) for reason in Reason) - self.accepted
+        faults = self.not_finite + self.sentinel + self.too_fast + self.spike
+        return faults + self.repeated + self.no_time
+
+    def add(self, name: str) -> None:
+        """Count one more of a name."""
+        setattr(self, name, getattr(self, name) + 1)
 
 
 class WindGate:
@@ -172,19 +157,15 @@ class WindGate:
     def reset(self) -> None:
         """Forget the samples seen; keep the counts."""
         self._time = self._arrival = _NEVER  # given to the last sample, and when it arrived
-        self._stamp = self._last_stamp = _NEVER  # last one believed; last one, believed or not
+        self._stamp = _NEVER  # of the last sample, believed or not
         self._seen = (math.nan, math.nan, math.nan)  # last sample offered
         self._good = (0.0, 0.0, 0.0)  # last one accepted, at _good_time
         self._given = (0.0, 0.0, 0.0)  # what was given out for it
         self._before: tuple[float, float, float] | None = None  # left while a level fades in
         self._good_time = self._refused_since = _NEVER
         self._equal_since = 0
-        self._is_frozen = False
-
-    @property
-    def is_frozen(self) -> bool:
+        self.is_frozen = False
         """Whether the sensor has repeated one reading for longer than a live one does."""
-        return self._is_frozen
 
     def offer(
         self, stamp: int, vector: ArrayLike, arrival: int | None = None, *, lead: int = 0
@@ -218,36 +199,33 @@ class WindGate:
 
         """
         x, y, z = three_numbers('wind', vector)
-        is_repeated = 0 < stamp == self._last_stamp and (x, y, z) == self._seen
+        is_repeated = 0 < stamp == self._stamp and (x, y, z) == self._seen
         time = self._time_of(stamp, arrival, lead)
         since = 1e-9 * (time - self._time)
         if is_repeated:
-            reason = Reason.REPEATED
+            reason = 'repeated'
         elif time <= self._time:
-            reason = Reason.NO_TIME
+            reason = 'no_time'
         else:
             reason = self._judge(time, x, y, z)
-            self._time, self._last_stamp = time, stamp
+            self._time, self._stamp = time, stamp
             self._arrival = stamp if arrival is None else arrival
             self._watch_for_frozen(time, (x, y, z))
-        name = reason.value
-        setattr(self.counts, name, getattr(self.counts, name) + 1)
-        if reason is Reason.ACCEPTED:
+        self.counts.add(reason)
+        is_good = reason == 'accepted'
+        if is_good:
             self._good, self._good_time = (x, y, z), time
             self._refused_since = _NEVER
             self._fade_in(since)
-        return Verdict(reason is Reason.ACCEPTED, reason, time, self._given)
+        return Verdict(is_good, reason, time, self._given)
 
     def _fade_in(self, since: float) -> None:
         """Give out the last good sample, no faster than a gust where it is of a new level."""
-        share = 1.0
-        if self._before is not None:
-            left = math.dist(self._good, self._given)
-            share = min(1.0, self._max_rate * since / left) if left > 0.0 else 1.0
-        if share == 1.0:
+        left, most = math.dist(self._good, self._given), self._max_rate * since
+        if self._before is None or left <= most:
             self._given, self._before = self._good, None
             return
-        x, y, z = (a + share * (b - a) for a, b in zip(self._given, self._good, strict=True))
+        x, y, z = (a + most / left * (b - a) for a, b in zip(self._given, self._good, strict=True))
         self._given = x, y, z
 
     def _time_of(self, stamp: int, given: int | None, lead: int) -> int:
@@ -258,9 +236,8 @@ class WindGate:
             self.reset()
         fault = self._fault(stamp, arrival, lead)
         if not fault:
-            self._stamp = stamp
             return stamp
-        setattr(self.counts, fault, getattr(self.counts, fault) + 1)
+        self.counts.add(fault)
         if given is None or self._time == _NEVER:
             return arrival
         usual = min(arrival, self._time + arrival - self._arrival)
@@ -271,43 +248,37 @@ class WindGate:
         """Say why a stamp is not believed, by the name of its count; empty if it is."""
         if stamp <= 0 < arrival:
             return 'zero_stamp'
-        if stamp > arrival + LARGEST_LEAD:
+        ahead = max(lead, max(self._time - self._arrival, 0) + LEAD_GROWTH)
+        if stamp > arrival + min(ahead, LARGEST_LEAD):
             return 'future_stamp'
-        if stamp > arrival + max(lead, max(self._time - self._arrival, 0) + LEAD_GROWTH):
-            return 'ahead_stamp'
         if stamp < arrival - LONGEST_TRANSPORT:
             return 'old_stamp'
-        if stamp == self._last_stamp:
-            return 'duplicate_stamp'
-        if stamp <= self._stamp:
-            return 'out_of_order'
-        return 'overtaken_stamp' if stamp <= self._time else ''
+        return 'out_of_order' if stamp <= self._time else ''
 
-    def _judge(self, time: int, x: float, y: float, z: float) -> Reason:
+    def _judge(self, time: int, x: float, y: float, z: float) -> str:
+        """Say why a sample is refused, by the name of its count, or ``accepted``."""
         if not is_wind(x, y, z, self._max_speed):
             if not all(map(math.isfinite, (x, y, z))):
-                return Reason.NOT_FINITE
+                return 'not_finite'
             is_code = any(abs(abs(c) - code) < 0.006 for c in (x, y, z) for code in SENTINELS)
-            return Reason.SENTINEL if is_code else Reason.TOO_FAST
+            return 'sentinel' if is_code else 'too_fast'
         since = 1e-9 * (time - self._good_time)
         # While a new level fades in, its end is a return to the level before.
         for level in (self._good, self._before or self._good):
             allowed = self._max_rate * since + JUMP_FLOOR
             if math.dist((x, y, z), level) <= allowed + JUMP_FRACTION * math.hypot(*level):
-                return Reason.ACCEPTED
+                return 'accepted'
         if self._refused_since == _NEVER:
             self._refused_since = time
         if time - self._refused_since < self._longest_refusal:
-            return Reason.SPIKE
+            return 'spike'
         self.counts.forced += 1
         self._before = self._before or self._good
-        return Reason.ACCEPTED
+        return 'accepted'
 
     def _watch_for_frozen(self, time: int, sample: tuple[float, float, float]) -> None:
         if sample != self._seen or sample == (0.0, 0.0, 0.0):
-            self._seen = sample
-            self._equal_since = time
-            self._is_frozen = False
-        elif not self._is_frozen and time - self._equal_since >= self._frozen_after:
-            self._is_frozen = True
+            self._seen, self._equal_since, self.is_frozen = sample, time, False
+        elif not self.is_frozen and time - self._equal_since >= self._frozen_after:
+            self.is_frozen = True
             self.counts.frozen += 1

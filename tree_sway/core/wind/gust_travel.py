@@ -91,13 +91,10 @@ class GustHistory:
         self._finest = 2.0 * self._memory / (len(self._run) - 4)
         self._at = np.zeros(2, dtype=np.int64)
         self._mean = np.zeros(3)
-        self._wanted, self._delay = np.zeros((2, len(points)))
-        self._felt = np.zeros((len(points), 3))
-
-    @property
-    def delay(self) -> Floats:
+        self._wanted = np.zeros(len(points))
+        self.delay = np.zeros(len(points))
         """Age of the wind that each place feels in [s], (t,)."""
-        return self._delay
+        self._felt = np.zeros((len(points), 3))
 
     @property
     def n_ahead(self) -> int:
@@ -108,11 +105,6 @@ class GustHistory:
     def n_forgotten(self) -> int:
         """Places too far downwind for the length of the history: they feel its oldest wind."""
         return int((self._wanted > self._memory).sum())
-
-    @property
-    def mean(self) -> Floats:
-        """Mean wind that delays follow in [m/s], (2,)."""
-        return self._mean[:2]
 
     def push(self, wind_mean: ArrayLike, dt: float) -> Floats:
         """
@@ -133,15 +125,13 @@ class GustHistory:
         self._wanted = along / (self._ratio * speed * speed)
         if self._from_first:
             self._wanted -= self._wanted.min()
-        feel(self._run, self._at, self._wanted, self._delay, self._memory, x, y, z, dt, self._felt)
+        feel(self._run, self._at, self._wanted, self.delay, self._memory, x, y, z, dt, self._felt)
         return self._felt
 
     def reset(self) -> None:
         """Forget the wind."""
-        self._at[:] = 0
-        self._mean[:] = 0.0
-        self._wanted[:] = self._delay[:] = 0.0
-        self._felt[:] = 0.0
+        for array in (self._at, self._mean, self._wanted, self.delay, self._felt):
+            array[:] = 0
 
 
 @kernel
@@ -153,25 +143,18 @@ def remember(
     if at[1] == 0:
         run[0] = 0.0
         at[0], at[1] = 0, 1
-    last = run[at[0]]
-    if at[1] > 2 and last[0] + dt - run[(at[0] - 1) % size, 0] <= finest:
-        last[0] += dt
-        last[1] += x * dt
-        last[2] += y * dt
-        last[3] += z * dt
-        return
-    head = at[0] + 1
-    if head == size:
-        # Counted from zero again, lest the numbers grow with the days.
-        for k in range(4):
-            origin = last[k]
+    last, step = at[0], (dt, x * dt, y * dt, z * dt)
+    is_joined = at[1] > 2 and run[last, 0] + dt - run[(last - 1) % size, 0] <= finest
+    head = last if is_joined else (last + 1) % size
+    for k in range(4):
+        if head < last:
+            # Counted from zero again, lest the numbers grow with the days.
+            origin = run[last, k]
             for i in range(size):
                 run[i, k] -= origin
-        head = 0
-    last = run[at[0]]
-    t, rx, ry, rz = last[0] + dt, last[1] + x * dt, last[2] + y * dt, last[3] + z * dt
-    run[head, 0], run[head, 1], run[head, 2], run[head, 3] = t, rx, ry, rz
-    at[0], at[1] = head, min(at[1] + 1, size)
+        run[head, k] = run[last, k] + step[k]
+    if not is_joined:
+        at[0], at[1] = head, min(at[1] + 1, size)
 
 
 @kernel

@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
 from tree_sway.core.wind.simulated.gust_event import GustEvent, with_events
 from tree_sway.core.wind.simulated.turbulence import (
@@ -20,8 +20,6 @@ from tree_sway.core.wind.simulated.turbulence import (
     SHORTEST_PERIOD,
     Turbulence,
 )
-
-Floats = NDArray[np.float64]
 
 _SAMPLES = 2**15
 """Least number of samples after which the turbulence repeats: 27 minutes at 20 Hz."""
@@ -70,7 +68,8 @@ class AnemometerModel:
     ) -> None:
         """Check the parameters."""
         within('mean_speed', mean_speed, 0.0, 40.0, 'm/s')
-        self._rate = within('rate', rate, 1.0, 100.0, 'Hz')
+        self.rate = within('rate', rate, 1.0, 100.0, 'Hz')
+        """Samples per second in [Hz]."""
         self._bearing_to = within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
         self._events = tuple(events)
         self._mean = np.array([mean_speed, 0.0, 0.0])
@@ -80,12 +79,7 @@ class AnemometerModel:
             rng = np.random.default_rng(int(within('seed', seed, 0, 2**63)))
             if mean_speed > 0.0:
                 n_samples = max(_SAMPLES, round(SHORTEST_PERIOD * rate))
-                self._gusts = parameters.record(n_samples, self._rate, rng)
-
-    @property
-    def rate(self) -> float:
-        """Return the samples per second in [Hz]."""
-        return self._rate
+                self._gusts = parameters.record(n_samples, rate, rng)
 
     def sample(self, tick: int) -> Floats:
         """Wind at a tick of the sample period from 0 on: blowing to, ENU in [m/s], (3,)."""
@@ -94,4 +88,4 @@ class AnemometerModel:
         enu = along_bearing(wind, self._bearing_to)
         if not self._events:
             return enu
-        return with_events(tick / self._rate, enu, self._events, self._bearing_to)
+        return with_events(tick / self.rate, enu, self._events, self._bearing_to)
