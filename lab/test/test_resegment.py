@@ -28,7 +28,7 @@ def gusty():
 
 
 def tip_motion(tree, model, winds):
-    sim = SwaySimulator(tree, model=model, twig_tolerance=-1.0)
+    sim = SwaySimulator(tree, model=model)
     tips = np.empty((len(winds), 3))
     for i, wind in enumerate(winds):
         sim.step(wind, 1.0 / RATE)

@@ -29,6 +29,7 @@ from tree_sway_lab.bench.sizes import time_sizes
 from tree_sway_lab.bench.stand import time_stand
 from tree_sway_lab.bench.step import StepTiming, time_steps
 from tree_sway_lab.bench.stream import time_stream
+from tree_sway_lab.bench.vane_to_leaf import time_vane_to_leaf
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,7 +42,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         'trees of 121 and 1,021 branches up; sizes: the default model on trees of 121 to 10,105 '
         'branches, its cost and its error; stand: 1,000 trees of 1,000 segments; stream: 10,000 '
         'poses at 60 Hz to another process; latency: from a start to its first pose, from the '
-        'stamp of a wind to its pose; engines: beside MuJoCo, DART and Newton; '
+        'stamp of a wind to its pose, from the vane through all nodes to a page; engines: beside '
+        'MuJoCo, DART and Newton; '
         'shards: a stand on two hosts, cut apart and with a shard killed',
     )
     parser.add_argument('--rounds', type=int, default=20, help='of 200 steps each (%(default)s)')
@@ -146,7 +148,8 @@ def _stream(arguments: argparse.Namespace) -> list[Measured]:
 
 
 def _latency(arguments: argparse.Namespace) -> list[Measured]:
-    return time_latency(**_given(tree=arguments.tree, seconds=arguments.seconds))
+    given = _given(tree=arguments.tree, seconds=arguments.seconds)
+    return [*time_latency(**given), *time_vane_to_leaf(**given)]
 
 
 def _engines(arguments: argparse.Namespace) -> list[Measured]:

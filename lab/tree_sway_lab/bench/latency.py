@@ -113,10 +113,11 @@ def time_latency(
     first = np.searchsorted(stamps, winds)
     moved = first < len(stamps)
     late = 1e-6 * (arrivals[first[moved]] - np.array(winds)[moved])
-    p50, p99 = np.quantile(late, [0.5, 0.99]).tolist()
+    p50, p95, p99 = np.quantile(late, [0.5, 0.95, 0.99]).tolist()
     return [
         Measured('start to first pose', start, 's'),
         Measured('wind to pose, p50', p50, 'ms'),
+        Measured('wind to pose, p95', p95, 'ms'),
         Measured('wind to pose, p99', p99, 'ms'),
         Measured('p50 in periods', p50 * rate / 1e3, '-'),
         Measured('p99 in periods', p99 * rate / 1e3, '-'),

@@ -83,7 +83,7 @@ def time_steps(tree: Tree, model: int | str, rounds: int) -> StepTiming:
         If the two disagree, so that there is nothing to compare.
 
     """
-    simulator = SwaySimulator(tree, model=model, twig_tolerance=-1.0)
+    simulator = SwaySimulator(tree, model=model)
     twin = SwaySimulator(tree, settings=simulator.settings, plain=True)
     winds = gusts(_STEPS_A_ROUND)
     poses = np.zeros((tree.n_segments, 7))

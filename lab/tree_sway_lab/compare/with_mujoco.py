@@ -130,7 +130,7 @@ def compare_with_mujoco(
     truth = mujoco_tips(truth_model, wind, steps)
     coarse = mujoco_tips(truth_model, wind, steps // 2)
     settings = Settings(
-        damping_ratio=damping_ratio, gravity=0.0, twig_tolerance=-1.0, in_leaf=False
+        damping_ratio=damping_ratio, gravity=0.0, in_leaf=False
     )
     ours = simulator_called(model, tree, wood, settings)
     tips = record_tips(ours, tree, wind, FRAME)

@@ -219,9 +219,7 @@ def _wait_for_poses(
     monitor: StreamMonitor, processes: Mapping[str, subprocess.Popen[bytes]], ending: Ending
 ) -> None:
     deadline = time.monotonic() + _PATIENCE
-    while (
-        not (monitor.totals.poses.count and monitor.totals.wind.count) and not ending.is_asked
-    ):
+    while not (monitor.totals.poses.count and monitor.totals.wind.count) and not ending.is_asked:
         for name, process in processes.items():
             _check(name, process)
         if time.monotonic() > deadline:

@@ -41,8 +41,8 @@ WOOD = Species(
 )
 """Of all trees to judge by; joints twist as the wood does."""
 
-SETTINGS = Settings(gravity=GRAVITY, twig_tolerance=-1.0)
-"""Of the models that are judged: every twig is solved."""
+SETTINGS = Settings(gravity=GRAVITY)
+"""Of the models that are judged."""
 
 
 class Fineness(NamedTuple):

@@ -27,7 +27,7 @@ class Puppet:
     """A tree that is placed at key rotations given by hand."""
 
     def __init__(self, tree, model='full', enrich='none'):
-        chosen = Settings(model=model, enrich=enrich, gravity=0.0, twig_tolerance=-1.0)
+        chosen = Settings(model=model, enrich=enrich, gravity=0.0)
         self.tree = tree
         self.bank = assembled(TreeReductions(tree, species_named('broadleaf'), chosen))
         self.n = len(self.bank.oscillators.rotations())

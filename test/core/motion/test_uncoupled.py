@@ -19,7 +19,7 @@ DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
 
 
 def oscillators(tree, dt=1 / 60, **changes):
-    chosen = {'model': 'branch', 'gravity': 0.0, 'twig_tolerance': -1.0} | changes
+    chosen = {'model': 'branch', 'gravity': 0.0} | changes
     bank = assembled(TreeReductions(tree, WOOD, Settings(**chosen))).oscillators
     bank.set_step(dt)
     return bank

@@ -4,8 +4,8 @@
 The one place where records are filled: what stepping and placing know of a tree.
 
 `Places` says how a tree is joined and drawn; whoever has one can place it, as a receiver of the
-stream. `branch_records` adds what the wind does, `copy_twigs` which branches copy; `head_records`
-and `load_records` lay the same out in lanes.
+stream. `branch_records` adds what the wind does; `head_records` and `load_records` lay it out in
+lanes.
 """
 
 from __future__ import annotations
@@ -236,7 +236,6 @@ def branch_records(
             record['tip_mode'][i] = field.nodes[-1]
         _fill_load(model, speed_profile[tree.segments_of(branch)], record)
     fill_places(places, records)
-    records['source'] = np.arange(tree.n_branches)
     records['twist'] = reduction.twist[:, : records['twist'].shape[1]]
     records['tip'] = tree.end[tree.branch_first[1:] - 1] - tree.start[0]
     base = tree.start[tree.branch_first[:-1]] - tree.start[0]
@@ -334,16 +333,6 @@ def _fill_flow(record: np.void, mean: Floats, square: float, cube: float) -> Non
     record['lever'] = math.sqrt(0.5 * across)
 
 
-def copy_twigs(records: Records, source: Ints) -> None:
-    """
-    Let twigs copy others: each turns about the axes of its source, so that it moves the same one.
-
-    The source is itself where a branch is solved, (b,).
-    """
-    records['source'] = source
-    records['frame'] = records['frame'][source]
-
-
 class _SlantingWinds:
     """
     Winds from all sides, along the ground and, as branches bend, aslant.
@@ -424,6 +413,5 @@ def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> 
     records['along'][block, :, lane] = branches['lever'][:, None] * branches['frame'][:, 0]
     at_base = cross(branches['base'][:, None], np.eye(3)).swapaxes(1, 2)
     records['coupling'][block, ..., lane] = branches['coupling'] - at_base
-    records['is_solved'][block, lane] = branches['source'] == np.arange(len(branches))
     np.maximum.at(records['n_rows'], block, branches['n_coordinates'])
     return records

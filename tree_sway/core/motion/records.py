@@ -39,7 +39,6 @@ class Branch:
     end: int  # one past its last segment
     coordinate: int  # its first coordinate
     n_coordinates: int  # key rotation x, y, then further ones
-    source: int  # branch whose motion it copies, itself if solved
     frame: Annotated[Floats, 3, 3]  # b, e1, e2 as rows; x turns the chord about e2, y about -e1
     twist: Annotated[Floats, 'rows', 6]  # motion of its base per unit of parent's coordinates
     load_mode: Annotated[Floats, 'rows', 3]  # displacement under the wind's mean push
@@ -139,7 +138,6 @@ class Load:
     """
 
     n_rows: int  # the most coordinates that one of them has
-    is_solved: Annotated[Ints, LANES]  # whether it copies no other
     delay: Annotated[Ints, LANES]  # which delay of `crown_wind` it has
     # As in `BRANCH`:
     speed: Annotated[Floats, LANES]

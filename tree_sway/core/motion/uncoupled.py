@@ -32,7 +32,13 @@ from tree_sway.core.motion.records import (
 )
 from tree_sway.core.motion.tree_passes import own_loads, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
-from tree_sway.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force
+from tree_sway.core.oscillators.two_axis import (
+    fill_guards,
+    LOAD_MAX,
+    step_branch,
+    true_force,
+    within_guard,
+)
 
 
 class UncoupledBank(Branchwise):
@@ -141,8 +147,6 @@ def _advance(
         held += _step(banks[block])
     for b in range(n):
         here, j = banks[b // LANES], b % LANES
-        if not here.is_solved[j]:
-            here, j = banks[branches[b].source // LANES], branches[b].source % LANES
         for k in range(3):
             work[b].force[k] = here.force[k, j]
         for k in range(2):
@@ -158,8 +162,10 @@ def _to_middle(bank: Oscillators) -> None:
     middle_x, middle_v = bank.x, bank.v
     for j in range(LANES):
         mx, my = true_force(x[0, j], x[1, j], load[0, j], load[1, j], load[2, j])
-        middle_x[0, j] = h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx
-        middle_x[1, j] = h[0, j] * x[1, j] + h[1, j] * v[1, j] + h[2, j] * my
+        middle_x[0, j], middle_x[1, j], _ = within_guard(
+            h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx,
+            h[0, j] * x[1, j] + h[1, j] * v[1, j] + h[2, j] * my,
+        )
         middle_v[0, j] = h[3, j] * x[0, j] + h[4, j] * v[0, j] + h[5, j] * mx
         middle_v[1, j] = h[3, j] * x[1, j] + h[4, j] * v[1, j] + h[5, j] * my
 
@@ -168,12 +174,12 @@ def _to_middle(bank: Oscillators) -> None:
 def _step(bank: Oscillators) -> int:
     """Step sixteen branches; return how many loads were held."""
     x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard
-    is_solved, held = bank.is_solved, 0
+    held = 0
     for j in range(LANES):
         x[0, j], x[1, j], v[0, j], v[1, j], over = step_branch(
             x[0, j], x[1, j], v[0, j], v[1, j], load[0, j], load[1, j], load[2, j],
             c[0, j], c[1, j], c[2, j], c[3, j], c[4, j], c[5, j], c[6, j], c[7, j],
             g[0, j], g[1, j], g[2, j],
         )  # fmt: skip
-        held += over * is_solved[j]
+        held += over
     return held

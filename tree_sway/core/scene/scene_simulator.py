@@ -153,14 +153,6 @@ class SceneSimulator:
         return tuple(self.own.values())
 
     @property
-    def n_solved(self) -> int:
-        """Branches that are solved, of kinds once for each tree."""
-        moving = self._standing['kind'][self._standing['is_still'] == 0]
-        counts = np.bincount(moving, minlength=len(self._models))
-        shared = int(counts @ [model.n_solved for model in self._models])
-        return shared + sum(simulator.n_solved for simulator in self.own.values())
-
-    @property
     def wind(self) -> Floats:
         """Wind at the anemometer in the last step in [m/s], (3,)."""
         return self._wind

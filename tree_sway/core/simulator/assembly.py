@@ -14,7 +14,7 @@ from typing import Any, TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.motion.fill_records import copy_twigs, head_records
+from tree_sway.core.motion.fill_records import head_records
 from tree_sway.core.motion.records import in_lines
 from tree_sway.core.reduction.modes import refuse_buckling, solvable
 from tree_sway.core.reduction.one_thread import one_thread
@@ -133,12 +133,10 @@ def _bank_of_branches(reductions: TreeReductions) -> Bank:
     """Each branch's own oscillator: the mean of its two axes."""
     from tree_sway.core.motion.uncoupled import UncoupledBank
     from tree_sway.core.reduction.carried_inertia import carried_inertia
-    from tree_sway.core.tree.similar_twigs import twig_sources
 
     tree, settings, reduced = reductions.tree, reductions.settings, reductions.isolated
     matrices, branches = reduced.reduction, reduced.branches.copy()
     refuse_buckling(tree, matrices)
-    copy_twigs(branches, twig_sources(tree, settings.twig_tolerance))
     inertia = carried_inertia(tree, matrices).reshape(-1, 2).mean(axis=1)
     inertia = inertia * np.array([model.inertia_share for model in reduced.models])
     stiffness = np.asarray(matrices.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
@@ -160,6 +158,5 @@ def _bank_of_branches(reductions: TreeReductions) -> Bank:
 def _laid_out(
     oscillators: Oscillators, branches: Records, segments: Records, mass: float, plain: bool
 ) -> Bank:
-    n_solved = int((branches['source'] == np.arange(len(branches))).sum())
     heads = head_records(branches, segments)
-    return Bank(oscillators, branches, segments, heads, n_solved, mass, plain)
+    return Bank(oscillators, branches, segments, heads, mass, plain)

@@ -92,7 +92,6 @@ class Bank:
     branches: Records
     segments: Records
     heads: Records
-    n_solved: int
     mass: float
     plain: bool = bool(WHY_PLAIN)
 

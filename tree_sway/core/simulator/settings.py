@@ -68,8 +68,6 @@ class Settings:
     crown_coherence
         Share of a gust in [-] that reaches the whole crown at once; the rest reaches each limb
         after a delay of its own (`crown_wind`). 1 is one wind for the whole crown.
-    twig_tolerance
-        How alike twigs must be for one to copy another (`twig_sources`); negative solves all.
     enrich
         Branches that get further shapes and twists, on all models but ``branch``: ``none``, the
         ``stem``, those ``needed`` (`TreeBeams.enriched`), all ``carriers`` of others, or ``all``.
@@ -93,7 +91,6 @@ class Settings:
     gravity: float = 9.81
     profile: WindProfile = field(default_factory=WindProfile)
     crown_coherence: float = 1.0
-    twig_tolerance: float = 0.05
     enrich: str = 'needed'
     root_stiffness: float | None = None
     leaf_mass: Floats | None = None

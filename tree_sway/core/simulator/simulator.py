@@ -145,11 +145,6 @@ class SwaySimulator:
         return (self,)
 
     @property
-    def n_solved(self) -> int:
-        """Branches that are solved; the others copy."""
-        return self.bank.n_solved
-
-    @property
     def wind(self) -> Floats:
         """Wind of the last step in [m/s], (3,)."""
         return self._wind.copy()

@@ -16,7 +16,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.motion.modal import ENOUGH, FARTHEST, ModalBank, MOST_TRIALS, MOST_TURN
 from tree_sway.core.motion.plain.numpy_passes import Bases, into_lanes, NumpyPasses, of_lanes
-from tree_sway.core.motion.plain.numpy_rotation import two_axis_moment
+from tree_sway.core.motion.plain.numpy_rotation import two_axis_moment, within_guard
 from tree_sway.core.motion.uncoupled import UncoupledBank
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
 
@@ -49,7 +49,7 @@ class NumpyUncoupledBank(UncoupledBank):
         none = np.zeros(n)
         moment = two_axis_moment(x, v, load, none, np.inf)
         h = self._half[:, :, None]
-        middle_x = h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment
+        middle_x = within_guard(h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment)
         middle_v = h[:, 3] * x + h[:, 4] * v + h[:, 5] * moment
         base = Bases.at_rest(n)
         wind = np.array([wx, wy, wz]) + of_lanes(self._banks['gust'], n)
@@ -58,7 +58,7 @@ class NumpyUncoupledBank(UncoupledBank):
         )
         force = passes.at_bases(middle_x, force)
         load = passes.own_loads(force)
-        self.work['force'] = force[self.branches['source']]
+        self.work['force'] = force
         into_lanes(impulse, self._banks['drag_impulse'])
         into_lanes(load, self._banks['load'])
         return self._step(x, v, load)
@@ -81,12 +81,10 @@ class NumpyUncoupledBank(UncoupledBank):
         then = two_axis_moment(
             ahead_x + c[:, 3] * now, ahead_v + c[:, 7] * now, load, gyro, moment_limit
         )
-        source = self.branches['source']
-        x[:] = (ahead_x + c[:, 3] * then)[source]
-        v[:] = (ahead_v + c[:, 7] * then)[source]
+        x[:], v[:] = ahead_x + c[:, 3] * then, ahead_v + c[:, 7] * then
         if not (np.isfinite(x).all() and np.isfinite(v).all()):
             return -1
-        return int(held[source == np.arange(len(source))].sum())
+        return int(held.sum())
 
 
 class NumpyModalBank(ModalBank):
