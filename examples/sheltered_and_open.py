@@ -11,6 +11,7 @@ sheltered tree gets less wind, and its base carries less, though its top is as e
 
 """
 
+from matplotlib.figure import Figure
 import numpy as np
 
 from tree_sway import grow, simulate, simulate_turbulence
@@ -31,18 +32,23 @@ def profiles() -> dict[str, WindProfile]:
     }
 
 
-def main() -> None:
-    """Print mean and largest tip displacement and base moment of the two."""
+def main() -> Figure:
+    """Print mean and largest tip displacement and base moment of the two; draw the moment."""
     tree = grow('pine', HEIGHT, rng=np.random.default_rng(4))
     rng = np.random.default_rng(5)
     wind = simulate_turbulence(SPEED, rate=RATE, duration=60.0, rng=rng)
     print(f'a pine of {HEIGHT:g} m, {SPEED:g} m/s at its top')
+    axes = (figure := Figure(figsize=(7, 4), layout='constrained')).subplots()
     for name, profile in profiles().items():
         record = simulate(tree, wind, rate=RATE, profile=profile)
         tip = np.linalg.norm(record.tips[:, 0], axis=1)
         moment = np.linalg.norm(record.base_moment, axis=1)
         print(f'{name:10} tip {tip.mean():.3f} m (largest {tip.max():.3f}), base moment '
               f'{moment.mean() / 1e3:.2f} kN m (largest {moment.max() / 1e3:.2f})')  # fmt: skip
+        axes.plot(record.time, moment / 1e3, label=name)
+    axes.set(xlabel='time [s]', ylabel='base moment [kN m]', title='a pine of 12 m')
+    axes.legend()
+    return figure
 
 
 if __name__ == '__main__':

@@ -6,8 +6,8 @@ Launch a tree that sways: a source of wind, the wind node, the solver, and RViz 
     ros2 launch tree_sway_ros sway.launch.py tree:=goldcrest source:=player file:=wind.csv
 
 Every name is relative: two launches with different ``namespace`` are two trees side by side. With
-``shards`` the trees of a stand are shared out among that many solvers, on one host or on several.
-
+``shards`` the trees of a stand are shared out among this number of solvers, on one host or on
+several.
 """
 
 import os

@@ -76,7 +76,7 @@ def test_info_shows_the_frequency_that_was_given(
     text = capsys.readouterr().out
     assert "-> 1.2 Hz, most in branch 'stem'" in text
     assert f'damping    0.06 -> 0.09 {"in leaf" if leaves == "on" else "bare"}' in text
-    assert 'holds that of the air' in text
+    assert 'includes that of the air' in text
     facts = info(out, capsys, '--leaves', leaves)
     assert facts['frequencies'][0] == pytest.approx(1.2, rel=1e-6)
     assert facts['modes'][0]['damping_ratio'] == pytest.approx(0.09)

@@ -36,7 +36,10 @@ def test_plot_draws_wind_and_tip(
 
 
 @pytest.mark.parametrize('arguments', [['goldcrest', '--portrait'], ['--portrait', SEEDLING]])
-def test_plot_tree_draws_the_tree(tmp_path: Path, arguments: list[str]) -> None:
+def test_plot_tree_draws_the_tree(
+    tmp_path: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr('tree_sway.commands.plot._SETTLING', 2.0)
     picture = tmp_path / 'tree.png'
     assert cli.main(['plot', *arguments, '--leaves', 'on', '-o', str(picture)]) == 0
     assert picture.read_bytes().startswith(PNG)

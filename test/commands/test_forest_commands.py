@@ -77,8 +77,11 @@ def test_a_thousand_trees_of_one_kind_are_worked_out_once(
 @pytest.mark.parametrize(
     'arguments', [['--portrait', '{}'], ['{}', '--seconds', '1', '--model', 'branch']]
 )
-def test_plot_draws_it(forest: str, tmp_path: Path, arguments: list[str]) -> None:
+def test_plot_draws_it(
+    forest: str, tmp_path: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     pytest.importorskip('matplotlib')
+    monkeypatch.setattr('tree_sway.commands.plot._SETTLING', 2.0)
     picture = tmp_path / 'glade.png'
     arguments = [each.format(forest) for each in arguments]
     assert cli.main(['plot', *arguments, '--leaves', '-o', str(picture)]) == 0

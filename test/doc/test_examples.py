@@ -51,6 +51,7 @@ def test_a_tree_sways_most_at_its_own_frequency(tmp_path: Path) -> None:
 
 
 def test_strain_grows_with_the_wind_up_to_the_critical_one(tmp_path: Path) -> None:
+    pytest.importorskip('matplotlib', reason='needs matplotlib')
     text = output_of('critical_wind_speed.py', str(SEEDLING), folder=tmp_path)
     strains = [float(each) for each in re.findall(r'strain +([\d.]+) permille', text)]
     assert len(strains) == 5
@@ -61,6 +62,7 @@ def test_strain_grows_with_the_wind_up_to_the_critical_one(tmp_path: Path) -> No
 
 
 def test_shelter_relieves_the_base(tmp_path: Path) -> None:
+    pytest.importorskip('matplotlib', reason='needs matplotlib')
     text = output_of('sheltered_and_open.py', folder=tmp_path)
     rows = dict(re.findall(r'^(\w+) +tip .*base moment ([\d.]+)', text, re.MULTILINE))
     assert 0.0 < float(rows['sheltered']) < 0.9 * float(rows['open'])

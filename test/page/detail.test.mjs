@@ -14,8 +14,8 @@ import {
   leafMesh,
   shadeOf,
 } from "../../tree_sway/page/static/drawing/mesh.js";
-import { Pace } from "../../tree_sway/page/static/drawing/pace.js";
 import { arrowLength } from "../../tree_sway/page/static/drawing/props.js";
+import { Quality } from "../../tree_sway/page/static/drawing/quality.js";
 import { crownShade } from "../../tree_sway/page/static/drawing/shade.js";
 import { lookOf } from "../../tree_sway/page/static/drawing/species.js";
 import { leavesAcross } from "../../tree_sway/page/static/drawing/textures.js";
@@ -153,20 +153,20 @@ test("it is darker inside a crown than at its edge, and light comes from outside
 });
 
 test("a slow page leaves out pixels first, then frames, and leaves last", () => {
-  const pace = new Pace();
+  const quality = new Quality();
   let now = 0;
   const run = (fps, seconds) => {
-    for (let i = 0; i < fps * seconds; i++) pace.count((now += 1000 / fps), true);
+    for (let i = 0; i < fps * seconds; i++) quality.count((now += 1000 / fps), true);
   };
   run(60, 5);
-  assert.equal(pace.leftOut, null);
+  assert.equal(quality.leftOut, null);
   run(30, 20);
-  assert.ok(pace.fineness < 0.6);
-  assert.equal(pace.density, 1);
+  assert.ok(quality.fineness < 0.6);
+  assert.equal(quality.density, 1);
   run(12, 20);
-  assert.ok(pace.density < 1 && pace.density >= 0.4);
+  assert.ok(quality.density < 1 && quality.density >= 0.4);
   run(60, 120);
-  assert.equal(pace.density, 1);
+  assert.equal(quality.density, 1);
 });
 
 test("a small tree has fewer rings of bark, none thinner than half a pixel", () => {

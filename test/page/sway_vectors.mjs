@@ -15,11 +15,11 @@ const winds = new Float64Array(read("winds.bin"));
 const expected = new Float64Array(read("expected.bin"));
 const size = stand.trees.reduce((sum, { state }) => sum + state.eta.length, 0);
 const every = winds.length / 3 / (expected.length / size);
-let [wrong, greatest, held, at] = [0, 0, 0, 0];
+let [wrong, greatest, outside, at] = [0, 0, 0, 0];
 const begin = performance.now();
 for (let step = 0; step < winds.length / 3; step++) {
   stand.step(winds[3 * step], winds[3 * step + 1], winds[3 * step + 2]);
-  held += stand.held;
+  outside += stand.outside;
   if ((step + 1) % every) continue;
   for (const { state } of stand.trees) {
     for (const value of state.eta) {
@@ -29,4 +29,4 @@ for (let step = 0; step < winds.length / 3; step++) {
   }
 }
 const micros = (1000 * (performance.now() - begin)) / (winds.length / 3) / stand.trees.length;
-console.log(JSON.stringify({ wrong, greatest, held, steps: winds.length / 3, compared: at, micros }));
+console.log(JSON.stringify({ wrong, greatest, outside, steps: winds.length / 3, compared: at, micros }));

@@ -121,7 +121,7 @@ async def look(url: str, view: View, path: Path) -> None:
         drawn = await browser.run('treeSway.scene._frame')
         await browser.until(f'treeSway.scene._frame > {drawn} + 3')
         if not view.is_full:
-            await asyncio.sleep(8.0)  # until the page has found its pace
+            await asyncio.sleep(8.0)  # until the page has chosen what it draws
         image = Image.open(io.BytesIO(await browser.screenshot())).convert('RGB')
         if not view.is_phone:
             image = image.resize((WIDTH, WIDTH * height // width), Image.Resampling.LANCZOS)

@@ -126,14 +126,14 @@ def add_leaves_argument(parser: argparse.ArgumentParser, default: str = 'auto') 
     )
 
 
-def told_leaves(arguments: argparse.Namespace) -> bool | None:
+def chosen_leaves(arguments: argparse.Namespace) -> bool | None:
     """Whether trees bear leaves; None leaves it to their species."""
     return LEAVES[arguments.leaves]
 
 
 def drawn_leaves(scene: Scene, arguments: argparse.Namespace) -> LeafClusters | None:
     """Clusters to draw, the same in every picture of a tree; None if there are none."""
-    return scene.leaves(told_leaves(arguments), _DRAWN)
+    return scene.leaves(chosen_leaves(arguments), _DRAWN)
 
 
 def add_wind_arguments(parser: argparse.ArgumentParser, record: str = '') -> None:

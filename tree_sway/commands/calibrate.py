@@ -12,9 +12,9 @@ from tree_sway.commands.arguments import (
     add_leaves_argument,
     add_output_arguments,
     add_tree_arguments,
+    chosen_leaves,
     opened_tree,
     output_path,
-    told_leaves,
     write_tree_file,
 )
 from tree_sway.commands.progress import waiting
@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
         found = _measured(arguments)
         frequency, error = found.frequency, found.frequency_error / found.frequency
         damping = found.damping_ratio if damping is None else damping
-    settings = Settings(in_leaf=told_leaves(arguments))
+    settings = Settings(in_leaf=chosen_leaves(arguments))
     with waiting('calibrating'):
         fitted = calibrate(tree_file.tree, tree_file.species, frequency, damping, settings,
                            arguments.branch)  # fmt: skip
@@ -150,5 +150,5 @@ def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: boo
         f'{" (an estimate)" if table.is_estimate else ""}',
         f'  damping    {getattr(before, season):.3g} -> {getattr(after, season):.3g} '
         f'{"in leaf" if in_leaf else "bare"}; '
-        'a measured one holds that of the air, whose drag the solver adds',
+        'a measured one includes that of the air, whose drag the solver adds',
     ]

@@ -27,7 +27,7 @@ from tree_sway.errors import nearest, shown, TreeSwayError
 COMMANDS = commands_beside(__file__)
 
 #: Entry points of this group are further tables of commands: those of the nodes are merged with
-#: the table above, those of the laboratory stand under the name of their entry point.
+#: the table above, those of the laboratory are called by the name of their entry point.
 GROUP = 'tree_sway.commands'
 MERGED = 'ros'
 _ROS_CURE = 'it needs ROS: source a ROS 2 installation, or pip install "tree_sway_ros[ros]"'

@@ -14,11 +14,11 @@ from tree_sway.commands.arguments import (
     add_model_argument,
     add_output_arguments,
     add_tree_arguments,
+    chosen_leaves,
     drawn_leaves,
     opened_scene,
     OUTPUT_HELP,
     output_path,
-    told_leaves,
     what_was_written,
 )
 from tree_sway.commands.progress import waiting
@@ -86,7 +86,7 @@ def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
     """Write a page that sways by itself, in leaf unless leaves are off."""
     from tree_sway.page.one_file import page_of_scene
 
-    settings = Settings(in_leaf=told_leaves(arguments) is not False)
+    settings = Settings(in_leaf=chosen_leaves(arguments) is not False)
     with waiting('finding what sways'):
         simulator = scene.simulator(settings, model=arguments.model)
         page = page_of_scene(simulator)
@@ -101,7 +101,7 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             where=arguments.output,
             cure='convert its trees one by one',
         )
-    settings = Settings(model=arguments.model, in_leaf=told_leaves(arguments))
+    settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
     with waiting('finding what sways'):
         simulator = SwaySimulator(scene.tree, scene.species, settings)
         leaves = drawn_leaves(scene, arguments)

@@ -23,7 +23,7 @@ LONGEST = 1.5
 SHORTEST = 0.3
 """The same of a process that only starts: nothing is open that would have to be closed."""
 _GRACE = 0.2
-"""So much later [s] a process ends that even its threads cannot end."""
+"""Time [s] after which a process ends that even its threads cannot end."""
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -83,7 +83,7 @@ class Ending:
             raise KeyboardInterrupt
 
     def _end_by_all_means(self) -> None:
-        """Leaving the graph, the middleware may hold the interpreter: then C ends the process."""
+        """Leaving the graph, the middleware may block the interpreter: then C ends the process."""
         self._nowhere = open(os.devnull, 'w')
         faulthandler.dump_traceback_later(self.limit + _GRACE, exit=True, file=self._nowhere)
 

@@ -15,8 +15,8 @@ import numpy as np
 from tree_sway.commands.arguments import (
     add_leaves_argument,
     add_tree_arguments,
+    chosen_leaves,
     opened_scene,
-    told_leaves,
 )
 from tree_sway.commands.mode_table import mode_table
 from tree_sway.commands.progress import bar
@@ -74,7 +74,7 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
     settings = Settings(
         gravity=_GRAVITY if arguments.gravity == 'on' else 0.0,
         root_stiffness=arguments.root_stiffness,
-        in_leaf=told_leaves(arguments) if kind.leaf_on is None else kind.leaf_on,
+        in_leaf=chosen_leaves(arguments) if kind.leaf_on is None else kind.leaf_on,
     )
     settings = in_season(tree, species, settings)
     notes = []

@@ -15,11 +15,11 @@ import numpy as np
 from tree_sway.commands.arguments import (
     add_output_arguments,
     add_sway_arguments,
+    chosen_leaves,
     drawn_leaves,
     opened_scene,
     opened_wind,
     output_path,
-    told_leaves,
 )
 from tree_sway.commands.progress import bar, waiting
 from tree_sway.commands.swaying import swaying
@@ -104,7 +104,7 @@ def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
 
 def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
     """Simulate what is drawn; a scan too noisy to stand has no weight."""
-    model: dict[str, Any] = {'model': arguments.model, 'in_leaf': told_leaves(arguments)}
+    model: dict[str, Any] = {'model': arguments.model, 'in_leaf': chosen_leaves(arguments)}
     try:
         with waiting('setting up the tree'):
             return scene.simulator(**model)
@@ -122,7 +122,7 @@ def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
         )
     speeds, used = np.linspace(0.0, SWAY['mean_speed'].checked(arguments.speed), 7)[1:], {}
     for each in bar(scene.trees, 'loading trees'):
-        leaf_on = told_leaves(arguments) if each.leaf_on is None else each.leaf_on
+        leaf_on = chosen_leaves(arguments) if each.leaf_on is None else each.leaf_on
         tree = PlacedTree(each.name, each.placed(), species=each.species)
         rig = Rig(tree, model=arguments.model, in_leaf=leaf_on)
         used[each.name] = rig.strength_curve(speeds, rng=np.random.default_rng(0))

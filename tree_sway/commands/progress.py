@@ -36,7 +36,7 @@ def bar(items: Collection[T], what: str) -> Iterator[T]:
 @contextmanager
 def waiting(what: str) -> Iterator[None]:
     """Say what is done, if the work inside takes longer than people wait without a word."""
-    timer = threading.Timer(PATIENCE, _tell, [f'{what} ...'])
+    timer = threading.Timer(PATIENCE, _report, [f'{what} ...'])
     timer.daemon = True
     timer.start()
     try:
@@ -45,6 +45,6 @@ def waiting(what: str) -> Iterator[None]:
         timer.cancel()
 
 
-def _tell(text: str) -> None:
+def _report(text: str) -> None:
     if sys.stderr is not None:
         print(text, file=sys.stderr, flush=True)

@@ -158,7 +158,7 @@ class _Relay:
             self._pause.wait(_LOOK)
 
     def _take(self, data: bytes) -> None:
-        """Take a sample that the line hands on, in a thread of its own."""
+        """Take a sample that the line passes on, in a thread of its own."""
         with self._refusing('sample of the wind'):
             good = self._site.add_wind(*decode_wind(data), time.time_ns())
             if good is not None and self._ros is not None:

@@ -12,10 +12,10 @@ import numpy as np
 from tree_sway.commands.arguments import (
     add_output_arguments,
     add_sway_arguments,
+    chosen_leaves,
     opened_scene,
     opened_wind,
     output_path,
-    told_leaves,
 )
 from tree_sway.commands.progress import waiting
 from tree_sway.commands.swaying import swaying
@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
     scene = opened_scene(arguments)
     wind = opened_wind(arguments)
     with waiting('setting up the tree'):
-        simulator = scene.simulator(in_leaf=told_leaves(arguments), model=arguments.model)
+        simulator = scene.simulator(in_leaf=chosen_leaves(arguments), model=arguments.model)
     clusters = _BLADES // blades_per_cluster(scene.tree.species)
     began = time.monotonic()
     frames, winds = [], []
@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
             np.array(winds),
             target,
             rate=arguments.rate,
-            leaves=scene.leaves(told_leaves(arguments), clusters),
+            leaves=scene.leaves(chosen_leaves(arguments), clusters),
             pixels=arguments.pixels,
         )
     spent = time.monotonic() - began

@@ -14,9 +14,9 @@ import webbrowser
 
 from tree_sway.commands.arguments import (
     add_sway_arguments,
+    chosen_leaves,
     opened_scene,
     opened_wind,
-    told_leaves,
 )
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings
 from tree_sway.core.checks import within
@@ -99,7 +99,7 @@ def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
         if not scene.is_one_tree:
             raise ParameterError('a stand of a forest', where='--stand', cure='name one tree')
         scene = stand(scene, count, choices.model)
-    damping, in_leaf = choices.damping_ratio or None, told_leaves(arguments)
+    damping, in_leaf = choices.damping_ratio or None, chosen_leaves(arguments)
     settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
     return scene.simulator(settings, model=choices.model)
 

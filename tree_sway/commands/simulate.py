@@ -15,10 +15,10 @@ from tree_sway.commands.arguments import (
     add_output_arguments,
     add_tree_arguments,
     add_wind_arguments,
+    chosen_leaves,
     opened_record,
     opened_tree,
     output_path,
-    told_leaves,
 )
 from tree_sway.commands.progress import waiting
 from tree_sway.core.scene.simulate import simulate, WindSamples
@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
             seconds=arguments.seconds,
             branches=[names.index(name) for name in arguments.branch] or None,
             model=arguments.model,
-            in_leaf=told_leaves(arguments),
+            in_leaf=chosen_leaves(arguments),
         )
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     print(f'{output}: {record}')

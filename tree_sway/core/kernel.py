@@ -14,7 +14,6 @@ from typing import Any, cast, TypeVar
 
 import numpy as np
 
-from tree_sway.errors import MissingDependencyError
 from tree_sway.kernel_cache import KernelCache, why_no_compiler
 
 _F = TypeVar('_F', bound=Callable[..., Any])
@@ -83,16 +82,6 @@ def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any
     types = tuple(typeof(argument) for argument in arguments)
     function.compile(types)  # type: ignore[attr-defined]
     return cast(Callable[..., Any], find(types))
-
-
-def need_compiler(what: str) -> None:
-    """Refuse what has no form but the compiled one, with a `MissingDependencyError`."""
-    if WHY_PLAIN:
-        raise MissingDependencyError(
-            f'{what} needs compiled kernels, and {WHY_PLAIN}',
-            cure='install numba 0.59 or later, or take a model that runs on numpy: a number of '
-            'coordinates, branch or full',
-        )
 
 
 def like(value: float, model: Any) -> Any:

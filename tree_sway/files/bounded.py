@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Read a file by a library in a process of its own, with so much memory and time and no more.
+Read a file by a library in a process of its own, with bounded memory and time.
 
 A few bytes can claim gigabytes, nest without end, or end the process that a library runs in. The
 reader runs in a child, which this file is the program of, and gives arrays back in numpy's own

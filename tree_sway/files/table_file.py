@@ -3,7 +3,7 @@
 """
 Tables in text: one mapper from columns to arrays for every format of the family.
 
-Comma, semicolon or tab between cells, white space where a format has no header; a unit may stand
+Comma, semicolon or tab between cells, white space where a format has no header; a unit may be
 behind a column's name in brackets, or in a row of its own. Cells are read when they are asked for,
 a block at a time, as a day of wind has millions of rows.
 """
@@ -55,7 +55,7 @@ class TextTable:
     """
     A table whose columns have names: number and text of each line, and what splits it into cells.
 
-    ``header_line`` and ``unit_line`` say where names and units stand; ``units`` are those of the
+    ``header_line`` and ``unit_line`` are the lines of names and units; ``units`` are those of the
     columns, if they have a row of their own.
     """
 
@@ -191,7 +191,7 @@ class TextTable:
         position: dict[int, int] = {}
         for row, each in enumerate(numbers):
             if each in position:
-                raise FormatError(f'number {each} stands twice', where=labels[row])
+                raise FormatError(f'number {each} occurs twice', where=labels[row])
             position[each] = row
         parents = np.full(len(numbers), -1, dtype=np.int64)
         for row, each in enumerate(self.whole(values[:, 1], parent).tolist()):
@@ -219,14 +219,14 @@ def split_row(line: str, separator: str) -> Sequence[str]:
         return []
 
 
-def filled_lines(lines: Sequence[str], comment: str = '#') -> tuple[list[int], list[str]]:
+def filled_lines(lines: Sequence[str]) -> tuple[list[int], list[str]]:
     """Numbers and texts of the lines that are neither blank nor a comment."""
-    kept = [
+    filled = [
         number
         for number, line in enumerate(lines, start=1)
-        if line.strip() and not line.lstrip().startswith(comment)
+        if line.strip() and not line.lstrip().startswith('#')
     ]
-    return kept, [lines[number - 1] for number in kept]
+    return filled, [lines[number - 1] for number in filled]
 
 
 def parse_table(lines: Sequence[str], source: str) -> TextTable:

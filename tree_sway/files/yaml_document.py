@@ -58,7 +58,7 @@ def tree_schema() -> Schema:
 
 @dataclass(frozen=True)
 class YamlDocument:
-    """Checked values of a YAML text: numbers where the schema has them, texts as they stand."""
+    """Checked values of a YAML text: numbers where the schema has them, texts as they are."""
 
     values: dict[str, Any]
     source: str
@@ -77,7 +77,7 @@ def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
     Raises
     ------
     FormatError
-        Not YAML, empty, more than one document, an anchor, a tag, a key that stands twice or is no
+        Not YAML, empty, more than one document, an anchor, a tag, a key that occurs twice or is no
         text, nested too deep, or the first thing that the schema does not allow; with
         ``source:line``.
 
@@ -121,7 +121,7 @@ def _refuse_unsafe(text: str, source: str) -> None:
 
 
 def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
-    """Plain value of a node; of what a schema wants as text, the text as it stands."""
+    """Plain value of a node; of what a schema wants as text, the text as it is."""
     schema = _resolved(schema, root)
     for choice in schema.get('anyOf', ()):
         if _resolved(choice, root)['type'] == _TYPES[type(node)]:
@@ -138,7 +138,7 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
                 )
             if key.value in values:
                 raise FormatError(
-                    f"key '{key.value}' stands twice, first in line {lines[key.value]}",
+                    f"key '{key.value}' occurs twice, first in line {lines[key.value]}",
                     where=f'{source}:{line}',
                     cure='remove one of them',
                 )

@@ -27,7 +27,7 @@ MOST_COORDINATES = 65_535
 """Coordinates of all trees; a frame counts them in two bytes."""
 
 _GREATEST = 1e12
-"""Of a height, an error or the law of the leaves."""
+"""Size of a height, an error or a number of the law of the leaves."""
 
 Array = NDArray[Any]
 

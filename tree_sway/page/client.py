@@ -110,7 +110,7 @@ class StreamClient:
         self.unreadable = 0
         """Messages that could not be read; after each the line is made again."""
         self.round_trip = float('nan')
-        """To the server and back [s]."""
+        """Time to the server and back [s]."""
         self.status: dict[str, object] = {}
         """The newest status of the server."""
         self.solver: ByWind | None = None

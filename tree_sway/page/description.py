@@ -3,8 +3,8 @@
 """
 What a receiver needs to rebuild every pose from a frame.
 
-Of each kind of tree it is the rest geometry, how its branches bend, and the basis of its state; of
-each tree its kind, and where it stands.
+For each kind of tree it is the rest geometry, how its branches bend, and the basis of its state;
+for each tree it is its kind and its place.
 
 A kind has its root node at the origin.
 """
@@ -26,7 +26,7 @@ from tree_sway.page.protocol import encode_description
 from tree_sway.page.scene_kind import SceneKind
 
 NO_ROW = -1
-"""Of the turns, for a branch that sits on none or bends by its slope."""
+"""Row of the turns of a branch that sits on none or bends by its slope."""
 
 
 def describe_scene(
@@ -43,7 +43,7 @@ def describe_scene(
     Parameters
     ----------
     name
-        Of the scene.
+        Name of the scene.
     kinds
         Its trees by kind.
     tree_names

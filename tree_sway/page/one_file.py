@@ -31,7 +31,7 @@ _IMPORT = re.compile(r'(\bfrom\s+|\bimport\s+)"(\.[^"]+)"')
 _LEAVES = 1000
 _BOOT = 'boot.js'
 _BITS = 14
-"""Of the fraction of each number; what is drawn is right to some hundredths of a millimetre."""
+"""Bits of the fraction of each number: what is drawn errs by some hundredths of a millimetre."""
 
 
 def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
@@ -43,7 +43,7 @@ def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
     simulator
         A tree or a scene on a number of coordinates; it is run to find the basis of its state.
     n_leaves
-        As of `SceneState`.
+        Number of clusters of leaves, as of `SceneState`.
 
     Raises
     ------

@@ -26,7 +26,7 @@ from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import Description
 
 MOST_MEMORY = 512 * 2**20
-"""Of the records of a kind in [bytes]."""
+"""Memory for the records of a kind in [bytes]."""
 
 _TURNS = 'base_turn', 'turn'
 _Records = NDArray[np.void]

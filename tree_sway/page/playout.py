@@ -34,13 +34,13 @@ class Moment(NamedTuple):
     Parameters
     ----------
     stamp
-        Of the sender's clock [s].
+        Time by the sender's clock [s].
     coordinates
-        In their own unit, (m,).
+        Coordinates in their own unit, (m,).
     wind
-        Blowing to, in [m/s], (3,).
+        Wind, blowing to, in [m/s], (3,).
     flags
-        As of a frame.
+        Flags, as of a frame.
 
     """
 
@@ -81,12 +81,12 @@ class ClockOffset:
 
 class Playout:
     """
-    Holds the newest states and finds what to show.
+    Keeps the newest states and finds what to show.
 
     Parameters
     ----------
     delay
-        From a state's stamp to when it is shown, the quickest travel not counted [s].
+        Time from a state's stamp to when it is shown, the quickest travel not counted [s].
 
     """
 
@@ -140,7 +140,7 @@ class Playout:
         return self._shown
 
     def _blended(self, coordinates: Floats, now: float) -> Floats:
-        """Over from what was shown before the stream was cut."""
+        """Blend from what was shown before the stream was cut."""
         before, u = self._before, (now - self._blend_from) / _BLEND
         if before is None or u >= 1.0 or before.shape != coordinates.shape:
             self._before = None
@@ -157,7 +157,7 @@ def catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:
     a, b, c, d
         States in the order of their stamps; at an end of the stream a is b, or d is c.
     u
-        From b to c, 0 to 1.
+        Share of the way from b to c, 0 to 1.
 
     """
     span, before, behind = c.stamp - b.stamp, c.stamp - a.stamp, d.stamp - b.stamp

@@ -49,13 +49,13 @@ _FRAME = struct.Struct('<BBBxIIq3hH')
 _ALIGNMENT = 8
 
 FRAME_SIZE = _FRAME.size
-"""Of a frame of the wind alone in [bytes]."""
+"""Size of a frame of the wind alone in [bytes]."""
 
 LARGEST_DESCRIPTION = 64 * 2**20
-"""Of its message in [bytes]."""
+"""Size of the message of a description in [bytes]."""
 
 LARGEST_HEADER = 8 * 2**20
-"""Of the JSON in it in [bytes]."""
+"""Size of the JSON in such a message in [bytes]."""
 
 _WRONG_JSON = (
     ValueError, KeyError, IndexError, TypeError, AttributeError, OverflowError, RecursionError,
@@ -78,9 +78,9 @@ class Frame(NamedTuple):
     flags
         Sum of `PAUSED`, `BEYOND_SCALE`, `RESTARTED`.
     wind
-        At the anemometer, blowing to, in [m/s], (3,).
+        Wind at the anemometer, blowing to, in [m/s], (3,).
     coordinates
-        As int16, (m,): full scale is `FULL_SCALE`. None of them is a frame of wind alone.
+        Coordinates as int16, (m,): full scale is `FULL_SCALE`. A frame of wind alone has none.
     first
         Number of the first of them.
 
@@ -307,6 +307,20 @@ def encode_frame(frame: Frame) -> bytes:
         )
         + coordinates.tobytes()
     )  # fmt: skip
+
+
+def encode_state(
+    description: Description,
+    sequence: int,
+    stamp: int,
+    wind: Floats,
+    coordinates: ArrayLike,
+    flags: int = 0,
+) -> bytes:
+    """Write the frame of coordinates (m,) in their own unit; the rest is as of `Frame`."""
+    steps, is_cut = quantised(coordinates, description.scale)
+    flags |= BEYOND_SCALE * is_cut
+    return encode_frame(Frame(description.short_identity, sequence, stamp, flags, wind, steps))
 
 
 def decode_frame(data: bytes) -> Frame:

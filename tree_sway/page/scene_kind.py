@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -69,7 +68,11 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
         # The model stays at rest: the scene steps its table.
         basis = state_basis(model)
         per_shape = bank.all_shapes @ basis.projection.T
-        found = partial(_shared, simulator, numbers, per_shape)
+
+        def found(numbers: Ints = numbers, per_shape: Floats = per_shape) -> Floats:
+            coordinates: Floats = simulator.shares(numbers) @ per_shape
+            return coordinates
+
         where = [trees[number] for number in numbers.tolist()]
         places = [(tree.x, tree.y, tree.z, tree.yaw, tree.scale) for tree in where]
         kinds.append(SceneKind(model, basis, found, numbers.tolist(), places))
@@ -80,19 +83,11 @@ def _alone(number: int, simulator: SwaySimulator, is_running: bool) -> SceneKind
     """Return the kind of a tree that shares nothing, described where it is."""
     basis = state_basis(_runner(simulator, is_running))
     x, y, z = simulator.tree.start[0].tolist()
-    found = partial(_coordinates, basis.projection, simulator)
+
+    def found() -> Floats:
+        return np.asarray(basis.projection @ simulator.rotations())[None]
+
     return SceneKind(simulator, basis, found, [number], [(x, y, z, 0.0, 1.0)])
-
-
-def _shared(scene: SceneSimulator, numbers: Ints, per_shape: Floats) -> Floats:
-    """Coordinates of the trees of a scene that share a table, (t, m)."""
-    coordinates: Floats = scene.shares(numbers) @ per_shape
-    return coordinates
-
-
-def _coordinates(projection: Floats, simulator: SwaySimulator) -> Floats:
-    """Coordinates of one tree, (1, m)."""
-    return np.asarray(projection @ simulator.rotations())[None]
 
 
 def _runner(simulator: SwaySimulator, is_running: bool) -> SwaySimulator:

@@ -12,12 +12,9 @@ from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.page.description import describe_scene
 from tree_sway.page.protocol import (
-    BEYOND_SCALE,
     decode_description,
-    encode_frame,
-    Frame,
+    encode_state,
     PAUSED,
-    quantised,
     RESTARTED,
 )
 from tree_sway.page.scene_kind import scene_kinds, SceneKind
@@ -72,10 +69,14 @@ class SceneState:
         self.description = describe_scene(
             name, self.kinds, self.names, frame_id=frame_id, leaves=leaves
         )
-        described = decode_description(self.description)
-        self.identity, self._short = described.identity, described.short_identity
+        self._described = decode_description(self.description)
         self._sequence = 0
         self._tables: bytes | None = None
+
+    @property
+    def identity(self) -> str:
+        """Return the identity of the description."""
+        return self._described.identity
 
     def tables(self) -> bytes | None:
         """Return what a receiver solves the scene by, as `tables_of`; made at the first call."""
@@ -89,13 +90,10 @@ class SceneState:
         for kind in self.kinds:
             sizes[kind.numbers] = len(kind.basis.scale)
         first = np.cumsum([0, *sizes])
-        self._scale = np.zeros(first[-1])
-        self._rows = []
-        for kind in self.kinds:
-            rows = first[kind.numbers][:, None] + np.arange(len(kind.basis.scale))
-            self._scale[rows] = kind.basis.scale
-            self._rows.append(rows)
-        self._sizes = sizes.tolist()
+        self._rows = [
+            first[kind.numbers][:, None] + np.arange(len(kind.basis.scale)) for kind in self.kinds
+        ]
+        self._sizes: list[int] = sizes.tolist()
 
     @property
     def coordinate_names(self) -> list[str]:
@@ -109,7 +107,7 @@ class SceneState:
 
     def coordinates(self) -> Floats:
         """Coordinates of all trees now, (m,)."""
-        whole = np.empty(len(self._scale))
+        whole = np.empty(sum(self._sizes))
         for kind, rows in zip(self.kinds, self._rows, strict=True):
             whole[rows] = kind.coordinates()
         return whole
@@ -123,16 +121,15 @@ class SceneState:
         stamp
             Its time in [ns].
         is_paused
-            Whether time stands still.
+            Whether time is paused.
         has_restarted
             Whether the motion jumped since the frame before.
 
         """
-        steps, is_cut = quantised(self.coordinates(), self._scale)
-        flags = PAUSED * is_paused + RESTARTED * has_restarted + BEYOND_SCALE * is_cut
+        flags = PAUSED * is_paused + RESTARTED * has_restarted
         self._sequence += 1
-        frame = Frame(self._short, self._sequence - 1, stamp, flags, self.simulator.wind, steps)
-        return encode_frame(frame)
+        wind, coordinates = self.simulator.wind, self.coordinates()
+        return encode_state(self._described, self._sequence - 1, stamp, wind, coordinates, flags)
 
 
 def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:

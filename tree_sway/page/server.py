@@ -3,7 +3,7 @@
 """
 The page's server: files, a description once, the newest frame to whoever has asked for one more.
 
-It runs on a thread and loop of its own. The solver's thread hands a frame over by storing it and
+It runs on a thread and loop of its own. The solver's thread publishes a frame by storing it and
 waking the loop, and never waits. A client gets a frame only for a credit that it gave, and always
 the newest one, so that a slow client sees fewer frames, not old ones.
 """
@@ -82,7 +82,7 @@ class PageSettings:
     Parameters
     ----------
     address, port
-        To bind to; port 0 takes a free one.
+        Address to bind to; port 0 takes a free one.
     token, token_file
         What clients must know, or a file that holds it; needed for any address but this machine's
         own.
@@ -259,7 +259,7 @@ class PageServer:
         self._call(self._wake_all)
 
     def publish(self, frame: bytes) -> None:
-        """Hand over the newest frame, from any thread, without waiting."""
+        """Send the newest frame, from any thread, without waiting."""
         self._frame = (self._frame[0] + 1, frame)
         if not self._is_woken:
             self._is_woken = True

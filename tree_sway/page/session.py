@@ -45,11 +45,11 @@ class Choices:
     tree
         Name or file.
     count
-        How many of it stand together, a whole number as text.
+        Number of trees in the stand, a whole number as text.
     model
         Its model.
     damping_ratio
-        Of every mode; 0 for the species' own.
+        Damping ratio of every mode; 0 for the species' own.
 
     """
 

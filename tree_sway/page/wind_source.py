@@ -93,7 +93,7 @@ class RecordedWind:
     time
         Time of each sample in [s], increasing, (n,).
     velocity
-        Blowing to, in [m/s], (n, 3).
+        Wind, blowing to, in [m/s], (n, 3).
 
     """
 

@@ -39,7 +39,7 @@ def plot_wind_and_tip(
     tip
         Displacement of the tip from rest in [m], (n, 3).
     path, title
-        File to write, whose suffix names the format, and what stands above the plot.
+        File to write, whose suffix names the format, and the title of the plot.
 
     Raises
     ------

@@ -16,7 +16,7 @@ from tree_sway.pictures.leaf_drawing import leaf_blades, leaf_colors
 from tree_sway.pictures.projection import Camera, Frame, frame_around
 
 _SHADE, _HAZE = 0.68, 0.62
-"""Near bark is so much darker than bark in the sun; far bark fades by so much to white."""
+"""Brightness of near bark over that of bark in the sun; how far far bark fades to white."""
 _TWIG = np.array([0.36, 0.28, 0.22])
 _THICK = 0.004
 """Diameter over the height of the picture from which joints are closed by discs."""

@@ -3,7 +3,7 @@
 """
 A sample of wind as CDR bytes of ``geometry_msgs/Vector3Stamped``, read and written without ROS.
 
-The bytes are those that a Zenoh bridge of ROS 2 carries, so that it may stand at either end.
+The bytes are those that a Zenoh bridge of ROS 2 carries, so that it may be at either end.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
     rig, frequency = _rig(json.dumps([case.tree, case.settings, case.digest], sort_keys=True))
     tree = rig.tree
     record = rig.run(_wind(case), rate=case.rate, seconds=case.seconds)
-    row: Plain = {**_told('tree', case.tree), **_told('wind', case.wind), **case.settings}
+    row: Plain = {**_prefixed('tree', case.tree), **_prefixed('wind', case.wind), **case.settings}
     row |= {
         'seconds': case.seconds,
         'branches': tree.n_branches,
@@ -93,7 +93,7 @@ def _wind(case: Case) -> WindRecord | Floats:
     )
 
 
-def _told(what: str, asked: Plain) -> Plain:
+def _prefixed(what: str, asked: Plain) -> Plain:
     return {f'{what}_{key}': value for key, value in asked.items()}
 
 

@@ -18,7 +18,7 @@ from tree_sway_ros.link.lines import Lines
 from tree_sway_ros.timing.worker import Worker
 
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
-"""Between two attempts [s]: doubled from the first to the longest while nothing comes."""
+"""Pause between two attempts [s]: doubled from the first to the longest while nothing comes."""
 _CONNECT_FOR = 5.0  # [s]
 _READ_FOR = 0.1  # [s]: as soon a silent link sees that it is to end
 _DATAGRAM = 65_536
@@ -30,7 +30,7 @@ Read = Callable[[], bytes | None]
 @dataclass(eq=False)
 class LineSource(Worker):
     """
-    Listens to an instrument at an address; hands each line to `take`, in a thread of its own.
+    Listens to an instrument at an address; gives each line to `take`, in a thread of its own.
 
     A link without a byte for the time of `silence` [s] is given up and opened again, first after
     `first_pause` [s]. A `MissingDependencyError` says that a serial port needs pyserial.

@@ -20,9 +20,6 @@ from tree_sway_ros.wire.wind_messages import WindWriter
 class AnemometerNode(TreeSwayNode):
     """Publishes `wind` at a fixed rate."""
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__('anemometer', **options)
-
     def configure(self) -> None:
         """Make the wind."""
         self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))

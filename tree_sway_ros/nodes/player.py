@@ -28,7 +28,7 @@ from tree_sway_ros.wire.wind_messages import clock_message, WindWriter
 _SLACK = 100_000_000
 """The clock may be ahead of the frames of an exact replay by this time [ns]."""
 _BACK = 300_000_000
-"""Before an exact replay the clock stands at this time before its beginning [ns]."""
+"""Time before its beginning at which the clock of an exact replay waits [ns]."""
 _FURTHER = 3 * _BACK
 """The same [ns] for a solver that was under way before, so that it begins again."""
 _STILL = 3.0
@@ -41,9 +41,6 @@ _MEETING = 2.0
 
 class PlayerNode(TreeSwayNode):
     """Publishes `wind` or the state of a tree from a record, and `/clock` if asked to."""
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__('player', **options)
 
     def configure(self) -> None:
         """Read the record."""
@@ -157,7 +154,7 @@ class PlayerNode(TreeSwayNode):
             return True
         if not self._has_begun:
             self._met = now + _MEETING
-            if now > self._deadline - _PATIENCE + _STILL:  # a solver stands at that very time
+            if now > self._deadline - _PATIENCE + _STILL:  # a solver is at that very time
                 self._back = _FURTHER
         self._is_waiting = not self._has_begun
         if now > self._met:  # the first sample is sent until it has come through

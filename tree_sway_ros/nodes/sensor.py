@@ -20,9 +20,6 @@ from tree_sway_ros.wire.wind_messages import WindWriter
 class SensorNode(TreeSwayNode):
     """Publishes `wind` as an instrument says it, stamped with the time of arrival."""
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__('sensor', **options)
-
     def configure(self) -> None:
         """Prepare the link."""
         self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))

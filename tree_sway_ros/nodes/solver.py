@@ -41,7 +41,7 @@ _LEAF_CLUSTERS = 1000
 """Clusters of leaves in `tree_description`, of a tree in leaf."""
 
 _FARTHEST_CAMERA = 1e6
-"""Along each axis [m]."""
+"""Distance along each axis [m]."""
 
 _STRONGEST_PUSH, _PUSH_LASTS = 1e5, 0.5
 """Force [N], and time [s] after which a push ends that is not sent again."""
@@ -49,9 +49,6 @@ _STRONGEST_PUSH, _PUSH_LASTS = 1e5, 0.5
 
 class SolverNode(TreeSwayNode):
     """Subscribes `wind/filtered`; publishes poses, markers and state, and their description."""
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__('solver', **options)
 
     def configure(self) -> None:
         """Open the tree, reduce it and make its kernels ready."""

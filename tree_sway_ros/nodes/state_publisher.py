@@ -56,7 +56,7 @@ class StatePublisher:
             frame_id = self._node.values['frame_id']
             scene = SceneState(self._simulator, self._n_leaves, frame_id)
             self._template = state_template(scene.coordinate_names, frame_id)
-            self._node.stream.tell_more({'state': state_entry(scene.description)})
+            self._node.stream.add_to_description({'state': state_entry(scene.description)})
             self._scene = scene
         except TreeSwayError as error:
             self._node.get_logger().warning(f'no {TREE_STATE.name}: {error}')

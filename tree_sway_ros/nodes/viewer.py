@@ -14,14 +14,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET
-from tree_sway.page.protocol import (
-    BEYOND_SCALE,
-    decode_description,
-    Description,
-    encode_frame,
-    Frame,
-    quantised,
-)
+from tree_sway.page.protocol import decode_description, Description, encode_state
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway_ros.process.node import TreeSwayNode
@@ -41,9 +34,6 @@ _LIVE = {
 
 class ViewerNode(TreeSwayNode):
     """Serves the page; subscribes `tree_state` from when a page is first connected."""
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__('viewer', **options)
 
     def configure(self) -> None:
         """Subscribe to the description, and prepare what pages may change."""
@@ -99,16 +89,14 @@ class ViewerNode(TreeSwayNode):
         if description is None:
             return
         wind, coordinates = read_state(message)
-        scale = description.scale
-        if len(coordinates) != len(scale):
-            raise FormatError(
-                f'{len(coordinates)} coordinates of a tree with {len(scale)}', where='tree_state'
-            )
-        steps, is_cut = quantised(coordinates, scale)
-        flags, stamp = BEYOND_SCALE * is_cut, stamp_to_ns(message.header.stamp)
-        frame = Frame(description.short_identity, self._sequence, stamp, flags, wind, steps)
+        count = len(description.scale)
+        if len(coordinates) != count:
+            what = f'{len(coordinates)} coordinates of a tree with {count}'
+            raise FormatError(what, where='tree_state')
+        stamp = stamp_to_ns(message.header.stamp)
+        frame = encode_state(description, self._sequence, stamp, wind, coordinates)
         self._sequence += 1
-        self.server.publish(encode_frame(frame))
+        self.server.publish(frame)
 
     def _make_server(self) -> PageServer:
         return PageServer(self._settings, self._panel, lambda: {'source': 'ROS 2'})

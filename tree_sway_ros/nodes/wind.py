@@ -38,9 +38,6 @@ _RECENT = 5.0
 class WindNode(TreeSwayNode):
     """Subscribes `wind`, publishes `wind/filtered` and `wind/force_plane`."""
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__('wind', **options)
-
     def configure(self) -> None:
         """Subscribe and publish; what comes while inactive is dropped."""
         self._report = WindReport()

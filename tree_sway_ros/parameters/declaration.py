@@ -90,10 +90,6 @@ class ParameterValues:
         """Value of a parameter, of its own kind: a float is a float even if ROS was given 40."""
         return self._values[name]
 
-    def get(self, name: str, default: Value = None) -> Value:
-        """Value of a parameter that not every node has."""
-        return self._values.get(name, default)
-
     def __call__(self, *names: str) -> dict[str, Value]:
         """Values of some parameters, as keyword arguments."""
         return {name: self._values[name] for name in names}

@@ -40,7 +40,7 @@ _ENTITIES = {
 
 
 class _Never(CallbackGroup):  # type: ignore[misc]
-    """Of a subscription that no executor looks at."""
+    """The callback group of a subscription that no executor looks at."""
 
     def can_execute(self, _entity: Any) -> bool:
         return False
@@ -58,13 +58,14 @@ def _match(offer: Any, request: Any) -> bool:
 
 class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     """
-    A node with a table of parameters, found under its name, whatever the node is remapped to.
+    A node with a table of parameters, found under the name of its class: `WindNode` is ``wind``.
 
     It is a managed node of ROS, which configures and activates itself unless the parameter
     `autostart` leaves that to a manager. Options are those of `rclpy.node.Node`.
     """
 
-    def __init__(self, name: str, **options: Any) -> None:
+    def __init__(self, **options: Any) -> None:
+        name = type(self).__name__.removesuffix('Node').lower()
         # Made first: rclpy's own subscriptions and services are guarded as well.
         self.guard = CallbackGuard(lambda text: self.get_logger().error(text))
         Node.__init__(self, name, automatically_declare_parameters_from_overrides=True, **options)

@@ -25,7 +25,7 @@ _REFUSALS = ('InvalidNamespaceException', 'InvalidNodeNameException', 'RCLError'
 _CHECK_PERIOD = 0.2
 _SWITCH_INTERVAL = 0.0005
 _M_MMAP_THRESHOLD, _LARGE = -3, 1 << 20
-"""Of glibc: what is larger [bytes] goes back to the system when it is freed."""
+"""A limit of glibc: what is larger [bytes] goes back to the system when it is freed."""
 _PROFILES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
 """Name the file of Fast DDS 2 and of 3."""
 
@@ -67,7 +67,7 @@ def init(
 
     A `TransportError` if the domain or the arguments cannot be used.
     """
-    # The paced threads must not wait 5 ms for an executor that holds the interpreter.
+    # Threads that tick must not wait 5 ms for an executor that holds the interpreter.
     sys.setswitchinterval(_SWITCH_INTERVAL)
     # glibc would raise the threshold to what was last freed, and memory grow for half an hour.
     if hasattr(ctypes.pythonapi, 'mallopt'):

@@ -17,7 +17,7 @@ from tree_sway_ros.timing.pacer import Pacer, Timing
 _WIND = {
     'none': (WARN, 'no wind yet: the tree is at rest'),
     'live': (OK, 'live'),
-    'holding': (OK, 'a sample is overdue: the last wind is held'),
+    'holding': (OK, 'a sample is overdue: the last wind goes on'),
     'decaying': (WARN, 'no wind: its force decays'),
     'stale': (STALE, 'no wind: nothing is left of its force'),
 }

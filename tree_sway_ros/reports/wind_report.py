@@ -19,7 +19,7 @@ _LATEST = 21
 _SHORTER = 0.8
 """Share of the gaps between samples that are shorter than the period: some come in bursts."""
 STALE_AFTER = 5.0
-"""In time-outs: a wind that was lost for this time is stale, the trees are at rest again."""
+"""Number of time-outs after which a lost wind is stale, the trees are at rest again."""
 
 
 class WindReport:

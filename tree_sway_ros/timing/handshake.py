@@ -18,12 +18,12 @@ from tree_sway.errors import ParameterError
 LONGEST_LEAD = 0.4
 """A sample goes ahead by no more than this [s]; gates take what is farther ahead for a fault."""
 _GIVE_UP = 450_000_000
-"""A clock this far beyond a wait [ns] is no longer held; below the longest step of a pacer."""
+"""A clock this far beyond a wait [ns] no longer waits; below the longest step of a pacer."""
 _POLL = 0.0005
 _REPEAT = 0.1
-"""From one sending of the last tick to the next [s]."""
+"""Time from one sending of the last tick to the next [s]."""
 SETTLING = 0.5
-"""From the moment all are seen to the first sample [s]: they must see us as well."""
+"""Time from the moment all are seen to the first sample [s]: they must see us as well."""
 
 
 def required(text: str) -> dict[str, int]:
@@ -67,16 +67,14 @@ class Audience:
         ]
         if missing:
             self._complete = None
-            self._say(f'waiting for subscribers of {", ".join(missing)}')
+            text = f'waiting for subscribers of {", ".join(missing)}'
+            if text != self._said:
+                self._said = text
+                self._log(text)
             return False
         if self._complete is None:
             self._complete = time.monotonic()
         return not self._wanted or time.monotonic() - self._complete >= SETTLING
-
-    def _say(self, text: str) -> None:
-        if text != self._said:
-            self._said = text
-            self._log(text)
 
 
 class Answers:

@@ -117,7 +117,7 @@ class Pacer(Worker):
 
     @property
     def is_simulated(self) -> bool:
-        """Whether the clock is simulated time, which may stand still."""
+        """Whether the clock is simulated time, which may be paused."""
         return bool(self.clock.ros_time_is_active)
 
     def timing(self) -> Timing:

@@ -21,7 +21,7 @@ from tree_sway.errors import FormatError
 from tree_sway_ros.timing.handshake import LONGEST_LEAD
 
 LONGEST_CLOCK_STEP = 0.25
-"""Between two ticks of /clock in the record's time [s]; half of what a node takes for a jump."""
+"""Longest time between two ticks of /clock [s]; half of what a node takes for a jump."""
 _LAST_TIME = 2.0**31
 """The first date after 1970 that a stamp cannot hold [s]."""
 _MARGIN = 86_400.0
@@ -54,15 +54,15 @@ class Playback:
     Parameters
     ----------
     time
-        Of the samples in [s], increasing, (n,).
+        Times of the samples in [s], increasing, (n,).
     epoch
         Date of the record's time 0 in [s] after 1970, None if it has none.
     start
-        Skip so much of the record in [s].
+        Time skipped of the record in [s].
     loop
         Whether it starts again at its end.
     clock_period
-        From one tick of /clock to the next, in the record's time [s]; 0 for none.
+        Time from one tick of /clock to the next, in the record's time [s]; 0 for none.
     ahead
         Whether each sample goes out with the time of the one before: who has heard one later than
         the clock knows that none is missing.

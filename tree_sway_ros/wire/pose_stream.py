@@ -44,7 +44,7 @@ class PoseStream:
         )
         self.publish_description()
 
-    def tell_more(self, content: dict[str, Any]) -> None:
+    def add_to_description(self, content: dict[str, Any]) -> None:
         """Add to the description, from any thread, and publish it."""
         whole = {**json.loads(self._description.data), **content}
         self._description = String(data=json.dumps(whole, separators=(',', ':')))

@@ -18,7 +18,7 @@ from tree_sway.core.tree.tree import Tree
 
 VERSION = 1
 REPEAT_PERIOD = 5.0
-"""From one description to the next [s]: bags and bridges lose a latched topic."""
+"""Time from one description to the next [s]: bags and bridges lose a latched topic."""
 
 
 def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> str:

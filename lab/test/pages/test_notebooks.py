@@ -6,12 +6,15 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+import re
+from typing import Any
 
 import pytest
 from tree_sway_lab.pages.command import EXAMPLES
-from tree_sway_lab.pages.notebooks import notebook
+from tree_sway_lab.pages.notebooks import notebook, with_outputs
 
 FOLDER = Path(__file__).resolve().parents[3] / 'examples'
+NUMBER = r'[-+]?\d+(?:\.\d+)?'
 SCRIPT = '''\
 # A comment above.
 """
@@ -72,4 +75,46 @@ def test_cells_run_one_after_the_other_as_the_script_does(tmp_path: Path) -> Non
 def test_the_examples_are_the_notebooks(name: str) -> None:
     kept = (FOLDER / f'{name}.ipynb').read_text(encoding='utf-8')
     assert kept == notebook(FOLDER / f'{name}.py')
-    assert cells(kept, 'code')[-1] == 'main()'
+    assert 'main()' in cells(kept, 'code')[-2:]
+    outputs = outputs_of_main(kept)
+    assert any(output['output_type'] == 'stream' for output in outputs)
+    assert any('image/png' in output.get('data', {}) for output in outputs)
+
+
+def outputs_of_main(text: str) -> list[dict[str, Any]]:
+    every = json.loads(text)['cells']
+    (outputs,) = [cell['outputs'] for cell in every if cell['source'] == ['main()']]
+    return outputs  # type: ignore[no-any-return]
+
+
+def printed(text: str) -> tuple[list[str], list[float]]:
+    """Words and numbers that the call of main printed."""
+    said = ''.join(''.join(each.get('text', [])) for each in outputs_of_main(text))
+    return re.split(NUMBER, said), [float(number) for number in re.findall(NUMBER, said)]
+
+
+@pytest.mark.parametrize(
+    'name',
+    [
+        pytest.param(name, marks=[pytest.mark.long] * (name != 'sheltered_and_open'))
+        for name in EXAMPLES
+    ],
+)
+def test_what_they_show_is_what_they_print(name: str) -> None:
+    kept = (FOLDER / f'{name}.ipynb').read_text(encoding='utf-8')
+    words, numbers = printed(with_outputs(kept))
+    assert words == printed(kept)[0]
+    assert numbers == pytest.approx(printed(kept)[1], rel=0.02, abs=0.01)
+
+
+def test_a_notebook_keeps_its_outputs_until_its_cells_change(tmp_path: Path) -> None:
+    script = tmp_path / 'script.py'
+    script.write_text(SCRIPT + '\n', encoding='utf-8')
+    run = with_outputs(notebook(script).replace('FOUND.append(', 'print('))
+    said = ''.join(''.join(o['text']) for o in outputs_of_main(run))
+    assert said == '42\n'
+    beside = script.with_suffix('.ipynb')
+    beside.write_text(with_outputs(notebook(script)).replace('"outputs": []', '"outputs": [1]'))
+    assert '"outputs": [\n    1\n   ]' in notebook(script)
+    script.write_text(SCRIPT.replace('FACTOR = 6', 'FACTOR = 7'), encoding='utf-8')
+    assert '    1\n' not in notebook(script)

@@ -27,7 +27,7 @@ from tree_sway.files.whole_file import write_text_whole
 from tree_sway.parameters.parameter import Table, Value
 from tree_sway_lab.chart.fidelity import MODELS
 from tree_sway_lab.commands import COMMANDS as LAB_COMMANDS
-from tree_sway_lab.pages.notebooks import notebook
+from tree_sway_lab.pages.notebooks import notebook, with_outputs
 from tree_sway_lab.pages.rooms import rooms_drawing
 from tree_sway_ros.commands.table import COMMANDS as ROS_COMMANDS
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
@@ -65,6 +65,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--check', action='store_true', help='change nothing; exit 2 if not up to date'
     )
+    parser.add_argument(
+        '--run', action='store_true', help='run notebooks, and keep what they print and draw'
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -73,6 +76,8 @@ def run(arguments: argparse.Namespace) -> int:
         path = Path(file)
         text = path.read_text(encoding='utf-8') if path.is_file() or file not in DRAWINGS else ''
         fresh = DRAWINGS[file]() if file in DRAWINGS else with_tables(text, where=str(path))
+        if arguments.run and path.suffix == '.ipynb':
+            fresh = with_outputs(fresh)
         if fresh == text:
             print(f'{path}: up to date')
             continue

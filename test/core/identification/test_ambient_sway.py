@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The resonance in a spectrum: slopes of the model, scatter of the answer, refusals."""
+"""The resonance in a spectrum: the model, scatter of the answer, refusals."""
 
 from __future__ import annotations
 
@@ -27,17 +27,10 @@ def driven(damping, seed, duration=600.0, colour=0.0):
     return (motion / motion.std())[:, None]
 
 
-def test_slopes_are_the_derivatives(differences):
-    frequency = np.linspace(0.4, 1.1, 23)
-    x = np.array([np.log(0.7), np.log(0.06), -4.0, -3.0, 1.3])
-    numeric = differences(lambda y: log_spectrum(y, frequency)[0], x, h=3e-4)
-    np.testing.assert_allclose(log_spectrum(x, frequency)[1], numeric, atol=1e-7)
-
-
 def test_the_peak_is_that_of_an_oscillator():
     """At resonance the power is (2 zeta)^-2 of the static one (no floor, no slope)."""
     x = np.array([np.log(0.7), np.log(0.05), 0.0, -50.0, 0.0])
-    level = log_spectrum(x, np.array([1e-6, 0.7]))[0]
+    level = log_spectrum(x, np.array([1e-6, 0.7]))
     assert level[1] - level[0] == pytest.approx(np.log(100.0), rel=1e-9)
 
 
@@ -82,5 +75,6 @@ def test_no_resonance_is_refused():
 
 
 def test_too_few_cycles():
-    with pytest.raises(FormatError, match=r'14\.0 cycles of 0.7 Hz'):
+    refusal = r'14\.0 cycles of 0.7 Hz; an ambient record takes at least 20'
+    with pytest.raises(FormatError, match=refusal):
         ambient_sway(driven(0.05, 0)[:200], DT, 0.7)

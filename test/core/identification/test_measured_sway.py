@@ -106,7 +106,7 @@ def test_uneven_times_are_taken_as_they_are():
     time = np.sort(rng.uniform(0.0, 30.0, 3000))
     w, damping = 2 * np.pi * 0.7, 0.04
     motion = np.exp(-damping * w * time) * np.cos(w * np.sqrt(1 - damping**2) * time)
-    found = estimate_sway(time, motion, kind='release')
+    found = estimate_sway(time, motion)
     assert found.frequency == pytest.approx(0.7, rel=5e-3)
     assert found.damping_ratio == pytest.approx(damping, rel=0.05)
 
@@ -140,17 +140,10 @@ def test_what_cannot_be_read(record, message):
         estimate_sway(*record)
 
 
-@pytest.mark.parametrize('kind', ['release', None])
-def test_too_short_a_release(kind):
+def test_too_short_a_release():
     time, motion = release(damping=0.02, held=0.0, duration=2.4 / 0.7, second=0.0)
     with pytest.raises(FormatError, match='cycles'):
-        estimate_sway(time, motion, kind=kind)
-
-
-def test_too_short_an_ambient_record():
-    time, motion = ambient()
-    with pytest.raises(FormatError, match='an ambient record takes at least 20 cycles'):
-        estimate_sway(time[:400], motion[:400], kind='ambient', band=(0.5, 0.9))
+        estimate_sway(time, motion)
 
 
 def test_noise_has_no_sway():
@@ -164,9 +157,9 @@ def test_a_gap_and_a_slow_sensor_are_named():
     time, motion = release()
     kept = (time < 6.0) | (time > 7.0)
     with pytest.raises(FormatError, match=r'1.1 s between samples, for a sway of 0.685 Hz'):
-        estimate_sway(time[kept], motion[kept], kind='release')
+        estimate_sway(time[kept], motion[kept])
     with pytest.raises(FormatError, match='between samples'):
-        estimate_sway(time[::9], motion[::9], kind='release')
+        estimate_sway(time[::9], motion[::9])
     with pytest.raises(FormatError, match='without the gaps'):
         estimate_sway(np.where(time > 9.0, time + 1e6, time), motion)
 
@@ -175,11 +168,6 @@ def test_a_gap_and_a_slow_sensor_are_named():
 def test_an_empty_band(band):
     with pytest.raises(ParameterError, match='band'):
         estimate_sway(*release(), band=band)
-
-
-def test_an_unknown_kind():
-    with pytest.raises(ParameterError, match='use one of: release, ambient'):
-        estimate_sway(*release(), kind='free')
 
 
 @pytest.mark.parametrize('bad', [1e308, 1e200, np.inf])

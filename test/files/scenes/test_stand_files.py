@@ -194,7 +194,7 @@ def test_a_species_of_no_table_and_a_stem_that_would_not_stand_are_notes(tmp_pat
     notes = '; '.join(stand.notes)
     assert "'Ulmus glabra' is not in the table" in notes
     assert 'dbh is taken as cm' in notes
-    assert 'as others would not stand' in notes
+    assert 'as others would buckle' in notes
 
 
 MANY = r"""

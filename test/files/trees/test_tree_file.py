@@ -58,7 +58,7 @@ def test_table_of_segments():
 @pytest.mark.parametrize(
     ('old', 'new', 'kind', 'message'),
     [
-        ('20,10,1', '11,10,1', FormatError, ':4: segment 11: number 11 stands twice'),
+        ('20,10,1', '11,10,1', FormatError, ':4: segment 11: number 11 occurs twice'),
         ('20,10,1', '20,99,1', TreeError, ':4: segment 20: orphan: its parent 99'),
         ('20,10,1', '20,10.5,1', FormatError, ':4: parent is 10.5, not a whole number'),
         ('20,10,1', '20,20,1', TreeError, ':4: segment 20: cyclic'),

@@ -22,7 +22,12 @@ def stamped(pattern: str, minutes: int, row: str) -> str:
     begin = datetime(2024, 3, 1)
     times = (begin + timedelta(minutes=minutes * k) for k in range(N))
     rows = zip(times, SPEEDS, strict=True)
-    return '\n'.join(row.format(t=t.strftime(pattern), u=u, g=2.0 * u, k=3.6 * u) for t, u in rows)
+    return '\n'.join(
+        row.format(
+            t=t.strftime(pattern), u=u, g=2.0 * u, k=3.6 * u, m=u / 0.44704, n=2.0 * u / 0.44704
+        )
+        for t, u in rows
+    )
 
 
 STATIONS = {
@@ -41,6 +46,12 @@ STATIONS = {
     'logger': '"TOA5","CR1000"\n"TIMESTAMP","RECORD","WS","WindDir","WS_Max"\n'
     '"TS","RN","m/s","deg","m/s"\n'
     '"","","Avg","Avg","Max"\n' + stamped('%Y-%m-%d %H:%M:%S', 10, '"{t}",1,{u:.3f},270,{g:.3f}'),
+    'garden station': '"Date","Outdoor Temperature (°F)","Wind Speed (mph)","Wind Gust (mph)",'
+    '"Wind Direction (°)"\n'
+    + stamped('%Y-%m-%dT%H:%M:%S-05:00', 5, '"{t}","40","{m:.3f}","{n:.3f}","270"'),
+    'climate and forecast names': 'sourceId,referenceTime,wind_speed,wind_from_direction,'
+    'wind_speed_of_gust\n'
+    + stamped('%Y-%m-%dT%H:%M:%S.000Z', 10, 'SN18700:0,{t},{u:.3f},270,{g:.3f}'),
     'slashes': 'date_time\twspd\twdir\n' + stamped('%Y/%m/%d %H:%M', 10, '{t}\t{u:.3f}\t270'),
 }  # fmt: skip
 
@@ -67,6 +78,62 @@ def test_the_means_of_a_station_stay_and_turbulence_is_about_them(
     assert (read_wind(path, seed=1).velocity != filled.velocity).any()
     with pytest.raises(ParameterError, match='seed is'):
         read_wind(path, seed=-1)
+
+
+NO_COLUMNS = 'no time with u and v, or with speed and direction, among .*; name the columns so'
+OTHERS = {
+    'airports by hours, knots': (
+        'station,valid,drct,sknt,gust\n' + stamped('%Y-%m-%d %H:%M', 60, 'DSM,{t},270.00,8,M'),
+        NO_COLUMNS,
+    ),
+    'buoys': (
+        '#YY  MM DD hh mm WDIR WSPD GST\n#yr  mo dy hr mn degT m/s  m/s\n'
+        + stamped('%Y %m %d %H %M', 10, '{t} 270 {u:.1f} {g:.1f}'),
+        NO_COLUMNS,
+    ),
+    'radiation laboratory': (
+        'DATE (MM/DD/YYYY),MST,Avg Wind Speed @ 6ft [m/s],Avg Wind Direction @ 6ft [deg from N]\n'
+        + stamped('%m/%d/%Y,%H:%M', 1, '{t},{u:.3f},270'),
+        "unknown unit 'mm/dd/yyyy'; use s",
+    ),
+    'compass points': (
+        'Date\tTime\tWind Speed\tWind Dir\tHi Speed\n'
+        + stamped('%d.%m.%Y\t%H:%M', 10, '{t}\t{u:.1f}\tW\t{g:.1f}'),
+        "Wind Dir is 'W', not a finite number",
+    ),
+    'Dutch service, tenths': (
+        '# STN,YYYYMMDD,   HH,   DD,   FH,   FF,   FX\n'
+        + stamped('%Y%m%d,   %H', 60, '  260,{t},  270,   40,   40,   80'),
+        NO_COLUMNS,
+    ),
+    'pocket logger': (
+        '"#","Date Time, GMT+00:00","Wind Speed, m/s (LGR S/N: 1)","Wind Direction, ø"\n'
+        + stamped('%m/%d/%y %I:%M:%S %p', 10, '1,{t},{u:.2f},270'),
+        NO_COLUMNS,
+    ),
+    'flux sites': (
+        'TIMESTAMP_START,TIMESTAMP_END,WS,WD\n' + stamped('%Y%m%d%H%M', 30, '{t},{t},{u:.3f},270'),
+        NO_COLUMNS,
+    ),
+    'date and hour': (
+        'date,hour,temp,wdir,wspd,wpgt\n' + stamped('%Y-%m-%d,%H', 60, '{t},8,270,{k:.1f},'),
+        'no good row of wind, 10 refused',
+    ),
+    'five fields in one': (
+        '"STATION","DATE","SOURCE","WND"\n'
+        + stamped('%Y-%m-%dT%H:%M:%S', 60, '"10637099999","{t}","4","270,1,N,0040,1"'),
+        NO_COLUMNS,
+    ),
+}
+
+
+@pytest.mark.parametrize('name', OTHERS)
+def test_another_is_refused_with_what_to_do(name: str, tmp_path: Path) -> None:
+    text, reason = OTHERS[name]
+    path = tmp_path / 'station.csv'
+    path.write_text(text, encoding='utf-8')
+    with pytest.raises(FormatError, match=reason):
+        read_wind(path)
 
 
 def test_turbulence_has_the_gusts_that_were_reported() -> None:

@@ -31,7 +31,7 @@ from tree_sway.core.wind.climate import WindClimate
 DIAL = (0, 3, 6, 12, 20, 40, 60)
 """Numbers of coordinates among which is chosen, and all that there are."""
 
-MARGIN = 1.3
+MARGIN = 1.4
 """Estimated over computed error: the wind is not quite linear in its effect."""
 
 FLOOR = 0.06
@@ -62,6 +62,20 @@ _MOST = 2.0
 """Most that all of these shares come to."""
 
 _FREQUENCIES = np.concatenate([[0.0], np.geomspace(0.01, 30.0, 80)])
+"""In [Hz], beside those around which coordinates swing."""
+
+_APART = np.pi / 8.0
+_AXES = [
+    np.array([[np.cos(b), np.sin(b), 0.0], [-np.sin(b), np.cos(b), 0.0], [0.0, 0.0, 1.0]])
+    for b in _APART * np.arange(4)
+]
+"""
+Sides that winds come from: an oblique wind on a branch is no sum of winds along and across it, so
+that the load is linear about the side that is nearest to that of the wind.
+"""
+
+_BESIDE = np.array([0.96, 1.0, 1.04])
+"""Shares of the frequency of a coordinate at which its answer is found."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +135,7 @@ class ErrorEstimator:
         tips = tip_motion(branches, shapes)[ends].reshape(-1, m)
         self._inner = tips.T @ tips / ends.sum()
         self._turns = turn_of_branches(branches, shapes)
-        self._load = shapes.T @ even_wind_moments(branches, n, axes=3)
+        self._loads = [shapes.T @ even_wind_moments(branches, n, axes) for axes in _AXES]
         self._air_damping = dialled(bank).air_damping
         self._costs = [frame_cost(bank, k) for k in self.dial]
         self.refresh()
@@ -130,23 +144,31 @@ class ErrorEstimator:
         """Take the tree as it is tuned now."""
         tunable = self._bank.oscillators.tunable
         self._stiffness, self._own_damping = tunable.stiffness.copy(), tunable.damping.copy()
+        natural = np.sqrt(self._stiffness) / (2.0 * np.pi)
+        self._frequencies = np.union1d(_FREQUENCIES, np.outer(natural, _BESIDE))
         self._grams = lru_cache(maxsize=8)(self._find_grams)
 
     def estimates(self, climate: WindClimate) -> list[Estimate]:
         """Judge every number of coordinates in a wind, the fewest first."""
         per_square = pressure(climate.speed, *self._law)
+        mean = climate.mean
+        # A wind that turns back has no mean: what it mostly does counts.
+        squares, ways = np.linalg.eigh(np.outer(mean, mean) + climate.covariance)
+        steady = math.sqrt(max(squares[-1], 0.0)) * ways[:, -1]
+        bearing = int(np.rint(np.arctan2(steady[1], steady[0]) / _APART)) % len(_AXES)
+        axes = _AXES[bearing]
         # The air damps at least as in a wind of the next lower of a few speeds.
         slow = 2.0 ** math.floor(math.log2(climate.speed)) if climate.speed >= 1.0 else 0.0
-        grams = self._grams(slow)
-        power = climate.power(_FREQUENCIES)
+        grams = self._grams(slow, bearing)
+        power = axes @ climate.power(self._frequencies) @ axes.T
         swings = np.maximum(grams @ power.ravel(), 0.0)
-        power[0] += np.outer(climate.mean, climate.mean)
+        power[0] += np.outer(axes @ mean, axes @ mean)
         squares = np.maximum(grams @ power.ravel(), 0.0)
         swing, offset = per_square * np.sqrt([swings[0], squares[0]])
-        turn, soft = self._largest_turns(per_square * climate.mean)
+        turn, soft = self._largest_turns(self._loads[bearing] @ axes @ (per_square * steady))
         gusts = 1.0 + 2.0 * swing / max(offset, 1e-12)
         turn, soft = gusts * turn, gusts * soft
-        upward = abs(climate.mean[2]) / max(float(np.linalg.norm(climate.mean)), 1e-12)
+        upward = abs(ways[2, -1])
         share = FLOOR + TURN * turn**2 / (1.0 + MOST_TURN * turn**2) + SOFT * soft
         share += (LIFT_FLOOR + LIFT * turn) * upward
         # What turns far gives way to the wind, and goes no farther than its length.
@@ -160,19 +182,19 @@ class ErrorEstimator:
         return found
 
     def _largest_turns(self, load: Floats) -> tuple[float, float]:
-        """Find the largest turn from rest in [rad] under a steady load, and that by weight."""
-        amounts = self._load @ load / self._stiffness
+        """Find the largest turn from rest [rad] under steady modal loads, and that by weight."""
+        amounts = load / self._stiffness
         by_weight = np.maximum(-self._bank.oscillators.tunable.weight / self._stiffness, 0.0)
         turns = self._turns @ np.stack([amounts, by_weight * amounts], axis=1)
         turn, soft = np.sqrt(np.square(turns).sum(axis=1).max(axis=0)).tolist()
         return turn, soft
 
-    def _find_grams(self, speed: float) -> Floats:
+    def _find_grams(self, speed: float, bearing: int) -> Floats:
         """Inner products of what the last coordinates do to tips, by their number, (k, 9 f)."""
         damping = self._own_damping + pressure(speed, *self._law) * speed * self._air_damping
-        circular = 2.0 * np.pi * _FREQUENCIES[:, None]
+        circular = 2.0 * np.pi * self._frequencies[:, None]
         impedance = self._stiffness - circular**2 + 1j * damping * circular
-        answers = self._load / impedance[:, :, None]
+        answers = self._loads[bearing] / impedance[:, :, None]
         found = []
         for k in self.dial:
             left = answers[:, k:] if k < self.dial[-1] else answers[:, :0]

@@ -11,6 +11,7 @@ it, a conifer's starts low and turns up.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 
@@ -20,10 +21,11 @@ GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def direction_of(azimuth: float, elevation: float) -> Floats:
-    """Return the unit vector (3,) of a heading given in [rad]."""
+def direction_of(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
+    """Return the unit vectors (..., 3) of headings given in [rad]."""
     across = np.cos(elevation)
-    return np.array([across * np.cos(azimuth), across * np.sin(azimuth), np.sin(elevation)])
+    headings = [across * np.cos(azimuth), across * np.sin(azimuth), np.sin(elevation)]
+    return np.stack(headings, axis=-1)
 
 
 def heading_of(direction: Floats) -> tuple[float, float]:
@@ -85,10 +87,7 @@ def grow_axis(
     # A given turn of azimuth bends a steep shoot less; undo that, but bounded towards the
     # vertical.
     azimuths = azimuth + drift[:, 1] / np.maximum(np.cos(elevations), 0.3)
-    level = np.cos(elevations)
-    headings = np.stack(
-        [level * np.cos(azimuths), level * np.sin(azimuths), np.sin(elevations)], axis=1
-    )
-    nodes = np.vstack([origin, origin + np.cumsum(steps[:, None] * headings, axis=0)])
+    path = np.cumsum(steps[:, None] * direction_of(azimuths, elevations), axis=0)
+    nodes = np.vstack([origin, origin + path])
     sunk = np.flatnonzero(nodes[2:, 2] < floor)
     return nodes[: sunk[0] + 2] if len(sunk) else nodes

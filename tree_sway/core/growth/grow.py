@@ -28,11 +28,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
 _POT_SLENDERNESS = 58.0
-_HEIGHTS = {
-    'conifer': (1.0, 60.0),
-    'broadleaf': (1.0, 50.0),
-    'pot': (0.2, 4.0),
-}
+_HEIGHTS = {'conifer': (1.0, 60.0), 'broadleaf': (1.0, 50.0), 'pot': (0.2, 4.0)}
 _GRAVITY = 9.81
 
 
@@ -86,7 +82,14 @@ def grow(
         )
     if diameter is None:
         diameter = height / _slenderness(kind, species, height)
-    _check_stem(wood, height, diameter)
+    thinnest, thickest = stem_range(wood, height)
+    if not thinnest <= diameter <= thickest:
+        why = 'would bend over under its own weight' if diameter < thinnest else 'is no stem'
+        raise ParameterError(
+            f'diameter {diameter:.4g} m at a height of {height:g} m {why}',
+            where='diameter',
+            cure=f'give {thinnest:.3g} to {thickest:.3g} m',
+        )
     if kind == 'pot':
         generator = grow_goldcrest if species == 'goldcrest' else grow_benjamina
     else:
@@ -106,17 +109,6 @@ def height_of_stem(species: str, diameter: float) -> float:
     heights = np.linspace(*_HEIGHTS[wood.habit], 200)
     stems = [height / _slenderness(wood.habit, wood.key, height) for height in heights]
     return float(np.interp(diameter, stems, heights))
-
-
-def _check_stem(wood: Species, height: float, diameter: float) -> None:
-    thinnest, thickest = stem_range(wood, height)
-    if not thinnest <= diameter <= thickest:
-        why = 'would bend over under its own weight' if diameter < thinnest else 'is no stem'
-        raise ParameterError(
-            f'diameter {diameter:.4g} m at a height of {height:g} m {why}',
-            where='diameter',
-            cure=f'give {thinnest:.3g} to {thickest:.3g} m',
-        )
 
 
 def stem_range(wood: Species, height: float) -> tuple[float, float]:

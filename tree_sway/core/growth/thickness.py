@@ -95,10 +95,9 @@ def node_diameters(
         own = diameter * ((1.0 - z / z[-1]) / (1.0 - at_height / z[-1])) ** stem_taper
         diameters[0] = np.maximum(own, tip_diameter)
     top = max(float(shoot.nodes[:, 2].max()) for shoot in skeleton.shoots)
-    below_top = np.maximum(top - stem.nodes[:, 2], 0.0) / (top - stem.nodes[0, 2] - at_height)
-    diameters[0] = np.maximum(
-        diameters[0] * np.minimum(below_top, 1.0) ** bole_taper, tip_diameter
-    )
+    below_top = (top - stem.nodes[:, 2]) / (top - stem.nodes[0, 2] - at_height)
+    own = diameters[0] * np.clip(below_top, 0.0, 1.0) ** bole_taper
+    diameters[0] = np.maximum(own, tip_diameter)
     _support(skeleton, diameters)
     # Between two nodes a segment is a straight cone, not the law's curve: take up that difference.
     diameters[0] *= diameter / _at_height(stem, diameters[0], at_height)

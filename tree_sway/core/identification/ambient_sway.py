@@ -50,8 +50,8 @@ def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
     """
     Fit the resonance of an ambient record, along the axis that moves most, near a frequency [Hz].
 
-    The motion is displacement, tilt or acceleration at even steps of dt [s], (n, c). A
-    raises a `FormatError` where there are fewer than 20 cycles, or no resonance.
+    The motion is displacement, tilt or acceleration at even steps of dt [s], (n, c).
+    Raises a `FormatError` where there are fewer than 20 cycles, or no resonance.
     """
     cycles = len(motion) * dt * rough
     if cycles < _MIN_CYCLES:
@@ -60,13 +60,12 @@ def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
             cure='an ambient record takes at least 20 cycles, better 500',
         )
     frequency, power, bins = _periodogram(motion, dt, rough)
-    start = np.log(
-        [rough, 0.05, float(np.median(power)) * 0.01, float(power.min() + 1e-3 * power.mean())]
-    )
-    best = min(
-        (_fit(frequency, power, bins, np.append(start + shift, 0.0)) for shift in _starts()),
-        key=lambda result: float(result.fun),
-    )
+    floor = float(power.min() + 1e-3 * power.mean())
+    start = np.append(np.log([rough, 0.05, 0.01 * float(np.median(power)), floor]), 0.0)
+    # Several first guesses lead out of side valleys where damping and floor trade places.
+    shifts = np.array([[0, -1, 0, -2, 0], [0, -1, 0, 1, 0], [0, 0.5, 0, -2, 0], [0, 0.5, 0, 1, 0]])
+    fits = (_fit(frequency, power, bins, start + shift) for shift in shifts)
+    best = min(fits, key=lambda result: float(result.fun))
     gain = _smooth_loss(frequency, power, bins) - float(best.fun)
     found, ratio = float(np.exp(best.x[0])), float(np.exp(best.x[1]))
     inside = frequency[0] < found < frequency[-1] and ratio < 0.4
@@ -95,48 +94,23 @@ def _periodogram(motion: Floats, dt: float, rough: float) -> tuple[Floats, Float
     return means[0], means[1] / means[1].mean(), bins
 
 
-def _starts() -> list[Floats]:
-    """Shifts of the first guess, out of side valleys where damping and floor trade places."""
-    return [
-        np.array([0.0, damping, 0.0, floor]) for damping in (-1.0, 0.5) for floor in (-2.0, 1.0)
-    ]
-
-
-def log_spectrum(x: Floats, frequency: Floats) -> tuple[Floats, Floats]:
-    """
-    Logarithm (m,) of the model's spectrum at frequencies [Hz], (m,), and its slopes (m, 5).
-
-    They are by x: log f0, log zeta, log a, log b, p.
-    """
+def log_spectrum(x: Floats, frequency: Floats) -> Floats:
+    """Logarithm of the model's spectrum at frequencies [Hz], (m,), by log f0, zeta, a, b and p."""
     centre, ratio, resonance, floor = np.exp(np.clip(x[:4], -60.0, 60.0))
     r2 = (frequency / centre) ** 2
-    detuning = (1.0 - r2) ** 2 + 4.0 * ratio**2 * r2
-    shape = resonance / detuning + floor
-    share = resonance / detuning / shape
-    lever = 0.5 * np.log(r2)
-    slopes = np.stack(
-        [
-            share * 4.0 * r2 * (2.0 * ratio**2 - 1.0 + r2) / detuning - x[4],
-            -share * 8.0 * ratio**2 * r2 / detuning,
-            share,
-            1.0 - share,
-            lever,
-        ],
-        axis=1,
-    )
-    return np.log(shape) + x[4] * lever, slopes
+    shape: Floats = resonance / ((1.0 - r2) ** 2 + 4.0 * ratio**2 * r2) + floor
+    return np.log(shape) + 0.5 * x[4] * np.log(r2)
 
 
 def _fit(frequency: Floats, power: Floats, bins: int, start: Floats) -> optimize.OptimizeResult:
-    def loss(x: Floats) -> tuple[float, Floats]:
-        logarithm, slopes = log_spectrum(x, frequency)
-        over = power * np.exp(-logarithm)
+    def loss(x: Floats) -> float:
+        logarithm = log_spectrum(x, frequency)
         # A weak pull keeps the slope, which a narrow band hardly shows, in the range of real ones.
-        slope = bins * ((1.0 - over) @ slopes) + x[4] / _SLOPE**2 * np.eye(5)[4]
-        return bins * float((logarithm + over).sum()) + 0.5 * (x[4] / _SLOPE) ** 2, slope
+        pull = 0.5 * (x[4] / _SLOPE) ** 2
+        return bins * float((logarithm + power * np.exp(-logarithm)).sum()) + pull
 
     limits = [tuple(np.log(frequency[[0, -1]])), (np.log(1e-3), 0.0), *3 * [(-40.0, 10.0)]]
-    return optimize.minimize(loss, start, jac=True, method='L-BFGS-B', bounds=limits)
+    return optimize.minimize(loss, start, method='L-BFGS-B', bounds=limits)
 
 
 def _smooth_loss(frequency: Floats, power: Floats, bins: int) -> float:
@@ -152,7 +126,7 @@ def _smooth_loss(frequency: Floats, power: Floats, bins: int) -> float:
 
 def _standard_errors(frequency: Floats, bins: int, x: Floats) -> tuple[float, float]:
     """Return standard errors of frequency [Hz] and damping ratio [-] by Fisher's information."""
-    _, slopes = log_spectrum(x, frequency)
+    slopes = optimize.approx_fprime(x, log_spectrum, 1e-6, frequency)
     prior = np.diag([0.0, 0.0, 1e-6, 1e-6, 1.0 / _SLOPE**2])
     covariance = linalg.pinvh(bins * slopes.T @ slopes + prior)
     errors = np.exp(x[:2]) * np.sqrt(np.diag(covariance)[:2])

@@ -14,19 +14,15 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import signal
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import one_of
 from tree_sway.core.identification.ambient_sway import ambient_sway, AmbientSway
 from tree_sway.core.identification.free_decay import free_decay, FreeDecay
 from tree_sway.core.identification.spectral_peaks import Band, spectral_peaks
 from tree_sway.core.identification.sway_estimate import SwayEstimate
 from tree_sway.errors import FormatError, ParameterError
-
-KINDS = ('release', 'ambient')
-"""Kinds of record."""
 
 _Sway = TypeVar('_Sway', bound=SwayEstimate)
 
@@ -38,11 +34,9 @@ _EXPLAINED, _QUIET = 0.6, 0.5
 _STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
 
 
-def estimate_sway(
-    time: ArrayLike, motion: ArrayLike, kind: str | None = None, band: Band = None
-) -> SwayEstimate:
+def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> SwayEstimate:
     """
-    Find frequency and damping of the slowest sway in a record.
+    Find frequency and damping of the slowest sway in a record, and of which kind the record is.
 
     Parameters
     ----------
@@ -50,8 +44,6 @@ def estimate_sway(
         Time of each sample in [s], rising, (n,).
     motion
         Displacement, tilt or acceleration, one column per axis, all of one unit, (n,) or (n, c).
-    kind
-        ``release`` or ``ambient``; found from the record if None.
     band
         Lowest and highest frequency to look at in [Hz]; all if None.
 
@@ -65,27 +57,21 @@ def estimate_sway(
     FormatError
         A record that is too short, too coarse, not finite, not rising in time, or without a sway.
     ParameterError
-        An unknown kind or an empty band.
+        An empty band.
 
     """
-    if kind is not None:
-        one_of('kind', kind, KINDS)
     if band is not None and not 0.0 < band[0] < band[1] < np.inf:
         raise ParameterError(
             f'band {band[0]:g} to {band[1]:g} Hz', cure='give two rising frequencies above 0'
         )
     even, dt, gap = _even(*_checked(time, motion))
-    if kind == 'ambient':
-        return _ambient(even, dt, gap, band)
     refusal = FormatError('the motion does not die away from one swing')
     try:
         decay = _release(even, dt, gap, band)
     except FormatError as error:
-        if kind == 'release':
-            raise
         refusal = error
     else:
-        if kind == 'release' or _is_release(decay):
+        if _is_release(decay):
             _refuse_lost(decay)
             return decay
     try:
@@ -130,7 +116,8 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
         )
     if len(t) < _MIN_SAMPLES:
         raise FormatError(f'{len(t)} samples', cure=f'record {_MIN_SAMPLES} at the very least')
-    for bad in np.flatnonzero(~(_is_measurable(t) & _is_measurable(x).all(axis=1)))[:1]:
+    # Far enough from overflow that sums of squares are too.
+    for bad in np.flatnonzero(~(np.abs(np.column_stack([t, x])) < _LARGEST).all(axis=1))[:1]:
         raise FormatError(
             'not a finite number, or one that nothing measures',
             where=f'sample {bad}',
@@ -145,11 +132,6 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
     if not (np.ptp(x, axis=0) > 1e-12 * np.abs(x).max(axis=0)).any():
         raise FormatError('nothing moves', cure='check the sensor and the column')
     return t, x
-
-
-def _is_measurable(values: Floats) -> NDArray[np.bool_]:
-    """Whether each value is finite, and far enough from overflow that sums of squares are too."""
-    return np.abs(values) < _LARGEST
 
 
 def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:

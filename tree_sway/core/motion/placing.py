@@ -23,7 +23,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import fused, inlined
 from tree_sway.core.motion.lanes import put_four, take_four
-from tree_sway.core.motion.records import Branch, Branches, Head, Heads, LANES, Segment, Segments
+from tree_sway.core.motion.records import Branches, Head, Heads, LANES, Segment, Segments
 from tree_sway.core.rotation import (
     half_angle,
     half_angle_near,
@@ -114,26 +114,6 @@ def place_standing_at(
                 else:
                     _join(segment, scratch, scale, False)
             _write_poses(head, scratch, rank, segment.n_lanes, out)
-
-
-@fused
-def turn_at(parent: Branch, turns: Floats, x: Floats) -> tuple[float, float, float, float]:
-    """
-    Rotation of a place on a branch, as quaternion w x y z from rest.
-
-    ``turns`` are rotation vectors of that place per unit of each of its parent's coordinates, (c,
-    3).
-    """
-    i = parent.coordinate
-    half = 0.5 + 0.5 * min(x[i] * x[i] + x[i + 1] * x[i + 1], _STRETCH_TO) * parent.skew
-    ux, uy = half * x[i], half * x[i + 1]
-    hx = ux * turns[0, 0] + uy * turns[1, 0]
-    hy = ux * turns[0, 1] + uy * turns[1, 1]
-    hz = ux * turns[0, 2] + uy * turns[1, 2]
-    for c in range(2, parent.n_coordinates):
-        u = 0.5 * x[i + c]
-        hx, hy, hz = hx + u * turns[c, 0], hy + u * turns[c, 1], hz + u * turns[c, 2]
-    return quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
 
 
 @fused

@@ -32,7 +32,13 @@ from tree_sway.core.motion.records import (
 )
 from tree_sway.core.motion.tree_passes import own_loads, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
-from tree_sway.core.oscillators.two_axis import fill_guards, LOAD_MAX, step_branch, true_force
+from tree_sway.core.oscillators.two_axis import (
+    fill_guards,
+    LOAD_MAX,
+    step_branch,
+    true_force,
+    within_guard,
+)
 
 
 class UncoupledBank(Branchwise):
@@ -156,8 +162,10 @@ def _to_middle(bank: Oscillators) -> None:
     middle_x, middle_v = bank.x, bank.v
     for j in range(LANES):
         mx, my = true_force(x[0, j], x[1, j], load[0, j], load[1, j], load[2, j])
-        middle_x[0, j] = h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx
-        middle_x[1, j] = h[0, j] * x[1, j] + h[1, j] * v[1, j] + h[2, j] * my
+        middle_x[0, j], middle_x[1, j], _ = within_guard(
+            h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx,
+            h[0, j] * x[1, j] + h[1, j] * v[1, j] + h[2, j] * my,
+        )
         middle_v[0, j] = h[3, j] * x[0, j] + h[4, j] * v[0, j] + h[5, j] * mx
         middle_v[1, j] = h[3, j] * x[1, j] + h[4, j] * v[1, j] + h[5, j] * my
 

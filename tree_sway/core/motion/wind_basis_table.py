@@ -34,7 +34,7 @@ from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway.core.motion.modal import ModalBank
 from tree_sway.core.motion.static_answers import STORM, WindMoments
-from tree_sway.core.motion.wind_basis_force import N_AZIMUTHS, N_LEVELS, table_layout, wind_force
+from tree_sway.core.motion.wind_basis_force import N_AZIMUTHS, N_LEVELS, table_layout
 
 SPEEDS = (0.0, 4.0, 8.0, 13.0, 20.0, STORM)
 """Winds in [m/s] that the tree is held in at the levels of the table."""
@@ -47,7 +47,6 @@ _ELEVATION_SPREAD = 0.25
 _SLOPE_AT = 0.35
 _MOST_ENERGY = 3.0
 _RAISES, _TURNS, _FARTHEST, _AT_REST = 4, 10, 0.3, 0.01
-_TRIALS = 200
 
 _LARGE = 2000
 """Branches of a tree above which fewer azimuths suffice."""
@@ -72,9 +71,6 @@ class WindBasisTable:
     ----------
     record
         Of `table_layout`, (1,).
-    error
-        Share by which the table gets the static deflection of the tree wrong, leaning as gusts
-        have it.
 
     """
 
@@ -82,13 +78,13 @@ class WindBasisTable:
     def of_arrays(cls, kept: Mapping[str, Any]) -> WindBasisTable:
         """Return the table whose `arrays` these are."""
         made = object.__new__(cls)
-        made.record, made.error = kept['table'], float(kept['table_error'])
+        made.record = kept['table']
         return made
 
     @property
     def arrays(self) -> dict[str, Any]:
         """All that it consists of."""
-        return {'table': self.record, 'table_error': np.array(self.error)}
+        return {'table': self.record}
 
     def __init__(
         self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw, degree: int
@@ -114,7 +110,6 @@ class WindBasisTable:
         table['most_pressure'] = BEYOND * pressures[-1]
         energy = table['standing'][:, -1] ** 2 @ table['stiffness']
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
-        self.error = self._tried(table, degree, pressures[-2])
 
     def _moments(self, x: Floats, v: Floats, wind: Floats) -> Floats:
         return self._loads(x, v, wind)
@@ -212,29 +207,6 @@ class WindBasisTable:
         turning, damping = self._slopes(self._still, direction(0.0, np.pi / 2.0))
         table['steep_turning'][:, :m, :m] = -turning, turning
         table['steep_damping'][:, :m, :m] = damping
-
-    def _tried(self, table: np.void, degree: int, storm: float) -> float:
-        """Try the table at leans and winds between those that it is made of."""
-        rng = np.random.default_rng(7)
-        m, stiffness = int(table['n_modes']), table['stiffness']
-        forces, scratch = np.zeros((2, len(stiffness))), np.zeros((4, len(stiffness)), np.float32)
-        values, still = np.zeros(COUNT[degree]), np.zeros(len(stiffness))
-        wrong = right = 0.0
-        for _ in range(_TRIALS):
-            azimuth, elevation = rng.uniform(0.0, 2.0 * np.pi), rng.normal(0.0, 0.15)
-            wind = direction(azimuth, elevation)
-            push, level = rng.uniform(0.05, 1.0) * storm, rng.uniform(0.2, N_LEVELS - 2)
-            side = round((azimuth + rng.normal(0.0, 0.3)) * N_AZIMUTHS / (2.0 * np.pi))
-            j, share, path = int(level), level % 1.0, table['standing'][side % N_AZIMUTHS]
-            eta = (1.0 - share) * path[j] + share * path[j + 1]
-            wind_force(
-                self.record[0], wind[0], wind[1], wind[2], push, 0.0, eta, still, values, scratch,
-                forces[0], forces[1], m,
-            )  # fmt: skip
-            true = push * self._moments(self._shapes @ eta[:m], self._still, wind) @ self._shapes
-            wrong += float((np.square(forces[0, :m] - true) / stiffness[:m]).sum())
-            right += float((np.square(true) / stiffness[:m]).sum())
-        return float(np.sqrt(wrong / right)) if right > 0.0 else 0.0
 
 
 def _between(asked: Floats) -> Floats:

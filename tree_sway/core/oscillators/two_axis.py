@@ -46,7 +46,7 @@ GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out
 
 
 @inlined
-def _held(x: float, y: float) -> tuple[float, float, float]:
+def within_guard(x: float, y: float) -> tuple[float, float, float]:
     """Return x, y and t, pulled back to the guard's circle where they lie beyond it."""
     t = x * x + y * y
     limit = like(T_MAX, x)
@@ -85,7 +85,7 @@ def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[flo
         Force times lever along b, e1, e2 in [N m].
 
     """
-    x, y, t = _held(x, y)
+    x, y, t = within_guard(x, y)
     s, c, _, _ = _series(t)
     one = like(1.0, x)
     sinc = one + t * s
@@ -102,7 +102,7 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     It follows from the rotation vector [rad] and its rate [rad/s], and is zero for motion in one
     plane.
     """
-    x, y, t = _held(x, y)
+    x, y, t = within_guard(x, y)
     s, c, s1, c1 = _series(t)
     one, two, three = like(1.0, x), like(2.0, x), like(3.0, x)
     inverse = one / (one + t * s)

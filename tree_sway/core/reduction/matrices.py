@@ -43,8 +43,6 @@ class Reduction:
     ----------
     first
         First coordinate of each branch, and N at the end, (b + 1,).
-    partner
-        The other one of a key rotation x, y; itself for a further coordinate, (N,).
     twist
         Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root,
         (b, 9, 6).
@@ -57,7 +55,6 @@ class Reduction:
     """
 
     first: Ints
-    partner: Ints
     twist: Floats
     mass: Any
     gravity: Any
@@ -77,13 +74,6 @@ class Reduction:
     def factors(self) -> Factors:
         """Factors of the stiffness, found once."""
         return Factors(self.stiffness)
-
-    @property
-    def flexibility(self) -> Floats:
-        """Of each coordinate alone [rad/(N m)], (N,): both axes as one, however they are laid."""
-        diagonal = np.asarray(self.stiffness.diagonal())
-        mean: Floats = 2.0 / (diagonal + diagonal[self.partner])
-        return mean
 
 
 class Factors:
@@ -146,7 +136,6 @@ def reduce_tree(
     """
     n_branches = tree.n_branches
     first = np.concatenate([[0], np.cumsum([len(m.fields) for m in models])]).astype(np.int64)
-    partner = np.arange(first[-1])
     momentum = np.zeros((first[-1], 6))
     twist = np.zeros((n_branches, MAX_COORDINATES, 6))
     body = np.zeros((n_branches, 6, 6))
@@ -154,7 +143,6 @@ def reduce_tree(
     for branch in range(n_branches - 1, -1, -1):
         model = models[branch]
         own = slice(int(first[branch]), int(first[branch + 1]))
-        partner[own.start : own.start + 2] = own.start + 1, own.start
         fields, twists = _motions(model)
         dm = model.mass * model.beam.weight
         moved = dm[..., None] * fields
@@ -185,7 +173,7 @@ def reduce_tree(
             body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
     shape = (int(first[-1]), int(first[-1]))
     matrices = (each.symmetric(shape) for each in (mass, weight, elastic))
-    return Reduction(first, partner, twist, *matrices)
+    return Reduction(first, twist, *matrices)
 
 
 class _Blocks:

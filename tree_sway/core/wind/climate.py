@@ -48,24 +48,15 @@ class WindClimate:
     rate: float = 1.0
 
     @staticmethod
-    def steady(
-        mean_speed: float, intensity: float, bearing: float = 0.0, integral_time: float = 5.0
-    ) -> WindClimate:
+    def steady(mean_speed: float, intensity: float) -> WindClimate:
         """
-        Take a wind that is only described: a mean [m/s] towards a bearing from x to y in [rad].
+        Take a wind that is only described: a mean [m/s] along x, and its intensity [-].
 
-        The intensity is that along the wind; across it 0.8 of that is taken, upwards 0.5 (IEC
-        61400-1). A gust lasts for the integral time [s].
+        Across the wind 0.8 of the intensity is taken, upwards 0.5 (IEC 61400-1).
         """
-        along = np.array([math.cos(bearing), math.sin(bearing), 0.0])
-        across = np.array([-along[1], along[0], 0.0])
-        square, sigma = mean_speed**2, intensity * mean_speed
-        covariance = (2.0 * mean_speed * sigma) ** 2 * np.outer(along, along)
-        covariance += (0.8 * mean_speed * sigma) ** 2 * np.outer(across, across)
-        covariance[2, 2] += (0.5 * mean_speed * sigma) ** 2
-        return WindClimate(
-            square * (1.0 + intensity**2) * along, covariance, mean_speed, integral_time
-        )
+        mean = np.array([mean_speed**2 * (1.0 + intensity**2), 0.0, 0.0])
+        deviations = mean_speed**2 * intensity * np.array([2.0, 0.8, 0.5])
+        return WindClimate(mean, np.diag(deviations**2), mean_speed)
 
     @staticmethod
     def of_samples(velocity: Floats, rate: float) -> WindClimate:
@@ -89,12 +80,11 @@ class WindClimate:
         n = len(self.record)
         lines = np.fft.rfft(self.record, 2 * n, axis=0)
         lines[1:-1] *= math.sqrt(2.0)
-        squares = np.einsum('fi,fj->ijf', lines.conj(), lines).real / (2 * n * n)
+        squares = np.einsum('fi,fj->fij', lines.conj(), lines).real / (2 * n * n)
         below, share = _between(np.arange(n + 1) * self.rate / (2 * n), frequencies)
-        power = np.empty((len(frequencies), 3, 3))
-        for i, j in np.ndindex(3, 3):
-            power[:, i, j] = np.bincount(below, (1.0 - share) * squares[i, j], len(power))
-            power[:, i, j] += np.bincount(below + 1, share * squares[i, j], len(power))
+        power = np.zeros((len(frequencies), 3, 3))
+        np.add.at(power, below, (1.0 - share)[:, None, None] * squares)
+        np.add.at(power, below + 1, share[:, None, None] * squares)
         mean = self.record.mean(axis=0)
         power[0] -= np.outer(mean, mean)
         return power

@@ -247,7 +247,7 @@ def _grown(
         if not low <= height / slenderness <= high:
             stand.note(
                 f'{key} of {height:.3g} m with stems of {height / slenderness:.3g} m: grown with '
-                f'{diameter:.3g} m, as others would not stand'
+                f'{diameter:.3g} m, as others would buckle'
             )
     tree = grow(key, height, diameter, rng=np.random.default_rng(seed))
     return TreeFile(tree, rooted(tree, species), key)

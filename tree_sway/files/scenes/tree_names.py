@@ -17,7 +17,7 @@ def refuse_same_names(names: Sequence[str], where: Callable[[int], str]) -> None
             raise FormatError(
                 f"a slash in the name '{name}'",
                 where=where(number),
-                cure='leave it out: it stands between tree and branch in the names of segments',
+                cure='leave it out: it separates tree and branch in the names of segments',
             )
         if name in first:
             line = where(first[name]).rsplit(':', 1)[1]

@@ -6,7 +6,7 @@ NMEA 0183: the wind sentences of an instrument on a mast or a boat.
 - ``$--MWV,angle,R|T,speed,K|M|N|S,A|V``: where the wind comes from, in degrees clockwise from the
   bow.
   R is the apparent wind, as the instrument feels it; T is the true wind, less the motion of the
-  boat, and still counted from the bow. On a mast that stands still the two are one.
+  boat, and still counted from the bow. On a mast the two are one.
 - ``$--MWD,direction,T,direction,M,speed,N,speed,M``: true wind, clockwise from true and from
   magnetic north.
 - ``$--MDA``: weather, the last eight fields of which are those of MWD.
@@ -169,7 +169,5 @@ def _vwr(fields: list[str], heading: float) -> Velocity | str:
     return velocity_of_bearing(speed, heading + (turn if side == 'R' else -turn))
 
 
-_READERS = {
-    **{'MWV': _mwv, 'MWD': _mwd, 'MDA': _mda, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr},
-}
+_READERS = {'MWV': _mwv, 'MWD': _mwd, 'MDA': _mda, 'VWR': _vwr, 'VWT': _vwr, 'XDR': _xdr}
 """Readers of the fields of a sentence, which also take the heading, or the declination for MWD."""

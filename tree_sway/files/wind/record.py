@@ -85,7 +85,7 @@ class WindRows:
     Rows on their way to a record, and those refused.
 
     A row is a line, a sentence or a message by ``row_name``. Times are in [s]; components of the
-    velocity stand one row after the other in [m/s]; numbers are those of the rows in the file.
+    velocity are one row after the other in [m/s]; numbers are those of the rows in the file.
     """
 
     source: str
@@ -136,15 +136,15 @@ class WindRows:
         late = ~increasing(time[good])
         for index in np.flatnonzero(good)[late]:
             self.refuse(self.number[index], 'its time is out of order')
-        kept = np.flatnonzero(good)[~late]
-        if len(kept) == 0:
+        rows = np.flatnonzero(good)[~late]
+        if len(rows) == 0:
             first = f'; first {self.first_refused}' if self.refused else ''
             raise FormatError(
                 f'no good row of wind, {self.refused} refused{first}',
                 where=self.source,
-                cure='check that the file holds wind',
+                cure='check that it is a file of wind',
             )
-        time, velocity = time[kept], np.ascontiguousarray(velocity[kept])
+        time, velocity = time[rows], np.ascontiguousarray(velocity[rows])
         return WindRecord(
             time - time[0],
             velocity,
@@ -153,7 +153,7 @@ class WindRows:
             self.first_refused,
             None if epoch is None else epoch + float(time[0]),
             notes,
-            None if self.gust is None else self.gust[kept],
+            None if self.gust is None else self.gust[rows],
         )
 
 

@@ -46,7 +46,7 @@ let frames = 0;
 let drawn = 0;
 let factsAt = performance.now();
 let fps = 0;
-/** Time that leaves flutter by [s]; it stands still with the tree. */
+/** Time that leaves flutter by [s]; it stops with the tree. */
 let sceneTime = 0;
 let lastDrawn = 0;
 /** @type {Record<string, any>} */
@@ -179,7 +179,7 @@ function showFacts() {
   element("latency").textContent = Number.isFinite(latency)
     ? `${latency.toFixed(0)} + ${playout.delay} ms`
     : "–";
-  element("latency").title = "On the way, and held back so that the motion is smooth";
+  element("latency").title = "On the way, and delayed so that the motion is smooth";
   if (status.model && status.trees === 1) element("model").textContent = modelName(status.model);
   if (status.rate) element("rate").textContent = `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms`;
   [bytes, frames, drawn, factsAt] = [0, 0, 0, now];

@@ -1,7 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
 /**
- * A client of the stream for any program: connects, keeps the line, tells where every segment is
+ * A client of the stream for any program: connects, keeps the line, gives the place of every segment
  * now. No dependency; three.js, Babylon or WebXR draw what it says.
  */
 

@@ -7,8 +7,8 @@
 /** Save what is seen as PNG, in full.
  * @param {Scene} scene @param {string} name @param {() => void} draw a frame */
 export function savePicture(scene, name, draw) {
-  const { fineness, density } = scene.pace;
-  [scene.pace.fineness, scene.pace.density] = [1, 1];
+  const { fineness, density } = scene.quality;
+  [scene.quality.fineness, scene.quality.density] = [1, 1];
   draw();
   scene.canvas.toBlob((blob) => {
     if (!blob) return;
@@ -18,7 +18,7 @@ export function savePicture(scene, name, draw) {
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   });
-  [scene.pace.fineness, scene.pace.density] = [fineness, density];
+  [scene.quality.fineness, scene.quality.density] = [fineness, density];
 }
 
 /** The view as the end of an address.

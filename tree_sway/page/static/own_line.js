@@ -64,7 +64,7 @@ export class OwnLine {
     this._hasRestarted = false;
     this._sequence = 0;
     this._time = 0;
-    this._told = 0;
+    this._reported = 0;
     this._work = 0;
     /** @type {ReturnType<typeof setInterval> | undefined} */
     this._timer = undefined;
@@ -117,11 +117,11 @@ export class OwnLine {
     const [now, step] = [Date.now(), 1000 * this.stand.dt];
     if (now - this._time > LATEST) this._time = now - step;
     for (; this._time + step <= now; this._time += step) this._step();
-    if (now - this._told < STATUS_EVERY) return;
-    this._told = now;
-    const { trees, held, dt } = this.stand;
+    if (now - this._reported < STATUS_EVERY) return;
+    this._reported = now;
+    const { trees, outside, dt } = this.stand;
     this.listeners.onMessage({ status: {
-      model: trees[0].state.table.m.toString(), trees: trees.length, rate: 1 / dt, work_us: 1000 * this._work, held,
+      model: trees[0].state.table.m.toString(), trees: trees.length, rate: 1 / dt, work_us: 1000 * this._work, outside,
     } });
   }
 

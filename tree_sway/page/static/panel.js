@@ -68,8 +68,8 @@ export class Panel {
     this.send = send;
     /** @type {Map<string, (value: any) => void>} */
     this._show = new Map();
-    /** @type {string} the one that a hand is on */
-    this._held = "";
+    /** @type {string} the one that is being moved */
+    this._inHand = "";
   }
 
   /** @param {Control[]} controls */
@@ -93,7 +93,7 @@ export class Panel {
    * @param {boolean} [isRefusal] whether also those in hand are put back */
   update(values, isRefusal = false) {
     for (const [name, value] of Object.entries(values)) {
-      if (isRefusal || name !== this._held) this._show.get(name)?.(value);
+      if (isRefusal || name !== this._inHand) this._show.get(name)?.(value);
     }
   }
 
@@ -126,12 +126,12 @@ export class Panel {
       input.setAttribute("aria-valuetext", scale.text(value));
     };
     input.addEventListener("input", () => {
-      this._held = control.name;
+      this._inHand = control.name;
       show(scale.toValue(Number(input.value)));
       clearTimeout(timer);
       timer = setTimeout(() => this.send(control.name, scale.toValue(Number(input.value))), SEND_EVERY);
     });
-    input.addEventListener("change", () => setTimeout(() => (this._held = ""), 600));
+    input.addEventListener("change", () => setTimeout(() => (this._inHand = ""), 600));
     this._show.set(control.name, (value) => {
       input.value = String(scale.toSlider(value));
       show(value);

@@ -27,7 +27,7 @@ export class ClockOffset {
   /** @param {number} stamp sender's clock [ms] @param {number} arrival own clock [ms] */
   add(stamp, arrival) {
     const value = arrival - stamp;
-    // A sender whose clock was set back or that started anew is another clock.
+    // A sender whose clock was set back or that started again is another clock.
     if (this._least.length && Math.abs(value - this.value) > 5000) this._least.length = 0;
     while (this._least.length && this._least[this._least.length - 1].value >= value) {
       this._least.pop();
@@ -42,7 +42,7 @@ export class ClockOffset {
   }
 }
 
-/** Holds the newest states and tells what to draw. */
+/** The newest states, and what to draw of them. */
 export class Playout {
   /** @param {number} [delay] [ms] */
   constructor(delay = DELAY) {

@@ -4,7 +4,7 @@
  * The solver in JavaScript: trees in wind by the tables that this program exports.
  *
  * A tree is m coordinates; a table has what every even wind does to them; each goes on by its exact
- * propagator. Outside of the table the load of its edge is used, which `Stand.held` counts. The law
+ * propagator. Outside of the table the load of its edge is used, which `Stand.outside` counts. The law
  * is that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it.
  *
  *     import { decodeDescription } from "./protocol.js";
@@ -215,15 +215,15 @@ export class TreeState {
   step(half, whole, wx, wy, wz) {
     const { table, eta, rate, force } = this;
     const { m, mostPressure, mostEnergy, stiffness } = table;
-    const [middle, paced, wanted, diagonal] = table.scratch;
+    const [midEta, midRate, wanted, diagonal] = table.scratch;
     const speed = Math.sqrt(wx * wx + wy * wy + wz * wz);
     const drag = table.pressure(speed);
-    let isHeld = drag * speed * speed > mostPressure;
+    let isOutside = drag * speed * speed > mostPressure;
     let before = 0;
     for (let i = 0, at = 0; i < m; i++, at += 6) {
       before += stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i];
-      middle[i] = half[at] * eta[i] + half[at + 1] * rate[i] + half[at + 2] * force[i];
-      paced[i] = half[at + 3] * eta[i] + half[at + 4] * rate[i] + half[at + 5] * force[i];
+      midEta[i] = half[at] * eta[i] + half[at + 1] * rate[i] + half[at + 2] * force[i];
+      midRate[i] = half[at + 3] * eta[i] + half[at + 4] * rate[i] + half[at + 5] * force[i];
     }
     const push = Math.min(drag * speed * speed, mostPressure);
     windForce(table, speed > 0 ? [wx / speed, wy / speed, wz / speed] : [1, 0, 0], push, drag);
@@ -245,9 +245,9 @@ export class TreeState {
       for (const each of share ? [eta, rate] : [eta, rate, force]) {
         for (let i = 0; i < m; i++) each[i] = share ? share * each[i] : 0;
       }
-      isHeld = true;
+      isOutside = true;
     }
-    return isHeld;
+    return isOutside;
   }
 }
 
@@ -437,9 +437,9 @@ export class Stand {
     this._newGusts = () => new Gusts(trees.map(({ place }) => place), tables, dt);
     this._gusts = this._newGusts();
     /** Trees whose load was at the edge of their table in the last step. */
-    this.held = 0;
+    this.outside = 0;
     /** @type {Map<string, Float64Array>} */
-    const paces = new Map();
+    const propagators = new Map();
     this.trees = trees.map(({ kind, place, firstCoordinate }, number) => {
       const table = tables.kinds[kind];
       const step = Math.round(Math.log(place[4]) / FINEST_SCALE);
@@ -447,8 +447,8 @@ export class Stand {
       const own = dt / Math.exp(step * FINEST_SCALE);
       const [half, whole] = [own / 2, own].map((time) => {
         const key = `${kind} ${time}`;
-        const found = paces.get(key) ?? propagator(table.stiffness, table.ownDamping, time);
-        paces.set(key, found);
+        const found = propagators.get(key) ?? propagator(table.stiffness, table.ownDamping, time);
+        propagators.set(key, found);
         return found;
       });
       const speed = tables.speeds[number];
@@ -462,10 +462,10 @@ export class Stand {
   step(x, y, z) {
     if (!Number.isFinite(x + y + z)) throw new ProtocolError("a wind that is not finite");
     this._gusts.push(x, y, z);
-    this.held = 0;
+    this.outside = 0;
     this.trees.forEach(({ state, half, whole, speed, turn: [c, s] }, i) => {
       const [u, v, w] = this._gusts.felt[i];
-      if (state.step(half, whole, c * u + s * v, c * v - s * u, speed * w)) this.held++;
+      if (state.step(half, whole, c * u + s * v, c * v - s * u, speed * w)) this.outside++;
     });
   }
 

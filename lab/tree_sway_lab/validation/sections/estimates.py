@@ -11,13 +11,15 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator, REVIEW
+from tree_sway.core.fidelity.estimate import dialled
+from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.tip_error import record_tips
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
-from tree_sway_lab.validation.trial import judged_simulator, SECONDS
+from tree_sway_lab.validation.trial import SECONDS
 from tree_sway_lab.validation.truth import QUICK, SETTINGS, true_frequencies, true_tips, WOOD
 from tree_sway_lab.validation.winds import FRAME, from_record, turbulent, wind_called
 
@@ -63,13 +65,13 @@ def measure(effort: Effort) -> Section:
         for (kind, tolerance), over in reported.items()
     ]
     text = (
-        'True error over estimated error of every number of coordinates that `auto` chooses '
-        f'among, in {SECONDS:g} s of each wind, straight up among them; truth: every segment, '
-        f'{QUICK}. The table has the largest ratio of each tree and wind. Live is what `auto` '
-        f'reports as it runs through {_SPELL:g} s each of {_SPELLS[0]:g}, {_SPELLS[1]:g} and '
-        f'{_SPELLS[2]:g} m/s, against the truth in each {REVIEW:g} s: it covers the gusts of the '
-        'last minute and those that may come before the next look, so that it is too large for '
-        'a while once the wind has fallen.'
+        'True error over estimated error of every number of coordinates that `auto` shows of '
+        f'all it has, in {SECONDS:g} s of each wind, straight up among them; truth: every '
+        f'segment, {QUICK}. The table has the largest ratio of each tree and wind. Live is what '
+        f'`auto` reports as it runs through {_SPELL:g} s each of {_SPELLS[0]:g}, {_SPELLS[1]:g} '
+        f'and {_SPELLS[2]:g} m/s, against the truth in each {REVIEW:g} s: it covers the gusts of '
+        'the last minute and those that may come before the next look, so that it is too large '
+        'for a while once the wind has fallen.'
     )
     checks = [
         Check('largest true error over its estimate', float(all_over.max()), high=1.0),
@@ -101,17 +103,18 @@ def judged(case: tuple[str, Path | None]) -> list[Judged]:
             for scale in (3.0,)
         }
     auto = AdaptiveSimulator(tree, WOOD, SETTINGS)
-    numbers = [e.n_coordinates for e in auto.estimates(WindClimate.steady(1.0, 0.1))]
-    models = {count: judged_simulator(str(count), tree) for count in numbers}
+    shown = SwaySimulator(tree, WOOD, SETTINGS)
+    oscillators, numbers = dialled(shown.bank), np.arange(shown.bank.oscillators.shapes.shape[1])
     found = []
     for name, wind in winds.items():
         truth = true_tips(tree, wind, QUICK)
         for estimate in auto.estimates(WindClimate.of_samples(wind, 1.0 / FRAME)):
-            model = models[estimate.n_coordinates]
-            model.reset()
-            apart = record_tips(model, tree, wind[: len(truth)], FRAME) - truth
+            count = estimate.n_coordinates
+            shown.reset()
+            oscillators.show((numbers < count).astype(float), count)
+            apart = record_tips(shown, tree, wind[: len(truth)], FRAME) - truth
             metres = float(np.sqrt(np.square(apart).sum(axis=2).mean()))
-            found.append(Judged(kind, name, estimate.n_coordinates, metres / estimate.error))
+            found.append(Judged(kind, name, count, metres / estimate.error))
     return found
 
 

@@ -122,7 +122,7 @@ def test_matlab_without_a_model(tmp_path):
          ':5: cylinder 3: orphan: its parent 9 is not'),
         ('fork.simpleforest.csv', '0,-1,', '0,0,', TreeError, 'cylinder 0: cyclic'),
         ('fork.simpleforest.csv', '2,0,', '1,0,', FormatError,
-         ':4: cylinder 1: number 1 stands twice'),
+         ':4: cylinder 1: number 1 occurs twice'),
         ('fork.archi.csv', 'cyl_ID,parent', 'cyl_ID,parnt', FormatError,
          ":1: no column 'parent_ID'"),
         ('fork.archi.csv', '0.03', 'x', FormatError, ":3: radius_cyl is 'x', not a finite"),

@@ -65,7 +65,7 @@ def test_mtg_in_other_units():
 @pytest.mark.parametrize(
     ('name', 'old', 'new', 'kind', 'message'),
     [
-        ('fork.swc', '21 3', '20 3', FormatError, ':6: node 20: number 20 stands twice'),
+        ('fork.swc', '21 3', '20 3', FormatError, ':6: node 20: number 20 occurs twice'),
         ('fork.swc', '0.02 20', '0.02 99', TreeError, ':6: node 21: orphan: its parent 99'),
         ('fork.swc', '0.12 -1', '0.12 12', TreeError, 'cyclic'),
         ('fork.swc', '0.02 20', '0.02', FormatError, ":6: 6 cells, none for 'parent'"),

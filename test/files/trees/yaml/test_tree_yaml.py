@@ -59,7 +59,7 @@ def test_a_measured_modulus_is_no_estimate():
         ('[1, 2]', FormatError, 't:1: the file is a list of 2; give a mapping'),
         (STEM + 'name: {a: b}\n', FormatError, 't:4: name is a mapping of 1; give a text'),
         (STEM + 'name: a\nname: b\n', FormatError,
-         "t:5: key 'name' stands twice, first in line 4"),
+         "t:5: key 'name' occurs twice, first in line 4"),
         (STEM + 'nmae: x\n', FormatError,
          "t:4: unknown key 'nmae' in the file; did you mean 'name'"),
         (STEM + 'x: &a 1\n', FormatError, 't:4: an anchor or alias'),

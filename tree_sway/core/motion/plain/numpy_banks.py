@@ -16,7 +16,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.motion.modal import ENOUGH, FARTHEST, ModalBank, MOST_TRIALS, MOST_TURN
 from tree_sway.core.motion.plain.numpy_passes import Bases, into_lanes, NumpyPasses, of_lanes
-from tree_sway.core.motion.plain.numpy_rotation import two_axis_moment
+from tree_sway.core.motion.plain.numpy_rotation import two_axis_moment, within_guard
 from tree_sway.core.motion.uncoupled import UncoupledBank
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
 
@@ -49,7 +49,7 @@ class NumpyUncoupledBank(UncoupledBank):
         none = np.zeros(n)
         moment = two_axis_moment(x, v, load, none, np.inf)
         h = self._half[:, :, None]
-        middle_x = h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment
+        middle_x = within_guard(h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment)
         middle_v = h[:, 3] * x + h[:, 4] * v + h[:, 5] * moment
         base = Bases.at_rest(n)
         wind = np.array([wx, wy, wz]) + of_lanes(self._banks['gust'], n)

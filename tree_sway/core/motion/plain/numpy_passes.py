@@ -165,12 +165,13 @@ def cross_matrices(vectors: Floats) -> Floats:
     return np.asarray(np.cross(vectors[:, None], np.eye(3)).swapaxes(1, 2))
 
 
-def even_wind_moments(branches: Records, n_coordinates: int, axes: int = 2) -> Floats:
-    """Moments [N m], (N, axes), at rest of even winds of 1 m/s and 1 kg/m^3 along x, y and z."""
+def even_wind_moments(branches: Records, n_coordinates: int, winds: Floats) -> Floats:
+    """Moments [N m], (N, k), at rest of even winds [m/s], (k, 3), at 1 kg/m^3."""
     passes, n = NumpyPasses(branches), len(branches)
-    moments, still, none = np.zeros((axes, n_coordinates)), Bases.at_rest(n), np.zeros(n)
+    moments, none = np.zeros((len(winds), n_coordinates)), np.zeros(n)
     at_rest = np.zeros(branches['load_mode'].shape[:2])
-    for moment, wind in zip(moments, np.eye(3), strict=False):
+    still = passes.outward(at_rest, at_rest)
+    for moment, wind in zip(moments, winds, strict=True):
         impulse = np.zeros((n, 3))
         force = passes.wind_forces(still, at_rest, at_rest, wind, 1.0, none, impulse)
         passes.bent_loads(still, at_rest, force, moment)

@@ -54,6 +54,13 @@ def turned_by(rotations: Floats, vectors: Floats) -> Floats:
     return np.asarray(turned / (1.0 + square))
 
 
+def within_guard(e: Floats) -> Floats:
+    """Pull rotation vectors (n, 2) back to the circle of `oscillators.two_axis`."""
+    squares = np.square(e).sum(axis=1, keepdims=True)
+    out: Floats = e * np.sqrt(T_MAX / np.maximum(squares, T_MAX))
+    return out
+
+
 def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: ArrayLike) -> Floats:
     """
     Moment of a force on the two axes of each branch, with the gyroscopic term, held at a limit.
@@ -75,7 +82,7 @@ def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: Arr
         In [N m], (n, 2).
 
     """
-    e = e * np.minimum(1.0, np.sqrt(T_MAX / np.maximum(np.square(e).sum(axis=1), T_MAX)))[:, None]
+    e = within_guard(e)
     t = np.square(e).sum(axis=1)
     angle = np.sqrt(t)
     sinc, cos = np.sinc(angle / np.pi), np.cos(angle)

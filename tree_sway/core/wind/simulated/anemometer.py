@@ -7,14 +7,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
 from tree_sway.core.wind.simulated.gust_event import GustEvent, with_events
 from tree_sway.core.wind.simulated.turbulence import along_bearing, Turbulence
 from tree_sway.core.wind.simulated.turbulence_stream import TurbulenceStream
-
-Floats = NDArray[np.float64]
 
 
 class AnemometerModel:
@@ -60,7 +58,8 @@ class AnemometerModel:
     ) -> None:
         """Check the parameters."""
         within('mean_speed', mean_speed, 0.0, 40.0, 'm/s')
-        self._rate = within('rate', rate, 1.0, 100.0, 'Hz')
+        self.rate = within('rate', rate, 1.0, 100.0, 'Hz')
+        """Samples per second in [Hz]."""
         self._bearing_to = within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
         self._events = tuple(events)
         self._mean = np.array([mean_speed, 0.0, 0.0])
@@ -69,12 +68,7 @@ class AnemometerModel:
             level = mean_speed or 1.0
             parameters = Turbulence(level, turbulence, height, intensity)
             if mean_speed > 0.0:
-                self._stream = TurbulenceStream(parameters, self._rate, seed)
-
-    @property
-    def rate(self) -> float:
-        """Return the samples per second in [Hz]."""
-        return self._rate
+                self._stream = TurbulenceStream(parameters, rate, seed)
 
     def sample(self, tick: int) -> Floats:
         """Wind at a tick of the sample period from 0 on: blowing to, ENU in [m/s], (3,)."""
@@ -83,4 +77,4 @@ class AnemometerModel:
         enu = along_bearing(wind, self._bearing_to)
         if not self._events:
             return enu
-        return with_events(tick / self._rate, enu, self._events, self._bearing_to)
+        return with_events(tick / self.rate, enu, self._events, self._bearing_to)

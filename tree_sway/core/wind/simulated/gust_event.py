@@ -14,11 +14,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
-
-Floats = NDArray[np.float64]
 
 _LARGEST_SPEED, _LARGEST_ANGLE, _LONGEST = 100.0, 1e3, 1e6
 

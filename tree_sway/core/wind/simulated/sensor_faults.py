@@ -14,11 +14,10 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
 
-Floats = NDArray[np.float64]
 _SPIKE = 20.0
 _NO_READING = 999.99
 _KINDS = (

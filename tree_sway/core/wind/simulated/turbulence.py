@@ -25,12 +25,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
 from tree_sway.core.wind.simulated.spectra import SPECTRA
-
-Floats = NDArray[np.float64]
 
 # IEC 61400-1: standard deviations over that of u, for u, v, w.
 _DEVIATION_RATIOS = np.array([1.0, 0.8, 0.5])

@@ -13,12 +13,10 @@ and a change of mean or intensity under the same seed keeps the pattern of the g
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
 from tree_sway.core.wind.simulated.turbulence import SHORTEST_PERIOD, Turbulence
-
-Floats = NDArray[np.float64]
 
 
 class TurbulenceStream:
@@ -32,9 +30,8 @@ class TurbulenceStream:
         # A power of two, no shorter than the period that IEC defines the deviations over.
         self._n_block = 1 << max(2, int(np.ceil(np.log2(SHORTEST_PERIOD * self._rate))))
         self._n_hop = self._n_block // 2
-        self._fade = np.sin(np.pi * (np.arange(self._n_block) + 0.5) / self._n_block)[
-            :, np.newaxis
-        ]
+        middle = (np.arange(self._n_block) + 0.5) / self._n_block
+        self._fade = np.sin(np.pi * middle)[:, np.newaxis]
         self._hop = -1
         self._wind: Floats = np.empty((0, 3))
         self._tail: Floats = np.empty((0, 3))

@@ -65,7 +65,7 @@ def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | N
 
 def branch_keys(cylinders: Cylinders) -> Ints | None:
     """
-    Branch of each cylinder, (n,); None if the file does not say what goes on with what.
+    Branch of each cylinder, (n,); None if the file does not say what continues what.
 
     Where it names several children that continue a branch, the thickest does.
     """

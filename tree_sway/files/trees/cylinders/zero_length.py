@@ -19,7 +19,7 @@ def without_zero_length(cylinders: Cylinders, order: Ints) -> Cylinders:
     """
     Return the cylinders of one tree that have a length; what grew on others sits on their parent.
 
-    The order has parents first. A branch goes on through a cylinder that is left out; where that
+    The order has parents first. A branch continues through a cylinder that is left out; where that
     is the root, the thickest that sits on it takes its place, and carries the others.
     """
     keep = np.linalg.norm(cylinders.end - cylinders.start, axis=1) >= _SHORTEST
@@ -37,14 +37,14 @@ def without_zero_length(cylinders: Cylinders, order: Ints) -> Cylinders:
     first = roots[np.argmax(cylinders.diameter[roots, 0])]
     parent[roots[roots != first]] = first
     number = np.cumsum(keep) - 1
-    kept = np.flatnonzero(keep)
-    above = parent[kept]
+    rows = np.flatnonzero(keep)
+    above = parent[rows]
     return replace(
         cylinders,
-        start=cylinders.start[kept],
-        end=cylinders.end[kept],
-        diameter=cylinders.diameter[kept],
+        start=cylinders.start[rows],
+        end=cylinders.end[rows],
+        diameter=cylinders.diameter[rows],
         parent=np.where(above < 0, -1, number[above]),
-        continues=None if continues is None else continues[kept],
-        labels=[cylinders.labels[index] for index in kept],
+        continues=None if continues is None else continues[rows],
+        labels=[cylinders.labels[index] for index in rows],
     )

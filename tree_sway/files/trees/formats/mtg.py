@@ -4,7 +4,7 @@
 Digitised trees in MTG files in the code FORM-A (Godin & Caraglio 1998).
 
 Each line of the section MTG holds a vertex, in the column that is its depth, and the values of its
-features. ``/`` decomposes, ``<`` goes on, ``+`` branches; with ``^`` before, it does so from the
+features. ``/`` decomposes, ``<`` continues, ``+`` branches; with ``^`` before, it does so from the
 vertex above in its own column, else from the latest in the column before.
 
 Positions ``XX YY ZZ`` are those of the upper end of a vertex, in centimetres, and ``TopDia`` its

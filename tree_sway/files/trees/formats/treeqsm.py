@@ -5,7 +5,7 @@ TreeQSM's cylinder models (Raumonen et al. 2013; manual of 2.4), as MATLAB files
 
 A row has radius, length, start (3), axis (3), parent and extension; what follows depends on the
 version. Cylinders are numbered from 1, parent 0 at the root; PyTLidar writes the same columns
-numbered from 0, parent -1 at the root. A cylinder that is the extension of its parent goes on with
+numbered from 0, parent -1 at the root. A cylinder that is the extension of its parent continues
 the branch; any other starts one, on its parent's axis or skin and not at its end.
 
 MATLAB: structs with a field ``cylinder``. A file may hold several models, as variables or as an

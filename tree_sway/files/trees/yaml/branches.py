@@ -35,7 +35,7 @@ def branch_segments(document: YamlDocument) -> Values:
     Raises
     ------
     FormatError
-        A name that stands twice, both or none of nodes and segments, a place that is not there.
+        A name that occurs twice, both or none of nodes and segments, a place that is not there.
     TreeError
         A parent that is not there, a cycle, not exactly one stem, a branch in the air.
 

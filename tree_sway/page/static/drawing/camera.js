@@ -130,22 +130,22 @@ export class Camera {
   /** Let mouse, touch and keys move the camera. @param {HTMLElement} element */
   listen(element) {
     /** @type {Map<number, PointerEvent>} */
-    const held = new Map();
+    const pointers = new Map();
     element.addEventListener("pointerdown", (event) => {
       element.setPointerCapture(event.pointerId);
-      held.set(event.pointerId, event);
+      pointers.set(event.pointerId, event);
     });
-    const release = (/** @type {PointerEvent} */ event) => held.delete(event.pointerId);
+    const release = (/** @type {PointerEvent} */ event) => pointers.delete(event.pointerId);
     element.addEventListener("pointerup", release);
     element.addEventListener("pointercancel", release);
     element.addEventListener("pointermove", (event) => {
-      const before = held.get(event.pointerId);
+      const before = pointers.get(event.pointerId);
       if (!before) return;
       const high = element.clientHeight;
       const dx = event.clientX - before.clientX;
       const dy = event.clientY - before.clientY;
-      if (held.size === 2) {
-        const [other] = [...held.values()].filter((each) => each.pointerId !== event.pointerId);
+      if (pointers.size === 2) {
+        const [other] = [...pointers.values()].filter((each) => each.pointerId !== event.pointerId);
         const span = (/** @type {PointerEvent} */ e) =>
           Math.hypot(e.clientX - other.clientX, e.clientY - other.clientY);
         this.zoom(Math.max(span(before), 1) / Math.max(span(event), 1));
@@ -155,7 +155,7 @@ export class Camera {
       } else {
         this.orbit(dx, dy);
       }
-      held.set(event.pointerId, event);
+      pointers.set(event.pointerId, event);
     });
     element.addEventListener("contextmenu", (event) => event.preventDefault());
     element.addEventListener(

@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** What stands beside a tree: its pot, a person of 1.75 m for scale, the arrow of the wind. */
+/** What is beside a tree: its pot, a person of 1.75 m for scale, the arrow of the wind. */
 
 /**
  * @typedef {[number, number, number]} Vector

@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Draws a described tree from its poses: bark, leaves, what stands beside it, ground and sky. */
+/** Draws a described tree from its poses: bark, leaves, what is beside it, ground and sky. */
 
 import { KindPlacer, STRIDE } from "../placing.js";
 import { Backdrop, DAYLIGHT, GROUNDS } from "./backdrop.js";
@@ -11,13 +11,13 @@ import { Impostor } from "./impostors.js";
 import {
   barkMesh, boxOf, branchOrder, conjugate, highestOf, leafMesh, multiply, quaternion, shadeOf,
 } from "./mesh.js";
-import { Pace } from "./pace.js";
 import { arrowLength, arrowMesh, personMesh, potMesh } from "./props.js";
+import { Quality } from "./quality.js";
 import * as shaders from "./shaders.js";
 import { isPotted, lookOf } from "./species.js";
 import { barkPicture, leafPicture } from "./textures.js";
 
-/** A shadow is drawn again every so many frames without a graphics unit, of a crowd less often. */
+/** A shadow is drawn again after this number of frames without a graphics unit, of a crowd less often. */
 const SHADOW_EVERY = 8;
 /** Share of the leaves that cast it then. */
 const SHADOW_LEAVES = 0.4;
@@ -27,14 +27,14 @@ const MOST = { segments: 40000, cards: 3000, far: 90 };
 const MOST_SLOW = { segments: 12000, cards: 3000, far: 150 };
 /** The same of a crowd without a graphics unit. */
 const MOST_CROWD = { segments: 5000, cards: 3000, far: 220 };
-/** What of each tree is drawn is chosen again every so many frames while the camera moves. */
+/** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
 const CHOOSE_EVERY = 6;
 const POT_HEIGHT = 0.17;
-/** Height of a tree from which a person stands beside it [m]. */
+/** Height of a tree from which a person is beside it [m]. */
 const WITH_PERSON = 2.5;
 /** Vertices of the trees that are drawn in one go, at most. */
 const BATCH = 6000;
-/** The arrow follows the mean of the wind over so long [s]. */
+/** The arrow follows the mean of the wind over this time [s]. */
 const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
 const PAINTED = 260;
@@ -131,7 +131,7 @@ export class Scene {
     this._shadow = canvasTexture(gl, this._shadowSize, this._shadowSize, gl.R8);
     this._shadowMiddle = [0, 0];
     this._shadowHalf = 1;
-    this.pace = new Pace();
+    this.quality = new Quality();
     this._groundHeight = 0;
     this._low = [0, 0, 0];
     this._high = [1, 1, 1];
@@ -449,7 +449,7 @@ export class Scene {
 
   /** Fit the picture to the element. */
   resize() {
-    const ratio = this.isSlow ? this.pace.fineness : Math.min(window.devicePixelRatio || 1, 2);
+    const ratio = this.isSlow ? this.quality.fineness : Math.min(window.devicePixelRatio || 1, 2);
     const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width === width && this.canvas.height === height) return;
@@ -477,7 +477,7 @@ export class Scene {
     // The eye takes a shadow that is some frames old for one that is not.
     const every = this.isSlow ? (this.isCrowd ? 3 : 1) * SHADOW_EVERY : 1;
     if (this.detail && this._frame % every === 0) this._castShadow(matrix, time);
-    if (this.isSlow && !isPaused) this.pace.count(performance.now(), this._hasCards);
+    if (this.isSlow && !isPaused) this.quality.count(performance.now(), this._hasCards);
     this._frame++;
     const [width, height] = [this.canvas.width, this.canvas.height];
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -495,7 +495,7 @@ export class Scene {
     return this._kinds.some(({ drawn }) => drawn.some((level) => level?.count && level.leaf));
   }
 
-  /** What the scene stands on. */
+  /** The ground of the scene. */
   get _ground() {
     const n = this.detail?.trees.length ?? 0;
     const kind = this._potSize > 0 || !n ? GROUNDS.terrace : GROUNDS.meadow;
@@ -555,7 +555,7 @@ export class Scene {
 
   /** What of the picture is left out so that frames come in time; null if nothing is. */
   get leftOut() {
-    return this.isSlow ? this.pace.leftOut : null;
+    return this.isSlow ? this.quality.leftOut : null;
   }
 
   /** @param {Float32Array} matrix @param {number} time @param {boolean} isShadow */
@@ -570,7 +570,7 @@ export class Scene {
         isBaked: 0, time: time % 1000, speed: Math.hypot(...this.wind),
         law: [this.flutters ? law.gain : 0, law.largest_angle],
       });
-      const density = this.isSlow ? this.pace.density * (isShadow ? SHADOW_LEAVES : 1) : 1;
+      const density = this.isSlow ? this.quality.density * (isShadow ? SHADOW_LEAVES : 1) : 1;
       this._eachLevel((level, kind) => this._drawLeaves(kind, level, density));
     }
     this._begin(impostor, matrix, isShadow);
@@ -659,7 +659,7 @@ export class Scene {
     }
   }
 
-  /** Whether there are so many trees that they are a wood. */
+  /** Whether the trees are a wood. */
   get isCrowd() {
     return (this.detail?.trees.length ?? 0) > CROWD;
   }

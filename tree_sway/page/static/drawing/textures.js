@@ -8,7 +8,7 @@ import { hasNeedles, lookOf, seeded } from "./species.js";
 const ACROSS = [1, 3, 6, 12, 24];
 const LEAF_PIXELS = 256;
 const BARK_PIXELS = 128;
-/** A compound leaf is so many leaflets long. */
+/** Length of a compound leaf in leaflets. */
 const RACHIS = 3.4;
 
 /**
@@ -313,7 +313,7 @@ export function barkPicture(pattern) {
   return [{ size, data }];
 }
 
-/** Smooth noise from 0 to 1 that repeats on the unit square, of so many cells each way. */
+/** Smooth noise from 0 to 1 that repeats on the unit square, of a number of cells each way. */
 function tiledNoise() {
   const hash = (/** @type {number} */ x, /** @type {number} */ y) => {
     let h = Math.imul(x + 17, 374761393) + Math.imul(y + 29, 668265263);

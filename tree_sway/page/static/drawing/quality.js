@@ -12,7 +12,7 @@ const LEAST = 24;
 const COARSEST = 0.5;
 const THINNEST = 0.4;
 
-export class Pace {
+export class Quality {
   constructor() {
     /** Pixels of the picture per pixel of the page, each way. */
     this.fineness = 1;

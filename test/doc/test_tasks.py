@@ -1,0 +1,51 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The tasks of ``doc/tasks_timed.md`` do what the page says, as typed."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+import re
+import runpy
+from types import SimpleNamespace
+
+import pytest
+
+timed = SimpleNamespace(**runpy.run_path(str(Path(__file__).with_name('time_tasks.py'))))
+TASKS = timed.tasks()
+QUICK = {1, 12}
+"""Those of some seconds; all others are for a day with time."""
+ON_ROS = {5, 10, 11}
+NEEDS = {6: 'zenoh', 7: 'pyarrow', 11: 'serial', 13: 'imageio_ffmpeg', 14: 'matplotlib'}
+
+
+@pytest.mark.parametrize(
+    'task',
+    [
+        pytest.param(
+            each,
+            id=each.title,
+            marks=[pytest.mark.long] * (each.number not in QUICK)
+            + [pytest.mark.ros] * (each.number in ON_ROS),
+        )
+        for each in TASKS
+    ],
+)
+def test_it_does_what_the_page_says(
+    task: SimpleNamespace, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    if task.number in NEEDS:
+        pytest.importorskip(NEEDS[task.number], reason=f'needs {NEEDS[task.number]}')
+    on_ros = task.number in ON_ROS
+    environment = request.getfixturevalue('ros_environment') if on_ros else dict(os.environ)
+    _, said = timed.run(task, tmp_path, environment)
+    assert timed.result_of(task, said)
+
+
+def test_the_table_has_a_row_of_each_task() -> None:
+    rows = re.findall(r'^\| (\d+)\. (.*?) \| (\d+) \| ', timed.PAGE.read_text(), re.MULTILINE)
+    assert [(int(number), title) for number, title, _ in rows] == [
+        (task.number, task.title) for task in TASKS
+    ]
+    assert set(timed.RESULTS) == {task.number for task in TASKS}
