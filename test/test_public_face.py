@@ -106,6 +106,6 @@ def test_one_default_model_behind_every_door() -> None:
     assert [each.model for each in doors] == [str(default)] * len(doors)
     (model,) = (each for each in NODE_PARAMETERS['solver'] if each.name == 'model')
     assert model.default == str(default)
-    for command in ('demo', 'show', 'plot'):
-        told = vars(_parser(command, _table('')[0], '').parse_args([command, 'goldcrest']))
-        assert told['model'] == default
+    for command, *more in (['demo'], ['show'], ['plot', '-o', 'a.png']):
+        parser = _parser(command, _table('')[0], '')
+        assert parser.parse_args([command, 'goldcrest', *more]).model == default

@@ -103,15 +103,11 @@ class Line:
                 return bytes(reply.ok.payload.to_bytes())
         return None
 
-    def close(self) -> None:
-        """Close the session."""
-        self._session.close()
-
     def __enter__(self) -> Line:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.close()
+        self._session.close()
 
     def _key(self, key: str) -> str:
         return f'{self._prefix}/{key}'

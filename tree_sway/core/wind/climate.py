@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Floats
 from tree_sway.core.wind.simulated.spectra import von_karman_spectrum
 
 
@@ -81,7 +81,12 @@ class WindClimate:
         lines = np.fft.rfft(self.record, 2 * n, axis=0)
         lines[1:-1] *= math.sqrt(2.0)
         squares = np.einsum('fi,fj->fij', lines.conj(), lines).real / (2 * n * n)
-        below, share = _between(np.arange(n + 1) * self.rate / (2 * n), frequencies)
+        at = np.arange(n + 1) * self.rate / (2 * n)
+        # Each line is shared by the frequencies next below and above it.
+        below = np.searchsorted(frequencies, at, side='right') - 1
+        below = np.minimum(below, len(frequencies) - 2)
+        low, high = frequencies[below], frequencies[below + 1]
+        share = np.minimum((at - low) / (high - low), 1.0)
         power = np.zeros((len(frequencies), 3, 3))
         np.add.at(power, below, (1.0 - share)[:, None, None] * squares)
         np.add.at(power, below + 1, share[:, None, None] * squares)
@@ -144,11 +149,3 @@ def _of_loads(loads: Floats, speed: float, rate: float) -> WindClimate:
     return WindClimate(
         mean, around.T @ around / len(loads), speed, record=np.ascontiguousarray(loads), rate=rate
     )
-
-
-def _between(lines: Floats, frequencies: Floats) -> tuple[Ints, Floats]:
-    """Which frequency is next below each line, (k,), and how far it is towards the one above."""
-    below = np.searchsorted(frequencies, lines, side='right') - 1
-    below = np.minimum(below, len(frequencies) - 2)
-    low, high = frequencies[below], frequencies[below + 1]
-    return below, np.minimum((lines - low) / (high - low), 1.0)

@@ -124,7 +124,6 @@ def with_events(
             speed = event.at(time)
             wind[..., 0] += speed * np.sin(bearing_to)
             wind[..., 1] += speed * np.cos(bearing_to)
-    east, north = wind[..., 0].copy(), wind[..., 1].copy()
-    wind[..., 0] = np.cos(angle) * east - np.sin(angle) * north
-    wind[..., 1] = np.sin(angle) * east + np.cos(angle) * north
+    turned = (wind[..., 0] + 1j * wind[..., 1]) * np.exp(1j * angle)
+    wind[..., 0], wind[..., 1] = turned.real, turned.imag
     return wind
