@@ -29,6 +29,9 @@ from tree_sway.page.wind_source import SimulatedWind
 STAND = Path(__file__).parents[2] / 'config' / 'stand.yaml'
 HEIGHTS = {'oak': 18, 'birch': 16, 'spruce': 22, 'pine': 20, 'willow': 12, 'walnut': 8}
 WIDTH = 960
+AVENUE = 'x,y,species,height\n' + ''.join(
+    f'{10 * row},{9 * place},lime,14\n' for place in range(10) for row in range(2)
+)
 _EVENING = "document.getElementById('theme').click();"
 _AUTUMN = "document.getElementById('season').click();"
 
@@ -62,6 +65,7 @@ VIEWS = (
     View('walnut_software', 'walnut', is_full=False),
     View('walnut_near', 'walnut', script='treeSway.scene.camera.zoom(0.35)'),
     View('walnut_far', 'walnut', script='treeSway.scene.camera.zoom(4)'),
+    View('avenue', 'avenue', script='treeSway.scene.camera.zoom(0.6)'),
     View('stand', str(STAND)),
     View('stand_software', str(STAND), is_full=False),
     View('stand_near', str(STAND), is_full=False, script='treeSway.scene.camera.zoom(0.3)'),
@@ -82,6 +86,9 @@ def main() -> None:
                 tree = view.tree
                 if tree == 'walnut' and given.walnut:
                     tree = given.walnut
+                elif tree == 'avenue':
+                    tree = f'{grown}/avenue.csv'
+                    Path(tree).write_text(AVENUE, encoding='utf-8')
                 elif tree in HEIGHTS:
                     tree = f'{grown}/{tree}.yaml'
                     words = ['--species', view.tree, '--height', str(HEIGHTS[view.tree])]

@@ -79,7 +79,7 @@ def test_what_strangers_send_is_refused_and_counted_and_the_receiver_goes_on() -
         encode_wind(time.time_ns() + 60 * 10**9, (5.0, 0.0, 0.0)),
         encode_wind(time.time_ns(), (1e300, 0.0, 0.0)),
     ]
-    snapshots = itertools.cycle(['', '{', '[]', '1', '[' * 200_000])
+    snapshots = itertools.cycle(['', '{}', '[]', '{"run": 1, "state": 2}', '[' * 200_000])
     with Line('tree_sway', listen=[at]) as line:
         line.answer('snapshot', lambda: next(snapshots))
         with relay('receive', SEEDLING, '--connect', at, '--seconds', '2',

@@ -64,11 +64,13 @@ class Site:
 
         A `StateError` for what is no snapshot.
         """
-        theirs = _object(snapshot)
+        theirs, mine = _object(snapshot), self._identity()
+        if not {'state', 'run', *mine} <= set(theirs):
+            raise StateError('an object without the parts of a snapshot')
         different = [
-            f'{key} {str(theirs.get(key))[:60]!r}, not {own!r}'
-            for key, own in self._identity().items()
-            if theirs.get(key) != own
+            f'{key} {str(theirs[key])[:60]!r}, not {own!r}'
+            for key, own in mine.items()
+            if theirs[key] != own
         ]
         return '; '.join(different)
 
