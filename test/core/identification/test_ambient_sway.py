@@ -69,7 +69,7 @@ def test_no_resonance_is_refused():
     for seed in range(30):
         noise = np.random.default_rng(seed).normal(size=(6000, 1))
         with pytest.raises(
-            FormatError, match=r'no sway stands out of the spectrum around 0\.7 Hz'
+            FormatError, match=r'the spectrum has no peak around 0\.7 Hz'
         ):
             ambient_sway(noise if seed % 2 else np.cumsum(noise, axis=0), DT, 0.7)
 

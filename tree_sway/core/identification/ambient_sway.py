@@ -71,7 +71,7 @@ def ambient_sway(motion: Floats, dt: float, rough: float) -> AmbientSway:
     inside = frequency[0] < found < frequency[-1] and ratio < 0.4
     if not inside or gain < _MIN_GAIN:
         raise FormatError(
-            f'no sway stands out of the spectrum around {rough:.3g} Hz',
+            f'the spectrum has no peak around {rough:.3g} Hz',
             cure='record longer, in more wind, nearer to the top, or name the band the sway is in',
         )
     frequency_error, damping_error = _standard_errors(frequency, bins, best.x)

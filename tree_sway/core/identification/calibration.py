@@ -173,7 +173,7 @@ class _ScaledTree:
         self.tree, self._branch = tree, branch
         self.reduction = TreeReductions(tree, species, settings).coupled.reduction
         factor, coordinate = buckling_factor(self.reduction)
-        #: Scale at which the tree just stands, and the branch that gives way first.
+        #: Scale at which the tree just holds its weight, and the branch that gives way first.
         self.least = _STANDS / factor
         self.weakest = self.branch_of(coordinate)
 

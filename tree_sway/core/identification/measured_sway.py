@@ -196,7 +196,7 @@ def _ambient(motion: Floats, dt: float, gap: float, band: Band) -> AmbientSway:
     peaks, _ = spectral_peaks(frequency, power, duration, band, width=0.08, min_bins=8)
     found, refusals = _fitted(lambda rough: ambient_sway(motion, dt, rough), peaks, gap)
     if not found and len(refusals) > 1:
-        raise FormatError('no sway stands out of the spectrum', cure=[*refusals.values()][-1].cure)
+        raise FormatError('the spectrum has no peak of a sway', cure=[*refusals.values()][-1].cure)
     if not found:
         raise refusals[0]
     clearest = max(sway.gain for sway in found)

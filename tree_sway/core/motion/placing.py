@@ -13,7 +13,7 @@ Sixteen branches at a time, parents before their children: how the bases are tur
 stand, then segment after segment up the sixteen branches at once.
 
 The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose
-stands at its segment's root-side node, its x axis runs along the segment (REP-103).
+is at its segment's root-side node, its x axis runs along the segment (REP-103).
 """
 
 from __future__ import annotations

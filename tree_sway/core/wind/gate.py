@@ -11,7 +11,7 @@ m/s^2: 39 % at 20 Hz in 12 m/s). What stays away for `longest_refusal` may be a 
 but no faster than `max_rate`: a spike that lasts longer moves the wind no further than a gust can.
 
 Samples are taken in their order of arrival. A stamp that cannot be (zero, ahead of its arrival,
-much older than it, a duplicate, out of order) is counted by its cause; in its place stands the
+much older than it, a duplicate, out of order) is counted by its cause; in its place is the
 time of arrival, less the delay of the sample before, so that the times of a mixed stream go on
 evenly. A stamp ahead is believed only if those before it were nearly as far ahead: a single one
 would shut out the good samples that follow it. All times are whole nanoseconds of one clock.

@@ -4,7 +4,7 @@
 Spectra of turbulence: how the variance of the wind at a point is shared by frequencies.
 
 A new model of the wind is one function here and its entry in `SPECTRA`: the simulated anemometer,
-its node and the command line offer what stands there.
+its node and the command line offer what is there.
 """
 
 from __future__ import annotations
