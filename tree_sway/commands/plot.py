@@ -1,10 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""``tree-sway plot``: wind and motion of the tip over time, or by ``--portrait`` the tree."""
+"""``tree-sway plot``: wind and motion of the tip, a portrait, strength, or a study's table."""
 
 from __future__ import annotations
 
 import argparse
+import csv
 import math
 from pathlib import Path
 import sys
@@ -29,15 +30,16 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.wind.convention import velocity_of_bearing
-from tree_sway.errors import ParameterError, TreeError
+from tree_sway.errors import FormatError, ParameterError, TreeError
 from tree_sway.page.wind_source import RecordedWind
 from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.pictures.pictures import picture_in_wind
-from tree_sway.pictures.plots import plot_strength, plot_wind_and_tip
+from tree_sway.pictures.plots import plot_strength, plot_study, plot_wind_and_tip, STUDY_COLUMNS
 
 _SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
 _RATE = 60.0
 _CURVES = 12
+_LONGEST_HEADER = 4096
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -72,11 +74,32 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.speed = 30.0 if arguments.strength else 10.0 if arguments.portrait else 6.0
     _refuse_bearing(arguments)
     output = output_path(arguments)
+    if rows := _rows_of_study(arguments.tree):
+        try:
+            plot_study(rows, output)
+        except (TypeError, ValueError) as error:
+            raise FormatError(
+                f'not the table of a study: {error}', where=arguments.tree
+            ) from error
+        print(output)
+        return 0
     scene = opened_scene(arguments)
     draw = _strength if arguments.strength else _portrait if arguments.portrait else _motion
     draw(scene, arguments, output)
     print(output)
     return 0
+
+
+def _rows_of_study(path: str) -> list[dict[str, str]]:
+    """Rows of the table that a study wrote; none of any other file."""
+    table = Path(path).expanduser()
+    if table.suffix != '.csv' or not table.is_file():
+        return []
+    with table.open(encoding='utf-8', errors='replace', newline='') as lines:
+        header = lines.readline(_LONGEST_HEADER)
+        if not all(column in header for column in STUDY_COLUMNS):
+            return []
+        return list(csv.DictReader(lines, next(csv.reader([header]))))
 
 
 def _refuse_bearing(arguments: argparse.Namespace) -> None:

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Wind and the motion of a tree's tip over time; the strength a tree uses over wind speed."""
+"""Wind and motion of a tip over time; strength, and the cases of a study, over wind speed."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,9 @@ from tree_sway.pictures.plotting import new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+STUDY_COLUMNS = ('wind_mean [m/s]', 'tip_largest [m]', 'base_moment_largest [N m]')
+"""Columns of a study that are drawn, the others over the first."""
 
 _WIND = '#1f6fb4'
 _EAST = '#2f6b2f'
@@ -105,6 +108,39 @@ def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path
     figure.axes[0].set_ylabel('share of strength in gusts [%]')
     figure.axes[0].legend(frameon=False)
     figure.suptitle('left out: rot, wounds, wet or shallow soil, sheltering by neighbours')
+    return save_figure(figure, path)
+
+
+def plot_study(rows: Sequence[Mapping[str, str]], path: str) -> Path:
+    """
+    Plot largest motion of the tip and base moment of a study's cases over the mean wind.
+
+    Parameters
+    ----------
+    rows
+        Cases with `STUDY_COLUMNS`, and ``tree_...`` columns that name the tree of each.
+    path
+        File to write, whose suffix names the format.
+
+    Raises
+    ------
+    ValueError, TypeError
+        A figure that is none, or is missing.
+
+    """
+    trees: dict[str, list[tuple[float, ...]]] = {}
+    for row in rows:
+        name = ', '.join(row[key] for key in row if key.startswith('tree_') and row[key])
+        trees.setdefault(name, []).append(tuple(float(row[key]) for key in STUDY_COLUMNS))
+    figure = new_figure(10.0, 4.6)
+    for k, axes in enumerate(figure.subplots(1, 2), 1):
+        for name, cases in trees.items():
+            wind, *figures = np.array(sorted(cases)).T
+            axes.plot(wind, figures[k - 1], '.-', label=name)
+        axes.set(xlabel=STUDY_COLUMNS[0], ylabel=STUDY_COLUMNS[k], ylim=(0.0, None))
+        axes.grid(alpha=0.25)
+        axes.spines[['top', 'right']].set_visible(False)
+    figure.axes[0].legend(frameon=False, title='tree')
     return save_figure(figure, path)
 
 

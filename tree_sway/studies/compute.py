@@ -22,6 +22,8 @@ from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.studies.plan import Case, Plain
 
+_UNITS = {'height': ' [m]', 'speed': ' [m/s]', 'intensity': ' [-]', 'scale': ' [-]'}
+
 
 def compute(case: Case) -> tuple[Plain, SwayRecord]:
     """
@@ -35,8 +37,7 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
     Returns
     -------
     dict, SwayRecord
-        What it asked for beside its numbers: frequency in [Hz], tip in [m], base moment in [N m],
-        strain [-]; and the record over time.
+        What it asked for beside its numbers, by names with their units; and the record over time.
 
     Raises
     ------
@@ -49,17 +50,18 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
     record = rig.run(_wind(case), rate=case.rate, seconds=case.seconds)
     row: Plain = {**_prefixed('tree', case.tree), **_prefixed('wind', case.wind), **case.settings}
     row |= {
-        'seconds': case.seconds,
+        'length [s]': case.seconds,
         'branches': tree.n_branches,
         'segments': tree.n_segments,
-        'height': tree.height,
+        'height [m]': tree.height,
         'model': record.model,
-        'frequency': frequency,
-        'wind_mean': float(np.linalg.norm(record.wind.mean(axis=0))),
-        'wind_largest': float(np.linalg.norm(record.wind, axis=1).max()),
+        'frequency [Hz]': frequency,
+        'wind_mean [m/s]': float(np.linalg.norm(record.wind.mean(axis=0))),
+        'wind_largest [m/s]': float(np.linalg.norm(record.wind, axis=1).max()),
     }
-    row |= _summary('tip', record.tips[:, 0]) | _summary('base_moment', record.base_moment)
-    row['strain_largest'] = float(np.abs(record.base_strain).max())
+    row |= _summary('tip', 'm', record.tips[:, 0])
+    row |= _summary('base_moment', 'N m', record.base_moment)
+    row['strain_largest [-]'] = float(np.abs(record.base_strain).max())
     return row, record
 
 
@@ -94,15 +96,15 @@ def _wind(case: Case) -> WindRecord | Floats:
 
 
 def _prefixed(what: str, asked: Plain) -> Plain:
-    return {f'{what}_{key}': value for key, value in asked.items()}
+    return {f'{what}_{key}{_UNITS.get(key, "")}': value for key, value in asked.items()}
 
 
-def _summary(name: str, rows: Floats) -> Plain:
+def _summary(name: str, unit: str, rows: Floats) -> Plain:
     length = np.linalg.norm(rows, axis=1)
     about = np.linalg.norm(np.std(rows, axis=0))
     mean = np.linalg.norm(rows.mean(axis=0))
     return {
-        f'{name}_mean': float(mean),
-        f'{name}_rms': float(about),
-        f'{name}_largest': float(length.max()),
+        f'{name}_mean [{unit}]': float(mean),
+        f'{name}_rms [{unit}]': float(about),
+        f'{name}_largest [{unit}]': float(length.max()),
     }

@@ -50,9 +50,7 @@ def race_engines(tree: Tree | None = None, seconds: float = _SECONDS) -> list[Me
     wind = turbulent(7.0, seconds, 1)
     truth = mujoco_tips(MujocoTree(tree, wood, DAMPING_RATIO), wind, 32)
     engines = run_engines(tree, wood, DAMPING_RATIO, wind)
-    settings = Settings(
-        damping_ratio=DAMPING_RATIO, gravity=0.0, in_leaf=False
-    )
+    settings = Settings(damping_ratio=DAMPING_RATIO, gravity=0.0, in_leaf=False)
     models = {name: simulator_called(name, tree, wood, settings) for name in MODELS}
     runs = {name: record_tips(model, tree, wind, FRAME) for name, model in models.items()}
     spent = {

@@ -129,9 +129,7 @@ def compare_with_mujoco(
     first_frequency, static_sway = truth_model.agreement()
     truth = mujoco_tips(truth_model, wind, steps)
     coarse = mujoco_tips(truth_model, wind, steps // 2)
-    settings = Settings(
-        damping_ratio=damping_ratio, gravity=0.0, in_leaf=False
-    )
+    settings = Settings(damping_ratio=damping_ratio, gravity=0.0, in_leaf=False)
     ours = simulator_called(model, tree, wood, settings)
     tips = record_tips(ours, tree, wind, FRAME)
     ours.reset()

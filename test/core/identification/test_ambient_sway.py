@@ -68,9 +68,7 @@ def test_no_resonance_is_refused():
     """Of 30 records of noise without any, none may pass."""
     for seed in range(30):
         noise = np.random.default_rng(seed).normal(size=(6000, 1))
-        with pytest.raises(
-            FormatError, match=r'the spectrum has no peak around 0\.7 Hz'
-        ):
+        with pytest.raises(FormatError, match=r'the spectrum has no peak around 0\.7 Hz'):
             ambient_sway(noise if seed % 2 else np.cumsum(noise, axis=0), DT, 0.7)
 
 

@@ -52,16 +52,12 @@ def test_articulated_tree_is_the_same_mechanism(golden, tree):
 
 @pytest.mark.parametrize('model', [12, 'full'])
 def test_reduced_tree_errs_by_less_than_a_twentieth(golden, tree, model):
-    model = SwaySimulator(
-        tree, SPECIES, model=model, damping_ratio=DAMPING, gravity=0.0
-    )
+    model = SwaySimulator(tree, SPECIES, model=model, damping_ratio=DAMPING, gravity=0.0)
     assert error_of(model, tree, golden['wind'], golden['beam']) < 0.05
 
 
 def test_uncoupled_branches_are_caught(golden, tree):
-    model = SwaySimulator(
-        tree, SPECIES, model='branch', damping_ratio=DAMPING, gravity=0.0
-    )
+    model = SwaySimulator(tree, SPECIES, model='branch', damping_ratio=DAMPING, gravity=0.0)
     assert error_of(model, tree, golden['wind'], golden['beam']) > 0.5
 
 

@@ -62,5 +62,3 @@ def set_cost_scale(simulators: Iterable[SwaySimulator], spent: float) -> None:
 def adaptive_among(simulators: Iterable[object]) -> list[AdaptiveSimulator]:
     """Return those trees that choose their model."""
     return [each for each in simulators if isinstance(each, AdaptiveSimulator)]
-
-

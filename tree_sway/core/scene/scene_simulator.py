@@ -373,4 +373,3 @@ def _oscillators(model: SwaySimulator) -> WindBasisBank:
     oscillators = model.bank.oscillators
     assert isinstance(oscillators, WindBasisBank)
     return oscillators
-

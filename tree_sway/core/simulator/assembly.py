@@ -65,9 +65,7 @@ def assembled(
         return _bank_of_modes(reductions, model, cache)
 
 
-def _bank_of_modes(
-    reductions: TreeReductions, model: int | str, cache: SetUpCache | None
-) -> Bank:
+def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpCache | None) -> Bank:
     """Take a set-up from the cache, or make one; the same bits either way."""
     digest, found = '', None
     if cache is not None:

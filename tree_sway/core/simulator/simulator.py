@@ -443,4 +443,3 @@ class SwaySimulator:
 
 
 _pressure = fused(pressure)
-
