@@ -125,7 +125,7 @@ def plot_study(rows: Sequence[Mapping[str, str]], path: str) -> Path:
     Raises
     ------
     ValueError, TypeError
-        A figure that is none, or is missing.
+        A figure that is no number, or is missing.
 
     """
     trees: dict[str, list[tuple[float, ...]]] = {}
