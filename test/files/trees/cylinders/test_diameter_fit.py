@@ -1,10 +1,15 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
+from tree_sway.files.trees.source import open_tree
+
+DATA = Path(__file__).parents[2] / 'data'
 
 
 def pole(diameter):
@@ -31,3 +36,26 @@ def test_a_thin_branch_is_no_thicker_than_its_parent():
     corrected = corrected_twigs(tree, twig_diameter=0.004, trusted_diameter=0.05)
     assert corrected.base_diameter[1] == pytest.approx(0.02)
     assert corrected.tip_diameter[1] == pytest.approx(0.004)
+
+
+def test_a_thin_cylinder_within_a_stem_does_not_make_it_a_twig():
+    tree = pole([0.20, 0.04, 0.18, 0.16])
+    np.testing.assert_array_equal(corrected_twigs(tree, 0.002, 0.05).volume, tree.volume)
+
+
+def test_no_wood_is_added_to_thin_tips():
+    tree = pole([0.03, 0.02, 0.001, 0.0005])
+    corrected = corrected_twigs(tree, twig_diameter=0.003, trusted_diameter=0.05)
+    assert corrected.tip_diameter[-1] == pytest.approx(0.0005)
+
+
+def test_scans_are_corrected_by_species_unless_it_is_switched_off():
+    scan = DATA / 'fork.treeqsm24.txt'
+    as_scanned = open_tree(scan, twig_diameter=0.0).tree
+    for species, twig in (('ash', 0.0045), ('birch', 0.0017)):
+        opened = open_tree(scan, species=species)
+        off = 1.0 - opened.tree.volume.sum() / as_scanned.volume.sum()
+        assert opened.tree.tip_diameter.min() == pytest.approx(twig)
+        assert f': {100.0 * off:.0f} % of the wood taken off' in opened.notes[0]
+    measured = open_tree(DATA / 'fork.swc', tree=1)
+    assert not any('wood' in note for note in measured.notes)

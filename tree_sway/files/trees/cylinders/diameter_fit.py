@@ -15,33 +15,32 @@ import numpy as np
 
 from tree_sway.core.tree.tree import Tree
 
-_LEAST_DIAMETER = 1e-4
-
 
 def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -> Tree:
     """
-    Make what is thinner than a scan can see taper to a measured twig diameter, both in [m].
+    Make what is thinner than a scan can see taper to the diameter of a twig, both in [m].
 
-    From the place where a branch first gets thinner than is trusted, its diameter falls in a
-    straight line to that of a twig at its tip; it begins no thicker than what it sits on. After
-    the idea of Morales & MacFarlane (2024, Forestry), which replaces the radii of untrusted
-    cylinders by a taper towards twigs measured by hand.
+    From the place where a branch is for good thinner than is trusted, its diameter falls in a
+    straight line to that of a twig at its tip, if it is not thinner; it begins no thicker than
+    what it sits on. After the idea of Morales & MacFarlane (2024, Forestry), which replaces the
+    radii of untrusted cylinders by a taper towards twigs measured by hand.
     """
     base, tip = tree.base_diameter.copy(), tree.tip_diameter.copy()
     for branch in range(tree.n_branches):
         part = tree.segments_of(branch)
         reach = np.concatenate([[0.0], np.cumsum(tree.length[part])])
-        thin = np.flatnonzero(base[part] < trusted_diameter)
-        if len(thin) == 0:
+        trusted = np.flatnonzero(base[part] >= trusted_diameter)
+        first = int(trusted[-1]) + 1 if len(trusted) else 0
+        if first == len(reach) - 1:
             continue
-        first = int(thin[0])
         widest = float(base[part][first])
         if first > 0:
             widest = min(widest, float(tip[part][first - 1]))
         elif tree.segment_parent[part.start] >= 0:
             widest = min(widest, float(base[tree.segment_parent[part.start]]))
-        widest = max(widest, twig_diameter, _LEAST_DIAMETER)
+        twig = min(twig_diameter, float(tip[part][-1]))
+        widest = max(widest, twig)
         along = (reach - reach[first]) / (reach[-1] - reach[first])
-        line = np.maximum(widest + (twig_diameter - widest) * along, _LEAST_DIAMETER)
+        line = widest + (twig - widest) * along
         base[part][first:], tip[part][first:] = line[first:-1], line[first + 1 :]
     return replace(tree, base_diameter=base, tip_diameter=tip)
