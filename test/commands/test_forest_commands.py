@@ -123,10 +123,11 @@ def test_what_cannot_be_says_why(
 
 def test_twigs_of_a_scan_are_made_thin(capsys: pytest.CaptureFixture[str]) -> None:
     volumes = []
-    for option in ([], ['--option', 'twig_diameter=0.001', '--option', 'species=oak']):
+    for option in (['--option', 'twig_diameter=0'], ['--option', 'twig_diameter=0.001', '--option', 'species=oak',
+                    '--option', 'trusted_diameter=0.2']):
         assert cli.main(['info', str(SCAN), '--json', *option]) == 0
         facts = json.loads(capsys.readouterr().out)
         volumes.append(facts['volume'])
     assert facts['species'] == 'oak'
-    assert any('tapers to 0.001 m' in note for note in facts['notes'])
+    assert any('are made 1 mm thick' in note for note in facts['notes'])
     assert volumes[1] < volumes[0]

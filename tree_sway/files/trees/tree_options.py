@@ -39,8 +39,8 @@ class TreeOptions:
     up
         Axis of the file that points up, ``z`` or ``y``.
     twig_diameter
-        Diameter of a twig's tip in [m], to which what is thinner than `trusted_diameter` is made
-        to taper; that of the species if None, and 0 to leave all twigs as they are in the file.
+        Diameter in [m] of the last twigs, which are too thick in the file (`corrected_twigs`);
+        that of the species if None, and 0 to leave all twigs as they are.
     trusted_diameter
         Diameter from which on a scan is trusted in [m].
     to_origin
@@ -86,11 +86,11 @@ class TreeOptions:
         twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter
         if twig > 0.0:
             tree = corrected_twigs(tree, twig, self.trusted_diameter)
-            left = float(tree.volume.sum() / content.tree.volume.sum())
+        left = float(tree.volume.sum() / content.tree.volume.sum())
+        if left < 1.0:
             notes.append(
-                f'what is thinner than {self.trusted_diameter:g} m tapers to {1e3 * twig:g} mm at '
-                f'the tips: {100.0 * (1.0 - left):.0f} % of the wood taken off '
-                '(twig_diameter=0 leaves it)'
+                f'twigs are made {1e3 * twig:g} mm thick: {100.0 * (1.0 - left):.0f} % of the '
+                'wood taken off (twig_diameter=0 leaves it)'
             )
         if self.to_origin and tree.start[0].any():
             origin = tree.start[0].copy()
