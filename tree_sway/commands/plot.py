@@ -17,7 +17,6 @@ from tree_sway.commands.arguments import (
     add_output_arguments,
     add_sway_arguments,
     chosen_leaves,
-    drawn_leaves,
     opened_scene,
     opened_wind,
     output_path,
@@ -39,6 +38,7 @@ from tree_sway.pictures.plots import plot_strength, plot_study, plot_wind_and_ti
 _SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
 _RATE = 60.0
 _LONGEST_HEADER = 4096
+_LEAVES = 3000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -120,7 +120,7 @@ def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
         simulator.place(),
         wind,
         output,
-        leaves=drawn_leaves(scene, arguments),
+        leaves=scene.leaves(chosen_leaves(arguments), _LEAVES),
     )
 
 
