@@ -234,8 +234,8 @@ def fidelity_range() -> str:
 def species_table() -> str:
     """Wood, damping, drag and leaves of every species."""
     lines = [
-        '| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | twigs [mm] | drag in leaf | '
-        'leaves [m^2/m^2] | [kg/m^2] |',
+        '| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | twigs [mm] | '
+        'drag in leaf | leaves [m^2/m^2] | [kg/m^2] |',
         '|---|---|---|---|---|---|---|---|---|',
     ]
     for key in species_keys():
