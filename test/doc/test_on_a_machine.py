@@ -44,11 +44,11 @@ PROMISED = {
     'demo': r'tip +[\d.]+ mm \| poses +[\d.]+ Hz',
     'listen': r'poses +\d+ at',
     'record': r'[1-9]\d* of /segment_poses',
-    'relay': r'sending the wind|http://',
+    'relay': r'relaying the wind of',
     'study': r'\d+ cases in',
 }
 """What each command says once it does what it is for."""
-NEEDS_A_TREE = ('listen', 'record', 'relay send')
+NEEDS_A_TREE = ('listen', 'record')
 """Commands that hear a tree which somebody else runs."""
 
 
