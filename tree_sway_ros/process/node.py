@@ -4,15 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNodeMixin, TransitionCallbackReturn
 from rclpy.node import Node
-from rclpy.qos import qos_check_compatible, QoSCompatibility
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from tree_sway.core.wind.gate import LARGEST_LEAD
@@ -37,23 +35,6 @@ _ENTITIES = {
     'timers': 'destroy_timer',
 }
 """What a node holds, and what destroys one of it."""
-
-
-class _Never(CallbackGroup):  # type: ignore[misc]
-    """The callback group of a subscription that no executor looks at."""
-
-    def can_execute(self, _entity: Any) -> bool:
-        return False
-
-
-def _nobody(_message: Any) -> None:
-    """Do nothing, where rclpy wants a callback."""
-
-
-def _match(offer: Any, request: Any) -> bool:
-    """Whether a subscription receives what a publisher sends."""
-    found, _reason = qos_check_compatible(offer.qos_profile, request.qos_profile)
-    return offer.topic_type == request.topic_type and found != QoSCompatibility.ERROR
 
 
 class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
@@ -211,38 +192,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         if alone:
             self._alone[made.topic_name] = Rivals()
         return made
-
-    def polled(self, topic: Topic) -> Callable[[], Iterator[Any]]:
-        """
-        Subscribe without a callback: the function returned takes what has come, oldest first.
-
-        No executor comes between a thread that keeps time and its messages: what came before the
-        clock went on is there when the tick is.
-        """
-        made = self.subscription(topic, _nobody, callback_group=_Never())
-
-        def take() -> Iterator[Any]:
-            for _ in range(made.qos_profile.depth):
-                with made.handle:
-                    taken = made.handle.take_message(made.msg_type, False)
-                if taken is None:
-                    return
-                yield taken[0]
-
-        return take
-
-    def listeners(self, topic: str) -> int:
-        """Count the subscriptions of other nodes that receive what is published on a topic."""
-        name, me = self.resolve_topic_name(topic), (self.get_name(), self.get_namespace())
-        for each in self.publishers:
-            if each.topic_name == name:
-                return int(each.get_subscription_count())
-        offers = self.get_publishers_info_by_topic(topic)
-        return sum(
-            (each.node_name, each.node_namespace) != me
-            and (not offers or any(_match(offer, each) for offer in offers))
-            for each in self.get_subscriptions_info_by_topic(topic)
-        )
 
     @property
     def clock_lead(self) -> int:
