@@ -26,7 +26,7 @@ class PlayerNode(TreeSwayNode):
         options: dict[str, Any] = {**reader_options(self.values['reader_options'].split())}
         self._record = read_wind(self.values['file'], **options)
         self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
-        self._wind = self.publisher(WIND, self._writer.message_class, alone=True)
+        self._wind = self.publisher(WIND, self._writer.message_class)
         for note in self._record.notes:
             self.get_logger().info(note)
         has_clock = self.values['publish_clock']

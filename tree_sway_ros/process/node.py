@@ -18,7 +18,6 @@ from tree_sway.errors import TreeSwayError
 from tree_sway_ros.parameters.declaration import ParameterValues
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.process.guard import CallbackGuard
-from tree_sway_ros.process.rivals import Rivals
 from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile, Topic
 from tree_sway_ros.reports.diagnostics import Status, status_array, WARN
 from tree_sway_ros.timing.pacer import Pacer, Tick
@@ -53,7 +52,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         self.failure: Exception | None = None
         self.is_done = self.is_active = False
         self._refusal: Exception | None = None
-        self._alone: dict[str, Rivals] = {}
         self._closers: list[Callable[[], None]] = []
         try:
             table = NODE_PARAMETERS[name]
@@ -98,7 +96,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         for kind, destroy in _ENTITIES.items():
             for each in [each for each in getattr(self, kind) if each not in self._kept]:
                 getattr(self, destroy)(each)
-        self._alone.clear()
         return TransitionCallbackReturn.SUCCESS
 
     def on_shutdown(self, _state: Any) -> TransitionCallbackReturn:
@@ -150,48 +147,24 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         """Start a timer, with the guard around the callback."""
         return super().create_timer(period, self.guard.wrapped(callback), *more, **named)
 
-    def publisher(self, topic: Topic, kind: Any = None, *, alone: bool = False) -> Any:
-        """
-        Make a publisher of a topic of the table, of a kind where a parameter chooses it.
-
-        ``alone``: a second publisher on the topic is a fault, to be reported.
-        """
-        made = self.create_publisher(
+    def publisher(self, topic: Topic, kind: Any = None) -> Any:
+        """Make a publisher of a topic of the table, of a kind where a parameter chooses it."""
+        return self.create_publisher(
             kind or message_class(topic),
             topic.name,
             qos_profile(topic),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
-        if alone:
-            self._alone[made.topic_name] = Rivals()
-        return made
 
-    def subscription(
-        self,
-        topic: Topic,
-        callback: Callable[[Any], None],
-        kind: Any = None,
-        *,
-        alone: bool = False,
-        **options: Any,
-    ) -> Any:
-        """
-        Subscribe to a topic of the table, of a kind where a parameter chooses it.
-
-        ``alone``: a second publisher on the topic is a fault; ``options`` are those of rclpy, such
-        as ``raw`` for bytes.
-        """
-        made = self.create_subscription(
+    def subscription(self, topic: Topic, callback: Callable[[Any], None], kind: Any = None) -> Any:
+        """Subscribe to a topic of the table, of a kind where a parameter chooses it."""
+        return self.create_subscription(
             kind or message_class(topic),
             topic.name,
             callback,
             qos_profile(topic, is_input=True),
-            **options,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
-        if alone:
-            self._alone[made.topic_name] = Rivals()
-        return made
 
     @property
     def clock_lead(self) -> int:
@@ -211,33 +184,19 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         self.create_timer(REPORT_PERIOD, self.report, clock=steady)
 
     def report(self) -> None:
-        """Publish one report."""
+        """Publish one report, with the failures of callbacks if there are any."""
+        statuses = self._collect()
+        if self.guard.count:
+            values = {'failed': self.guard.count, 'last': self.guard.latest}
+            statuses.append(Status('callbacks', WARN, f'{self.guard.count} failed', values))
         self._diagnostics.publish(
             status_array(
-                [*self._collect(), *self._own_statuses()],
+                statuses,
                 prefix=self.get_fully_qualified_name().lstrip('/'),
                 hardware=self._hardware,
                 stamp=self.get_clock().now().to_msg(),
             )
         )
-
-    def _own_statuses(self) -> list[Status]:
-        """Failures of callbacks, and other publishers where there should be none."""
-        statuses = []
-        if self.guard.count:
-            values = {'failed': self.guard.count, 'last': self.guard.latest}
-            statuses.append(Status('callbacks', WARN, f'{self.guard.count} failed', values))
-        for topic, rivals in self._alone.items():
-            here = [
-                f'{each.node_namespace.rstrip("/")}/{each.node_name}'
-                for each in self.get_publishers_info_by_topic(topic)
-            ]
-            if text := rivals.warning(topic, here):
-                statuses.append(Status('topics', WARN, text))
-                if text not in rivals.said:
-                    rivals.said.add(text)
-                    self.get_logger().warning(f'{text}; end one, or give it another namespace')
-        return statuses
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Raise `ParameterError` where values that are each in range do not go together."""
