@@ -23,7 +23,7 @@ from tree_sway.core.checks import within
 
 _RUN_IN = 20.0
 """Time before the film [s] in which the start from rest is forgotten."""
-_BLADES = 2800
+_LEAVES = 2800
 """Of all leaves: a frame must take less time than it shows."""
 
 
@@ -43,14 +43,12 @@ def run(arguments: argparse.Namespace) -> int:
     for name, low, high in (('seconds', 0.1, 3600.0), ('rate', 1.0, 120.0), ('pixels', 64, 4320)):
         within(f'--{name}', getattr(arguments, name), low, high)
     from tree_sway.pictures.animation import animate_poses, check_film
-    from tree_sway.pictures.leaf_drawing import blades_per_cluster
 
     target = check_film(output_path(arguments))
     scene = opened_scene(arguments)
     wind = opened_wind(arguments)
     with waiting('setting up the tree'):
         simulator = scene.simulator(in_leaf=chosen_leaves(arguments), model=arguments.model)
-    clusters = _BLADES // blades_per_cluster(scene.tree.species)
     began = time.monotonic()
     frames, winds = [], []
     how = arguments.rate, arguments.seconds, arguments.start, _RUN_IN
@@ -64,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
             np.array(winds),
             target,
             rate=arguments.rate,
-            leaves=scene.leaves(chosen_leaves(arguments), clusters),
+            leaves=scene.leaves(chosen_leaves(arguments), _LEAVES),
             pixels=arguments.pixels,
         )
     spent = time.monotonic() - began
