@@ -44,9 +44,9 @@ class GustHistory:
     places
         Where wind is felt in [m], (t, 3); heights do not matter.
     anemometer
-        Where it is measured in [m], (3,), best upwind of all: a tree cannot feel what has not been
-        measured, so one upwind of the anemometer feels the wind at once. If None, at the place that
-        the mean wind reaches first, whichever way it blows.
+        Where it is measured in [m], (3,), best upwind of all: a tree upwind of it cannot feel what
+        has not been measured, and feels the wind at once. If None, at the place that the mean wind
+        reaches first, whichever way it blows.
     convection_ratio
         Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
         everywhere.
