@@ -27,7 +27,7 @@ from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind
 from tree_sway.parameters.sway_parameters import SWAY
 
-OUTPUT_HELP = 'file to write; its suffix names the format: .yaml, .glb, .gltf'
+OUTPUT_HELP = 'file to write; its suffix names the format: .yaml, .glb'
 _TREE = 'benjamina, goldcrest, broadleaf, or a file'
 _DRAWN = 1500
 
