@@ -19,8 +19,14 @@ from tree_sway.core.simulator.settings import USUAL
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.studies import runner
 from tree_sway.studies.compute import compute
-from tree_sway.studies.plan import Case
-from tree_sway.studies.runner import batches, compute_to_file, result_path, run_study
+from tree_sway.studies.plan import Case, read_study
+from tree_sway.studies.runner import (
+    batches,
+    compute_to_file,
+    estimated_time,
+    result_path,
+    run_study,
+)
 from tree_sway.studies.table import write_table
 
 pytest.importorskip('distributed', reason='needs dask.distributed')
@@ -81,6 +87,20 @@ def test_trees_of_any_size_are_on_one_model():
         rows.append(compute(case)[0])
     assert len({row['segments'] for row in rows}) == 3
     assert {row['model'] for row in rows} == {str(USUAL)}
+
+
+def test_the_time_is_estimated_before_anything_is_computed(tmp_path, capsys):
+    assert estimated_time([], 2) == 0.0
+    few, many = estimated_time(cases(8), 2), estimated_time(cases(8, seconds=600.0), 2)
+    assert many - few == pytest.approx(8 * 599 * 60 * 2e-4 / 2)
+    assert estimated_time(cases(80), 8) < estimated_time(cases(80), 2)
+    study, table = tmp_path / 'study.yaml', tmp_path / 'study.csv'
+    study.write_text(f'trees: [{SEEDLING}]\nwinds: [{{speed: 4, seeds: 3}}]\nseconds: 1\n')
+    folder = table.with_suffix('.cases')
+    folder.mkdir()
+    compute_to_file(read_study(study)[0], folder)
+    assert cli.main(['study', str(study), '-o', str(table), '--workers', '2']) == 0
+    assert '2 of 3 cases to compute: some 7 s on 2 cores' in capsys.readouterr().err
 
 
 def test_a_tree_is_set_up_once_for_many_winds():

@@ -23,11 +23,13 @@ from tree_sway.commands.progress import bar
 from tree_sway.core.checks import within
 from tree_sway.core.scene.placed_tree import Kind
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TreeError
+from tree_sway.parameters.sway_parameters import SWAY
 
 _BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
 _SUMS = ('branches', 'segments', 'volume', 'mass')
@@ -49,12 +51,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='of its roots against tilting [N m/rad], inf for rigid ones; its own if left out',
     )
     add('--count', type=int, default=10, metavar='N', help='how many frequencies (%(default)s)')
+    speed = 'mean of a gusty wind [m/s] in which to find the share of its strength that it uses'
+    add('--speed', type=float, metavar='U', help=speed)
     add('--json', action='store_true', help='for programs, SI units')
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print what the trees are."""
     within('--count', arguments.count, 1, 1e6)
+    if arguments.speed is not None:
+        SWAY['mean_speed'].checked(arguments.speed)
     scene = opened_scene(arguments)
     kinds = scene.kinds
     if scene.is_one_tree:
@@ -87,6 +93,12 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
         settings = replace(settings, gravity=0.0)
         notes.append(f'modes without its own weight, as it cannot stand: {error}')
         modes, mass = mode_table(tree, species, settings, count)
+    used = None
+    if arguments.speed is not None:
+        rng = np.random.default_rng(0)
+        (used,) = Rig(kind, settings).strength_curve([arguments.speed], rng=rng)
+        left_out = 'rot, wet soil and sheltering are left out'
+        notes.append(f'in gusts of a mean wind of {arguments.speed:g} m/s, {used}; {left_out}')
     frequencies = [mode['frequency'] for mode in modes]
     slow = sway_oddity(tree, species, min(frequencies)) if modes else None
     given = settings.root_stiffness
@@ -110,6 +122,7 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
         'root_stiffness': None if math.isinf(roots) else roots,
         'gravity': settings.gravity,
         'in_leaf': settings.in_leaf,
+        'strength': used and used.plain(),
         'frequencies': frequencies,
         'modes': modes,
     }

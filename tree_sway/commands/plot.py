@@ -37,7 +37,6 @@ from tree_sway.pictures.plots import plot_strength, plot_study, plot_wind_and_ti
 
 _SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
 _RATE = 60.0
-_CURVES = 12
 _LONGEST_HEADER = 4096
 _LEAVES = 3000
 
@@ -50,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action='store_true',
         help='draw the tree in a steady wind, with its shape at rest behind it',
     )
-    strength = 'draw the share of its strength that each tree uses, up to --speed (30 m/s)'
+    strength = 'draw the share of their strength that trees use, up to --speed (30 m/s)'
     parser.add_argument('--strength', action='store_true', help=strength)
     parser.set_defaults(speed=None)
     parser.add_argument(
@@ -138,13 +137,11 @@ def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
 
 
 def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
-    """Draw the strength that each tree uses over wind speed, and print it."""
-    if len(scene.trees) > _CURVES:
-        raise ParameterError(
-            f'{len(scene.trees)} trees', where='--strength', cure=f'give {_CURVES} or fewer'
-        )
+    """Draw the strength that the tallest tree of each kind uses over wind speed; print it."""
+    by_height = sorted(range(len(scene.trees)), key=lambda row: scene.trees[row].scale)
+    tallest = {int(scene.kind_numbers[row]): scene.trees[row] for row in by_height}
     speeds, used = np.linspace(0.0, SWAY['mean_speed'].checked(arguments.speed), 7)[1:], {}
-    for each in bar(scene.trees, 'loading trees'):
+    for each in bar(tallest.values(), 'loading trees'):
         leaf_on = chosen_leaves(arguments) if each.leaf_on is None else each.leaf_on
         tree = PlacedTree(each.name, each.placed(), species=each.species)
         rig = Rig(tree, model=arguments.model, in_leaf=leaf_on)
