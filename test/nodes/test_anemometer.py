@@ -28,7 +28,7 @@ def test_samples_come_at_the_rate_and_are_the_models(compose, observer):
 
 
 def test_the_wind_changes_while_it_blows(compose, observer):
-    nodes = compose(anemometer={'turbulence': 'none', 'rate': 50.0})
+    nodes = compose(anemometer={'intensity': 0.0, 'rate': 50.0})
     said = observer.listen(WIND)
     observer.until(lambda: said, 'wind')
     assert said[-1].vector.x == pytest.approx(6.0)

@@ -56,7 +56,7 @@ class AnemometerNode(TreeSwayNode):
         return SensorFaults(values['fault'], values['fault_every'], values['fault_duration'])
 
     def _make_model(self) -> AnemometerModel:
-        names = ('mean_speed', 'bearing_to', 'turbulence', 'height', 'intensity', 'rate', 'seed')
+        names = ('mean_speed', 'bearing_to', 'height', 'intensity', 'rate', 'seed')
         return AnemometerModel(**self.values(*names))
 
     def _tick(self, tick: Tick) -> None:
