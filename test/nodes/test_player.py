@@ -81,7 +81,9 @@ def test_replays_are_the_same_bit_for_bit_whatever_the_machine_does_beside(
     compose, observer, wind_file, tree_file
 ):
     """Samples that arrive within `wind_delay` are felt at their own times."""
-    first, *others = [poses_of(compose, observer, wind_file, tree_file, r) for r in (1.0, 1.0, 4.0)]
+    first, *others = [
+        poses_of(compose, observer, wind_file, tree_file, r) for r in (1.0, 1.0, 4.0)
+    ]
     assert max(poses[2][0] for poses in first.values()) > 1e-3
     for found in others:
         both = [stamp for stamp in sorted({*first} & {*found}) if stamp > 10**9]
