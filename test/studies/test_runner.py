@@ -197,19 +197,6 @@ def test_a_series_is_kept_where_it_is_asked_for(tmp_path):
     assert len(lines) == 61
 
 
-def test_a_cluster_of_two_workers_gives_the_same_and_outlives_one(alone, tmp_path, monkeypatch):
-    import distributed
-
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
-    ) as cluster:
-        doomed = next(iter(cluster.workers.values())).pid
-        monkeypatch.setattr(runner, 'bar', watched(2, lambda: os.kill(doomed, signal.SIGKILL)))
-        rows = run_study(cases(6), tmp_path, scheduler=cluster.scheduler_address)
-    assert rows[:4] == alone
-    assert len(rows) == 6
-
-
 def test_tables_are_csv_or_parquet(alone, tmp_path):
     write_table(alone, tmp_path / 'rows.csv')
     with (tmp_path / 'rows.csv').open() as file:

@@ -30,9 +30,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--force', action='store_true', help='write over a table that is of no study of yours'
     )
-    parser.add_argument(
-        '--scheduler', metavar='ADDRESS', help='of a dask cluster, tcp://HOST:PORT'
-    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -51,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
         file=sys.stderr, flush=True,
     )  # fmt: skip
     began = time.monotonic()
-    rows = run_study(cases, kept, workers=arguments.workers, scheduler=arguments.scheduler)
+    rows = run_study(cases, kept, workers=arguments.workers)
     write_table(rows, output)
     print(f'{output}: {len(rows)} cases in {time.monotonic() - began:.1f} s')
     return 0
