@@ -60,7 +60,7 @@ export function checkKind(kind, parts) {
   need(b > 0 && size["branches + 1"] === b + 1, "branch_first");
   need(arrays.basis_scale.every((value) => value > 0), "basis_scale");
   need(typeof kind.species === "string" && typeof kind.model === "string", "species");
-  need(isFinite(kind.height) && isFinite(kind.basis_error), "height");
+  need([kind.height, kind.basis_error, kind.modulus ?? 0].every(isFinite), "height");
   const names = kind.branch_names;
   need(names.length === b && names.every((name) => typeof name === "string"), "branch_names");
   const first = arrays.branch_first;
