@@ -29,7 +29,8 @@ _PUSH = """(seconds, rate) => {
   const frame = playout._frames[playout._frames.length - 1];
   for (let i = 1; i <= seconds * rate; i++) {
     const stamp = frame.stamp + 1000 * i / rate;
-    playout.push({ ...frame, stamp, coordinates: frame.coordinates.slice() }, stamp + playout.clock.value);
+    const coordinates = frame.coordinates.slice();
+    playout.push({ ...frame, stamp, coordinates }, stamp + playout.clock.value);
     for (const trace of Object.values(traces)) trace.add(stamp / 1000, 1);
   }
 }"""

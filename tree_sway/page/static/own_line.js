@@ -11,8 +11,6 @@ import { readWind, Recorded, Turbulence } from "./wind.js";
 const LATEST = 250;
 const STATUS_EVERY = 500;
 
-/** @typedef {{description: import("./protocol.js").Description, stand: Stand}} Kept */
-
 /** What the page itself holds; null on one that is served. A `ProtocolError` if it is damaged.
  * @returns {Promise<Kept | null>} */
 export async function keptScene() {
@@ -48,7 +46,7 @@ function outOfPlanes(data) {
 
 /** Used as a `Connection`: the same listeners, messages and frames. */
 export class OwnLine {
-  /** @param {Kept} kept @param {import("./connection.js").Listeners} listeners
+  /** @param {Kept} kept @param {Listeners} listeners
    * @param {string | null} [address] of a live wind, `wss://...` */
   constructor({ description, stand }, listeners, address = null) {
     this.description = description;
@@ -58,7 +56,7 @@ export class OwnLine {
     this._turbulence = new Turbulence();
     /** @type {{next: (dt: number) => number[]}} */
     this._wind = this._turbulence;
-    /** @type {import("./protocol.js").Frame | null} newest of a live wind */
+    /** @type {Frame | null} newest of a live wind */
     this._live = null;
     this._isPaused = false;
     this._hasRestarted = false;
