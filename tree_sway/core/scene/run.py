@@ -33,7 +33,7 @@ from tree_sway.core.wind.intake import GoodWind, WindIntake
 LONGEST_JUMP = 500_000_000
 """Most time that one `Run.advance` solves [ns]; what was before it is skipped."""
 
-_BACK = 5_000_000_000
+_BACK = 1_000_000_000
 """Step back of the clock in [ns] after which everything begins again."""
 
 _BLOCK = 10_000_000_000_000

@@ -11,7 +11,8 @@ its step, which keeps second order where a sample of it would not.
 What the solver has been given is never redrawn, so that nothing jumps, whatever comes late, early
 or not at all: a short dropout is held; a long one decays to calm; after either, what was given
 fades over into the new samples. Every mean is one of samples and of calm, and never beyond them.
-Times are those of one clock, handed in by the caller; it may jump.
+Times are those of one clock, handed in by the caller; it may jump ahead, and begins again with
+`WindAverage.reset` where it is set back.
 """
 
 from __future__ import annotations
@@ -26,12 +27,6 @@ from tree_sway.core.checks import three_numbers, within
 from tree_sway.core.wind.curve import WindCurve
 from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway.errors import ParameterError
-
-CLOCK_RESET = 1.0
-"""
-Backward step in [s] that is a clock set back, not a sample out of order or a look at the past.
-
-"""
 
 BLEND = 0.5
 """
@@ -112,12 +107,9 @@ class WindAverage:
 
         """
         value = np.array(three_numbers('wind', vector))
-        is_late = self._newest - CLOCK_RESET < time <= self._newest
-        if is_late or not (math.isfinite(time) and np.isfinite(value).all()):
+        if time <= self._newest or not (math.isfinite(time) and np.isfinite(value).all()):
             self.refused += 1
             return False
-        if time <= self._newest:
-            self._set_clock_back(time)
         self._clamp_clock(time)
         gap = silence = math.inf
         if self._newest > -math.inf and not self._is_new_clock:
@@ -157,8 +149,6 @@ class WindAverage:
         """
         if not (math.isfinite(start) and start <= end < math.inf):
             raise ParameterError(f'no step from {start} to {end}', where='wind average')
-        if end < self._passed - CLOCK_RESET:
-            self._set_clock_back(start)
         self._clamp_clock(start)
         mean = np.array(self._mean(start, end))
         self._passed = max(end, self._passed)
@@ -223,18 +213,6 @@ class WindAverage:
         if start < calm:
             total += (calm - start) * self._curve.mean(start, calm)
         return total / (end - start)
-
-    def _set_clock_back(self, time: float) -> None:
-        """Begin again at a time, from the wind there is."""
-        held = self._mean(self._passed, self._passed)
-        had_wind, period = self._newest > -math.inf, self._timing.period
-        self.reset()
-        if had_wind:
-            self._timing.period = period
-            self._newest = time
-            self._curve.append(time, held)
-        self._passed = time
-        self._is_new_clock = True
 
     def _clamp_clock(self, time: float) -> None:
         """Take a clock that jumps forward for one that was paused."""
