@@ -38,9 +38,9 @@ class FreeDecay:
     One sway that dies away: undamped frequency [Hz], damping ratio with the air's, their errors.
 
     The errors are standard errors; the answer rests on a number of cycles. ``explained`` is the
-    share of all motion's energy within the fit that decaying modes explain; ``quiet`` the largest amplitude
-    around the frequency before and after the decay, over the largest of all; ``speed`` the largest
-    amplitude around the frequency times that, per second.
+    share of all motion's energy within the fit that decaying modes explain; ``quiet`` the largest
+    amplitude around the frequency before and after the decay, over the largest of all; ``speed``
+    the largest amplitude around the frequency times that, per second.
     """
 
     frequency: float
