@@ -154,7 +154,7 @@ def outline(species: str) -> tuple[np.ndarray, float]:
     return np.mean(widths, axis=0), float(np.mean(rises))
 
 
-def test_silhouettes_can_be_told_apart() -> None:
+def test_silhouettes_differ() -> None:
     """By the outline, a tenth of the width at least, or by twigs that hang or rise."""
     own = [key for key, each in SPECIES.items() if each.habit != 'pot' and key != each.habit]
     assert len(own) == 20

@@ -9,8 +9,9 @@ arrive after the solver has passed their stamp. The solver gets the exact mean o
 its step, which keeps second order where a sample of it would not.
 
 What the solver has been given is never redrawn, so that nothing jumps, whatever comes late, early
-or not at all: a short dropout is held; a long one decays to calm; after either, what was given
-fades over into the new samples. Every mean is one of samples and of calm, and never beyond them.
+or not at all: over a short dropout the last wind is kept; a long one decays to calm; after either,
+what was given fades over into the new samples. Every mean is one of samples and of calm, and never
+beyond them.
 Times are those of one clock, handed in by the caller; it may jump ahead, and begins again with
 `WindAverage.reset` where it is set back.
 """
@@ -36,10 +37,10 @@ that fades in over its own length.
 """
 
 LONGEST_HOLD = 2.0
-"""Time in [s] for which the last sample is held, where no other is given."""
+"""Time in [s] for which the last sample is used, where no other is given."""
 
 CAPACITY = 512
-"""Number of samples kept. A step must not span more."""
+"""Number of samples in memory. A step must not span more."""
 
 _CALM = np.zeros(3)
 _STALE_DECAYS = 5.0  # decay times after which the wind counts as gone
@@ -52,7 +53,7 @@ class WindAverage:
     Parameters
     ----------
     timeout
-        Age of the newest sample in [s] up to which it is held; at least three sensor periods.
+        Age of the newest sample in [s] up to which it is used; at least three sensor periods.
     decay
         Time constant in [s] with which the wind then dies down.
 
