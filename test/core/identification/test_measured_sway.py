@@ -146,6 +146,14 @@ def test_a_sway_in_wind_alone_is_no_release(seed):
         estimate_sway(*in_wind(seed=seed))
 
 
+@pytest.mark.parametrize('frequency', [0.25, 0.7, 2.0])
+def test_the_frequency_of_a_tree_in_wind_is_given_with_the_refusal(frequency):
+    with pytest.raises(FormatError) as refusal:
+        estimate_sway(*in_wind(frequency))
+    found = float(refusal.value.what.partition('fastest at ')[2].split()[0])
+    assert found == pytest.approx(frequency, rel=0.05)
+
+
 def test_a_gap_and_a_slow_sensor_are_named():
     time, motion = release()
     kept = (time < 6.0) | (time > 7.0)

@@ -61,9 +61,12 @@ def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> Free
     even, dt, gap = _even(*_checked(time, motion))
     decay = _release(even, dt, gap, band)
     if not _is_release(decay):
+        frequency, power = signal.welch(even, 1.0 / dt, nperseg=min(len(even), 4096), axis=0)
+        peak = frequency[np.argmax(power.sum(axis=1) * frequency**2)]
         raise FormatError(
-            'the motion does not die away from one swing',
-            cure='record a pull and release on a calm day, or give the frequency yourself',
+            f'the motion does not die away from one swing; it is fastest at {peak:.3g} Hz',
+            cure='record a pull and release on a calm day; of a tree in wind, give that frequency '
+            'yourself if it is the sway, and not the damping',
         )
     _refuse_lost(decay)
     return decay
