@@ -78,7 +78,7 @@ def test_a_tree_that_chooses_its_model_refuses_a_foreign_state(fork):
             sim.set_state(state)
 
 
-def test_the_digest_tells_trees_and_settings_apart(fork, stem):
+def test_the_digest_differs_between_trees_and_settings(fork, stem):
     tree, sim = fork(), SwaySimulator(fork())
     own = digest_of(tree, sim.settings)
     assert own == digest_of(replace(fork(), name='of another name'), sim.settings)

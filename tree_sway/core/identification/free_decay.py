@@ -37,11 +37,10 @@ class FreeDecay:
     """
     One sway that dies away: undamped frequency [Hz], damping ratio with the air's, their errors.
 
-    The errors are standard errors; the answer rests on a number of cycles from a time ``start``
-    [s] after the record's beginning on. ``explained`` is the share of all motion's energy within
-    the fit that decaying modes explain; ``quiet`` the largest amplitude around the frequency
-    before and after the decay, over the largest of all; ``speed`` the largest amplitude around the
-    frequency times that, per second.
+    The errors are standard errors; the answer rests on a number of cycles. ``explained`` is the
+    share of all motion's energy within the fit that decaying modes explain; ``quiet`` the largest
+    amplitude around the frequency before and after the decay, over the largest of all; ``speed``
+    the largest amplitude around the frequency times that, per second.
     """
 
     frequency: float
@@ -49,7 +48,6 @@ class FreeDecay:
     frequency_error: float
     damping_error: float
     cycles: float
-    start: float
     explained: float
     quiet: float
     speed: float
@@ -118,7 +116,6 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
         float(np.hypot(fit.error, spread[0]) / (2.0 * np.pi)),
         float(np.hypot(fit.error / circular, spread[1])),
         cycles,
-        first * dt,
         fit.explained * min(float(share), 1.0),
         quiet,
         float(envelope[peak]) * rough,
