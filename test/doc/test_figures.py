@@ -59,7 +59,7 @@ FIGURES = {
             check_description.MOST_SEGMENTS, check_description.MOST_POSES / 1e6,
             check_description.MOST_COORDINATES,
         ],
-        r'no more frames per second, ([\d.]+) to (\d+)': [server.SLOWEST, server.FASTEST],
+        r'frames per second that it takes, ([\d.]+) to (\d+)': [server.SLOWEST, server.FASTEST],
         r'let (\d+) kB be on their way, (\d+) to (\d+) frames': [
             client._ON_THE_WAY / 1e3, client._LEAST_CREDIT, client._MOST_CREDIT,
         ],
