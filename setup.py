@@ -66,7 +66,6 @@ extras = {
     ],
     'serial': ['pyserial>=3.5'],
     'bag': ['rosbags>=0.11'],
-    'relay': ['eclipse-zenoh>=1.0'],
     'plot': ['matplotlib>=3.6'],
     'film': ['matplotlib>=3.6', 'imageio-ffmpeg>=0.5'],
     'h5': ['h5py>=3.7'],
@@ -110,7 +109,6 @@ setup(
             f'tree-sway = {LIBRARY}.commands.cli:main',
         ],
         'tree_sway.commands': [f'ros = {PACKAGE}.commands.table:COMMANDS'],
-        'tree_sway.wind': [f'ros = {PACKAGE}.commands.relay_wind:RosWind'],
         'ament_copyright.license': [
             f'apache2_by_spdx = {PACKAGE}.licence_header:APACHE_BY_SPDX',
         ],

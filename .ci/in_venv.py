@@ -40,17 +40,16 @@ NEEDS = {
     **dict.fromkeys(
         ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer', 'ros2'), ('ros',)
     ),
-    **dict.fromkeys(('tree-sway demo', 'tree-sway listen'), ('ros',)),
+    **dict.fromkeys(('tree-sway demo', 'tree-sway listen', 'tree-sway relay'), ('ros',)),
     'tree-sway plot': ('plot',),
     'tree-sway render': ('film',),
     'tree-sway record': ('ros', 'bag'),
-    'tree-sway relay': ('relay',),
     'tree-sway study': ('study',),
     'tree-sway lab': ('ros', 'lab'),
     **dict.fromkeys(
         ('pytest', 'py.test'),
         (
-            *('ros', 'serial', 'bag', 'relay', 'film', 'plot', 'h5', 'study', 'test'),
+            *('ros', 'serial', 'bag', 'film', 'plot', 'h5', 'study', 'test'),
             *('lab', 'docs'),
         ),
     ),

@@ -20,7 +20,6 @@ from launch_ros.actions import Node
 
 PACKAGE = 'tree_sway_ros'
 WIND = 'wind/filtered'
-CHAIN = f'wind {WIND}'
 SOURCES = {
     'simulated': ['anemometer'],
     'player': ['player'],
@@ -162,18 +161,13 @@ def make_node(name, given, config, more=None, **options):
     files = [os.path.join(config, f'{name}.yaml')]
     if given['params_file']:
         files.append(given['params_file'])
-    # The player begins when the whole chain listens; a file of the user's may say otherwise.
-    with_clock = ' /clock:2' if given['use_sim_time'] in ('true', 'True', '1') else ''
-    chain = [{'wait_for': CHAIN + with_clock}] if name == 'player' else []
-    if name == 'solver' and given['source'] == 'player' and with_clock:
-        chain = [{'exact_replay': True}]
     is_live = name == 'wind' and given['source'] == 'live'
     return Node(
         package=PACKAGE,
         executable=name,
         name=name,
         namespace=given['namespace'],
-        parameters=[*chain, *files, overrides_of(name, given) | (more or {})],
+        parameters=[*files, overrides_of(name, given) | (more or {})],
         **{'remappings': [('wind', given['wind_topic'])] if is_live else []} | options,
         output='screen',
     )

@@ -74,7 +74,7 @@ def test_a_python_without_wheels(
     [
         ('tree-sway demo --sensor serial:/dev/ttyUSB0:4800', 'serial'),
         ('sensor --ros-args -p address:=serial:/dev/ttyUSB0', 'serial'),
-        ('tree-sway study oaks.yaml --scheduler tcp://login:8786', 'study'),
+        ('tree-sway study oaks.yaml', 'study'),
         ('tree-sway demo --wind mast.mcap', 'bag'),
     ],
 )

@@ -84,7 +84,6 @@ OPTIONAL = {
         'pyarrow',
         'rosbags',
         'sksundae',
-        'zenoh',
     ),
 }
 

@@ -123,10 +123,12 @@ def test_what_cannot_be_says_why(
 
 def test_twigs_of_a_scan_are_made_thin(capsys: pytest.CaptureFixture[str]) -> None:
     volumes = []
-    for option in ([], ['--option', 'twig_diameter=0.001', '--option', 'species=oak']):
-        assert cli.main(['info', str(SCAN), '--json', *option]) == 0
+    for options in (['twig_diameter=0'],
+                    ['twig_diameter=0.001', 'species=oak', 'trusted_diameter=0.2']):  # fmt: skip
+        given = [word for option in options for word in ('--option', option)]
+        assert cli.main(['info', str(SCAN), '--json', *given]) == 0
         facts = json.loads(capsys.readouterr().out)
         volumes.append(facts['volume'])
     assert facts['species'] == 'oak'
-    assert any('tapers to 0.001 m' in note for note in facts['notes'])
+    assert any('are made 1 mm thick' in note for note in facts['notes'])
     assert volumes[1] < volumes[0]

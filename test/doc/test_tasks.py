@@ -17,7 +17,7 @@ TASKS = timed.tasks()
 QUICK = {1, 12}
 """Those of some seconds; all others are for a day with time."""
 ON_ROS = {5, 10, 11}
-NEEDS = {6: 'zenoh', 7: 'pyarrow', 11: 'serial', 13: 'imageio_ffmpeg', 14: 'matplotlib'}
+NEEDS = {6: 'aiohttp', 7: 'pyarrow', 11: 'serial', 13: 'imageio_ffmpeg', 14: 'matplotlib'}
 
 
 @pytest.mark.parametrize(

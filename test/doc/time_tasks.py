@@ -58,7 +58,7 @@ RESULTS = {
     3: r'goldcrest.glb: (.*)',
     4: r'birch.glb: (.*)',
     5: r'(poses +\d+ at .*)',
-    6: r'\d{9},(.*)',
+    6: r'(\d+ corrections.*)',
     7: r'(100 cases in.*)',
     8: r'(1,?000 trees.*)',
     9: r'(green wood breaks at .*)',

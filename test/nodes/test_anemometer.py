@@ -28,7 +28,7 @@ def test_samples_come_at_the_rate_and_are_the_models(compose, observer):
 
 
 def test_the_wind_changes_while_it_blows(compose, observer):
-    nodes = compose(anemometer={'turbulence': 'none', 'rate': 50.0})
+    nodes = compose(anemometer={'intensity': 0.0, 'rate': 50.0})
     said = observer.listen(WIND)
     observer.until(lambda: said, 'wind')
     assert said[-1].vector.x == pytest.approx(6.0)
@@ -45,14 +45,14 @@ def test_the_wind_changes_while_it_blows(compose, observer):
 @pytest.mark.parametrize('kind', ['one_minus_cos', 'extreme_operating_gust', 'step'])
 def test_gusts_rise_over_the_mean(compose, observer, kind):
     gust = {'gust': kind, 'gust_speed': 5.0, 'gust_duration': 0.5, 'gust_every': 1.0}
-    compose(anemometer={'turbulence': 'none', 'rate': 50.0, **gust})
+    compose(anemometer={'intensity': 0.0, 'rate': 50.0, **gust})
     said = observer.listen(WIND)
     observer.until(lambda: said and max(m.vector.x for m in said) > 8.0, 'a gust')
 
 
 def test_a_turn_turns(compose, observer):
     gust = {'gust': 'turn', 'gust_angle': 1.5708, 'gust_duration': 0.3, 'gust_every': 0.5}
-    compose(anemometer={'turbulence': 'none', 'rate': 50.0, **gust})
+    compose(anemometer={'intensity': 0.0, 'rate': 50.0, **gust})
     said = observer.listen(WIND)
     observer.until(lambda: said and max(m.vector.y for m in said) > 5.9, 'a turn to the north')
 

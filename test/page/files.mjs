@@ -6,5 +6,5 @@ import { readFileSync } from "node:fs";
 
 const folder = new URL("../../tree_sway/page/static/", import.meta.url);
 globalThis.treeSwayFiles = Object.fromEntries(
-  ["species.json", "words.json", "drawing/shaders.glsl"].map((name) =>
+  ["species.json", "words.json", "drawing/props.json", "drawing/shaders.glsl"].map((name) =>
     [name, readFileSync(new URL(name, folder), "utf8")]));

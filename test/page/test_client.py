@@ -117,7 +117,7 @@ def test_a_line_that_is_lost_is_made_again() -> None:
         client.wait(DEADLINE)
         end(server, sender)
         until(lambda: client.state == 'lost')
-        came = client.playout.received
+        came = client.received
         assert client.poses() is not None  # the last state stays
         again = serving(server.port)
         client.wait(DEADLINE, frames=came + 5)
@@ -133,6 +133,18 @@ def test_a_listener_that_fails_is_named_and_ends_nothing(server: PageServer) -> 
         client.wait(DEADLINE, frames=5)
         assert 'KeyError' in client.problem
         assert client.unreadable == 0
+
+
+def test_who_asks_for_the_wind_only_gets_28_bytes_and_no_poses(server: PageServer) -> None:
+    heard: list[Frame] = []
+    with StreamClient(
+        server.url, wind_only=True, on_frame=lambda frame, _: heard.append(frame)
+    ) as client:
+        client.wait(DEADLINE, frames=5)
+        assert client.poses() is None
+        assert client.unreadable == 0
+    assert {len(frame.coordinates) for frame in heard} == {0}
+    assert heard[0].wind == pytest.approx([3.0, 0.0, 0.0])
 
 
 def test_no_message_shows_the_token() -> None:

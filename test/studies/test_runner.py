@@ -19,8 +19,14 @@ from tree_sway.core.simulator.settings import USUAL
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.studies import runner
 from tree_sway.studies.compute import compute
-from tree_sway.studies.plan import Case
-from tree_sway.studies.runner import batches, compute_to_file, result_path, run_study
+from tree_sway.studies.plan import Case, read_study
+from tree_sway.studies.runner import (
+    batches,
+    compute_to_file,
+    estimated_time,
+    result_path,
+    run_study,
+)
 from tree_sway.studies.table import write_table
 
 pytest.importorskip('distributed', reason='needs dask.distributed')
@@ -81,6 +87,20 @@ def test_trees_of_any_size_are_on_one_model():
         rows.append(compute(case)[0])
     assert len({row['segments'] for row in rows}) == 3
     assert {row['model'] for row in rows} == {str(USUAL)}
+
+
+def test_the_time_is_estimated_before_anything_is_computed(tmp_path, capsys):
+    assert estimated_time([], 2) == 0.0
+    few, many = estimated_time(cases(8), 2), estimated_time(cases(8, seconds=600.0), 2)
+    assert many - few == pytest.approx(8 * 599 * 60 * 2e-4 / 2)
+    assert estimated_time(cases(80), 8) < estimated_time(cases(80), 2)
+    study, table = tmp_path / 'study.yaml', tmp_path / 'study.csv'
+    study.write_text(f'trees: [{SEEDLING}]\nwinds: [{{speed: 4, seeds: 3}}]\nseconds: 1\n')
+    folder = table.with_suffix('.cases')
+    folder.mkdir()
+    compute_to_file(read_study(study)[0], folder)
+    assert cli.main(['study', str(study), '-o', str(table), '--workers', '2']) == 0
+    assert '2 of 3 cases to compute: some 7 s on 2 cores' in capsys.readouterr().err
 
 
 def test_a_tree_is_set_up_once_for_many_winds():
@@ -175,19 +195,6 @@ def test_a_series_is_kept_where_it_is_asked_for(tmp_path):
     compute_to_file(case, tmp_path)
     lines = (tmp_path / f'{case.name}.csv').read_text().splitlines()
     assert len(lines) == 61
-
-
-def test_a_cluster_of_two_workers_gives_the_same_and_outlives_one(alone, tmp_path, monkeypatch):
-    import distributed
-
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
-    ) as cluster:
-        doomed = next(iter(cluster.workers.values())).pid
-        monkeypatch.setattr(runner, 'bar', watched(2, lambda: os.kill(doomed, signal.SIGKILL)))
-        rows = run_study(cases(6), tmp_path, scheduler=cluster.scheduler_address)
-    assert rows[:4] == alone
-    assert len(rows) == 6
 
 
 def test_tables_are_csv_or_parquet(alone, tmp_path):

@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 import sys
+import time
 
 from tree_sway.commands.arguments import (
     add_leaves_argument,
@@ -26,11 +27,14 @@ from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.plausibility import sway_oddity
 from tree_sway.core.tree.species import Species, species_named
-from tree_sway.errors import inside, ParameterError
+from tree_sway.errors import inside, ParameterError, TransportError
 from tree_sway.files.text_file import path_of
-from tree_sway.files.wind.sway_table import read_csv_sway
+from tree_sway.files.wind.phone import read_phone_sway
+from tree_sway.files.wind.sway_table import read_csv_sway, SwayRecord
 
 _YAML = ('.yaml', '.yml')
+_PERIOD = 1.0
+"""Time between two looks at what a phone has measured [s]."""
 _WOOD = (0.3e9, 200e9)
 """A modulus outside of this [Pa] is ten times beyond any green wood's."""
 
@@ -50,8 +54,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         '--record',
         metavar='FILE',
-        help='CSV of the sway instead: time and x, y or tilt_x or ax ...',
+        help='CSV of the sway instead: time and x, y or tilt_x or ax ...; or http://... of a '
+        'phone that measures with phyphox',
     )
+    add('--seconds', type=float, default=0.0, metavar='N', help='of a phone: until it has as much')
     add(
         '--branch', metavar='NAME', help='branch that was measured, such as stem; the slowest sway'
     )
@@ -119,7 +125,7 @@ def _check(arguments: argparse.Namespace) -> None:
 
 def _measured(arguments: argparse.Namespace) -> SwayEstimate:
     """Return what the record says, and print it."""
-    record = read_csv_sway(path_of(arguments.record))
+    record = _recorded(arguments.record, arguments.seconds)
     band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
     with inside(record.source):
         found = estimate_sway(record.time, record.motion, band)
@@ -132,6 +138,23 @@ def _measured(arguments: argparse.Namespace) -> SwayEstimate:
         f'damping {found.damping_ratio:.3g} +- {found.damping_error:.2g}'
     )
     return found
+
+
+def _recorded(source: str, seconds: float) -> SwayRecord:
+    """Read a file, or wait until a phone has measured for some time [s]."""
+    if not source.startswith(('http://', 'https://')):
+        return read_csv_sway(path_of(source))
+    measured = -1.0
+    with waiting('listening to the phone'):
+        while True:
+            record = read_phone_sway(source)
+            before, measured = measured, float(record.time[-1] - record.time[0])
+            if measured >= seconds:
+                return record
+            if measured == before:
+                what = f'{measured:.1f} s are measured, and it goes on no more'
+                raise TransportError(what, where=source, cure='start the experiment in phyphox')
+            time.sleep(_PERIOD)
 
 
 def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: bool) -> list[str]:

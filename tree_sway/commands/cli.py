@@ -33,7 +33,7 @@ MERGED = 'ros'
 _ROS_CURE = 'it needs ROS: source a ROS 2 installation, or pip install "tree_sway_ros[ros]"'
 #: Commands of other packages, with what to do where they are missing.
 _ELSEWHERE = {
-    **dict.fromkeys(('demo', 'listen', 'record'), _ROS_CURE),
+    **dict.fromkeys(('demo', 'listen', 'record', 'relay'), _ROS_CURE),
     'lab': 'it belongs to the laboratory: pip install ./lab in the checkout',
 }
 #: The extra of the package that brings a module: what is not here is in no extra, and no advice
@@ -42,7 +42,7 @@ EXTRAS = {
     **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
     **dict.fromkeys(('cryptography', 'dask', 'distributed', 'pyarrow'), 'study'),
     **{'h5py': 'h5', 'numba': 'fast', 'rosbags': 'bag', 'serial': 'serial', 'tqdm': 'progress'},
-    **{'imageio_ffmpeg': 'film', 'zenoh': 'relay'},
+    'imageio_ffmpeg': 'film',
 }
 _OF_ROS = re.compile(r'rclpy|\w+_msgs|\w+_srvs|builtin_interfaces|ament_\w+|rosidl\w*|launch\w*')
 _FAILURE = 2

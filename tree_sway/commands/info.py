@@ -23,11 +23,13 @@ from tree_sway.commands.progress import bar
 from tree_sway.core.checks import within
 from tree_sway.core.scene.placed_tree import Kind
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TreeError
+from tree_sway.parameters.sway_parameters import SWAY
 
 _BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
 _SUMS = ('branches', 'segments', 'volume', 'mass')
@@ -42,19 +44,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
     add('--gravity', choices=('on', 'off'), default='on', help='its own weight (%(default)s)')
-    add(
-        '--root-stiffness',
-        type=float,
-        metavar='K',
-        help='of its roots against tilting [N m/rad], inf for rigid ones; its own if left out',
-    )
     add('--count', type=int, default=10, metavar='N', help='how many frequencies (%(default)s)')
+    speed = 'mean of a gusty wind [m/s] in which to find the share of its strength that it uses'
+    add('--speed', type=float, metavar='U', help=speed)
     add('--json', action='store_true', help='for programs, SI units')
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print what the trees are."""
     within('--count', arguments.count, 1, 1e6)
+    if arguments.speed is not None:
+        SWAY['mean_speed'].checked(arguments.speed)
     scene = opened_scene(arguments)
     kinds = scene.kinds
     if scene.is_one_tree:
@@ -73,7 +73,6 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
     tree, species, count = kind.tree, kind.species, arguments.count
     settings = Settings(
         gravity=_GRAVITY if arguments.gravity == 'on' else 0.0,
-        root_stiffness=arguments.root_stiffness,
         in_leaf=chosen_leaves(arguments) if kind.leaf_on is None else kind.leaf_on,
     )
     settings = in_season(tree, species, settings)
@@ -87,10 +86,14 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
         settings = replace(settings, gravity=0.0)
         notes.append(f'modes without its own weight, as it cannot stand: {error}')
         modes, mass = mode_table(tree, species, settings, count)
+    used = None
+    if arguments.speed is not None:
+        rng = np.random.default_rng(0)
+        (used,) = Rig(kind, settings).strength_curve([arguments.speed], rng=rng)
+        left_out = 'rot, wet soil and sheltering are left out'
+        notes.append(f'in gusts of a mean wind of {arguments.speed:g} m/s, {used}; {left_out}')
     frequencies = [mode['frequency'] for mode in modes]
     slow = sway_oddity(tree, species, min(frequencies)) if modes else None
-    given = settings.root_stiffness
-    roots = species.root_stiffness if given is None else given
     return {
         'name': tree.name,
         'notes': notes,
@@ -107,9 +110,10 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
         'modulus': species.modulus,
         'density': species.density,
         'mass': mass,
-        'root_stiffness': None if math.isinf(roots) else roots,
+        'root_stiffness': None if math.isinf(species.root_stiffness) else species.root_stiffness,
         'gravity': settings.gravity,
         'in_leaf': settings.in_leaf,
+        'strength': used and used.plain(),
         'frequencies': frequencies,
         'modes': modes,
     }
@@ -161,10 +165,9 @@ def _text(facts: dict[str, Any]) -> str:
     if modes := facts.get('modes'):
         weight = 'with its own weight' if facts['gravity'] else 'without its own weight'
         lines.append(f'  natural modes, {weight}:')
-        lines.append('       Hz   damping   sways along (east = 0, north = 90)   most in branch')
+        lines.append('       Hz   damping   most in branch')
         lines += [
-            f'  {mode["frequency"]:7.3f}   {mode["damping_ratio"]:7.3f}   '
-            f'{mode["direction"]:35}  {mode["branch"]}'
+            f'  {mode["frequency"]:7.3f}   {mode["damping_ratio"]:7.3f}   {mode["branch"]}'
             for mode in modes
         ]
     return '\n'.join(lines)

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import math
 from pathlib import Path
 import sys
 from typing import Any
@@ -17,7 +16,6 @@ from tree_sway.commands.arguments import (
     add_output_arguments,
     add_sway_arguments,
     chosen_leaves,
-    drawn_leaves,
     opened_scene,
     opened_wind,
     output_path,
@@ -29,7 +27,6 @@ from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.simulate import Rig
-from tree_sway.core.wind.convention import velocity_of_bearing
 from tree_sway.errors import FormatError, ParameterError, TreeError
 from tree_sway.page.wind_source import RecordedWind
 from tree_sway.parameters.sway_parameters import SWAY
@@ -38,8 +35,8 @@ from tree_sway.pictures.plots import plot_strength, plot_study, plot_wind_and_ti
 
 _SETTLING, _SETTLING_STEP = 60.0, 1.0 / 15.0
 _RATE = 60.0
-_CURVES = 12
 _LONGEST_HEADER = 4096
+_LEAVES = 3000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -48,19 +45,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--portrait',
         action='store_true',
-        help='draw the tree in a steady wind, with its shape at rest behind it',
+        help='draw the tree in a steady westerly, with its shape at rest behind it',
     )
-    strength = 'draw the share of its strength that each tree uses, up to --speed (30 m/s)'
+    strength = 'draw the share of their strength that trees use, up to --speed (30 m/s)'
     parser.add_argument('--strength', action='store_true', help=strength)
     parser.set_defaults(speed=None)
-    parser.add_argument(
-        '--from',
-        dest='bearing',
-        type=float,
-        metavar='DEGREES',
-        help='where the steady or simulated wind comes from, clockwise from north: 90 is from the '
-        'east, at the right of a picture (270, a westerly)',
-    )
     parser.add_argument(
         '--seconds', type=float, default=60.0, metavar='N', help='how long (%(default)s)'
     )
@@ -72,7 +61,6 @@ def run(arguments: argparse.Namespace) -> int:
     within('--seconds', arguments.seconds, 0.0, 3600.0, 's', above=True)
     if arguments.speed is None:
         arguments.speed = 30.0 if arguments.strength else 10.0 if arguments.portrait else 6.0
-    _refuse_bearing(arguments)
     output = output_path(arguments)
     if rows := _rows_of_study(arguments.tree):
         try:
@@ -102,18 +90,9 @@ def _rows_of_study(path: str) -> list[dict[str, str]]:
         return list(csv.DictReader(lines, next(csv.reader([header]))))
 
 
-def _refuse_bearing(arguments: argparse.Namespace) -> None:
-    """Refuse what is no direction, or one for a record, which has its own."""
-    if arguments.bearing is None:
-        arguments.bearing = 270.0
-    elif arguments.wind is not None and not arguments.portrait:
-        raise ParameterError('a direction for a record, which has its own', where='--from')
-    within('--from', arguments.bearing, -360.0, 360.0, 'degrees')
-
-
 def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     simulator = _simulator(scene, arguments)
-    wind = np.array(velocity_of_bearing(arguments.speed, math.radians(arguments.bearing)))
+    wind = np.array([arguments.speed, 0.0, 0.0])
     for _ in bar(range(round(_SETTLING / _SETTLING_STEP)), 'settling in the wind'):
         simulator.step(wind, _SETTLING_STEP)
     picture_in_wind(
@@ -121,7 +100,7 @@ def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
         simulator.place(),
         wind,
         output,
-        leaves=drawn_leaves(scene, arguments),
+        leaves=scene.leaves(chosen_leaves(arguments), _LEAVES),
     )
 
 
@@ -138,13 +117,11 @@ def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
 
 
 def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
-    """Draw the strength that each tree uses over wind speed, and print it."""
-    if len(scene.trees) > _CURVES:
-        raise ParameterError(
-            f'{len(scene.trees)} trees', where='--strength', cure=f'give {_CURVES} or fewer'
-        )
+    """Draw the strength that the tallest tree of each kind uses over wind speed; print it."""
+    by_height = sorted(range(len(scene.trees)), key=lambda row: scene.trees[row].scale)
+    tallest = {int(scene.kind_numbers[row]): scene.trees[row] for row in by_height}
     speeds, used = np.linspace(0.0, SWAY['mean_speed'].checked(arguments.speed), 7)[1:], {}
-    for each in bar(scene.trees, 'loading trees'):
+    for each in bar(tallest.values(), 'loading trees'):
         leaf_on = chosen_leaves(arguments) if each.leaf_on is None else each.leaf_on
         tree = PlacedTree(each.name, each.placed(), species=each.species)
         rig = Rig(tree, model=arguments.model, in_leaf=leaf_on)
@@ -159,8 +136,7 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     if isinstance(wind, RecordedWind):
         source, seconds = Path(arguments.wind).name, min(seconds, wind.length)
     else:
-        source = f'simulated wind, mean {arguments.speed:g} m/s from {arguments.bearing:g} degrees'
-        wind.set('bearing_to', math.radians(arguments.bearing + 180.0))
+        source = f'simulated westerly, mean {arguments.speed:g} m/s'
     if seconds < 2.0 / _RATE:
         raise ParameterError('too short a wind to draw', where=source, cure='give a longer one')
     simulator = _simulator(scene, arguments)

@@ -65,6 +65,8 @@ class StreamClient:
     by_wind
         Whether to ask for the wind alone, 28 bytes per frame, and solve the scene here (`ByWind`);
         ask for 60 frames per second then.
+    wind_only
+        Whether to ask for the wind and nothing else, for `on_frame`: there are no poses then.
     on_frame
         Called on the client's thread with every frame and its arrival [s] by the own clock.
 
@@ -88,6 +90,7 @@ class StreamClient:
         rate: float = 30.0,
         delay: float = DELAY,
         by_wind: bool = False,
+        wind_only: bool = False,
         on_frame: Callable[[Frame, float], None] | None = None,
     ) -> None:
         try:
@@ -107,15 +110,16 @@ class StreamClient:
         """One of connecting, open, lost."""
         self.problem = ''
         """Why the line was lost, or a change was refused; empty if neither happened."""
-        self.unreadable = 0
-        """Messages that could not be read; after each the line is made again."""
+        self.received = self.unreadable = 0
+        """Frames, and messages that could not be read; after one of these a new line is made."""
         self.round_trip = float('nan')
         """Time to the server and back [s]."""
         self.status: dict[str, object] = {}
         """The newest status of the server."""
         self.solver: ByWind | None = None
         """What solves the scene by its wind; None where states come."""
-        self._rate, self._on_frame, self._wants_wind = rate, on_frame, by_wind
+        self._rate, self._on_frame = rate, on_frame
+        self._wants_wind: bool | str = 'only' if wind_only else by_wind
         self._placer: Placer | None = None
         self._more = threading.Condition()
         self._loop = asyncio.new_event_loop()
@@ -148,9 +152,9 @@ class StreamClient:
 
         """
         with self._more:
-            if not self._more.wait_for(lambda: self.playout.received >= frames, seconds):
+            if not self._more.wait_for(lambda: self.received >= frames, seconds):
                 raise TransportError(
-                    f'{self.playout.received} frames within {seconds:g} s ({self.problem})',
+                    f'{self.received} frames within {seconds:g} s ({self.problem})',
                     where=self.url,
                     cure='start tree-sway show, or look at the address',
                 )
@@ -189,7 +193,7 @@ class StreamClient:
         wait = _SHORTEST_WAIT
         async with aiohttp.ClientSession(headers=self._headers) as session:
             while True:
-                self.state, received = 'connecting', self.playout.received
+                self.state, received = 'connecting', self.received
                 try:
                     async with session.ws_connect(
                         self.url, max_msg_size=LARGEST_DESCRIPTION, heartbeat=_SILENCE
@@ -199,7 +203,7 @@ class StreamClient:
                 except Exception as error:
                     self.problem = str(error) or type(error).__name__
                 self._socket, self.state = None, 'lost'
-                if self.playout.received > received:
+                if self.received > received:
                     wait = _SHORTEST_WAIT
                 # Many clients that lose one server do not come back in one instant.
                 await asyncio.sleep(wait * random.uniform(0.75, 1.25))
@@ -279,11 +283,12 @@ class StreamClient:
             return
         solver = self.solver
         values = solver.take(frame) if solver else description.coordinates(frame)
-        if values is None or len(values) != len(description.scale):
-            return
+        is_whole = values is not None and len(values) == len(description.scale)
         with self._more:
-            moment = Moment(1e-9 * frame.stamp, values, frame.wind, frame.flags)
-            self.playout.push(moment, arrival)
+            if values is not None and is_whole:
+                moment = Moment(1e-9 * frame.stamp, values, frame.wind, frame.flags)
+                self.playout.push(moment, arrival)
+            self.received += is_whole or self._wants_wind == 'only'
             self._more.notify_all()
         if self._on_frame is not None:
             try:

@@ -118,7 +118,7 @@ class _Client:
         self.wake = asyncio.Event()
         self.texts: deque[str] = deque(maxlen=16)
         self.description = b''
-        self.wants_wind = self.is_solving = False
+        self.wants_wind = self.is_solving = self.wants_nothing_else = False
         self.states, self.next_state, self.first = 0, 0.0, 0
         self.last_heard = time.monotonic()
         self.sending_since = math.inf
@@ -129,6 +129,8 @@ class _Client:
 
     def thinned(self, frame: bytes, now: float) -> bytes:
         """Return what one that solves by itself needs of a frame: the wind, now and then more."""
+        if self.wants_nothing_else:
+            return part_of_frame(frame, 0, 0)
         if self.states < 2:  # two to begin with, for the rates
             self.states, self.next_state = self.states + 1, now + STATE_PERIOD
             return frame
@@ -434,6 +436,7 @@ class PageServer:
             client.say({'pong': ping, 'time': time.time_ns() / 1e6})
         if message.get('wind') is True:
             client.wants_wind, client.description = True, b''
+        client.wants_nothing_else |= message.get('wind') == 'only'
         if 'set' in message:
             self._change(client, message['set'])
         if 'pull' in message and (why := self._panel.pull(message['pull'])) is not None:
@@ -492,7 +495,7 @@ class PageServer:
         client.next_due = max(client.next_due + client.period, now)
         client.credit -= 1
         client.sent = number
-        if client.is_solving:
+        if client.is_solving or client.wants_nothing_else:
             frame = client.thinned(frame, now)
         await client.socket.send_bytes(frame)
 

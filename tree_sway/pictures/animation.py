@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from importlib import import_module
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -13,17 +14,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.leaves.flutter import air_speed, flutter_angle, leaf_poses
+from tree_sway.core.leaves.flutter import flutter_angle
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.whole_file import whole_file
-from tree_sway.pictures.painter import Painter
-from tree_sway.pictures.projection import Camera, Frame, frame_around
+from tree_sway.pictures.plotting import new_figure
+from tree_sway.pictures.tree_drawing import draw_trees, limits_around
 
 _SUFFIXES = ('.gif', '.mp4')
 _GIF_COLORS = 64
+_DOTS_PER_INCH = 128.0
+"""A power of two, so that no number of points is lost to rounding."""
 
 
 def check_film(path: str | Path) -> Path:
@@ -35,7 +38,7 @@ def check_film(path: str | Path) -> Path:
     FormatError
         If the suffix names no moving picture.
     ModuleNotFoundError
-        If pillow, or imageio-ffmpeg for a film, is not installed.
+        If matplotlib, Pillow, or imageio-ffmpeg for a film, is not installed.
 
     """
     target = Path(path)
@@ -46,7 +49,7 @@ def check_film(path: str | Path) -> Path:
             where=str(target),
             cure=f'end the name with one of: {", ".join(_SUFFIXES)}',
         )
-    for module in ('PIL', 'imageio_ffmpeg')[: 1 + (suffix == '.mp4')]:
+    for module in ('matplotlib', 'PIL', 'imageio_ffmpeg')[: 2 + (suffix == '.mp4')]:
         import_module(module)
     return target
 
@@ -94,25 +97,41 @@ def animate_poses(
             f'{len(frames)} frames and winds {blowing.shape} do not go together',
             cure='give one wind (3,) a frame, and at least one frame',
         )
-    camera = Camera()
     blocks = [np.asarray(poses, dtype=np.float64) for poses in frames]
-    painter = Painter([tree], camera, _frame_of_all(tree, blocks, camera), pixels)
+    corners = [_box(tree.start), _box(tree.end)]
+    for block in blocks:
+        corners += [_box(points) for points in ends_of_poses(block, tree.length)]
+    limits = limits_around(np.vstack(corners))
+    (left, right), (bottom, top) = limits
+    # Films want even numbers of points.
+    size = 2 * round(0.5 * pixels * (right - left) / (top - bottom)), 2 * round(0.5 * pixels)
+    figure = new_figure(size[0] / _DOTS_PER_INCH, size[1] / _DOTS_PER_INCH)
+    figure.set_dpi(_DOTS_PER_INCH)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
 
     def images() -> Iterator[Any]:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from PIL import Image
+
+        canvas = FigureCanvasAgg(figure)
         for i, (block, wind) in enumerate(zip(blocks, blowing, strict=True)):
             angle: ArrayLike = 0.0
             if leaves is not None:
-                now, then = (
-                    leaf_poses(leaves, poses)[:, :3] for poses in (block, blocks[max(i - 1, 0)])
-                )
-                angle = flutter_angle(leaves, air_speed(now, then, 1.0 / rate, wind), i / rate)
-            yield painter.image(block, wind, leaves, angle)
+                angle = flutter_angle(leaves, float(np.linalg.norm(wind)), i / rate)
+            draw_trees(axes, [tree], block, limits, wind=wind, leaves=leaves, flutter=angle)
+            canvas.draw()
+            yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
+    return write_pictures(images(), target, rate)
+
+
+def write_pictures(images: Iterator[Any], target: Path, rate: float) -> Path:
+    """Write pictures of Pillow, all of one even size, as a GIF or a film of a rate in [Hz]."""
     with whole_file(target) as partial:
         if target.suffix.lower() == '.gif':
-            _write_gif(partial, images(), rate)
+            _write_gif(partial, images, rate)
         else:
-            _write_film(partial, images(), painter.size, rate)
+            _write_film(partial, images, rate)
     return target
 
 
@@ -123,25 +142,18 @@ def _write_gif(path: Path, images: Iterator[Any], rate: float) -> None:
     first.save(path, 'GIF', save_all=True, append_images=others, duration=1000.0 / rate, loop=0)
 
 
-def _write_film(path: Path, images: Iterator[Any], size: tuple[int, int], rate: float) -> None:
+def _write_film(path: Path, images: Iterator[Any], rate: float) -> None:
     """Have ffmpeg write what is painted, frame after frame."""
     from imageio_ffmpeg import write_frames
 
+    first = next(images)
     film = write_frames(
-        path, size, fps=rate, macro_block_size=2, output_params=['-movflags', '+faststart']
+        path, first.size, fps=rate, macro_block_size=2, output_params=['-movflags', '+faststart']
     )
     film.send(None)  # starts ffmpeg
-    for image in images:
+    for image in itertools.chain([first], images):
         film.send(image.tobytes())
     film.close()
-
-
-def _frame_of_all(tree: Tree, blocks: list[Floats], camera: Camera) -> Frame:
-    """Frame that holds the tree at rest and in every frame."""
-    corners = [_box(tree.start), _box(tree.end)]
-    for block in blocks:
-        corners += [_box(points) for points in ends_of_poses(block, tree.length)]
-    return frame_around(np.vstack(corners), camera, headroom=0.1)
 
 
 def _box(points: Floats) -> Floats:

@@ -10,16 +10,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.leaves.flutter import flutter_angle
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import FormatError
-from tree_sway.files.whole_file import whole_file
-from tree_sway.pictures.painter import Painter
-from tree_sway.pictures.projection import Camera, frame_around
+from tree_sway.pictures.plotting import new_figure, save_figure
+from tree_sway.pictures.tree_drawing import draw_trees, limits_around
 
-_PIXELS = 660
+_HEIGHT = 6.0
+"""Height of a picture in [inch]."""
 
 
 def picture_in_wind(
@@ -31,35 +29,34 @@ def picture_in_wind(
     leaves: LeafClusters | None = None,
 ) -> Path:
     """
-    Draw a tree, or several, in wind, with the shape at rest behind it.
+    Draw trees in wind over their shape at rest.
 
     Parameters
     ----------
-    trees
-        The tree or trees.
-    poses
-        Pose block in wind of all of them, (n, 7): x y z [m], and the quaternion's x y z w.
+    trees, poses
+        The trees, and the pose block of all their segments, one tree after the other, (n, 7).
     wind
-        Where it blows to in [m/s], (3,).
+        Wind in [m/s], (3,).
     path
-        File to write; the suffix names the format.
+        File to write; its suffix names the format, such as ``.png`` or ``.pdf``.
     leaves
-        Their leaves, on segments counted through all trees; none are drawn if None.
+        Leaves on these segments; none are drawn if None.
+
+    Raises
+    ------
+    FormatError
+        If the suffix names no picture format, or the file cannot be written.
+    ModuleNotFoundError
+        If matplotlib is not installed.
 
     """
-    blowing = np.asarray(wind, dtype=np.float64)
     rest = np.vstack([each.rest_poses for each in trees])
     length = np.concatenate([each.length for each in trees])
-    nodes = [*ends_of_poses(rest, length), *ends_of_poses(poses, length)]
-    camera = Camera()
-    painter = Painter(trees, camera, frame_around(np.vstack(nodes), camera, headroom=0.1), _PIXELS)
-    angle = 0.0 if leaves is None else flutter_angle(leaves, float(np.linalg.norm(blowing)), 0.0)
-    image = painter.image(poses, blowing, leaves, angle, has_ghost=True)
-    target = Path(path)
-    with whole_file(target) as partial:
-        try:
-            image.save(partial)
-        except ValueError:
-            what = f"'{target.suffix}' is no picture format"
-            raise FormatError(what, where=str(target), cure='name a .png, .jpg or .pdf') from None
-    return target
+    limits = limits_around(
+        np.vstack([*ends_of_poses(rest, length), *ends_of_poses(poses, length)])
+    )
+    (left, right), (bottom, top) = limits
+    figure = new_figure(_HEIGHT * (right - left) / (top - bottom), _HEIGHT)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    draw_trees(axes, trees, poses, limits, wind=wind, leaves=leaves, has_ghost=True)
+    return save_figure(figure, path)

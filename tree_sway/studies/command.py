@@ -5,13 +5,15 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
+import sys
 import time
 
 from tree_sway.commands.arguments import refuse_overwriting
 from tree_sway.core.checks import within
 from tree_sway.studies.plan import read_study
-from tree_sway.studies.runner import run_study
+from tree_sway.studies.runner import estimated_time, missing_cases, run_study
 from tree_sway.studies.table import write_table
 
 
@@ -28,9 +30,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--force', action='store_true', help='write over a table that is of no study of yours'
     )
-    parser.add_argument(
-        '--scheduler', metavar='ADDRESS', help='of a dask cluster, tcp://HOST:PORT'
-    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -42,8 +41,14 @@ def run(arguments: argparse.Namespace) -> int:
     kept = output.with_suffix('.cases')
     if not (arguments.force or kept.is_dir()):
         refuse_overwriting(output, '--output')
+    missing, workers = missing_cases(cases, kept), arguments.workers or os.cpu_count() or 1
+    print(
+        f'{len(missing)} of {len(cases)} cases to compute: some '
+        f'{estimated_time(missing, workers):.0f} s on {workers} cores, if trees have 900 branches',
+        file=sys.stderr, flush=True,
+    )  # fmt: skip
     began = time.monotonic()
-    rows = run_study(cases, kept, workers=arguments.workers, scheduler=arguments.scheduler)
+    rows = run_study(cases, kept, workers=arguments.workers)
     write_table(rows, output)
     print(f'{output}: {len(rows)} cases in {time.monotonic() - began:.1f} s')
     return 0

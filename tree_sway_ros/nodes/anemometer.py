@@ -26,7 +26,7 @@ class AnemometerNode(TreeSwayNode):
         self._model = self._make_model()
         self._faults = self._make_faults()
         self._ticks = self._faulty_since = 0
-        self._publisher = self.publisher(WIND, self._writer.message_class, alone=True)
+        self._publisher = self.publisher(WIND, self._writer.message_class)
         self.report_with('simulated anemometer', self._report)
         self._pacer = self.pacer_of(self._tick)
 
@@ -58,7 +58,7 @@ class AnemometerNode(TreeSwayNode):
         return SensorFaults(values['fault'], values['fault_every'], values['fault_duration'])
 
     def _make_model(self) -> AnemometerModel:
-        names = ('mean_speed', 'bearing_to', 'turbulence', 'height', 'intensity', 'rate', 'seed')
+        names = ('mean_speed', 'bearing_to', 'height', 'intensity', 'rate', 'seed')
         return AnemometerModel(events=self._events(), **self.values(*names))
 
     def _events(self) -> tuple[GustEvent, ...]:

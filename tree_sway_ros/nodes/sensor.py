@@ -23,7 +23,7 @@ class SensorNode(TreeSwayNode):
     def configure(self) -> None:
         """Prepare the link."""
         self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
-        self._publisher = self.publisher(WIND, self._writer.message_class, alone=True)
+        self._publisher = self.publisher(WIND, self._writer.message_class)
         self._kind = self.values['sentence']
         self._accepted = self._other = 0
         self._refused: dict[str, int] = {}

@@ -20,7 +20,7 @@ PERIOD, RATE, EVERY = 4.0, 60, 6
 """Of the gusts in [s], steps per second, and steps per picture."""
 
 _SETTLING = 5
-_LEAVES, _PIXELS = 900, 420
+_LEAVES, _PIXELS = 3000, 420
 
 
 def chart_film(out_dir: str | Path) -> Path:

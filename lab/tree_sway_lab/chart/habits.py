@@ -12,9 +12,8 @@ from tree_sway.commands.progress import bar
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.tree.species import species_named
-from tree_sway.pictures.painter import Painter
 from tree_sway.pictures.plotting import new_figure, save_figure
-from tree_sway.pictures.projection import Camera, Frame
+from tree_sway.pictures.tree_drawing import draw_trees
 
 SPECIES = (
     'oak', 'beech', 'birch', 'ash', 'sycamore', 'walnut', 'spruce', 'sitka', 'pine', 'douglas_fir',
@@ -22,8 +21,8 @@ SPECIES = (
 HEIGHT = 16.0
 """Of each tree [m]; captions name it."""
 
-_CLUSTERS, _PIXELS = 3000, 480
-_FRAME = Frame(-0.51 * HEIGHT, 0.51 * HEIGHT, -0.07 * HEIGHT, 1.08 * HEIGHT)
+_CLUSTERS = 6000
+_LIMITS = (-0.51 * HEIGHT, 0.51 * HEIGHT), (-0.07 * HEIGHT, 1.08 * HEIGHT)
 
 
 def chart_habits(out_dir: str | Path) -> list[Path]:
@@ -38,18 +37,16 @@ def chart_habits(out_dir: str | Path) -> list[Path]:
     """
     folder = Path(out_dir)
     folder.mkdir(parents=True, exist_ok=True)
-    camera = Camera(elevation=0.05)
     half = len(SPECIES) // 2
     figure = new_figure(2.9 * half, 13.0)
     axes = figure.subplots(4, half)
     for i, key in enumerate(bar(list(SPECIES), 'habits')):
         tree = grow(key, HEIGHT, rng=np.random.default_rng(1))
         clusters = leaf_clusters(tree, np.random.default_rng(0), count=_CLUSTERS)
-        painter = Painter([tree], camera, _FRAME, _PIXELS)
         row, column = 2 * (i // half), i % half
         for below, worn in enumerate((None, clusters)):
-            axes[row + below, column].imshow(painter.image(tree.rest_poses, leaves=worn))
-            axes[row + below, column].axis('off')
+            here = axes[row + below, column]
+            draw_trees(here, [tree], tree.rest_poses, _LIMITS, leaves=worn)
         axes[row, column].set_title(species_named(key).title, y=0.98, fontsize=12)
     figure.subplots_adjust(0.0, 0.0, 1.0, 0.97, 0.0, 0.02)
     return [save_figure(figure, folder / 'habits.png', 80.0)]

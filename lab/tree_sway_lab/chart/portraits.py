@@ -43,7 +43,7 @@ PORTRAITS = {
 """Pictures, and the tree of each: a name, a file, or species and height [m] of a grown one."""
 
 _WIND = np.array([SPEED, 0.0, 0.0])
-_CLUSTERS = 1500
+_CLUSTERS = 3000
 _SETTLING, _STEP = 60.0, 1.0 / 15.0
 _DRAWING = [p for p in Path(pictures.__file__).parent.glob('*.py') if p.name != 'plots.py']
 """What draws trees; plots show none."""

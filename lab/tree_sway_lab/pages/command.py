@@ -234,16 +234,16 @@ def fidelity_range() -> str:
 def species_table() -> str:
     """Wood, damping, drag and leaves of every species."""
     lines = [
-        '| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | drag in leaf | '
-        'leaves [m^2/m^2] | [kg/m^2] |',
-        '|---|---|---|---|---|---|---|---|',
+        '| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | twigs [mm] | '
+        'drag in leaf | leaves [m^2/m^2] | [kg/m^2] |',
+        '|---|---|---|---|---|---|---|---|---|',
     ]
     for key in species_keys():
         wood, leaf = species_named(key), species_named(key).leaves
         mark = ' (an estimate)' if wood.is_estimate else ''
         lines.append(
             f'| `{key}` | {wood.title}{mark} | {wood.modulus / 1e9:.3g} | {wood.density:g} '
-            f'| {wood.damping_bare:g}, {wood.damping_in_leaf:g} '
+            f'| {wood.damping_bare:g}, {wood.damping_in_leaf:g} | {1e3 * wood.twig_diameter:g} '
             f'| {wood.drag_coefficient:g} U^-{wood.drag_exponent:g} '
             f'| {leaf.area_per_section:g}{", evergreen" if leaf.is_evergreen else ""} | '
             f'{leaf.fresh_mass:g} |'

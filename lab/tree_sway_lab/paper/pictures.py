@@ -11,20 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.pictures.painter import Painter
 from tree_sway.pictures.plotting import new_figure, save_figure
-from tree_sway.pictures.projection import Camera, frame_around
+from tree_sway.pictures.tree_drawing import draw_trees, limits_around
 from tree_sway_lab.paper.experiment import Experiment, RATE
 from tree_sway_lab.paper.followers import followed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-CAMERA = Camera(elevation=0.05)
-"""From the south, so that a wind from the right blows to the west."""
-
-_PIXELS = 480
-"""Height of the image of a plant [px]."""
 
 _WIND, _BARK, _PALE, _PLANE = '#1f6fb4', '#5b4632', '#b9b2a8', '#dfe9f2'
 
@@ -47,9 +40,8 @@ def draw_plants(experiments: list[Experiment], path: str | Path) -> Path:
     for place, experiment in enumerate(experiments):
         tree = experiment.tree
         axes = figure.add_axes((place / len(experiments), 0.0, 1.0 / len(experiments), 0.92))
-        frame = frame_around(np.vstack([tree.start, tree.end]), CAMERA)
-        axes.imshow(Painter([tree], CAMERA, frame, _PIXELS).image(tree.rest_poses))
-        axes.axis('off')
+        limits = limits_around(np.vstack([tree.start, tree.end]))
+        draw_trees(axes, [tree], tree.rest_poses, limits)
         axes.set_title(f'{tree.name}: {tree.n_branches} branches, {tree.n_segments} segments')
     return save_figure(figure, path)
 
@@ -60,8 +52,7 @@ def draw_sway(experiment: Experiment, path: str | Path, frames: int = 6) -> Path
     chosen = np.linspace(0, len(angle) - 1, frames).astype(int)
     placed = [followed(tree, experiment.keys, angle[k]) for k in chosen]
     points = np.vstack([tree.start, tree.end, *(node for pair in placed for node in pair)])
-    frame = frame_around(points, CAMERA, headroom=0.08)
-    painter = Painter([tree], CAMERA, frame, _PIXELS)
+    limits = limits_around(points)
     columns = (frames + 1) // 2
     figure = new_figure(3.2 * columns, 7.2)
     for place, (k, (start, end)) in enumerate(zip(chosen, placed, strict=True)):
@@ -69,8 +60,7 @@ def draw_sway(experiment: Experiment, path: str | Path, frames: int = 6) -> Path
         axes = figure.add_axes((column / columns, 0.5 * (1 - row), 1.0 / columns, 0.46))
         poses = replace(tree, start=start, end=end).rest_poses
         wind = (-experiment.speed[k], 0.0, 0.0)
-        axes.imshow(painter.image(poses, wind, has_ghost=True))
-        axes.axis('off')
+        draw_trees(axes, [tree], poses, limits, wind=wind, has_ghost=True)
         axes.set_title(f'{k / RATE:.1f} s', fontsize=10)
     return save_figure(figure, path)
 

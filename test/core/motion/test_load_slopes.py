@@ -28,7 +28,7 @@ def bent():
 def test_slopes_are_those_of_the_load(bent, wind):
     load, shapes, x = bent
     wind, still, size = np.array(wind), np.zeros(load.n), 1e-6
-    turning, damping = load.slopes(x, wind, shapes.astype(np.float32))
+    turning, damping = load.slopes(shapes)(x, wind)
     moved, swung = np.zeros((2, *turning.shape))
     for k, shape in enumerate(shapes.T):
         step = size / np.abs(shape).max()
@@ -45,7 +45,7 @@ def test_slopes_are_those_of_the_load(bent, wind):
 def test_a_tree_at_rest_has_slopes_right_to_single_precision(bent):
     load, shapes, _ = bent
     still, wind, size = np.zeros(load.n), np.array([0.6, -0.8, 0.0]), 1e-6
-    turning, _ = load.slopes(still, wind, shapes.astype(np.float32))
+    turning, _ = load.slopes(shapes)(still, wind)
     shape = shapes[:, 0]
     step = size / np.abs(shape).max() * shape
     moved = (load(step, still, wind) - load(-step, still, wind)) @ shapes

@@ -17,7 +17,6 @@ from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway.core.wind.simulated.sensor_faults import SensorFaults
-from tree_sway.errors import ParameterError
 
 SECOND = 10**9
 PERIOD = round(1e9 / 60)
@@ -229,30 +228,3 @@ def test_a_dropout_is_held_then_fades_and_the_wind_comes_back_without_a_step():
     assert 0.0 < winds[1190] < 0.2  # after 13 s of tau 3 s
     assert winds[-1] == pytest.approx(8.0)
     assert np.abs(np.diff(winds[10:])).max() < 0.5
-
-
-def test_a_run_goes_on_from_the_memory_of_another_bit_for_bit():
-    runs = [running(SwaySimulator(TREE, model=12)) for _ in '12']
-    play(runs[0], [1] * 200)
-    runs[0].offer(START + 220 * PERIOD, (9.0, 1.0, 0.0))
-    runs[1].simulator.set_state(runs[0].simulator.state())
-    runs[1].recall(*runs[0].memory())
-    for made in runs:
-        for tick in range(201, 300):
-            if tick % 3 == 0 and tick > 220:
-                made.offer(START + tick * PERIOD, (6.0 + 0.01 * tick, 0.0, 0.0))
-            made.advance(START + tick * PERIOD, may_join=False)
-    assert (runs[0].simulator.place() == runs[1].simulator.place()).all()
-
-
-@pytest.mark.parametrize(
-    'broken',
-    [[], [0.0] * 9, [0.0] * 10, ['x'], [[1.0]], [1e300] * 14, None, {}, [0.0] * 13],
-)
-def test_a_memory_that_no_run_has_is_refused(broken):
-    made = running(Recorder())
-    play(made, [1] * 60)
-    before = made.memory()
-    with pytest.raises(ParameterError):
-        made.recall(START, 0, broken, [])
-    assert made.memory() == before

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong units are refused or told, with the likely unit and the option that mends them."""
+"""Wrong units are refused or reported, with the option that mends them."""
 
 from __future__ import annotations
 
@@ -54,9 +54,8 @@ def test_nothing_is_odd_about_grown_trees(key: str) -> None:
 @pytest.mark.parametrize(
     ('wood', 'cure'),
     [
-        ({'modulus': 9.4}, '9.4 GPa are --modulus 9.4e\\+09'),
-        ({'modulus': 9400.0}, '9400 MPa are --modulus 9.4e\\+09'),
-        ({'density': 0.95}, '0.95 g/cm\\^3 are --density 950'),
+        ({'modulus': 9.4}, 'give 1e\\+07 to 5e\\+11 Pa'),
+        ({'density': 0.95}, 'give 40 to 10000 kg/m\\^3'),
         ({'modulus': 9.4e18}, 'give 1e\\+07 to 5e\\+11 Pa'),
         ({'density': float('nan')}, 'give 40 to 10000 kg'),
     ],
@@ -67,19 +66,12 @@ def test_wood_in_another_unit_is_refused(wood: dict[str, float], cure: str) -> N
 
 
 @pytest.mark.parametrize(
-    ('length', 'diameter', 'cure'),
-    [
-        (1.0, 1000.0, 'diameters are in mm: add --option diameter_unit=0.001$'),
-        (1.0, 100.0, 'diameters are in cm: add --option diameter_unit=0.01$'),
-        (100.0, 1.0, 'positions are in cm: add --option length_unit=0.01$'),
-        (1000.0, 1.0, 'positions are in mm: add --option length_unit=0.001$'),
-        (100.0, 100.0, 'in cm: add --option length_unit=0.01 --option diameter_unit=0.01$'),
-        (1000.0, 1000.0, 'in mm: add --option length_unit=0.001 --option diameter_unit=0.001$'),
-    ],
+    ('length', 'diameter'),
+    [(1.0, 1000.0), (1.0, 100.0), (100.0, 1.0), (1000.0, 1.0), (100.0, 100.0), (1000.0, 1000.0)],
 )
-def test_lengths_in_another_unit_are_refused(length: float, diameter: float, cure: str) -> None:
+def test_lengths_in_another_unit_are_refused(length: float, diameter: float) -> None:
     for height in (8.0, 20.0):
-        with pytest.raises(TreeError, match=cure):
+        with pytest.raises(TreeError, match=r'length_unit=0\.01 .* diameter_unit=0.001'):
             refuse_implausible(in_units(oak(height), length, diameter), OAK)
 
 

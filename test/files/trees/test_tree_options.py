@@ -65,8 +65,9 @@ def test_units_that_cannot_be_are_refused(tmp_path):
 
 
 def test_cylinders_are_scaled_before_anything_is_done_to_them():
-    plain = open_tree(DATA / 'forest.treefile.txt', tree=1)
-    scaled = open_tree(DATA / 'forest.treefile.txt', tree=1, length_unit=0.5, diameter_unit=0.5)
+    file, chosen = DATA / 'forest.treefile.txt', {'tree': 1, 'twig_diameter': 0.0}
+    plain = open_tree(file, **chosen)
+    scaled = open_tree(file, length_unit=0.5, diameter_unit=0.5, **chosen)
     np.testing.assert_allclose(scaled.tree.end, 0.5 * plain.tree.end, atol=1e-12)
     np.testing.assert_allclose(scaled.tree.tip_diameter, 0.5 * plain.tree.tip_diameter)
     np.testing.assert_allclose(scaled.origin, 0.5 * np.array(plain.origin))

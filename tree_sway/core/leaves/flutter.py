@@ -62,16 +62,6 @@ def leaf_poses(clusters: LeafClusters, poses: Floats, angle: ArrayLike = 0.0) ->
     return block
 
 
-def air_speed(positions: Floats, before: Floats, interval: float, wind: ArrayLike) -> Floats:
-    """
-    Speed of the air past each leaf in [m/s], (m,), in a wind [m/s], (m, 3) or (3,).
-
-    Positions are the centres of the clusters now and one interval [s] before in [m], (m, 3).
-    """
-    own = (positions - before) / interval
-    return np.asarray(np.linalg.norm(np.asarray(wind, dtype=np.float64) - own, axis=1))
-
-
 def leaf_list(clusters: LeafClusters) -> dict[str, object]:
     """
     Describe the leaves as plain numbers and lists, all that a viewer needs to draw them.

@@ -16,18 +16,22 @@ from tree_sway.core.arrays import Floats, Ints, Records
 
 def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Join small rotations (N, ...) from the root to displacements of branch tips, (b, 3, ...)."""
-    tips = carried_to(base_motion(branches, rotations), branches['tip'])
-    for own, rows in _moved(branches, rotations):
-        tips[rows] += _sums(branches['tip_mode'][rows, : own.shape[1]], own)
-    return tips
+    bases = base_motion(branches, rotations)
+    return carried_to(bases, branches['tip']) + own_motion(branches, 'tip_mode', rotations)
 
 
 def turn_of_branches(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Rotation vectors (b, 3, ...) in [rad] of branches by small rotations (N, ...)."""
-    turns = base_motion(branches, rotations)[:, 3:]
+    bases = base_motion(branches, rotations)
+    return bases[:, 3:] + own_motion(branches, 'load_rotation', rotations)
+
+
+def own_motion(branches: Records, mode: str, rotations: NDArray[Any]) -> NDArray[Any]:
+    """Sum a field of modes (b, k, 3) of branches by their own rotations (N, ...), (b, 3, ...)."""
+    motion = np.zeros((len(branches), 3, *rotations.shape[1:]), dtype=rotations.dtype)
     for own, rows in _moved(branches, rotations):
-        turns[rows] += _sums(branches['load_rotation'][rows, : own.shape[1]], own)
-    return turns
+        motion[rows] = _sums(branches[mode][rows, : own.shape[1]], own)
+    return motion
 
 
 def _moved(branches: Records, rotations: NDArray[Any]) -> Iterator[tuple[NDArray[Any], Ints]]:
@@ -44,19 +48,39 @@ def _sums(twists: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
     return moved.reshape(len(twists), twists.shape[2], *rotations.shape[2:])
 
 
-def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
-    """Motion (v, w) about the root of branches' bases, (b, 6, ...), by small turns (N, ...)."""
-    base = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
+def joint_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
+    """Motion (v, w) of bases about the root by their parents' rotations alone, (b, 6, ...)."""
+    motion = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
     parents = branches['parent']
     for own, rows in _moved(branches, rotations):
         place = np.full(len(branches) + 1, -1)
         place[rows] = np.arange(len(rows))
         children = np.flatnonzero(place[parents] >= 0)
         twists = branches['twist'][children, : own.shape[1]]
-        base[children] = _sums(twists, own[place[parents[children]]])
-    for branch in np.flatnonzero(parents > 0):  # children of the stem have all that is theirs
-        base[branch] += base[parents[branch]]
-    return base
+        motion[children] = _sums(twists, own[place[parents[children]]])
+    return motion
+
+
+def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
+    """Motion (v, w) about the root of branches' bases, (b, 6, ...), by small turns (N, ...)."""
+    parents = branches['parent']
+    return summed_outward(parents, levels_of(parents), joint_motion(branches, rotations))
+
+
+def summed_outward(parents: Ints, levels: list[Ints], joints: NDArray[Any]) -> NDArray[Any]:
+    """Add to what each branch has on its parent, (b, ...), what that one has from the root on."""
+    total = joints.copy()
+    for level in levels[1:]:  # children of the stem have all that is theirs
+        total[level] += total[parents[level]]
+    return total
+
+
+def levels_of(parent: Ints) -> list[Ints]:
+    """Branches as many steps from the stem as each other, the nearest first, without the stem."""
+    depth = np.zeros(len(parent), dtype=np.int64)
+    for b, below in enumerate(parent.tolist()):
+        depth[b] = depth[below] + 1 if below >= 0 else 0
+    return [np.flatnonzero(depth == k) for k in range(1, int(depth.max()) + 1)]
 
 
 def carried_to(motion: NDArray[Any], points: Floats) -> NDArray[Any]:

@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Records, Singles
+from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
 from tree_sway.core.motion.fill_records import load_records
-from tree_sway.core.motion.load_slopes import load_slopes, SCRATCH
+from tree_sway.core.motion.load_slopes import LoadSlopes
 from tree_sway.core.motion.modal import wind_moments
 from tree_sway.core.motion.plain.numpy_passes import NumpyPasses
 from tree_sway.core.motion.records import WORK
@@ -67,22 +67,9 @@ class WindMoments:
         passes.bent_loads(base, angles, force, moments)
         return moments
 
-    def slopes(self, x: Floats, wind: Floats, shapes: Singles) -> tuple[Singles, Singles]:
-        """
-        Differentiate modal loads by the amounts of shapes (N, m), and by their rates, both (m, m).
-
-        By the shape that moves, then the one that is loaded; the tree stands still at x, (N,).
-        """
-        self(x, np.zeros(self.n), wind)
-        m, level = shapes.shape[1], np.zeros(len(self.branches), dtype=np.int64)
-        for branch, parent in enumerate(self.branches['parent'][1:].tolist(), 1):
-            level[branch] = level[parent] + 1
-        rows = np.empty((int(level.max()) + 1, 12, m), dtype=np.float32)
-        centres, forces = np.empty((2, len(self.branches), 3, m), dtype=np.float32)
-        moments = np.empty((self.n, m), dtype=np.float32)
-        arrays = *self._records, shapes, np.zeros(1, SCRATCH), rows, centres, forces, moments
-        entry_of(load_slopes, *arrays)(*arrays)
-        return moments.T @ shapes, forces.reshape(-1, m).T @ centres.reshape(-1, m)
+    def slopes(self, shapes: Floats) -> LoadSlopes:
+        """Return the slopes of the loads on some shapes (N, m)."""
+        return LoadSlopes(self._records, self, shapes)
 
 
 def static_answers(

@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats, Singles
+from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
@@ -91,7 +91,7 @@ class WindBasisTable:
     ) -> None:
         """Find the loads of the tree in all winds."""
         self._shapes, self._loads = bank.shapes, wind_moments
-        self._single_shapes = np.ascontiguousarray(bank.shapes, dtype=np.float32)
+        self._slopes = wind_moments.slopes(bank.shapes)
         n, m = bank.shapes.shape
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m, COUNT[degree]))
@@ -113,10 +113,6 @@ class WindBasisTable:
 
     def _moments(self, x: Floats, v: Floats, wind: Floats) -> Floats:
         return self._loads(x, v, wind)
-
-    def _slopes(self, x: Floats, wind: Floats) -> tuple[Singles, Singles]:
-        """Slopes of the modal loads at x, (N,), by the coordinates and by their rates, (m, m)."""
-        return self._loads.slopes(x, wind, self._single_shapes)
 
     def _fit_harmonics(self, table: np.void, degree: int) -> None:
         """Fit the load at rest in winds of all azimuths, level ones to count for most."""

@@ -189,27 +189,6 @@ class Run:
         self._index = 1 if self._index is None else self._index + 1
         self._solve(self._index * self.period, wind, self.period * 1e-9)
 
-    def memory(self) -> tuple[int, int, list[float], list[tuple[int, list[float]]]]:
-        """Time, origin and wind between steps, and the samples to come, for `recall`."""
-        waiting = [(sample.time, sample.velocity.tolist()) for sample in self._samples]
-        return self.time or 0, self._origin, self._wind.memory(), waiting
-
-    def recall(
-        self, time: int, origin: int, wind: list[float], waiting: list[tuple[int, list[float]]]
-    ) -> None:
-        """
-        Continue from the `memory` of another run; its own newer samples stay.
-
-        A `ParameterError` for what no run has; this one stays as it was then.
-        """
-        fresh = self._make_wind()
-        fresh.recall(wind)
-        last = waiting[-1][0] if waiting else time
-        own = [sample for sample in self._samples if sample.time > last]
-        theirs = [GoodWind(stamp, np.array(velocity)) for stamp, velocity in waiting]
-        self._samples = deque([*theirs, *own], maxlen=_QUEUE)
-        self._wind, self._index, self._origin = fresh, time // self.period, origin
-
     def _begin(self, time: int) -> None:
         self._index = time // self.period - 1
         self._origin = time // _BLOCK * _BLOCK

@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 
@@ -61,11 +63,7 @@ class SwayRecord:
     strength: StrengthUse
 
     def columns(self) -> dict[str, Floats]:
-        """
-        Return every column, (t,), under its name with its unit, such as ``time [s]``.
-
-        ``pandas.DataFrame(record.columns())`` is the record as a data frame.
-        """
+        """Return every column, (t,), under its name with its unit, such as ``time [s]``."""
         vectors = [('wind', 'm/s', self.wind), ('moment', 'N m', self.base_moment)]
         tips = np.moveaxis(self.tips, 1, 0)
         vectors += [
@@ -77,6 +75,10 @@ class SwayRecord:
         found |= {f'strain_{s} [-]': self.base_strain[:, i] for i, s in enumerate(_SIDES)}
         names = enumerate(self.branch_names)
         return found | {f'{name} largest strain [-]': self.strain[:, k] for k, name in names}
+
+    def to_dataframe(self) -> Any:
+        """Return the columns as a data frame of pandas; a `ModuleNotFoundError` without it."""
+        return import_module('pandas').DataFrame(self.columns())
 
     def to_csv(self) -> str:
         """Return the record as comma-separated values under one line of names and units."""

@@ -284,7 +284,7 @@ class SwaySimulator:
 
         The force moves with the tree and keeps its direction. A new one on the same segment takes
         the place of the one before, so that who drags a branch says so again and again; after the
-        last one the tree swings freely. A state knows nothing of pushes, nor does a relay.
+        last one the tree swings freely. A state knows nothing of pushes.
 
         Parameters
         ----------

@@ -16,6 +16,7 @@ tree's own weight, fatigue, sheltering by neighbours. It is no verdict on a tree
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -51,6 +52,11 @@ class StrengthUse:
     branch: str
     height: float
     roots: Floats
+
+    def plain(self) -> dict[str, Any]:
+        """Return the same as plain numbers, for JSON; ``roots`` is None in a pot."""
+        roots = self.roots.tolist() if np.isfinite(self.roots).all() else None
+        return {**vars(self), 'wood': self.wood.tolist(), 'roots': roots}
 
     def __str__(self) -> str:
         """Say both with their bands on one line."""

@@ -16,7 +16,6 @@ Times are those of one clock, handed in by the caller; it may jump.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 import math
 
 import numpy as np
@@ -25,7 +24,6 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import three_numbers, within
 from tree_sway.core.wind.curve import WindCurve
-from tree_sway.core.wind.limits import is_wind
 from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway.errors import ParameterError
 
@@ -187,35 +185,6 @@ class WindAverage:
         if overdue <= 0.0:
             return 'holding'
         return 'decaying' if overdue <= _STALE_DECAYS * self._decay else 'stale'
-
-    def memory(self) -> list[float]:
-        """Return all that is carried from step to step as numbers, NaN for an unknown period."""
-        timing = self._timing.period or math.nan, self._timing.lateness
-        fade = self._fade_start, self._fade_end, *self._before.tolist()
-        knots = [number for time, value in self._curve.knots for number in (time, *value.tolist())]
-        return [self._newest, self._passed, *timing, float(self._is_new_clock), *fade, *knots]
-
-    def recall(self, memory: Sequence[float]) -> None:
-        """Continue from another's memory; a `ParameterError` for numbers that are no memory."""
-        try:
-            numbers = np.array(memory, dtype=np.float64).reshape(-1)
-            newest, passed, period, lateness, is_new, start, end = numbers[:7].tolist()
-            before, knots = numbers[7:10], numbers[10:].reshape(-1, 4)
-            is_sound = len(knots) > 0 and all(is_wind(*value) for value in (before, *knots[:, 1:]))
-            is_sound &= bool(np.isfinite([newest, lateness, *knots[:, 0]]).all())
-            is_sound &= bool((np.diff(knots[:, 0]) > 0.0).all()) and lateness >= 0.0
-            is_sound &= start <= end < math.inf and passed < math.inf and not period <= 0.0
-        except (ValueError, TypeError, OverflowError) as error:
-            raise ParameterError('numbers that are no wind', where='wind average') from error
-        if not is_sound:
-            raise ParameterError('a wind that cannot be', where='wind average')
-        self.reset()
-        for time, *value in knots.tolist():
-            self._curve.append(time, np.array(value))
-        self._before, self._fade_start, self._fade_end = before, start, end
-        self._timing.period = None if math.isnan(period) else period
-        self._timing.lateness, self._is_new_clock = lateness, bool(is_new)
-        self._newest, self._passed = newest, passed
 
     def _draw_to(self, time: float, value: Floats) -> None:
         """Draw the curve on to a new sample, from where the solver has passed at the earliest."""

@@ -16,7 +16,6 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.wind.simulated.spectra import von_karman_spectrum
 
 
 @dataclass(frozen=True)
@@ -75,7 +74,8 @@ class WindClimate:
         if self.record is None:
             spans = np.gradient(frequencies)
             spans[[0, -1]] *= 0.5
-            density = von_karman_spectrum(frequencies, 1.0, 1.0, self.integral_time)
+            time = self.integral_time
+            density = 4.0 * time * (1.0 + 70.8 * (frequencies * time) ** 2) ** (-5 / 6)
             return np.multiply.outer(density * spans, self.covariance)
         n = len(self.record)
         lines = np.fft.rfft(self.record, 2 * n, axis=0)

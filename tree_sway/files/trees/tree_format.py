@@ -13,8 +13,11 @@ from tree_sway.files.file_format import FileFormat
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.imported_tree import TreeFile
 
-AS_IT_IS = {'to_origin': False}
-"""Defaults of our own forms, whose trees are where they are meant to be."""
+MEASURED = {'twig_diameter': 0.0}
+"""Defaults of forms whose twigs are no thicker than they are."""
+
+AS_IT_IS = {'to_origin': False, **MEASURED}
+"""Defaults of our own forms, whose trees are also where they are meant to be."""
 
 
 @dataclass(frozen=True)

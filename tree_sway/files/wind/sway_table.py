@@ -55,8 +55,13 @@ class SwayRecord:
 
 
 def read_csv_sway(path: Path) -> SwayRecord:
+    """Read the motion of a tree from a table, as `parse_sway`."""
+    return parse_sway(read_lines(path), str(path))
+
+
+def parse_sway(lines: list[str], source: str) -> SwayRecord:
     """
-    Read the motion of a tree from a table.
+    Return the motion of a tree that the lines of a table hold.
 
     Raises
     ------
@@ -65,8 +70,7 @@ def read_csv_sway(path: Path) -> SwayRecord:
         cell that is no finite number.
 
     """
-    source = str(path)
-    table = parse_table(read_lines(path), source)
+    table = parse_table(lines, source)
     names = [name for name, _ in table.headings]
     clock = next((names.index(each) for each in COLUMNS['time']['names'] if each in names), None)
     motion = [(i, q) for i, (name, _) in enumerate(table.headings) if (q := _quantity(name))]

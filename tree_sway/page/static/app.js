@@ -208,7 +208,7 @@ function draw(now) {
   if (coordinates && stateNow()[0] === "live") {
     const [at, rest] = [scene.tip(), scene.restTip()];
     const isStrain = shown.value === "strain";
-    const value = isStrain ? scene.strain() : Math.hypot(...at.map((each, c) => each - rest[c]));
+    const value = isStrain ? scene.load().strain : Math.hypot(...at.map((each, c) => each - rest[c]));
     traces.wind.add(now / 1000, Math.hypot(...playout.wind));
     traces.tip.add(now / 1000, value);
     const { factor, unit } = shownUnit(value);

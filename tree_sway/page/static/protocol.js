@@ -33,6 +33,7 @@ const FRAME_SIZE = 28;
  * @property {number} height [m]
  * @property {string} model
  * @property {number} basis_error what the basis leaves out [m]
+ * @property {number} [modulus] Young's modulus of its wood [Pa]
  * @property {string[]} branch_names
  * @property {number} nSegments
  * @property {number} nBranches

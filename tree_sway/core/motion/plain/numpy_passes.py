@@ -22,6 +22,7 @@ from tree_sway.core.motion.plain.numpy_rotation import (
     turned_by,
 )
 from tree_sway.core.motion.records import LANES
+from tree_sway.core.motion.response import levels_of
 
 
 class Bases(NamedTuple):
@@ -162,7 +163,9 @@ class NumpyPasses:
 
 def cross_matrices(vectors: Floats) -> Floats:
     """Matrices whose products are the cross products of vectors (n, 3), (n, 3, 3)."""
-    return np.asarray(np.cross(vectors[:, None], np.eye(3)).swapaxes(1, 2))
+    matrices = np.zeros((len(vectors), 3, 3))
+    matrices[:, [2, 0, 1], [1, 2, 0]], matrices[:, [1, 2, 0], [2, 0, 1]] = vectors, -vectors
+    return matrices
 
 
 def even_wind_moments(branches: Records, n_coordinates: int, winds: Floats) -> Floats:
@@ -176,14 +179,6 @@ def even_wind_moments(branches: Records, n_coordinates: int, winds: Floats) -> F
         force = passes.wind_forces(still, at_rest, at_rest, wind, 1.0, none, impulse)
         passes.bent_loads(still, at_rest, force, moment)
     return moments.T
-
-
-def levels_of(parent: NDArray[np.int64]) -> list[NDArray[np.int64]]:
-    """Branches as many steps from the stem as each other, the nearest first, without the stem."""
-    depth = np.zeros(len(parent), dtype=np.int64)
-    for b, below in enumerate(parent.tolist()):
-        depth[b] = depth[below] + 1 if below >= 0 else 0
-    return [np.flatnonzero(depth == k) for k in range(1, int(depth.max()) + 1)]
 
 
 def of_lanes(field: Floats, count: int) -> Floats:

@@ -35,8 +35,6 @@ class AnemometerModel:
         Mean wind speed in [m/s], 0 to 40; a mean of 0 has no turbulence.
     bearing_to
         Where the mean wind blows to, clockwise from north in [rad]; the default is a westerly.
-    turbulence
-        ``kaimal``, ``von_karman`` or ``none``.
     height, intensity
         As in `Turbulence`.
     rate
@@ -59,7 +57,6 @@ class AnemometerModel:
         mean_speed: float = 5.0,
         *,
         bearing_to: float = 0.5 * np.pi,
-        turbulence: str = 'kaimal',
         height: float = 10.0,
         intensity: float | None = None,
         rate: float = 20.0,
@@ -74,12 +71,11 @@ class AnemometerModel:
         self._events = tuple(events)
         self._mean = np.array([mean_speed, 0.0, 0.0])
         self._gusts = np.zeros((1, 3))
-        if turbulence != 'none':
-            parameters = Turbulence(mean_speed or 1.0, turbulence, height, intensity)
-            rng = np.random.default_rng(int(within('seed', seed, 0, 2**63)))
-            if mean_speed > 0.0:
-                n_samples = max(_SAMPLES, round(SHORTEST_PERIOD * rate))
-                self._gusts = parameters.record(n_samples, rate, rng)
+        turbulence = Turbulence(mean_speed or 1.0, height, intensity)
+        rng = np.random.default_rng(int(within('seed', seed, 0, 2**63)))
+        if mean_speed > 0.0:
+            n_samples = max(_SAMPLES, round(SHORTEST_PERIOD * rate))
+            self._gusts = turbulence.record(n_samples, rate, rng)
 
     def sample(self, tick: int) -> Floats:
         """Wind at a tick of the sample period from 0 on: blowing to, ENU in [m/s], (3,)."""

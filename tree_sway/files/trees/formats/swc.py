@@ -20,7 +20,7 @@ from tree_sway.files.table_file import filled_lines, parse_columns
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
-from tree_sway.files.trees.tree_format import TreeFormat
+from tree_sway.files.trees.tree_format import MEASURED, TreeFormat
 
 _COLUMNS = ('number', 'type', 'x', 'y', 'z', 'radius', 'parent')
 
@@ -57,4 +57,4 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     return tuple(trees)
 
 
-FORMAT = TreeFormat('swc', ('.swc',), _is_swc, _read)
+FORMAT = TreeFormat('swc', ('.swc',), _is_swc, _read, MEASURED)

@@ -22,7 +22,7 @@ export class Camera {
     this.eye = [0, 0, 0];
   }
 
-  /** Frame a scene. @param {Vector} low corner of its box @param {Vector} high */
+  /** Frame a scene. @param {number[]} low corner of its box @param {number[]} high */
   frame(low, high) {
     this._home = () => {
       const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);

@@ -11,7 +11,7 @@ import pytest
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.pictures.projection import Camera
+from tree_sway.pictures.tree_drawing import ELEVATION, seen
 
 POINTS = arrays(np.float64, (5, 3), elements=st.floats(-10, 10))
 
@@ -39,22 +39,17 @@ def test_a_quarter_turn_about_z_takes_x_to_y() -> None:
     np.testing.assert_allclose(end, [[1.0, 4.0, 3.0]], atol=1e-12)
 
 
-@given(points=POINTS, elevation=st.floats(-1.5, 1.5))
-def test_projection_keeps_distances(points: np.ndarray, elevation: float) -> None:
-    seen = Camera(elevation).project(points)
+@given(points=POINTS)
+def test_projection_keeps_distances(points: np.ndarray) -> None:
+    shown = seen(points)
     np.testing.assert_allclose(
-        np.linalg.norm(seen[1:] - seen[0], axis=1),
+        np.linalg.norm(shown[1:] - shown[0], axis=1),
         np.linalg.norm(points[1:] - points[0], axis=1),
         atol=1e-9,
     )
 
 
-def test_from_the_south_east_is_right_and_north_is_away() -> None:
-    seen = Camera(elevation=0.0).project(np.eye(3))
-    np.testing.assert_allclose(seen, [[1, 0, 0], [0, 0, 1], [0, 1, 0]], atol=1e-12)
-
-
-def test_from_above_what_is_farther_is_higher_in_the_picture() -> None:
-    near, far = Camera(elevation=0.3).project([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    assert far[1] > near[1]
-    assert far[2] > near[2]
+def test_from_the_south_and_above_east_is_right_and_north_is_away_and_higher() -> None:
+    sine, cosine = np.sin(ELEVATION), np.cos(ELEVATION)
+    expected = [[1, 0, 0], [0, sine, cosine], [0, cosine, -sine]]
+    np.testing.assert_allclose(seen(np.eye(3)), expected, atol=1e-12)

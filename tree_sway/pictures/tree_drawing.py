@@ -1,0 +1,174 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Trees on the axes of matplotlib: bark as thick as it is, leaves, what is far away paler.
+
+They are seen without perspective from the south, a little from above: east is right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.leaves.flutter import leaf_poses
+from tree_sway.core.leaves.foliage import LeafClusters
+from tree_sway.core.tree.segment_frame import ends_of_poses
+from tree_sway.core.tree.species import bark_color, leaf_traits
+from tree_sway.core.tree.tree import Tree
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+ELEVATION = 0.12
+"""Angle at which trees are looked down at in [rad]."""
+_MARGIN = 0.06
+_SHADE, _HAZE = 0.68, 0.5
+"""Brightness of near bark over that of bark in the sun; how far far bark fades to white."""
+_TWIG = np.array([0.36, 0.28, 0.22])
+_SUN = np.array([-0.35, -0.5, 0.8]) / np.linalg.norm([-0.35, -0.5, 0.8])
+# A leaf that shows the area of the disc that its cluster is as wide as, from its stalk on.
+_BLADE = np.array([[-0.8, 0.0, 0.0], [0.0, 0.48, 0.0], [0.8, 0.0, 0.0], [0.0, -0.48, 0.0]])
+_NEEDLES_WIDTH = 0.4
+"""Width of a spray of needles over that of a leaf."""
+_WIND, _GHOST, _SHADOW = '#1f6fb4', '#dedad6', '#e2e2e0'
+
+Limits = tuple[tuple[float, float], tuple[float, float]]
+"""What part of the picture plane is shown: from left to right, from bottom to top, in [m]."""
+
+
+def seen(points: ArrayLike) -> Floats:
+    """Right, up and away of points (..., 3), all in [m]."""
+    down, level = np.sin(ELEVATION), np.cos(ELEVATION)
+    rows = np.array([[1.0, 0.0, 0.0], [0.0, down, level], [0.0, level, -down]])
+    return np.asarray(np.asarray(points, dtype=np.float64) @ rows.T)
+
+
+def limits_around(points: Floats) -> Limits:
+    """Frame all points [m], (n, 3), with a margin round them and room for the wind above."""
+    low, high = seen(points)[:, :2].min(axis=0), seen(points)[:, :2].max(axis=0)
+    wide, tall = (high - low).tolist()
+    size = max(tall, 0.4 * wide)
+    half = max(0.5 * wide, 0.3 * size) + _MARGIN * size
+    middle = 0.5 * float(low[0] + high[0])
+    return (middle - half, middle + half), (
+        float(low[1]) - 0.1 * size,
+        float(high[1]) + 0.16 * size,
+    )
+
+
+def draw_trees(
+    axes: Axes,
+    trees: Sequence[Tree],
+    poses: ArrayLike,
+    limits: Limits,
+    *,
+    wind: ArrayLike = (0.0, 0.0, 0.0),
+    leaves: LeafClusters | None = None,
+    flutter: ArrayLike = 0.0,
+    has_ghost: bool = False,
+) -> None:
+    """
+    Draw trees in place of what the axes show.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    trees, poses
+        The trees, and the pose block of all their segments, one tree after the other, (n, 7).
+    limits
+        What is shown, as of `limits_around`.
+    wind
+        Wind in [m/s], (3,), shown by an arrow; (0, 0, 0) for no arrow.
+    leaves, flutter
+        Leaves on these segments, if any, and how far each is turned, as of `leaf_poses`.
+    has_ghost
+        Whether to draw the shape at rest behind.
+
+    """
+    from matplotlib.collections import EllipseCollection, PolyCollection
+
+    axes.clear()
+    axes.axis('off')
+    axes.set(xlim=limits[0], ylim=limits[1], aspect='equal')
+    roots = seen([tree.start[0] for tree in trees])[:, :2]
+    wide = [0.5 * float(np.ptp(tree.end[:, 0])) for tree in trees]
+    axes.add_collection(
+        EllipseCollection(
+            wide, np.multiply(wide, np.sin(ELEVATION)), 0.0,
+            units='xy', offsets=roots, offset_transform=axes.transData, color=_SHADOW,
+        )
+    )  # fmt: skip
+    length = np.concatenate([tree.length for tree in trees])
+    block = np.asarray(poses, dtype=np.float64)
+    if has_ghost:
+        rest = np.vstack([tree.rest_poses for tree in trees])
+        ghost = _tapered(trees, *ends_of_poses(rest, length))[..., :2]
+        axes.add_collection(PolyCollection(ghost, color=_GHOST))  # type: ignore[arg-type]
+    shapes = _tapered(trees, *ends_of_poses(block, length))
+    colors = np.vstack([_bark(tree) for tree in trees])
+    if leaves is not None:
+        blades, green = _blades(trees, leaves, leaf_poses(leaves, block, flutter))
+        shapes, colors = np.concatenate([shapes, blades]), np.concatenate([colors, green])
+    away = shapes[..., 2].mean(axis=1)
+    far_first = np.argsort(-away)
+    span = max(float(np.ptp(away)), 0.3 * (limits[1][1] - limits[1][0]))
+    depth = 0.5 + (away - 0.5 * (away.min() + away.max())) / span
+    colors += _HAZE * depth[:, None] * (1.0 - colors)
+    painted = {'facecolors': colors[far_first], 'edgecolors': 'face', 'linewidths': 0.4}
+    corners = shapes[far_first, :, :2]
+    axes.add_collection(PolyCollection(corners, **painted))  # type: ignore[arg-type]
+    _draw_wind(axes, np.asarray(wind, dtype=np.float64), limits)
+
+
+def _tapered(trees: Sequence[Tree], start: Floats, end: Floats) -> Floats:
+    """Four corners of each segment: right, up and away, (n, 4, 3)."""
+    base, tip = seen(start), seen(end)
+    across = np.cross(tip - base, [0.0, 0.0, 1.0])
+    across /= np.maximum(np.linalg.norm(across, axis=1), 1e-12)[:, None]
+    below = 0.5 * np.concatenate([tree.base_diameter for tree in trees])[:, None] * across
+    above = 0.5 * np.concatenate([tree.tip_diameter for tree in trees])[:, None] * across
+    return np.stack([base - below, base + below, tip + above, tip - above], axis=1)
+
+
+def _bark(tree: Tree) -> Floats:
+    """Colour of each segment, (n, 3): twigs are brown, whatever the bark of old wood is."""
+    old = np.clip(tree.base_diameter / (0.2 * tree.base_diameter[0]), 0.0, 1.0)[:, None]
+    return np.asarray(_SHADE * (_TWIG + old * (np.array(bark_color(tree.species)) - _TWIG)))
+
+
+def _blades(trees: Sequence[Tree], leaves: LeafClusters, placed: Floats) -> tuple[Floats, Floats]:
+    """Corners of each leaf: right, up and away, (m, 4, 3), and its colour, (m, 3)."""
+    from scipy.spatial.transform import Rotation
+
+    traits = [leaf_traits(tree.species) for tree in trees]
+    ends = np.cumsum([tree.n_segments for tree in trees])
+    own = np.searchsorted(ends, leaves.segment, side='right')
+    width = np.where([each.are_needles for each in traits], _NEEDLES_WIDTH, 1.0)[own]
+    blade = leaves.size[:, None, None] * _BLADE
+    blade[..., 1] *= width[:, None]
+    turn = Rotation.from_quat(placed[:, 3:]).as_matrix()
+    corners = placed[:, None, :3] + np.einsum('mij,mkj->mki', turn, blade)
+    # A leaf shines through: lit from either side.
+    light = 0.6 + 0.55 * np.abs(turn[..., 2] @ _SUN)
+    green = light[:, None] * np.array([each.green for each in traits])[own]
+    return seen(corners), np.clip(green, 0.0, 1.0)
+
+
+def _draw_wind(axes: Axes, wind: Floats, limits: Limits) -> None:
+    """Draw an arrow along the wind in the upper left corner, with its speed."""
+    speed = float(np.linalg.norm(wind))
+    if speed == 0.0:
+        return
+    (left, _), (bottom, top) = limits
+    size = top - bottom
+    x, y = left + 0.14 * size, top - 0.1 * size
+    right, up, _ = (0.08 * size * seen(wind) / speed).tolist()
+    arrow = {'arrowstyle': '-|>', 'color': _WIND, 'lw': 1.6, 'shrinkA': 0.0, 'shrinkB': 0.0}
+    axes.annotate('', (x + right, y + up), (x - right, y - up), arrowprops=arrow)
+    axes.text(x, y + 0.03 * size, f'{speed:.1f} m/s', color=_WIND, ha='center', va='bottom')
