@@ -180,7 +180,8 @@ class Session:
         if not isinstance(simulator, SwaySimulator):
             raise ParameterError('a stand', where='pull', cure='show one tree to pull at it')
         if not 0 <= segment < simulator.tree.n_segments or simulator.model == 'branch':
-            raise ParameterError(f"no segment {segment} of model '{simulator.model}'", where='pull')
+            what = f"no segment {segment} of model '{simulator.model}'"
+            raise ParameterError(what, where='pull')
         force = Spring(to, stiffness) if stiffness else (0.0, 0.0, 0.0)
         lasts = _PULL_LASTS if stiffness else 1e-9
 

@@ -203,7 +203,7 @@ def test_a_spring_holds_a_branch_between_its_rest_and_its_place(tree, model, sti
     segment = outer_segment(tree)
     sim = make_simulator(tree, WOOD, model=model)
     rest = 0.5 * (tree.start[segment] + tree.end[segment])
-    to = rest + (0.2, 0.1, 0.0)
+    to = rest + np.array([0.2, 0.1, 0.0])
     for _ in range(round(20.0 / DT)):
         sim.push(segment, Spring(to, stiffness), 0.5)
         sim.step(CALM, DT)

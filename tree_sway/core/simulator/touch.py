@@ -105,9 +105,7 @@ class Touch:
         """Whether anybody pushes."""
         return bool(self._pushes)
 
-    def add(
-        self, segment: int, force: ArrayLike | Spring, seconds: float, along: float
-    ) -> None:
+    def add(self, segment: int, force: ArrayLike | Spring, seconds: float, along: float) -> None:
         """Begin a push, or change that on the same segment; a `ParameterError` as of `push`."""
         stiffness = 0.0
         if isinstance(force, Spring):
@@ -126,8 +124,8 @@ class Touch:
         before = self._pushes.get(push.segment)
         if before is None and len(self._pushes) >= MOST_PUSHES:
             raise ParameterError(f'more than {MOST_PUSHES} pushes at once', where='push')
-        is_same = before is not None and (before.away, before.stiffness > 0) == (away, stiffness > 0)
-        if before is not None and is_same:
+        is_spring = stiffness > 0.0
+        if before is not None and (before.away, before.stiffness > 0.0) == (away, is_spring):
             push.lever, push.renewed_in = before.lever, before.renewed_in
             push.compliance = before.compliance
         self._pushes[push.segment] = push

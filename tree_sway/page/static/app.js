@@ -5,6 +5,7 @@
 import { TreeStream } from "./client.js";
 import { DAYLIGHT } from "./drawing/backdrop.js";
 import { Scene } from "./drawing/scene.js";
+import { Hands } from "./hands.js";
 import { readLink, savePicture, viewLink } from "./keepsake.js";
 import { keptScene, OwnLine } from "./own_line.js";
 import { Panel } from "./panel.js";
@@ -101,6 +102,7 @@ const stream = new TreeStream(location.href, {
       controls = message.hello.controls;
       panel.build(controls);
       element("panel").hidden = controls.length === 0;
+      if (hands) hands.canPull = message.hello.can_pull === true;
     }
     if (message.refused) toast(message.refused.reason);
     if (message.unreadable) toast(message.unreadable);
@@ -113,6 +115,7 @@ const stream = new TreeStream(location.href, {
 }, { kept, byWind: new URLSearchParams(location.search).has("solve") });
 
 const { connection, playout } = stream;
+const hands = scene && new Hands({ scene, stream }, toast);
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
 
 /** @returns {["live" | "paused" | "behind" | "empty" | "connecting" | "lost", string]} */
@@ -198,13 +201,14 @@ const modelName = (model) => (/^\d+$/.test(model) ? word("coordinates", model) :
 /** @param {number} now */
 function draw(now) {
   requestAnimationFrame(draw);
-  if (!scene) return;
+  if (!scene || hands?.isAway) return;
   const coordinates = stream.sample();
   scene.wind = playout.wind;
   if (!playout.isPaused) sceneTime += Math.min(now - lastDrawn, 100) / 1000;
   lastDrawn = now;
   scene.draw(coordinates, sceneTime, playout.isPaused);
   drawn += 1;
+  hands?.frame({ scene, stream });
   if (coordinates && stateNow()[0] === "live") {
     const [at, rest] = [scene.tip(), scene.restTip()];
     const isStrain = shown.value === "strain";
@@ -379,6 +383,7 @@ Object.assign(window, {
     connection,
     playout,
     traces,
+    hands,
     get scene() {
       return scene;
     },

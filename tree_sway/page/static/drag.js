@@ -2,18 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 /** A branch pulled by hand: a spring to the pointer, and the pull test when it is let go. */
 
-import { STRIDE } from "./placing.js";
+import { KindPlacer, STRIDE } from "./placing.js";
+import { chainTo, Touch } from "./touch.js";
 import { word } from "./words.js";
-import { saveFile } from "./keepsake.js";
-import { chainTo } from "./touch.js";
 
-/** Modulus of green wood [Pa], for a spring about as stiff as what it pulls at. */
+/** Modulus of wood whose own is not described [Pa]. */
 const MODULUS = 8e9;
 const RENEW_EVERY = 100;
+const [HARDER, STIFFEST] = [1.4, 1e5];
 /** A free decay is recorded for this time [s], and offered from the other on. */
 const [RECORDED, OFFERED] = [30, 3];
+/** Until a tree elsewhere is surely let go [ms]. */
+const RELEASED = 250;
 
-/** Stiffness of a cantilever of what bears a segment [N/m].
+/** Stiffness of the wood that bears a segment [N/m]: a spring of it bends a branch half the way.
  * @param {import("./drawing/scene.js").Scene} scene @param {number} segment of the watched tree */
 function stiffnessAt(scene, segment) {
   const { kind, rest, place } = scene.watched;
@@ -22,10 +24,10 @@ function stiffnessAt(scene, segment) {
   for (const branch of chainTo(kind, segment)) {
     for (let s = first[branch]; s < Math.min(first[branch + 1], segment); s++) {
       const away = Math.hypot(...[0, 1, 2].map((c) => rest[STRIDE * segment + c] - rest[STRIDE * s + c]));
-      compliance += (away ** 2 * length[s]) / ((MODULUS * Math.PI * radius[2 * s] ** 4) / 4);
+      compliance += (away ** 2 * length[s]) / ((kind.modulus ?? MODULUS) * 0.25 * Math.PI * radius[2 * s] ** 4);
     }
   }
-  return Math.min(1e6, place[4] / Math.max(compliance, 1e-9));
+  return Math.min(STIFFEST, place[4] / Math.max(compliance, 1e-9));
 }
 
 /** The hand at a branch: where it was, what it pulls by, and what came of it. */
@@ -41,8 +43,12 @@ export class Pull {
     this._sentAt = -Infinity;
     /** Time [s] and displacement [m] since it was let go. @type {number[][]} */
     this.record = [];
-    this._from = 0;
+    this._from = Infinity;
     this.isHeld = true;
+    /** @type {Touch | null} */
+    this._touch = null;
+    /** @type {KindPlacer | null} */
+    this._placer = null;
   }
 
   /** What the spring pulls by [N]. */
@@ -51,26 +57,37 @@ export class Pull {
     return this.isHeld ? this.stiffness * Math.hypot(...this.to.map((each, c) => each - at[c])) : 0;
   }
 
-  /** Pull on, now and then. @param {number} now [ms] */
+  /** Pull on, now and then, harder until the branch comes half of the way. @param {number} now [ms] */
   renew(now) {
     if (!this.isHeld || now - this._sentAt < RENEW_EVERY) return;
     this._sentAt = now;
+    const [at, rest] = [this.scene.position(this.segment), this.scene.restPosition(this.segment)];
+    const [left, whole] = [at, rest].map((from) => Math.hypot(...this.to.map((each, c) => each - from[c])));
+    if (left > 0.5 * whole) this.stiffness = Math.min(HARDER * this.stiffness, STIFFEST);
     this._say(this.stiffness);
   }
 
-  /** Let go. @param {number} now [ms] */
-  release(now) {
+  /** Let go; the free decay begins with the state that comes next. */
+  release() {
     this.isHeld = false;
-    this._from = now;
+    this._from = this.stream.playout.newest + RELEASED;
     this._say(0);
   }
 
-  /** Note where it is. @param {number} now [ms] */
-  note(now) {
-    const time = (now - this._from) / 1000;
-    if (this.isHeld || time > RECORDED) return;
+  /** Note where the states since the last have it. */
+  note() {
+    const { description, playout } = this.stream;
+    if (this.isHeld || !description) return;
+    this._touch ??= new Touch(description, this.scene.watched.number);
+    this._placer ??= new KindPlacer(this._touch.kind, chainTo(this._touch.kind, this.segment));
+    const { firstCoordinate: first } = this._touch.tree;
     const rest = this.scene.restPosition(this.segment);
-    this.record.push([time, ...this.scene.position(this.segment).map((each, c) => each - rest[c])]);
+    for (const { stamp, coordinates } of playout.since(this._from + 1000 * this.seconds)) {
+      const own = Float64Array.from(coordinates.subarray(first, first + this._touch.kind.nCoordinates));
+      const at = this._touch.place(this._placer, this.segment, own);
+      const time = (stamp - this._from) / 1000;
+      if (time <= RECORDED) this.record.push([time, ...rest.map((each, c) => at[c] - each)]);
+    }
   }
 
   /** How long the record is [s]. */
@@ -96,7 +113,7 @@ export class Drag {
   constructor(scene, stream) {
     this.scene = scene;
     this.stream = stream;
-    this.isOn = true;
+    this.isOn = false;
     /** @type {Pull | null} */
     this.pull = null;
     this._pointer = -1;
@@ -104,8 +121,12 @@ export class Drag {
       Object.assign(document.body.appendChild(document.createElement(tag)), { id, hidden: true });
     this._line = box("i", "pull-line");
     this._label = box("output", "pull-force");
-    this._save = box("button", "pull-save");
-    this._save.addEventListener("click", () => this.save());
+    this._save = /** @type {HTMLAnchorElement} */ (box("a", "pull-save"));
+    this._save.download = "pull_test.csv";
+    this._save.addEventListener("click", () => {
+      const text = new Blob([this.pull?.csv() ?? ""], { type: "text/csv" });
+      this._save.href = URL.createObjectURL(text);
+    });
     const listen = (/** @type {"pointerdown" | "pointermove" | "pointerup" | "pointercancel"} */ type,
       /** @type {(event: PointerEvent) => void} */ act) => scene.canvas.addEventListener(type, (event) => {
       if (type === "pointerdown" ? !this.isOn || !this._grab(event) : event.pointerId !== this._pointer) return;
@@ -136,7 +157,7 @@ export class Drag {
 
   _release() {
     this._pointer = -1;
-    this.pull?.release(this.stream.playout.shown);
+    this.pull?.release();
   }
 
   /** Go on with what is drawn. */
@@ -145,7 +166,7 @@ export class Drag {
     line.hidden = label.hidden = !pull?.isHeld;
     if (!pull) return;
     pull.renew(performance.now());
-    pull.note(this.stream.playout.shown);
+    pull.note();
     this._save.hidden = pull.isHeld || pull.seconds < OFFERED;
     this._save.textContent = word("decay", pull.seconds.toFixed(0));
     if (!pull.isHeld) return;
@@ -155,10 +176,5 @@ export class Drag {
       + `rotate:${Math.atan2(v - y, u - x)}rad`;
     label.style.cssText = `left:${u + 14}px;top:${v - 14}px`;
     label.textContent = `${Number(pull.force.toPrecision(3))} N`;
-  }
-
-  /** Take the free decay away. */
-  save() {
-    if (this.pull) saveFile(new Blob([this.pull.csv()], { type: "text/csv" }), "pull_test.csv");
   }
 }

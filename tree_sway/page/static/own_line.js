@@ -85,7 +85,7 @@ export class OwnLine {
     this.close();
     this.listeners.onState("open", 0);
     this.listeners.onDescription(this.description);
-    this.listeners.onMessage({ hello: { controls: controlsOf(this._turbulence.values) } });
+    this.listeners.onMessage({ hello: { controls: controlsOf(this._turbulence.values), can_pull: true } });
     this._time = Date.now();
     this._timer = setInterval(() => this._go(), 1000 * this.stand.dt / 2);
     this._line?.open();
@@ -95,8 +95,9 @@ export class OwnLine {
     clearInterval(this._timer);
   }
 
-  /** Take a change of a control. @param {Record<string, any>} message */
-  send({ set }) {
+  /** Take a change of a control, or a pull. @param {Record<string, any>} message */
+  send({ set, pull }) {
+    if (pull) this.stand.push(pull);
     if (!set) return;
     const { name, value } = set;
     if (name === "reset") {

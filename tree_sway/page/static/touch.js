@@ -52,7 +52,7 @@ export class Touch {
 
   /** Where the root side of a segment is [m]. @param {KindPlacer} placer @param {number} segment
    * @param {Float64Array} coordinates of this tree */
-  _place(placer, segment, coordinates) {
+  place(placer, segment, coordinates) {
     const count = placer.order.length;
     const poses = new Float32Array(STRIDE * placer.reached[count]);
     placer.place(coordinates, 0, this.tree.place, count, poses, 0);
@@ -66,7 +66,7 @@ export class Touch {
     const { m, scratch: [, , , diagonal] } = state.table;
     const size = this.tree.place[4] ** 3;
     for (const [segment, each] of this._pushes) {
-      const at = this._place(each.placer, segment, coordinates);
+      const at = this.place(each.placer, segment, coordinates);
       if (each.renewedIn <= 0) this._renew(segment, each, state.table, coordinates);
       const { lever, push } = each;
       // The step was implicit in the damping of each coordinate.
@@ -101,7 +101,7 @@ export class Touch {
     for (let k = 0; k < n; k++) {
       const by = SHARE * this.description.scale[this.tree.firstCoordinate + k];
       const [there, back] = [by, -by].map((step) =>
-        this._place(push.placer, segment, coordinates.map((c, j) => (j === k ? c + step : c))));
+        this.place(push.placer, segment, coordinates.map((c, j) => (j === k ? c + step : c))));
       for (let a = 0; a < 3; a++) {
         const slope = by > 0 ? (there[a] - back[a]) / (2 * by) : 0;
         for (let i = 0; i < m; i++) push.lever[3 * i + a] += slope * matrix[i * n + k];
