@@ -89,9 +89,10 @@ def test_plot_draws_it(
 
 
 def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -> None:
-    out = tmp_path / 'glade.gltf'
+    out = tmp_path / 'glade.glb'
     assert cli.main(['convert', forest, '-o', str(out)]) == 0
-    document = json.loads(out.read_text())
+    size = int.from_bytes(out.read_bytes()[12:16], 'little')
+    document = json.loads(out.read_bytes()[20 : 20 + size])
     names = [document['nodes'][joint]['name'] for joint in document['skins'][0]['joints']]
     assert names == list(open_scene(forest).tree.segment_names)
 

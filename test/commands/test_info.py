@@ -59,7 +59,7 @@ def test_its_own_weight_makes_a_tree_softer(
     assert with_weight < 0.99 * without
 
 
-def test_a_tree_that_cannot_stand_still_tells_its_size(
+def test_a_tree_that_cannot_stand_has_its_size_reported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = write_pole(tmp_path / 'pole.yaml', 30.0, 0.02)
@@ -112,7 +112,7 @@ def test_wood_in_another_unit_is_refused(
     assert cure in capsys.readouterr().err
 
 
-def test_what_is_odd_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_odd_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     assert facts(capsys, 'goldcrest')['warnings'] == []
     odd = facts(capsys, 'goldcrest', '--modulus', '1e11')['warnings']
     assert [each.split(',')[0] for each in odd] == ['a modulus of 100 GPa']

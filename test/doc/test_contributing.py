@@ -73,13 +73,12 @@ CHANGES = {
         'from tree_sway.core.wind.simulated.turbulence import REFERENCE_INTENSITY as i; print(i)',
         '0.16',
     ),
-    'event': (
-        'tree_sway/core/wind/simulated/gust_event.py',
-        "    'step': _Shape(lambda x: x, lasts=True),\n",
-        "    'step': _Shape(lambda x: x, lasts=True),\n    'surge': _Shape(lambda x: x * x),\n",
-        'from tree_sway.core.wind.simulated.gust_event import GustEvent;'
-        "print(GustEvent('surge', 4.0, 2.0).at(1.0))",
-        '1.0',
+    'fault': (
+        'tree_sway/core/wind/simulated/sensor_faults.py', '_SPIKE = 20.0', '_SPIKE = 30.0',
+        'from tree_sway.core.wind.simulated.sensor_faults import SensorFaults;'
+        "faults = SensorFaults('spike', every=1.0, duration=0.5);"
+        'print(*(float(each.vector[0]) for each in faults.sent(1.0, 0, [0.0, 0.0, 0.0])))',
+        '30.0',
     ),
     'flutter': (
         'tree_sway/core/leaves/flutter.py', 'LARGEST_ANGLE = 0.7', 'LARGEST_ANGLE = 0.5',

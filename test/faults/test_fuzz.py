@@ -119,15 +119,9 @@ def fuzz(wind, solver, n, seed):
     """
     from tree_sway_ros.timing.pacer import Tick
 
-    rng, clock, sender, filtered, planes = np.random.default_rng(seed), Clock(), Sender(), [], []
+    rng, clock, sender, planes = np.random.default_rng(seed), Clock(), Sender(), []
     wind._clock = solver._clock = clock
-    wind._filtered, wind._plane = Outlet(filtered.append), Outlet(planes.append)
-
-    def arrived():
-        while filtered:
-            yield filtered.pop(0)
-
-    solver._new_wind = arrived
+    wind._filtered, wind._plane = Outlet(solver._receive), Outlet(planes.append)
     solver._tick(Tick(clock.nanoseconds // PERIOD * PERIOD, 1, True))
     poses = np.empty((BLOCK // PER_FRAME, *solver.simulator.place().shape))
     for block in range(n // BLOCK):

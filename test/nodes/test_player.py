@@ -14,7 +14,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: E402
 
 from tree_sway.errors import TreeSwayError  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
-from tree_sway_ros.process.topics import CLOCK, WIND  # noqa: E402
+from tree_sway_ros.process.topics import CLOCK, SEGMENT_POSES, WIND  # noqa: E402
 from tree_sway_ros.timing.playback import LONGEST_CLOCK_STEP  # noqa: E402
 from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
@@ -56,6 +56,39 @@ def test_the_clock_goes_on_over_the_seam_of_a_loop(compose, observer, wind_file)
     assert (np.diff(stamps) > 0).all()
     assert np.median(np.diff(stamps)) == pytest.approx(5e7, abs=2)
     assert stamps[0] >= 10**9
+
+
+def poses_of(compose, observer, wind_file, tree_file, rate):
+    """Return what a whole record moves a tree to, by the stamp of the frame in [ns]."""
+    frames = observer.listen(SEGMENT_POSES, depth=1000)
+    simulated = {'use_sim_time': True}
+    nodes = compose(
+        solver={'tree': tree_file, 'wind_delay': 1.0, **simulated},
+        wind=simulated,
+        player={'file': wind_file, 'publish_clock': True, 'loop': False, 'rate': rate},
+    )
+    observer.until(lambda: nodes.is_done, 'the end of the record', deadline=60.0)
+    nodes.close()
+    return {
+        stamp_to_ns(frame.header.stamp): [
+            (pose.position.x, pose.position.y, pose.orientation.w) for pose in frame.poses
+        ]
+        for frame in frames
+    }
+
+
+def test_replays_are_the_same_bit_for_bit_whatever_the_machine_does_beside(
+    compose, observer, wind_file, tree_file
+):
+    """Samples that arrive within `wind_delay` are felt at their own times."""
+    first, *others = [
+        poses_of(compose, observer, wind_file, tree_file, r) for r in (1.0, 1.0, 4.0)
+    ]
+    assert max(poses[2][0] for poses in first.values()) > 1e-3
+    for found in others:
+        both = [stamp for stamp in sorted({*first} & {*found}) if stamp > 10**9]
+        assert len(both) > 200
+        assert [stamp for stamp in both if found[stamp] != first[stamp]] == []
 
 
 def test_nothing_begins_before_somebody_listens_and_the_clock_stands(compose, observer, wind_file):

@@ -4,7 +4,6 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import "./files.mjs";
 import { Camera } from "../../tree_sway/page/static/drawing/camera.js";
 import { Detail, levelsOf } from "../../tree_sway/page/static/drawing/detail.js";
 import { barkMesh, leafMesh, shapeOf } from "../../tree_sway/page/static/drawing/mesh.js";

@@ -143,12 +143,12 @@ def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:
             {'name': each.name, 'kind': number, 'place': place, 'frequencies': sways, **tree}
         )
     first = {tree['kind']: tree['name'] for tree in reversed(trees)}
-    said = {
+    sentences = {
         what: [f'{first[n]}: {each}' for n, kind in enumerate(kinds) for each in kind[what]]
         for what in ('notes', 'warnings')
     }
     return {
-        **said,
+        **sentences,
         **{name: sum(tree[name] for tree in trees) for name in _SUMS},
         'height': max(tree['place']['z'] + tree['height'] for tree in trees),
         'trees': trees,

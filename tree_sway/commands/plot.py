@@ -141,7 +141,7 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
         raise ParameterError('too short a wind to draw', where=source, cure='give a longer one')
     simulator = _simulator(scene, arguments)
     frames = swaying(simulator, wind, _RATE, seconds)
-    felt = [(simulator.wind.copy(), simulator.tip_displacement.copy()) for _ in frames]
-    winds, tips = np.swapaxes(felt, 0, 1)
+    shown = [(simulator.wind.copy(), simulator.tip_displacement.copy()) for _ in frames]
+    winds, tips = np.swapaxes(shown, 0, 1)
     title = f'{scene.tree.name}, {arguments.model}, {source}'
     plot_wind_and_tip(np.arange(1, len(tips) + 1) / _RATE, winds, tips, output, title=title)

@@ -89,15 +89,12 @@ def result_path(folder: Path, case: Case) -> Path:
 
 
 def compute_to_file(case: Case, folder: Path) -> None:
-    """Compute one case and keep it: its row, and its record if the case asks for that."""
+    """Compute one case and keep its row."""
     from tree_sway.studies.compute import compute
 
     if result_path(folder, case).is_file():  # a worker that was killed had come this far
         return
-    row, record = compute(case)
-    if case.series:
-        write_text_whole(folder / f'{case.name}.csv', record.to_csv())
-    write_text_whole(result_path(folder, case), json.dumps(row))
+    write_text_whole(result_path(folder, case), json.dumps(compute(case)))
 
 
 def compute_batch(cases: list[Case], folder: Path) -> list[TreeSwayError | None]:

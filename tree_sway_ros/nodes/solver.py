@@ -19,13 +19,13 @@ from tree_sway.core.simulator.live_tuning import LIVE
 from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
 from tree_sway.files.kept_set_ups import KeptSetUps
 from tree_sway.files.trees.source import open_scene
-from tree_sway.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import CAMERA, PUSH, WIND_FILTERED
@@ -75,7 +75,7 @@ class SolverNode(TreeSwayNode):
     def _open(self) -> Any:
         source = open_scene(self.values['tree'])
         if self.values['species']:
-            source = source.of_species(open_species(self.values['species'])).checked()
+            source = source.of_species(species_named(self.values['species'])).checked()
         x, y, z, yaw = self.values['pose']
         moved = source.moved(x=x, y=y, z=z, yaw=yaw)
         return dealt(moved, self.values['shard.index'], self.values['shard.count'])

@@ -85,23 +85,23 @@ def test_lengths_in_another_unit_are_refused(length: float, diameter: float) -> 
         ({'density': 300.0}, 'a density of 300 kg/m^3, where green wood has 400 to 1300'),
     ],
 )
-def test_odd_wood_is_told(change: dict[str, float], oddity: str) -> None:
+def test_odd_wood_is_reported(change: dict[str, float], oddity: str) -> None:
     wood = replace(OAK, **change)  # type: ignore[arg-type]
     refuse_implausible(oak(), wood)
-    (told,) = oddities(oak(), wood)
-    assert told.startswith(oddity)
+    (reported,) = oddities(oak(), wood)
+    assert reported.startswith(oddity)
 
 
-def test_a_tree_whose_file_has_y_up_is_told_to_lie() -> None:
+def test_a_tree_whose_file_has_y_up_is_reported_to_lie() -> None:
     lying = oak()
     lying = replace(lying, start=lying.start[:, [0, 2, 1]], end=lying.end[:, [0, 2, 1]])
     refuse_implausible(lying, OAK)
-    (told,) = oddities(lying, OAK)
-    assert told.startswith('a lean of 9')
-    assert told.endswith('add --option up=y')
+    (reported,) = oddities(lying, OAK)
+    assert reported.startswith('a lean of 9')
+    assert reported.endswith('add --option up=y')
 
 
-def test_odd_sizes_are_told() -> None:
+def test_odd_sizes_are_reported() -> None:
     stout = oddities(in_units(oak(), diameter=8.0), OAK)
     assert stout[0].startswith('a height over diameter of 5')
     assert 'too thin' in oddities(in_units(oak(), diameter=0.1), OAK)[0]
@@ -110,7 +110,7 @@ def test_odd_sizes_are_told() -> None:
     assert small[0].startswith('a height of 0.012 m')
 
 
-def test_a_sway_of_no_tree_of_its_size_is_told() -> None:
+def test_a_sway_of_no_tree_of_its_size_is_reported() -> None:
     tree = oak()
     usual = 0.0766 + 3.1219 * 100.0 * tree.base_diameter[0] / tree.height**2
     spruce = species_named('spruce')
@@ -123,14 +123,14 @@ def test_a_sway_of_no_tree_of_its_size_is_told() -> None:
 
 
 @given(length=st.floats(1e-4, 1e4), diameter=st.floats(1e-4, 1e4), modulus=st.floats(1e-2, 1e14))
-def test_whatever_is_given_is_refused_or_told_in_sentences(
+def test_whatever_is_given_is_refused_or_reported_in_sentences(
     length: float, diameter: float, modulus: float
 ) -> None:
     tree = in_units(builtin_tree('goldcrest'), length, diameter)
     wood = replace(OAK, modulus=modulus)
     try:
         refuse_implausible(tree, wood)
-        told = oddities(tree, wood)
+        reported = oddities(tree, wood)
     except (ParameterError, TreeError) as error:
-        told = (error.cure,)
-    assert all(len(each) > 20 for each in told)
+        reported = (error.cure,)
+    assert all(len(each) > 20 for each in reported)

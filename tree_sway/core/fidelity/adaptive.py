@@ -40,6 +40,7 @@ from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import ClimateTracker, WindClimate
 from tree_sway.core.wind.limits import is_wind
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
 if TYPE_CHECKING:
     from tree_sway.core.simulator.touch import Spring
@@ -104,7 +105,10 @@ class AdaptiveSimulator(SwaySimulator):
         self.cost_scale = 1.0
         """Cost here over the cost that is estimated: set it once it is measured."""
         self._touched_for = 0.0
-        self._expected_wind = WindClimate.steady(8.0, 0.2)  # a fresh breeze
+        breeze = simulate_turbulence(
+            8.0, rate=20.0, duration=60.0, rng=np.random.default_rng(0), intensity=0.2
+        )
+        self._expected_wind = WindClimate.of_samples(breeze, 20.0)
         self._shares = np.zeros(self.bank.oscillators.shapes.shape[1])
         self._wanted = np.zeros(1)
         self._expect()

@@ -20,7 +20,7 @@ from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.bank import Bank
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings, settings_with
-from tree_sway.core.state.tree_state import digest_of, refuse_version, TreeState
+from tree_sway.core.state.tree_state import digest_of, TreeState
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.species import Species
@@ -190,10 +190,9 @@ class SwaySimulator:
         """
         Go on from a state.
 
-        Raises a `StateError` for another tree, model or version, or what is not finite; what was
-        before stays.
+        Raises a `StateError` for another tree or model, or what is not finite; what was before
+        stays.
         """
-        refuse_version(state.version)
         arrays = self.memory()
         n_values = sum(array.size for array in arrays)
         for what, theirs, own in (

@@ -35,21 +35,23 @@ export class TreeStream {
     this.placer = null;
     /** What solves the scene by its wind; null where states come. @type {ByWind | null} */
     this.byWind = null;
+    const { onDescription, onFrame } = listeners;
     /** @type {import("./connection.js").Listeners} */
     const taking = {
-      onState: (state, retryIn) => listeners.onState?.(state, retryIn),
+      onState: () => undefined,
+      onMessage: () => undefined,
+      ...listeners,
       onDescription: (description) => {
         this.playout.clear();
         this.placer = null;
         this.byWind = null;
-        listeners.onDescription?.(description);
+        onDescription?.(description);
       },
       onFrame: (frame, arrival, size) => {
         const whole = this.byWind ? this.byWind.take(frame) : frame;
         if (whole?.coordinates.length === this.description?.nCoordinates && whole) this.playout.push(whole, arrival);
-        listeners.onFrame?.(frame, arrival, size);
+        onFrame?.(frame, arrival, size);
       },
-      onMessage: (message) => listeners.onMessage?.(message),
       ...(byWind && { onTables: (tables) => this._solve(tables) }),
     };
     this.connection = kept

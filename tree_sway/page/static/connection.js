@@ -4,13 +4,7 @@
 
 import { checkMessage } from "./checks.js";
 import {
-  decodeDescription,
-  decodeFrame,
-  frameSize,
-  isFrame,
-  isTables,
-  LARGEST_DESCRIPTION,
-  ProtocolError,
+  decodeDescription, decodeFrame, frameSize, isFrame, isTables, LARGEST_DESCRIPTION, ProtocolError,
 } from "./protocol.js";
 import { decodeTables } from "./sway.js";
 
@@ -140,8 +134,7 @@ export class Connection {
       this.unreadable += 1;
       const why = error instanceof ProtocolError ? error.message : String(error);
       this._drop();
-      this.listeners.onMessage({ unreadable: why.slice(0, 400) });
-      return;
+      deliver = () => this.listeners.onMessage({ unreadable: why.slice(0, 400) });
     }
     deliver();
   }
@@ -155,7 +148,7 @@ export class Connection {
     return () => this.listeners.onMessage(message);
   }
 
-  /** Read a description or a frame.
+  /** Read a description, its tables or a frame.
    * @param {ArrayBuffer} data @param {number} arrival [ms] @returns {() => void} */
   _binary(data, arrival) {
     const size = data.byteLength;
@@ -165,8 +158,7 @@ export class Connection {
       return () => this.listeners.onTables?.(tables);
     }
     if (!isFrame(data)) {
-      const description = decodeDescription(data);
-      this.description = description;
+      const description = (this.description = decodeDescription(data));
       const fitting = Math.floor(ON_THE_WAY / frameSize(description));
       this._credit = Math.max(LEAST_CREDIT, Math.min(MOST_CREDIT, fitting));
       this._ask();
@@ -175,8 +167,7 @@ export class Connection {
     this._awaited -= 1;
     this._ask();
     const frame = decodeFrame(data, this.description);
-    if (!frame) return () => {};
-    this._wait = SHORTEST_WAIT;
-    return () => this.listeners.onFrame(frame, arrival, size);
+    if (frame) this._wait = SHORTEST_WAIT;
+    return () => frame && this.listeners.onFrame(frame, arrival, size);
   }
 }

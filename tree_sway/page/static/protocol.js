@@ -5,7 +5,7 @@
  * need no other frame. Reads what tree_sway/page/protocol.py writes.
  */
 
-import { checkKind, checkTrees, ProtocolError, need } from "./checks.js";
+import { checkKind, checkTrees, ProtocolError, need, TYPES } from "./checks.js";
 
 export { ProtocolError };
 
@@ -74,8 +74,6 @@ const FRAME_SIZE = 28;
 /** Largest message with a description, and header in it [bytes]. */
 export const LARGEST_DESCRIPTION = 64 * 2 ** 20;
 const LARGEST_HEADER = 8 * 2 ** 20;
-
-const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: Uint8Array };
 
 /** Do what reads a message; whatever goes wrong is a `ProtocolError`.
  * @template T @param {keyof typeof MAGIC} what @param {() => T} read @returns {T} */

@@ -16,7 +16,7 @@
  *     placer.place(stand.write(coordinates));     // coordinates of the description, then poses
  */
 
-import { need, ProtocolError, sizesOf } from "./checks.js";
+import { FORMS, need, ProtocolError, sizesOf } from "./checks.js";
 import { reading, unpack } from "./protocol.js";
 import { Touch } from "./touch.js";
 
@@ -39,27 +39,8 @@ const [SLOWEST_GUST, LARGEST_STRETCH, AVERAGING, MEMORY] = [0.5, 0.5, 60, 60];
 
 /** Functions up to each degree of the harmonics. @type {Record<number, number>} */
 const HARMONICS = { 1: 3, 3: 10, 5: 21 };
-const [A, N] = [AZIMUTHS, LEVELS];
-/** Type and axes of each array of a kind; of slopes as of rows of m x m.
- * @type {Record<string, [Function, ...(string | number)[]]>} */
-const ARRAYS = {
-  stiffness: [Float32Array, "m"],
-  own_damping: [Float32Array, "m"],
-  motion: [Float32Array, "m"],
-  levels: [Float32Array, A, N],
-  harmonics: [Float32Array, "h", "m"],
-  standing: [Float32Array, A, N, "m"],
-  amount: [Float32Array, A, "m"],
-  load: [Float32Array, A, N, "m"],
-  state: [Float32Array, "m", "n"],
-  correction: [Float32Array, "n", "m"],
-};
-/** @type {Record<string, number>} */
-const SLOPES = { turning: A * N, damping: A * N, lean: A, steep_turning: 2, steep_damping: 2 };
-for (const [name, rows] of Object.entries(SLOPES)) {
-  ARRAYS[`${name}_rows`] = [Float32Array, rows, `${name} rank`];
-  ARRAYS[`${name}_shapes`] = [Int16Array, `${name} rank`, "m m"];
-}
+/** Slopes by the wind's azimuth and level, and rows of each. */
+const SLOPES = { turning: AZIMUTHS * LEVELS, damping: AZIMUTHS * LEVELS, lean: AZIMUTHS, steep_turning: 2, steep_damping: 2 };
 
 /**
  * @typedef {object} Tables
@@ -91,7 +72,7 @@ function decoded(data) {
 export class Table {
   /** @param {Record<string, any>} numbers @param {import("./protocol.js").Arrays} arrays */
   constructor(numbers, arrays) {
-    const size = sizesOf(arrays, ARRAYS);
+    const size = sizesOf(arrays, FORMS.tables);
     const { m, n } = size;
     const { degree, most_pressure: mostPressure, most_energy: mostEnergy, drag_law: law } = numbers;
     need(m > 0 && m <= MOST_COORDINATES && size["m m"] === m * m, "stiffness");
@@ -121,7 +102,7 @@ export class Table {
     this.load = of("load");
     this.state = of("state");
     this.correction = of("correction");
-    const slopes = (/** @type {string} */ name) => this._slopes(arrays, name, size[`${name} rank`]);
+    const slopes = (/** @type {keyof typeof SLOPES} */ name) => this._slopes(arrays, name, size[`${name} rank`]);
     // Turning and damping side by side: they are read together.
     this.slopes = rowsOf(paired(slopes("turning"), slopes("damping")), 2 * m * m);
     this.steep = rowsOf(paired(slopes("steep_turning"), slopes("steep_damping")), 2 * m * m);
@@ -132,7 +113,8 @@ export class Table {
   }
 
   /** Slopes from their factors, by the coordinate that is loaded and then the one that moves.
-   * @param {import("./protocol.js").Arrays} arrays @param {string} name @param {number} rank */
+   * @param {import("./protocol.js").Arrays} arrays @param {keyof typeof SLOPES} name
+   * @param {number} rank */
   _slopes(arrays, name, rank) {
     const { m, stiffness } = this;
     const [rows, shapes] = [arrays[`${name}_rows`].values, arrays[`${name}_shapes`].values];

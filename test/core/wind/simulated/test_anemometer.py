@@ -7,7 +7,6 @@ import pytest
 
 from tree_sway.core.wind.gate import SECOND, WindGate
 from tree_sway.core.wind.simulated.anemometer import AnemometerModel
-from tree_sway.core.wind.simulated.gust_event import GustEvent
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 from tree_sway.errors import ParameterError
 
@@ -48,24 +47,6 @@ def test_no_mean_is_calm():
     assert not read(AnemometerModel(0.0), 5).any()
 
 
-@pytest.mark.parametrize('rate', [1.0, 10.0, 100.0])
-def test_events_are_timed_in_seconds_at_any_rate(rate):
-    events = (GustEvent('step', 2.0, 0.0, start=3.0),)
-    model = AnemometerModel(5.0, intensity=0.0, rate=rate, events=events)
-    assert model.rate == rate
-    assert model.sample(round(2 * rate))[0] == pytest.approx(5.0)
-    assert model.sample(round(3 * rate))[0] == pytest.approx(7.0)
-
-
-def test_events_come_on_top_of_turbulence_and_turn_it_too():
-    gust, turn = GustEvent('one_minus_cos', 4.0, 2.0), GustEvent('turn', 0.5 * math.pi, 1.0)
-    plain = read(AnemometerModel(5.0), 60)
-    gusty = read(AnemometerModel(5.0, events=(gust,)), 60)
-    np.testing.assert_allclose((gusty - plain)[:, 0], gust.at(np.arange(60) / 20.0), atol=1e-12)
-    turned = read(AnemometerModel(5.0, events=(turn,)), 60)[-1]
-    np.testing.assert_allclose(turned, (-plain[-1, 1], plain[-1, 0], plain[-1, 2]), atol=1e-12)
-
-
 def test_a_small_live_change_makes_a_small_change():
     before, after = AnemometerModel(5.0, seed=1), AnemometerModel(5.1, seed=1)
     assert np.abs(before.sample(777) - after.sample(777)).max() < 0.3
@@ -73,7 +54,7 @@ def test_a_small_live_change_makes_a_small_change():
 
 def test_the_gate_takes_all_of_it():
     gate = WindGate()
-    wind = read(AnemometerModel(10.0, rate=50.0, events=(GustEvent('one_minus_cos', 8, 3),)), 2000)
+    wind = read(AnemometerModel(10.0, rate=50.0), 2000)
     assert all(gate.offer(i * SECOND // 50, w).accepted for i, w in enumerate(wind))
 
 

@@ -108,7 +108,7 @@ def test_vertical_slope_too_where_the_subrange_reaches_the_band():
 
 
 class TestAgainstPyConTurb:
-    """The case of an independent generator; table and program stand in test/golden."""
+    """The case of an independent generator; table and program are in test/golden."""
 
     @pytest.fixture(scope='class')
     def table(self):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from tree_sway.errors import FormatError, MissingDependencyError, TreeError, TreeSwayError
+from tree_sway.errors import FormatError, TreeError, TreeSwayError
 from tree_sway.files.trees.formats.treeqsm import read_treeqsm_text
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 
@@ -76,27 +76,11 @@ def test_matlab_arrays_of_structs(tmp_path):
         assert read_tree(tmp_path / 'two.mat').notes[-1] == 'the file holds 1 more trees'
 
 
-@pytest.mark.parametrize('referenced', [False, True])
-def test_matlab_7_3(tmp_path, referenced):
-    h5py = pytest.importorskip('h5py', reason='h5py is not installed')
-    path = tmp_path / 'fork.mat'
-    with h5py.File(path, 'w', userblock_size=512) as file:
-        inside = '#refs#/a' if referenced else 'QSM/cylinder'
-        for name, values in columns_of_fork().items():
-            file[f'{inside}/{name}'] = np.atleast_2d(values.T)
-        if referenced:
-            file.create_dataset('QSM/cylinder', (1, 1), dtype=h5py.ref_dtype)
-            file['QSM/cylinder'][0, 0] = file[inside].ref
-    with path.open('r+b') as stream:
-        stream.write(b'MATLAB 7.3 MAT-file, Platform: GLNXA64'.ljust(512))
-    assert_is_the_fork(read_tree(path, **AS_SCANNED))
-
-
-def test_matlab_7_3_without_h5py(tmp_path, monkeypatch):
-    (tmp_path / 'h5py.py').write_text("raise ModuleNotFoundError(name='h5py')")
-    monkeypatch.setenv('PYTHONPATH', str(tmp_path))
-    (tmp_path / 'new.mat').write_bytes(b'MATLAB 7.3 MAT-file'.ljust(600))
-    with pytest.raises(MissingDependencyError, match='needs h5py; pip install h5py'):
+def test_matlab_7_3_says_how_to_save_it(tmp_path):
+    (tmp_path / 'new.mat').write_bytes(
+        b'MATLAB 7.3 MAT-file'.ljust(124) + b'\x00\x02IM' + bytes(400)
+    )
+    with pytest.raises(FormatError, match=r'v7\.3 files.*; save it again with the option -v7'):
         read_tree(tmp_path / 'new.mat')
 
 
