@@ -144,6 +144,7 @@ def test_a_branch_that_is_dragged_follows_and_swings_when_let_go(
         open_scene(name).trees[0].species for name in ('goldcrest', str(tmp_path / 'fitted.yaml'))
     ]
     assert found.modulus == pytest.approx(before.modulus, rel=0.05)
+    assert found.damping_in_leaf == pytest.approx(before.damping_in_leaf, rel=0.2)
 
 
 def test_who_may_not_set_controls_may_not_pull(simulator: Any, browser_class: Any) -> None:

@@ -78,7 +78,8 @@ class Push:
             return share * self.force
         # Implicit, by the force at the end of the step, and no stiffer than a step can follow.
         k = share * min(self.stiffness, 0.5 / float(np.trace(self.compliance)))
-        pull: Floats = np.linalg.solve(np.eye(3) + k * self.compliance, k * (self.force - place))
+        matrix = np.eye(3) + k * self.compliance
+        pull: Floats = np.linalg.solve(matrix, k * (self.force - place)).astype(np.float64)
         return pull
 
     def place(self, poses: Floats) -> Floats:

@@ -77,7 +77,7 @@ export class Pull {
   /** Note where the states since the last have it. */
   note() {
     const { description, playout } = this.stream;
-    if (this.isHeld || !description) return;
+    if (this.isHeld || !description || this.seconds > RECORDED) return;
     this._touch ??= new Touch(description, this.scene.watched.number);
     this._placer ??= new KindPlacer(this._touch.kind, chainTo(this._touch.kind, this.segment));
     const { firstCoordinate: first } = this._touch.tree;
@@ -86,7 +86,7 @@ export class Pull {
       const own = Float64Array.from(coordinates.subarray(first, first + this._touch.kind.nCoordinates));
       const at = this._touch.place(this._placer, this.segment, own);
       const time = (stamp - this._from) / 1000;
-      if (time <= RECORDED) this.record.push([time, ...rest.map((each, c) => at[c] - each)]);
+      this.record.push([time, ...rest.map((each, c) => at[c] - each)]);
     }
   }
 
