@@ -96,7 +96,8 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[i
     _require('branch_parent', b > 0)
     _require('basis_scale', arrays['basis_scale'] > 0.0)
     _require('species', isinstance(kind['species'], str) and isinstance(kind['model'], str))
-    _require('height', _is_finite(kind['height']) and _is_finite(kind['basis_error']))
+    numbers = kind['height'], kind['basis_error'], kind.get('modulus', 0.0)
+    _require('height', all(map(_is_finite, numbers)))
     names = kind['branch_names']
     _require('branch_names', len(names) == b and all(isinstance(name, str) for name in names))
 

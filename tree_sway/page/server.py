@@ -29,7 +29,7 @@ from typing import Any
 from aiohttp import web, WSCloseCode, WSMsgType
 from aiohttp.typedefs import Handler
 
-from tree_sway.errors import TransportError
+from tree_sway.errors import TransportError, TreeSwayError
 from tree_sway.page.access import given_token, is_token, read_token, refusal, require_token
 from tree_sway.page.controls import ControlPanel, Value
 from tree_sway.page.doorkeeper import Doorkeeper
@@ -166,6 +166,9 @@ class PageServer:
         What viewers may change; nothing if None.
     status
         Called twice a second on the server's thread for what the page shows beside the tree.
+    written
+        Called with ``glb`` or ``html`` on a thread of its own for the tree as a file; raises a
+        `TreeSwayError` to refuse.
 
     Examples
     --------
@@ -180,12 +183,14 @@ class PageServer:
         settings: PageSettings,
         panel: ControlPanel | None = None,
         status: Callable[[], Mapping[str, object]] | None = None,
+        written: Callable[[str], bytes] | None = None,
     ) -> None:
         self.settings = settings
         self._token = settings.token or read_token(settings.token_file)
         require_token(settings.address, self._token)
         self._panel = panel or ControlPanel()
-        self._status = status or dict
+        self._status, self._written = status or dict, written
+        self._writing = asyncio.Lock()
         self._description = b''
         self._tables: Callable[[], bytes | None] = lambda: None
         self._frame: tuple[int, bytes] = (-1, b'')
@@ -313,6 +318,7 @@ class PageServer:
         app.router.add_get('/', _index)
         app.router.add_get('/stream', self._stream)
         app.router.add_get('/healthz', self._health)
+        app.router.add_get('/tree.{suffix:glb|html}', self._tree)
         app.router.add_static('/static/', _STATIC)
         app.on_response_prepare.append(_add_headers)
         logger = logging.Logger('page')
@@ -389,6 +395,18 @@ class PageServer:
 
     async def _health(self, _request: web.Request) -> web.Response:
         return web.json_response({'status': 'ok', 'described': bool(self._description)})
+
+    async def _tree(self, request: web.Request) -> web.StreamResponse:
+        """Answer with the tree as a file, one at a time."""
+        if self._written is None:
+            return self._refused(404, 'no files are written here: use tree-sway convert')
+        async with self._writing:
+            try:
+                suffix = request.match_info['suffix']
+                data = await asyncio.to_thread(self._written, suffix)
+            except TreeSwayError as error:
+                return self._refused(409, str(error))
+        return web.Response(body=data, content_type='application/octet-stream')
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         if len(self._clients) >= self.settings.max_clients:

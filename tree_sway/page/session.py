@@ -18,7 +18,7 @@ import time
 
 from tree_sway.core.scene.demand import set_demand
 from tree_sway.core.scene.run import Run
-from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.simulator.touch import Spring
@@ -26,10 +26,12 @@ from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import ParameterError, TreeSwayError
+from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.page.controls import Value
+from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.scene_state import SceneState
 from tree_sway.page.server import PageServer
-from tree_sway.page.wind_source import blow, SimulatedWind, WindSource
+from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, WindSource
 
 _LOGGER = logging.getLogger('tree_sway.page')
 _MOST_LATE = 0.25
@@ -160,6 +162,8 @@ class Session:
                     'the wind is a record', where=name, cure='start without --wind'
                 )
             self.wind.set(name, float(value or 0.0))
+        elif name == 'record_time' and isinstance(self.wind, RecordedWind):
+            self.wind.seek(float(value or 0.0), self._now)
         elif name in Choices.__dataclass_fields__:
             changed = {name: value}
             self._want(replace(self._wanted or self.choices, **changed))  # type: ignore[arg-type]
@@ -194,13 +198,38 @@ class Session:
     def status(self) -> dict[str, object]:
         """Return what the page shows beside the tree."""
         simulator = self._scene.simulator
-        return {
+        status = {
             'model': simulator.model,
             'rate': round(1.0 / max(self._spacing, 1e-6), 1),
             'work_us': round(1e6 * self._work, 1),
             'trees': len(self._scene.names),
             'building': self._wanted is not None,
         }
+        if isinstance(self.wind, RecordedWind):
+            status['record_time'] = self.wind.time(self._now)
+        return status
+
+    def written(self, suffix: str) -> bytes:
+        """
+        Write what is shown as a file, ``glb`` or ``html``.
+
+        Raises
+        ------
+        TreeSwayError
+            A stand as glTF, a model without a table as a page.
+
+        """
+        simulator = self._build(self.choices)
+        if suffix == 'html':
+            return page_of_scene(simulator).encode()
+        if isinstance(simulator, SceneSimulator):
+            raise ParameterError('a stand as glTF', where='page', cure='take .html')
+        return morphing_tree(simulator, SceneState(simulator, _LEAVES).leaves[0]).glb()
+
+    @property
+    def _now(self) -> float:
+        """Time of the run [s]."""
+        return 1e-9 * self._ticks * self._runtime.period
 
     def _made(self, choices: Choices) -> tuple[SceneState, Run]:
         simulator = self._build(choices)

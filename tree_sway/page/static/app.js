@@ -35,7 +35,7 @@ const shown = element("shown");
 /** @type {HTMLInputElement} */
 const timeLine = element("time");
 /** Least value of the scale, and units from below a value, of what is shown.
- * @type {Record<string, {least: number, units: [number, import("./trace.js").Unit][]}>} */
+ * @type {Record<string, {least: number, units: [number, Unit][]}>} */
 const SHOWN = {
   motion: { least: 0.02, units: [
     [0.1, { factor: 1000, unit: "mm", digits: 0 }], [2, { factor: 100, unit: "cm", digits: 0 }],

@@ -16,8 +16,6 @@ const MOST_COORDINATES = 65535;
 /** Of a height or an error [m]. */
 const GREATEST = 1e12;
 
-/** @typedef {Record<string, [keyof typeof TYPES, ...(string | number)[]]>} Forms */
-
 export const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: Uint8Array };
 
 /** Type and axes of each array of a kind; those of leaves only where it bears any.
@@ -33,7 +31,7 @@ export function need(holds, name) {
 const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREATEST;
 
 /** Refuse arrays that are missing, of another type or shape, or not finite; the sizes of their axes.
- * @param {import("./protocol.js").Arrays} parts @param {Forms} forms */
+ * @param {Arrays} parts @param {Forms} forms */
 export function sizesOf(parts, forms) {
   /** @type {Record<string, number>} */
   const size = {};
@@ -50,8 +48,8 @@ export function sizesOf(parts, forms) {
 }
 
 /** Refuse a kind whose arrays do not fit each other, and find its sizes.
- * @param {import("./protocol.js").Kind} kind with its arrays
- * @param {import("./protocol.js").Arrays} parts its arrays with their shapes */
+ * @param {Kind} kind with its arrays
+ * @param {Arrays} parts its arrays with their shapes */
 export function checkKind(kind, parts) {
   const { arrays } = kind;
   const forms = Object.entries(FORMS.description).filter(([name]) => arrays.leaf_segment || !name.startsWith("leaf"));
@@ -60,7 +58,7 @@ export function checkKind(kind, parts) {
   need(b > 0 && size["branches + 1"] === b + 1, "branch_first");
   need(arrays.basis_scale.every((value) => value > 0), "basis_scale");
   need(typeof kind.species === "string" && typeof kind.model === "string", "species");
-  need(isFinite(kind.height) && isFinite(kind.basis_error), "height");
+  need([kind.height, kind.basis_error, kind.modulus ?? 0].every(isFinite), "height");
   const names = kind.branch_names;
   need(names.length === b && names.every((name) => typeof name === "string"), "branch_names");
   const first = arrays.branch_first;
@@ -92,8 +90,8 @@ export function checkKind(kind, parts) {
 }
 
 /** Refuse trees that do not fit their kinds.
- * @param {Record<string, any>} header @param {import("./protocol.js").Kind[]} kinds
- * @param {{values: import("./protocol.js").NumberArray, shape: number[]} | undefined} placed */
+ * @param {Record<string, any>} header @param {Kind[]} kinds
+ * @param {{values: NumberArray, shape: number[]} | undefined} placed */
 export function checkTrees(header, kinds, placed) {
   const { values: places, shape } = placed ?? {};
   const { trees } = header;

@@ -12,16 +12,6 @@ import { Placer } from "./placing.js";
 import { DELAY, Playout } from "./playout.js";
 import { Stand } from "./sway.js";
 
-/**
- * @typedef {Partial<import("./connection.js").Listeners>} StreamListeners
- *
- * @typedef {object} StreamOptions
- * @property {number} [rate] frames per second that are asked for
- * @property {number} [delay] of the playout [ms]
- * @property {boolean} [byWind] whether the wind alone is asked for, and the scene solved here
- * @property {import("./own_line.js").Kept | null} [kept] scene that is solved here, of no server
- */
-
 /** Playout delay of a scene that is solved here [ms]. */
 const OWN_DELAY = 40;
 
@@ -36,7 +26,7 @@ export class TreeStream {
     /** What solves the scene by its wind; null where states come. @type {ByWind | null} */
     this.byWind = null;
     const { onDescription, onFrame } = listeners;
-    /** @type {import("./connection.js").Listeners} */
+    /** @type {Listeners} */
     const taking = {
       onState: () => undefined,
       onMessage: () => undefined,
@@ -59,7 +49,7 @@ export class TreeStream {
       : new Connection(streamUrl(page), taking, options.rate ?? (byWind ? 60 : undefined));
   }
 
-  /** @param {import("./sway.js").Tables} tables */
+  /** @param {Tables} tables */
   _solve(tables) {
     if (this.description) this.byWind = new ByWind(new Stand(tables, this.description));
   }
@@ -86,7 +76,7 @@ export class TreeStream {
   }
 
   /** Pull at a branch, where the server lets anybody; say it again within half a second to go on.
-   * @param {import("./touch.js").Push} pull a spring; one of no stiffness lets go */
+   * @param {Push} pull a spring; one of no stiffness lets go */
   pull(pull) {
     this.connection.send({ pull });
     this.byWind?.stand.push(pull);

@@ -21,17 +21,6 @@ const PING_EVERY = 2000;
 const SILENCE = 6000;
 const LARGEST_TEXT = 2 ** 20;
 
-/**
- * @typedef {"connecting" | "open" | "lost"} LineState
- *
- * @typedef {object} Listeners
- * @property {(state: LineState, retryIn: number) => void} onState
- * @property {(description: import("./protocol.js").Description) => void} onDescription
- * @property {(tables: import("./sway.js").Tables) => void} [onTables] after a description, by which to solve it
- * @property {(frame: import("./protocol.js").Frame, arrival: number, size: number) => void} onFrame
- * @property {(message: Record<string, any>) => void} onMessage
- */
-
 /** One line to a server, kept from `open` to `close`. */
 export class Connection {
   /** @param {string} url of the stream @param {Listeners} listeners
@@ -41,7 +30,7 @@ export class Connection {
     this.listeners = listeners;
     this.rate = rate;
     this.roundTrip = NaN;
-    /** @type {import("./protocol.js").Description | null} */
+    /** @type {Description | null} */
     this.description = null;
     /** @type {WebSocket | null} */
     this._socket = null;

@@ -68,7 +68,7 @@ export class Headset {
     /** @type {any} */
     this.session = null;
     this.frames = 0;
-    /** What each eye sees. @type {import("./drawing/scene.js").View[]} */
+    /** What each eye sees. @type {View[]} */
     this.views = [];
     this.rig = new Rig([0, 0, 0], 0);
     /** What each controller pulls at, and how far off it is [m]. @type {Map<any, {pull: Pull, far: number}>} */

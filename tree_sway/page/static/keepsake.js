@@ -4,8 +4,6 @@
 
 const FRAMES_PER_SECOND = 30;
 
-/** @typedef {import("./drawing/scene.js").Scene} Scene */
-
 /** Hand a file to whoever looks. @param {Blob} blob @param {string} name @param {string} suffix */
 function save(blob, name, suffix) {
   const link = document.createElement("a");
@@ -16,7 +14,7 @@ function save(blob, name, suffix) {
 }
 
 /** Save what is seen as PNG, in full.
- * @param {Scene} scene @param {string} name @param {() => void} draw a frame */
+ * @param {import("./drawing/scene.js").Scene} scene @param {string} name @param {() => void} draw a frame */
 export function savePicture(scene, name, draw) {
   const { fineness, density } = scene.quality;
   [scene.quality.fineness, scene.quality.density] = [1, 1];
@@ -48,7 +46,7 @@ export async function saveTree(suffix, name) {
 }
 
 /** The view as the end of an address.
- * @param {Scene} scene @param {Record<string, string | number | boolean>} settings */
+ * @param {import("./drawing/scene.js").Scene} scene @param {Record<string, string | number | boolean>} settings */
 export function viewLink(scene, settings) {
   const { azimuth, elevation, distance, target } = scene.camera;
   const view = [azimuth, elevation, distance, ...target].map((each) => Number(each.toPrecision(5)));

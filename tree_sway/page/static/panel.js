@@ -9,19 +9,6 @@ const STEPS = 400;
 /** A range that is wider is one of powers. */
 const WIDE = 1000;
 
-/**
- * @typedef {object} Control
- * @property {string} name
- * @property {string} label
- * @property {string} description
- * @property {string} unit
- * @property {number | string | boolean | null} value
- * @property {number | null} minimum
- * @property {number | null} maximum
- * @property {string[]} choices
- * @property {boolean} is_action
- */
-
 /** An element with properties and what is in it.
  * @template {keyof HTMLElementTagNameMap} T @param {T} tag
  * @param {Record<string, any>} properties @param {...(Node | string)} within */

@@ -18,7 +18,7 @@ export const AT_ORIGIN = [0, 0, 0, 0, 1];
 
 /** Places the segments of a described scene, all of them, tree after tree. */
 export class Placer {
-  /** @param {import("./protocol.js").Description} description */
+  /** @param {Description} description */
   constructor(description) {
     this.description = description;
     this.poses = new Float32Array(STRIDE * description.nSegments);
@@ -40,7 +40,7 @@ export class Placer {
 
 /** Places trees of one kind, or the first of their branches. */
 export class KindPlacer {
-  /** @param {import("./protocol.js").Kind} kind
+  /** @param {Kind} kind
    * @param {Int32Array | null} [order] of its branches, parents before their children */
   constructor(kind, order = null) {
     const { arrays, nBranches } = kind;

@@ -16,8 +16,6 @@ const BLEND = 400;
 const KEPT = 62000;
 const MOST_NUMBERS = 8e6;
 
-/** @typedef {import("./protocol.js").Frame} Frame */
-
 /** Difference of two clocks from one-way times: arrival less stamp is offset plus travel, so the
  * least of the last half minute is the offset and the quickest travel. */
 export class ClockOffset {

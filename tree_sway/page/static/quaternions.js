@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Quaternions x y z w that lie in arrays, each from an index on; results are written, not made anew. */
 
-/** @typedef {Float32Array | Float64Array | number[] | import("./protocol.js").NumberArray} Numbers */
-
 /** Product of two, first b, then a. @param {Numbers} a @param {number} i @param {Numbers} b
  * @param {number} j @param {Numbers} out @param {number} [o] */
 export function multiply(a, i, b, j, out, o = 0) {

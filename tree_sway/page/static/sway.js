@@ -42,15 +42,6 @@ const HARMONICS = { 1: 3, 3: 10, 5: 21 };
 /** Slopes by the wind's azimuth and level, and rows of each. */
 const SLOPES = { turning: AZIMUTHS * LEVELS, damping: AZIMUTHS * LEVELS, lean: AZIMUTHS, steep_turning: 2, steep_damping: 2 };
 
-/**
- * @typedef {object} Tables
- * @property {string} description identity of what they belong to
- * @property {number[] | null} anemometer where the wind is measured [m]; upwind of all if null
- * @property {number} ratio speed of gusts over that of the mean wind
- * @property {Table[]} kinds
- * @property {ArrayLike<number>} speeds wind of each tree over that of its kind
- */
-
 /** Read tables; a `ProtocolError` with a sentence if they are damaged.
  * @param {ArrayBuffer} data @returns {Tables} */
 export const decodeTables = (data) => reading("tables", () => decoded(data));
@@ -70,7 +61,7 @@ function decoded(data) {
 
 /** What an even wind does to the coordinates of a kind of tree. */
 export class Table {
-  /** @param {Record<string, any>} numbers @param {import("./protocol.js").Arrays} arrays */
+  /** @param {Record<string, any>} numbers @param {Arrays} arrays */
   constructor(numbers, arrays) {
     const size = sizesOf(arrays, FORMS.tables);
     const { m, n } = size;
@@ -113,7 +104,7 @@ export class Table {
   }
 
   /** Slopes from their factors, by the coordinate that is loaded and then the one that moves.
-   * @param {import("./protocol.js").Arrays} arrays @param {keyof typeof SLOPES} name
+   * @param {Arrays} arrays @param {keyof typeof SLOPES} name
    * @param {number} rank */
   _slopes(arrays, name, rank) {
     const { m, stiffness } = this;
@@ -426,7 +417,7 @@ class Gusts {
 
 /** Described trees that sway in one wind. */
 export class Stand {
-  /** @param {Tables} tables @param {import("./protocol.js").Description} description
+  /** @param {Tables} tables @param {Description} description
    * @param {number} [dt] time step [s] */
   constructor(tables, description, dt = STEP) {
     const { kinds, trees, identity } = description;
@@ -476,7 +467,7 @@ export class Stand {
   }
 
   /** Push at the root side of a segment, or pull it by a spring, while the trees go on swaying.
-   * @param {import("./touch.js").Push} push a spring of no stiffness lets go
+   * @param {Push} push a spring of no stiffness lets go
    * @param {number} [seconds] that it lasts unless it is renewed [s] */
   push(push, seconds = push.to && !push.stiffness ? 1e-6 : 0.5) {
     const { segment, force = [], to = [], stiffness = 0 } = push;

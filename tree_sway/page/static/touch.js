@@ -11,14 +11,7 @@ import { KindPlacer, STRIDE } from "./placing.js";
 const [RENEWED, SHARE] = [0.1, 0.01];
 const MOST_PUSHES = 64;
 
-/**
- * @typedef {object} Push a force, or a spring to a place
- * @property {number} segment among those of all trees
- * @property {number[]} [force] [N]
- * @property {number[]} [to] [m] @property {number} [stiffness] of the spring [N/m]
- */
-
-/** Branches from the root to that of a segment. @param {import("./protocol.js").Kind} kind
+/** Branches from the root to that of a segment. @param {Kind} kind
  * @param {number} segment */
 export function chainTo({ arrays, nBranches }, segment) {
   const { branch_first: first, branch_parent: parent } = arrays;
@@ -31,7 +24,7 @@ export function chainTo({ arrays, nBranches }, segment) {
 
 /** Pushes on one tree. */
 export class Touch {
-  /** @param {import("./protocol.js").Description} description @param {number} tree its number */
+  /** @param {Description} description @param {number} tree its number */
   constructor(description, tree) {
     this.description = description;
     this.tree = description.trees[tree];

@@ -9,8 +9,6 @@ export const LOOK_BACK = 60;
 const LEFT = 38;
 const BELOW = 15;
 
-/** @typedef {{factor: number, unit: string, digits: number}} Unit what a number is shown in */
-
 /** The next round number. @param {number} value */
 function roundUp(value) {
   const power = 10 ** Math.floor(Math.log10(value));

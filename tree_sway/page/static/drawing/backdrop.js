@@ -8,16 +8,6 @@
 import { canvasTexture, drawable, drawPart, use } from "./gl.js";
 import { shaded } from "./shaders.js";
 
-/**
- * @typedef {object} Daylight
- * @property {number[]} light towards the sun
- * @property {number[]} sun colour of its light
- * @property {number[]} sky colour of the light of the sky
- * @property {number[]} zenith
- * @property {number[]} horizon
- * @property {number} dimmed brightness of the ground
- */
-
 /** @type {Record<"light" | "evening" | "dark", Daylight>} */
 export const DAYLIGHT = {
   light: {

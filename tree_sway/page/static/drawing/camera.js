@@ -4,8 +4,6 @@
 
 const FIELD = (32 * Math.PI) / 180;
 
-/** @typedef {[number, number, number]} Vector */
-
 export class Camera {
   constructor() {
     this.azimuth = -0.6;

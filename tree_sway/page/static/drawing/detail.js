@@ -11,8 +11,6 @@ const AREA = 80;
 const NEAR = 800;
 const FEWEST_CARDS = 40;
 
-/** @typedef {import("./mesh.js").Level} Level */
-
 /** Levels of a kind: its picture, of which the top alone is placed; then each of about twice the
  * segments of the one before.
  * @param {import("../placing.js").KindPlacer} placer
@@ -41,7 +39,7 @@ export function levelsOf({ reached, order, slots }, highest, most) {
 
 /** The level of every tree of a scene. */
 export class Detail {
-  /** @param {import("../protocol.js").Tree[]} trees @param {Level[][]} levels of each kind
+  /** @param {Tree[]} trees @param {Level[][]} levels of each kind
    * @param {number[]} radii of a ball about the middle of each kind [m]
    * @param {number} watched tree that is always placed */
   constructor(trees, levels, radii, watched) {
@@ -82,7 +80,7 @@ export class Detail {
     }
   }
 
-  /** Height of a tree on the screen [px]; 0 out of sight. @param {import("../protocol.js").Tree} tree
+  /** Height of a tree on the screen [px]; 0 out of sight. @param {Tree} tree
    * @param {Float32Array} m matrix of the camera @param {number} height of the picture */
   _height({ place: [x, y, z, , scale], kind, height: tall }, m, height) {
     const middle = [x, y, z + tall / 2, 1];

@@ -2,17 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The graphics unit: programs, vertex arrays, textures. */
 
-/**
- * @typedef {object} Program
- * @property {WebGLProgram} program
- * @property {Record<string, (value: any) => void>} uniforms what sets each of them
- *
- * @typedef {object} Drawable
- * @property {WebGLVertexArrayObject} vao
- * @property {number} count of its indices
- * @property {WebGLBuffer[]} buffers
- */
-
 /** A context of a canvas, and whether it draws on the processor.
  * @param {HTMLCanvasElement} canvas */
 export function contextOf(canvas) {

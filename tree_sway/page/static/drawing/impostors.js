@@ -13,8 +13,8 @@ const ROWS = 4;
 const PER_CORNER = 9;
 
 export class Impostor {
-  /** @param {WebGL2RenderingContext} gl @param {import("./gl.js").Program} used
-   * @param {import("./mesh.js").Shape} shape @param {number} most how many trees
+  /** @param {WebGL2RenderingContext} gl @param {Program} used
+   * @param {Shape} shape @param {number} most how many trees
    * @param {boolean} isPlain the nearest point alone is looked up, which costs less */
   constructor(gl, used, shape, most, isPlain) {
     const { kind, low, high, rest, highest } = shape;
@@ -105,7 +105,7 @@ export class Impostor {
     poses[STRIDE * row + 2] = z + scale * w;
   }
 
-  /** @param {import("./gl.js").Program} used
+  /** @param {Program} used
    * @param {number} shade of the foot of a tree among others */
   draw(used, shade) {
     const { gl, box, tip } = this;
@@ -123,7 +123,7 @@ export class Impostor {
 }
 
 /** How far the highest node moves per unit of each coordinate, three numbers each.
- * @param {import("./mesh.js").Shape} shape @param {number[]} tip the node at rest */
+ * @param {Shape} shape @param {number[]} tip the node at rest */
 function movesOf({ kind, placer, highest }, tip) {
   const row = STRIDE * placer.slots[highest];
   const branches = placer.reached.findIndex((reached) => reached > placer.slots[highest]);

@@ -21,20 +21,6 @@ const LARGEST_CARDS = 4;
 /** Height of the picture of bark on a stem [m]. */
 const BARK_TILE = 0.6;
 
-/**
- * @typedef {import("../protocol.js").Kind} Kind
- * @typedef {{values: number[], indices: number[]}} Mesh
- *
- * @typedef {object} Level how much of a kind is drawn
- * @property {number} branches the first of its order
- * @property {number} segments of these
- * @property {number} cards of its leaves
- * @property {number} pixels height of a tree that it is shaped for
- * @property {number} from height [px] from which on it is drawn
- *
- * @typedef {ReturnType<typeof shapeOf>} Shape
- */
-
 /** A kind at rest: poses as they are described, its box, its highest segment, how open its crown is.
  * @param {Kind} kind */
 export function shapeOf(kind) {

@@ -4,15 +4,6 @@
 
 import { textOf } from "../files.js";
 
-/**
- * @typedef {{values: number[], indices: number[]}} Mesh of [place, normal, colour] per vertex
- *
- * @typedef {object} Turned a shape turned about the vertical
- * @property {number} sides @property {number[]} middles one of it beside each [m]
- * @property {number} [wide] width over depth
- * @property {[number, number, string][]} profile radius, height [m] and colour
- */
-
 /** @type {{colours: Record<string, number[]>, pot: Turned[], person: Turned[]}} */
 const { colours, ...PROPS } = JSON.parse(await textOf("drawing/props.json"));
 

@@ -43,25 +43,6 @@ const FIELDS = {
   solid: [["at", 3], ["facing", 3], ["tint", 3]],
 };
 
-/**
- * @typedef {import("./gl.js").Drawable} Drawable
- * @typedef {import("./gl.js").Program} Program
- *
- * @typedef {object} View what one eye sees
- * @property {Pick<Camera, "matrix" | "eye" | "axes" | "update">} camera
- * @property {WebGLFramebuffer | null} target
- * @property {number[]} area of the target: x, y, width, height [px]
- *
- * @typedef {object} DrawnLevel trees of a kind that are drawn on one level
- * @property {number[]} starts rows of their first segments
- * @property {Drawable | null} bark
- * @property {Drawable | null} leaf
- * @property {number} across leaves in the picture of a card
- * @property {Impostor | null} impostor
- *
- * @typedef {import("./mesh.js").Shape & {drawn: DrawnLevel[]}} DrawnKind by levels that have been used
- */
-
 export class Scene {
   /** @param {HTMLCanvasElement} canvas
    * @param {boolean} [isFine] whether nothing is left out, however slow that is */
@@ -82,7 +63,7 @@ export class Scene {
     this._watched = 0;
     this._budget = 0;
     this._chosenFor = "";
-    /** @type {import("../protocol.js").Description | null} */
+    /** @type {Description | null} */
     this.description = null;
     this.leavesShown = true;
     this.hasPerson = true;
@@ -149,7 +130,7 @@ export class Scene {
     return Boolean(this.description?.kinds.some((kind) => kind.arrays.leaf_segment?.length));
   }
 
-  /** Another time of day. @param {import("./backdrop.js").Daylight} day */
+  /** Another time of day. @param {Daylight} day */
   setDay(day) {
     this.day = day;
     if (this.description) this._frameShadow();
@@ -167,7 +148,7 @@ export class Scene {
     this.repaint();
   }
 
-  /** Take another tree. @param {import("../protocol.js").Description} description */
+  /** Take another tree. @param {Description} description */
   describe(description) {
     const { kinds, trees } = description;
     const isSame = this.description?.name === description.name;
@@ -246,7 +227,7 @@ export class Scene {
     return this.detail.start[this._watched] + slots[segment];
   }
 
-  /** The kind of the watched tree. @returns {import("../protocol.js").Kind | null} */
+  /** The kind of the watched tree. @returns {Kind | null} */
   get watchedKind() {
     return this.description?.kinds[this.description.trees[this._watched].kind] ?? null;
   }

@@ -15,12 +15,6 @@ const WAYS = Array.from({ length: 16 }, (_, i) => {
   return [flat * Math.cos(2.399963 * i), flat * Math.sin(2.399963 * i), z];
 });
 
-/**
- * @typedef {object} Shade
- * @property {number} open share of the light of all directions that arrives, 0 to 1
- * @property {number[]} towards where most of it comes from, shorter than 1
- */
-
 /** @param {number[][]} places of leaves [m] @param {number[]} areas of theirs [m^2]
  * @param {number[]} low corner of the box of the tree @param {number[]} high
  * @returns {(place: ArrayLike<number>) => Shade} */

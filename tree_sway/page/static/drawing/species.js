@@ -5,26 +5,6 @@
 import { textOf } from "../files.js";
 
 /**
- * @typedef {"ovate" | "pointed" | "lobed" | "palmate" | "compound" | "needles" | "tufts" | "fronds"} LeafForm
- *
- * @typedef {object} Look
- * @property {number[]} bark colour, red, green and blue from 0 to 1
- * @property {"furrows" | "plates" | "smooth" | "dashes" | "flakes"} pattern of the bark
- * @property {number[]} twig
- * @property {LeafForm} form of a leaf
- * @property {number} size of a leaf or a leaflet, or of a shoot with its needles [m]
- * @property {number} slender width of a leaf over its length
- * @property {number[]} leaf
- * @property {number[]} fresh colour of a leaf with the sun behind it
- * @property {number[] | null} autumn colour of a leaf before it falls; null of an evergreen
- *
- * @typedef {object} Pattern of bark
- * @property {[number, number]} cells of its noise around and up a tile
- * @property {number} [ridge] how steep furrows are @property {number} [spot] share without dark spots
- * @property {number} depth of its shade @property {number} grain
- */
-
-/**
  * The average broadleaf whole; what is other of the average conifer, and of each species than of its
  * group. Patterns of bark, and halves of outlines of blades from the stalk to the tip.
  * @type {{broadleaf: Look, conifer: Partial<Look>, broadleaves: Record<string, Partial<Look>>,

@@ -11,8 +11,6 @@ const BARK_PIXELS = 128;
 /** Length of a compound leaf in leaflets. */
 const RACHIS = 3.4;
 
-/** @typedef {import("./species.js").Look} Look */
-
 /** Leaves across the picture for cards of a size, so that none is drawn larger than 1.5 times its
  * own.
  * @param {string} species @param {number} size of a card [m] */
