@@ -14,6 +14,7 @@ const [HARDER, STIFFEST] = [1.4, 1e5];
 const [RECORDED, OFFERED] = [30, 3];
 /** Until a tree elsewhere is surely let go [ms]. */
 const RELEASED = 250;
+const MOST_UNEVEN = 4;
 
 /** Stiffness of the wood that bears a segment [N/m]: a spring of it bends a branch half the way.
  * @param {import("./drawing/scene.js").Scene} scene @param {number} segment of the watched tree */
@@ -49,6 +50,9 @@ export class Pull {
     this._touch = null;
     /** @type {KindPlacer | null} */
     this._placer = null;
+    /** The newest of the record, and the least time between two [s]. @type {Frame | null} */
+    this._last = null;
+    this._spacing = Infinity;
   }
 
   /** What the spring pulls by [N]. */
@@ -82,12 +86,22 @@ export class Pull {
     this._placer ??= new KindPlacer(this._touch.kind, chainTo(this._touch.kind, this.segment));
     const { firstCoordinate: first } = this._touch.tree;
     const rest = this.scene.restPosition(this.segment);
-    for (const { stamp, coordinates } of playout.since(this._from + 1000 * this.seconds)) {
-      const own = Float64Array.from(coordinates.subarray(first, first + this._touch.kind.nCoordinates));
+    for (const frame of playout.since(this._last?.stamp ?? this._from)) {
+      const own = Float64Array.from(frame.coordinates.subarray(first, first + this._touch.kind.nCoordinates));
       const at = this._touch.place(this._placer, this.segment, own);
-      const time = (stamp - this._from) / 1000;
-      this.record.push([time, ...rest.map((each, c) => at[c] - each)]);
+      this.record.push([this._timeOf(frame), ...rest.map((each, c) => at[c] - each)]);
+      this._last = frame;
     }
+  }
+
+  /** Time of a frame [s]; where a busy machine made the solver wait, the tree waited, too.
+   * @param {Frame} frame */
+  _timeOf({ stamp, sequence }) {
+    if (!this._last) return 0;
+    const count = Math.max(1, (sequence - this._last.sequence) >>> 0);
+    const spacing = (stamp - this._last.stamp) / 1000 / count;
+    this._spacing = Math.min(this._spacing, spacing);
+    return this.seconds + count * (spacing > MOST_UNEVEN * this._spacing ? this._spacing : spacing);
   }
 
   /** How long the record is [s]. */
