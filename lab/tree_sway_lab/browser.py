@@ -59,8 +59,8 @@ class Browser:
         self._session = aiohttp.ClientSession()
         self._ws = await self._session.ws_connect(found[1], max_msg_size=0)
         created = await self.call('Target.createTarget', url='about:blank')
-        told = await self.call('Target.attachToTarget', flatten=True, **created)
-        self._target = told['sessionId']
+        answer = await self.call('Target.attachToTarget', flatten=True, **created)
+        self._target = answer['sessionId']
         for domain in ('Page', 'Runtime', 'Network'):
             await self.call(f'{domain}.enable')
         return self
@@ -87,19 +87,19 @@ class Browser:
             message['sessionId'] = self._target
         await self._ws.send_str(json.dumps(message))
         while True:
-            told = json.loads((await asyncio.wait_for(self._ws.receive(), DEADLINE)).data)
-            if told.get('id') == self._number:
-                assert 'error' not in told, told['error']
-                return told['result']
-            self._note(told)
+            answer = json.loads((await asyncio.wait_for(self._ws.receive(), DEADLINE)).data)
+            if answer.get('id') == self._number:
+                assert 'error' not in answer, answer['error']
+                return answer['result']
+            self._note(answer)
 
-    def _note(self, told: dict[str, Any]) -> None:
+    def _note(self, message: dict[str, Any]) -> None:
         """Keep what went wrong on the page, and every address that it asked for."""
-        method, told = told.get('method'), told.get('params', {})
+        method, details = message.get('method'), message.get('params', {})
         if method == 'Runtime.exceptionThrown':
-            self.console.append(json.dumps(told['exceptionDetails'])[:600])
+            self.console.append(json.dumps(details['exceptionDetails'])[:600])
         elif method == 'Network.requestWillBeSent':
-            self.requests.append(told['request']['url'])
+            self.requests.append(details['request']['url'])
 
     async def open(  # noqa: A003
         self, url: str, width: int = 1280, height: int = 800, dark: bool = False
@@ -116,11 +116,11 @@ class Browser:
 
     async def run(self, script: str) -> Any:
         """Value of an expression on the page."""
-        told = await self.call(
+        answer = await self.call(
             'Runtime.evaluate', expression=script, returnByValue=True, awaitPromise=True
         )
-        assert 'exceptionDetails' not in told, told['exceptionDetails']
-        return told['result'].get('value')
+        assert 'exceptionDetails' not in answer, answer['exceptionDetails']
+        return answer['result'].get('value')
 
     async def until(self, script: str, deadline: float = DEADLINE) -> None:
         """Wait until an expression is true on the page."""

@@ -95,7 +95,7 @@ def test_a_pull_and_release_gives_the_tree_back(
     out = tmp_path / 'fitted.yaml'
     command = ['calibrate', str(tree), '--modulus', '2e10', '--record', str(tmp_path / 'pull.csv')]
     assert cli.main([*command, '-o', str(out)]) == 0
-    assert 'displacement in x [mm], y [mm], ' in capsys.readouterr().out
+    assert 'displacement in x [mm], y [mm], release (' in capsys.readouterr().out
     facts = info(out, capsys)
     assert facts['frequencies'][0] == pytest.approx(float(sim.frequencies()[0]), rel=5e-3)
     assert facts['modes'][0]['damping_ratio'] == pytest.approx(0.06, rel=0.05)

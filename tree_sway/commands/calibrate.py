@@ -131,7 +131,7 @@ def _measured(arguments: argparse.Namespace) -> FreeDecay:
         found = estimate_sway(record.time, record.motion, band)
     print(
         f'{record.source}: {record.quantity} in {", ".join(record.columns)}, '
-        f'{found.cycles:.0f} cycles'
+        f'release ({found.cycles:.0f} cycles)'
     )
     print(
         f'  measured   {found.frequency:.4g} +- {found.frequency_error:.2g} Hz, '

@@ -126,8 +126,7 @@ def _breast_height_diameter(tree: Tree) -> float | None:
     thick = np.append(tree.base_diameter[stem], tree.tip_diameter[stem][-1])
     if level.max() < _BREAST_HEIGHT:
         return None
-    at = int(np.argmax(level >= _BREAST_HEIGHT))
-    return float(np.interp(_BREAST_HEIGHT, level[at - 1 : at + 1], thick[at - 1 : at + 1]))
+    return float(np.interp(_BREAST_HEIGHT, np.maximum.accumulate(level), thick))
 
 
 def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:

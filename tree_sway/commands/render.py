@@ -22,8 +22,6 @@ from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
 from tree_sway.page.film import browser, page_pictures
 
-_RUN_IN = 20.0
-"""Time before the film [s] in which the start from rest is forgotten."""
 _LEAVES = 2800
 """Of all leaves: a frame must take less time than it shows."""
 
@@ -33,7 +31,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add_sway_arguments(parser)
     add('--seconds', type=float, default=8.0, metavar='N', help='of the film (%(default)s)')
-    add('--start', type=float, default=0.0, help='of the wind [s] (%(default)s)')
     add('--rate', type=float, default=20.0, help='pictures per second [Hz] (%(default)s)')
     add('--pixels', type=int, default=480, help='height of the picture (%(default)s)')
     add_output_arguments(parser, 'film to write: .gif or .mp4')
@@ -52,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
         simulator = scene.simulator(in_leaf=chosen_leaves(arguments), model=arguments.model)
     began = time.monotonic()
     rate, pixels = arguments.rate, arguments.pixels
-    frames = swaying(simulator, wind, rate, arguments.seconds, arguments.start, _RUN_IN)
+    frames = swaying(simulator, wind, rate, arguments.seconds)
     if browser() is not None and isinstance(arguments.model, int):
         from PIL import Image
 

@@ -117,7 +117,7 @@ async def _memory(browser: Browser) -> float:
 
 
 def _processor_time(browser: Browser) -> float:
-    """Return what the browser's processes have used so far [s]."""
+    """Return what the browser's processes have used until now [s]."""
     parents = {}
     for folder in Path('/proc').glob('[0-9]*'):
         with contextlib.suppress(OSError):
