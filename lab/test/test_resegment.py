@@ -80,29 +80,29 @@ def test_what_is_kept(random_tree, seed, cut):
     tree = tree_from_segments(
         start, end, np.stack([diameter, 0.8 * diameter], axis=1), parent=parent
     )
-    again = resegment(tree, cut)
-    assert (np.diff(again.branch_first) == cut).all()
-    assert sorted(again.branch_names) == sorted(tree.branch_names)
-    ours = [again.branch_names.index(name) for name in tree.branch_names]
-    assert again.start[again.branch_first[ours]] == pytest.approx(
+    finer = resegment(tree, cut)
+    assert (np.diff(finer.branch_first) == cut).all()
+    assert sorted(finer.branch_names) == sorted(tree.branch_names)
+    ours = [finer.branch_names.index(name) for name in tree.branch_names]
+    assert finer.start[finer.branch_first[ours]] == pytest.approx(
         tree.start[tree.branch_first[:-1]]
     )
-    assert again.end[again.branch_first[1:][ours] - 1] == pytest.approx(
+    assert finer.end[finer.branch_first[1:][ours] - 1] == pytest.approx(
         tree.end[tree.branch_first[1:] - 1]
     )
     for old, new in enumerate(ours):
-        carriers = [each.branch_parent[b] for each, b in ((tree, old), (again, new))]
+        carriers = [each.branch_parent[b] for each, b in ((tree, old), (finer, new))]
         names = [
             each.branch_names[c] if c >= 0 else ''
-            for each, c in zip((tree, again), carriers, strict=True)
+            for each, c in zip((tree, finer), carriers, strict=True)
         ]
         assert names[0] == names[1]
         if cut >= tree.branch_first[old + 1] - tree.branch_first[old]:
             # Finer cuts keep every node, and so length and volume.
-            here, there = tree.segments_of(old), again.segments_of(new)
-            assert again.length[there].sum() == pytest.approx(tree.length[here].sum())
-            assert again.volume[there].sum() == pytest.approx(tree.volume[here].sum())
-    touching = np.linalg.norm(again.start[1:] - again.end[again.segment_parent[1:]], axis=1)
+            here, there = tree.segments_of(old), finer.segments_of(new)
+            assert finer.length[there].sum() == pytest.approx(tree.length[here].sum())
+            assert finer.volume[there].sum() == pytest.approx(tree.volume[here].sum())
+    touching = np.linalg.norm(finer.start[1:] - finer.end[finer.segment_parent[1:]], axis=1)
     if cut >= np.diff(tree.branch_first).max():
         assert touching.max() < 1e-12
 
