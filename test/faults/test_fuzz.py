@@ -170,9 +170,7 @@ def fuzz_lines(n, seed):
             place = rng.randrange(len(line)) if line else 0
             line[place : place + rng.randrange(3)] = chr(rng.choice((rng.randrange(128), 0x20AC)))
         text = ''.join(line)
-        said = parse_nmea(text, 0.0, 0.0, need_checksum=False) or parse_sonic(
-            text, 0.0, need_checksum=False
-        )
+        said = parse_nmea(text, 0.0, 0.0) or parse_sonic(text, 0.0)
         if said is not None and said.velocity is not None:
             good += 1
             assert all(math.isfinite(each) for each in said.velocity)

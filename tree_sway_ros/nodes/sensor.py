@@ -62,10 +62,8 @@ class SensorNode(TreeSwayNode):
             self._publisher.publish(self._writer.message(stamp, said.velocity))
 
     def _parsed(self, line: str) -> SensorLine | None:
-        need, heading = self.values['need_checksum'], self.values['heading']
-        return parse_nmea(
-            line, heading, self.values['declination'], need_checksum=need
-        ) or parse_sonic(line, heading, need_checksum=need)
+        heading = self.values['heading']
+        return parse_nmea(line, heading, self.values['declination']) or parse_sonic(line, heading)
 
     def _report(self) -> list[Status]:
         source = self._source

@@ -28,11 +28,12 @@ export class Backdrop {
   }
 
   /** @param {import("./camera.js").Camera} camera @param {Daylight} day
-   * @param {{kind: number, height: number, haze: number}} ground @param {number} width [px]
-   * @param {number} height */
+   * @param {{kind: number, height: number, haze: number}} ground @param {number} width [px]; 0 paints
+   * at once, for a camera that is never still @param {number} height */
   draw(camera, day, ground, width, height) {
     const { gl } = this;
     gl.disable(gl.DEPTH_TEST);
+    if (!width) return this._paint(camera, day, ground);
     const wanted = [...camera.matrix, day.zenith, ground.kind, ground.height, width, height].join();
     if (this._paintedFor !== wanted) {
       this._paintedFor = wanted;
@@ -44,7 +45,6 @@ export class Backdrop {
       use(gl, this._copy, { picture: [2, this._kept.texture] });
       drawPart(gl, this._whole);
     }
-    gl.enable(gl.DEPTH_TEST);
   }
 
   /** Paint into a texture of the size of the picture.
