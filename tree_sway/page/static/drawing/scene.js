@@ -50,7 +50,6 @@ export class Scene {
     const { gl, isSoftware } = contextOf(canvas);
     /** Without a graphics unit: fewer points, fewer shadows. */
     this.isSlow = isSoftware && !isFine;
-    this._isFine = isFine;
     this.gl = gl;
     this.canvas = canvas;
     this.camera = new Camera();
@@ -288,12 +287,10 @@ export class Scene {
    * @param {Float32Array} matrix */
   _chooseDetail(matrix) {
     const { gl, detail } = this;
-    // Where nothing is to be left out, as if the picture were larger.
-    const tall = (this._isFine ? 2 : 1) * this.canvas.clientHeight;
-    const wanted = [...matrix, tall].join();
+    const wanted = [...matrix, this.canvas.clientHeight].join();
     if (!detail || wanted === this._chosenFor) return;
     this._chosenFor = wanted;
-    detail.choose(matrix, tall, this._budget);
+    detail.choose(matrix, this.canvas.clientHeight, this._budget);
     this._eachLevel((level) => {
       level.starts.length = 0;
       if (level.impostor) level.impostor.count = 0;
