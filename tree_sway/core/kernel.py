@@ -45,15 +45,6 @@ def fused(function: _F) -> _F:
     return _compiled(function, fastmath=_LOOSE, forceinline=True)
 
 
-def inlined(function: _F) -> _F:
-    """
-    Compile like `fused` and paste the body into each caller, so that a loop of calls vectorises.
-
-    For short functions of numbers in the innermost loop; callers compile longer.
-    """
-    return _compiled(function, fastmath=_LOOSE, inline='always')
-
-
 def _compiled(function: _F, **options: Any) -> _F:
     if WHY_PLAIN:
         function.py_func = function  # type: ignore[attr-defined]

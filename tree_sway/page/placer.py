@@ -19,7 +19,7 @@ from tree_sway.core.motion.fill_records import (
     Places,
     segment_records,
 )
-from tree_sway.core.motion.placing import place_standing_at
+from tree_sway.core.motion.placing import GIVEN, place
 from tree_sway.core.motion.records import BRANCH, head_layout, SEGMENT
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array
@@ -69,8 +69,9 @@ class Placer:
             c, s = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
             keys = kind.matrix @ coordinates[first:last]
             branches, segments, heads, bases = kind.records
-            place_standing_at(
-                branches, segments, heads, bases, keys, x, y, z, c, s, scale, poses[row:end]
+            origin = np.array([x, y, z])
+            place(
+                *GIVEN, branches, segments, heads, bases, c, s, scale, keys, origin, poses[row:end]
             )
             row, first = end, last
         return poses
