@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats
 from tree_sway.core.branch.shapes import MAX_COORDINATES
 from tree_sway.core.motion.fill_records import (
+    assign_lanes,
     fill_places,
     head_records,
-    lanes,
     Places,
     segment_records,
 )
@@ -92,7 +92,7 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     base_turn, own_turn = (arrays[f'branch_{name}'].astype(np.int64) for name in _TURNS)
     matrix, turns = arrays['basis_matrix'].astype(np.float64), arrays['turn']
     slope, tip_slope = arrays['segment_slope'], arrays['segment_tip_slope']
-    block, _, n_records = lanes(first, parent)
+    block, _, n_records = assign_lanes(first, parent)
     sizes = len(parent), n_records, len(np.unique(block)) + 1
     memory = sum(
         count * layout.itemsize

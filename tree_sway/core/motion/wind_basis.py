@@ -23,9 +23,9 @@ from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.branchwise import Tunable
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT
-from tree_sway.core.motion.lanes import shapes_together, TOGETHER
 from tree_sway.core.motion.modal import add_force, ModalBank
 from tree_sway.core.motion.placing import expand
+from tree_sway.core.motion.simd import shapes_together, TOGETHER
 from tree_sway.core.motion.wind_basis_force import (
     Instance,
     instance_layout,
