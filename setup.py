@@ -68,7 +68,6 @@ extras = {
     'bag': ['rosbags>=0.11'],
     'plot': ['matplotlib>=3.6'],
     'film': ['matplotlib>=3.6', 'imageio-ffmpeg>=0.5'],
-    'h5': ['h5py>=3.7'],
     # colcon runs pytest only where an extra of this name asks for it.
     'test': [
         *('pytest>=7,<9', 'pytest-xdist>=3.2', 'pytest-cov>=4', 'hypothesis>=6.60', 'mpmath>=1.2'),

@@ -49,7 +49,7 @@ NEEDS = {
     **dict.fromkeys(
         ('pytest', 'py.test'),
         (
-            *('ros', 'serial', 'bag', 'film', 'plot', 'h5', 'study', 'test'),
+            *('ros', 'serial', 'bag', 'film', 'plot', 'study', 'test'),
             *('lab', 'docs'),
         ),
     ),
@@ -58,7 +58,7 @@ NEEDS = {
     'sphinx-build': ('docs',),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
-NEEDS_OF_FILES = {'.db3': 'bag', '.mcap': 'bag', '.mat': 'h5'}
+NEEDS_OF_FILES = {'.db3': 'bag', '.mcap': 'bag'}
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
     'AMENT_PREFIX_PATH',

@@ -20,7 +20,6 @@ from launch_ros.actions import Node
 
 PACKAGE = 'tree_sway_ros'
 WIND = 'wind/filtered'
-CHAIN = f'wind {WIND}'
 SOURCES = {
     'simulated': ['anemometer'],
     'player': ['player'],
@@ -95,7 +94,7 @@ def start_nodes(context):
 
 
 def is_true(name, text):
-    """Return whether an argument says yes: True, true and 1 do; refuse what is neither."""
+    """Return whether an argument is True, true or 1; refuse what is neither true nor false."""
     if text.lower() in ('true', '1'):
         return True
     if text.lower() in ('', 'false', '0'):
@@ -144,7 +143,7 @@ def shards_here(given):
 
 
 def make_shard(shard, given, config, around):
-    """Make the solver of one shard: it hears the one wind of all, and comes back if it ends."""
+    """Make the solver of one shard: it receives the common wind, and is restarted if it ends."""
     wind = '/' + '/'.join(filter(None, (around.strip('/'), given['namespace'].strip('/'), WIND)))
     return make_node(
         'solver',
@@ -162,18 +161,13 @@ def make_node(name, given, config, more=None, **options):
     files = [os.path.join(config, f'{name}.yaml')]
     if given['params_file']:
         files.append(given['params_file'])
-    # The player begins when the whole chain listens; a file of the user's may say otherwise.
-    with_clock = ' /clock:2' if given['use_sim_time'] in ('true', 'True', '1') else ''
-    chain = [{'wait_for': CHAIN + with_clock}] if name == 'player' else []
-    if name == 'solver' and given['source'] == 'player' and with_clock:
-        chain = [{'exact_replay': True}]
     is_live = name == 'wind' and given['source'] == 'live'
     return Node(
         package=PACKAGE,
         executable=name,
         name=name,
         namespace=given['namespace'],
-        parameters=[*chain, *files, overrides_of(name, given) | (more or {})],
+        parameters=[*files, overrides_of(name, given) | (more or {})],
         **{'remappings': [('wind', given['wind_topic'])] if is_live else []} | options,
         output='screen',
     )

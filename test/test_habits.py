@@ -42,6 +42,10 @@ def test_the_citation_names_this_version() -> None:
     citation = yaml.safe_load((ROOT / 'CITATION.cff').read_text(encoding='utf-8'))
     assert citation['version'] == tree_sway.__version__
     assert citation['license'] == 'Apache-2.0'
+    preferred = citation['preferred-citation']
+    assert preferred['version'] == tree_sway.__version__
+    assert preferred['year'] >= 2026
+    assert preferred['authors'][0]['email'] == citation['authors'][0]['email']
     assert {name['family-names'] for name in citation['references'][0]['authors']} == {
         *('Kanda', 'Ohya'),
     }

@@ -74,7 +74,6 @@ OPTIONAL = {
         'cryptography',
         'dask',
         'distributed',
-        'h5py',
         'imageio_ffmpeg',
         'mpl_toolkits',
         'mpmath',

@@ -152,9 +152,9 @@ def test_a_simulated_tree_is_a_table_with_units(
     for path in tables:
         wind = ['--wind', str(wind_file), '--branch', 'stem', '--seconds', '2']
         assert cli.main(['simulate', SEEDLING, *wind, '-o', str(path)]) == 0
-    told = capsys.readouterr().out
-    assert told.startswith(f'{tables[0]}: SwayRecord of seedling')
-    assert 'strength used: wood ' in told
+    text = capsys.readouterr().out
+    assert text.startswith(f'{tables[0]}: SwayRecord of seedling')
+    assert 'strength used: wood ' in text
     head, *rows = tables[0].read_text().splitlines()
     assert head.split(',')[:2] == ['time [s]', 'wind_x [m/s]']
     assert 'stem tip_x [m]' in head

@@ -89,9 +89,10 @@ def test_plot_draws_it(
 
 
 def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -> None:
-    out = tmp_path / 'glade.gltf'
+    out = tmp_path / 'glade.glb'
     assert cli.main(['convert', forest, '-o', str(out)]) == 0
-    document = json.loads(out.read_text())
+    size = int.from_bytes(out.read_bytes()[12:16], 'little')
+    document = json.loads(out.read_bytes()[20 : 20 + size])
     names = [document['nodes'][joint]['name'] for joint in document['skins'][0]['joints']]
     assert names == list(open_scene(forest).tree.segment_names)
 
@@ -123,10 +124,12 @@ def test_what_cannot_be_says_why(
 
 def test_twigs_of_a_scan_are_made_thin(capsys: pytest.CaptureFixture[str]) -> None:
     volumes = []
-    for option in ([], ['--option', 'twig_diameter=0.001', '--option', 'species=oak']):
-        assert cli.main(['info', str(SCAN), '--json', *option]) == 0
+    for options in (['twig_diameter=0'],
+                    ['twig_diameter=0.001', 'species=oak', 'trusted_diameter=0.2']):  # fmt: skip
+        given = [word for option in options for word in ('--option', option)]
+        assert cli.main(['info', str(SCAN), '--json', *given]) == 0
         facts = json.loads(capsys.readouterr().out)
         volumes.append(facts['volume'])
     assert facts['species'] == 'oak'
-    assert any('tapers to 0.001 m' in note for note in facts['notes'])
+    assert any('are made 1 mm thick' in note for note in facts['notes'])
     assert volumes[1] < volumes[0]

@@ -46,9 +46,6 @@ def test_a_clamped_rod_has_the_frequency_of_the_books(
     radius_of_gyration = diameter / 4.0
     wave = np.sqrt(MODULUS / DENSITY) * radius_of_gyration / length**2
     assert found['frequencies'] == pytest.approx([3.516 * wave / (2 * np.pi)] * 2, rel=0.01)
-    first, second = np.array([mode['axis'] for mode in found['modes']])
-    along = np.array([0.2, 0.0, 1.0]) / np.hypot(0.2, 1.0)
-    assert [first @ along, second @ along, first @ second] == pytest.approx([0.0] * 3, abs=1e-4)
     assert found['mass'] == pytest.approx(DENSITY * np.pi / 4 * diameter**2 * length)
     assert found['breast_height_diameter'] == pytest.approx(diameter)
 
@@ -62,7 +59,7 @@ def test_its_own_weight_makes_a_tree_softer(
     assert with_weight < 0.99 * without
 
 
-def test_a_tree_that_cannot_stand_still_tells_its_size(
+def test_a_tree_that_cannot_stand_has_its_size_reported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = write_pole(tmp_path / 'pole.yaml', 30.0, 0.02)
@@ -81,7 +78,6 @@ def test_natural_modes_are_listed(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert len(found['frequencies']) == 6
     assert found['frequencies'] == sorted(found['frequencies'])
     for mode in found['modes']:
-        assert np.linalg.norm(mode['axis']) == pytest.approx(1.0, abs=1e-5)
         assert mode['damping_ratio'] == pytest.approx(0.04)
 
 
@@ -105,8 +101,8 @@ def test_the_text_says_the_same(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ('option', 'cure'),
     [
-        (('--modulus', '9.4'), '9.4 GPa are --modulus 9.4e+09'),
-        (('--density', '0.95'), '0.95 g/cm^3 are --density 950'),
+        (('--modulus', '9.4'), 'give 1e+07 to 5e+11 Pa'),
+        (('--density', '0.95'), 'give 40 to 10000 kg/m^3'),
     ],
 )
 def test_wood_in_another_unit_is_refused(
@@ -116,7 +112,7 @@ def test_wood_in_another_unit_is_refused(
     assert cure in capsys.readouterr().err
 
 
-def test_what_is_odd_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_odd_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     assert facts(capsys, 'goldcrest')['warnings'] == []
     odd = facts(capsys, 'goldcrest', '--modulus', '1e11')['warnings']
     assert [each.split(',')[0] for each in odd] == ['a modulus of 100 GPa']

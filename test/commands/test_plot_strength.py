@@ -15,14 +15,14 @@ from tree_sway.commands.cli import main
 pytest.importorskip('matplotlib', reason='needs matplotlib')
 
 
-def test_a_curve_is_drawn_and_told(tmp_path, capsys):
+def test_a_curve_is_drawn_and_printed(tmp_path, capsys):
     picture = tmp_path / 'strength.png'
     tree = 'test/files/data/fork.simpleforest.csv'
     options = ['--strength', '--species', 'oak', '--model', '6', '--speed', '12']
     assert main(['plot', tree, *options, '-o', str(picture)]) == 0
     assert picture.stat().st_size > 10_000
-    told = capsys.readouterr().out
-    shares = [float(share) for share in re.findall(r'wood ([\d.e+-]+) %', told)]
+    text = capsys.readouterr().out
+    shares = [float(share) for share in re.findall(r'wood ([\d.e+-]+) %', text)]
     assert len(shares) == 6
     assert shares == sorted(shares)
     assert shares[0] > 0.0

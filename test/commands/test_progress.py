@@ -47,7 +47,7 @@ def test_a_long_wait_on_a_terminal_shows_a_bar(monkeypatch: pytest.MonkeyPatch) 
     assert '/3' in terminal.getvalue()
 
 
-def test_a_wait_that_is_not_counted_is_told(
+def test_a_wait_that_is_not_counted_is_reported(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(progress, 'PATIENCE', 0.0)

@@ -12,10 +12,19 @@ import pytest
 
 Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 
+from tree_sway.commands import render  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.page import film  # noqa: E402
+from tree_sway.page.film import browser  # noqa: E402
 
 FILES = Path(__file__).parents[1] / 'files' / 'data'
 SEEDLING = str(FILES / 'seedling.yaml')
+
+
+@pytest.fixture
+def plainly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let there be no browser, which takes seconds to start."""
+    monkeypatch.setattr(render, 'browser', lambda: None)
 
 
 def frame(path: Path, number: int = 0) -> np.ndarray:
@@ -25,6 +34,35 @@ def frame(path: Path, number: int = 0) -> np.ndarray:
     return np.asarray(image.convert('RGB')).astype(float)
 
 
+@pytest.mark.skipif(browser() is None, reason='chromium is not installed here')
+def test_a_film_is_the_picture_of_the_page(tmp_path: Path) -> None:
+    path = tmp_path / 'sway.gif'
+    given = ['render', SEEDLING, '--speed', '12', '--seconds', '0.6', '--rate', '5']
+    assert main([*given, '--pixels', '200', '-o', str(path)]) == 0
+    image = Image.open(path)
+    assert image.size == (320, 200)
+    assert image.n_frames == 3
+    first, last = frame(path), frame(path, 2)
+    sky, ground = first[:10].mean(axis=(0, 1)), first[-10:].mean(axis=(0, 1))
+    assert sky[2] > sky[0] + 10.0
+    assert np.abs(sky - ground).max() > 20.0
+    tree = np.abs(first[:, :80] - last[:, :80]).max(), np.abs(first - last)[:, 120:200].max()
+    assert tree[1] > tree[0]
+
+
+def test_a_browser_that_draws_nothing_is_named_and_ends(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(film, 'browser', lambda: '/bin/true')
+    monkeypatch.setattr(film, '_PATIENCE', 0.2)
+    monkeypatch.setattr(render, 'browser', film.browser)
+    target = tmp_path / 'sway.gif'
+    assert main(['render', SEEDLING, '--seconds', '0.2', '-o', str(target)]) == 2
+    assert 'drew nothing' in capsys.readouterr().err
+    assert not target.exists()
+
+
+@pytest.mark.usefixtures('plainly')
 def test_a_gif_of_a_recorded_wind_moves(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -42,15 +80,17 @@ def test_a_gif_of_a_recorded_wind_moves(
     assert np.abs(frame(path, len(frames) - 3) - frame(path, 1)).max() > 60
 
 
+@pytest.mark.usefixtures('plainly')
 def test_the_same_command_gives_the_same_film(tmp_path: Path) -> None:
     given = ['render', SEEDLING, '--seconds', '0.5', '--rate', '8', '--pixels', '120']
     films = [tmp_path / f'{name}.gif' for name in ('one', 'two')]
-    for film in films:
-        assert main([*given, '--speed', '9', '-o', str(film)]) == 0
+    for each in films:
+        assert main([*given, '--speed', '9', '-o', str(each)]) == 0
     assert Image.open(films[0]).n_frames == 4
     assert films[0].read_bytes() == films[1].read_bytes()
 
 
+@pytest.mark.usefixtures('plainly')
 def test_a_film_is_written_by_the_wheel(tmp_path: Path) -> None:
     pytest.importorskip('imageio_ffmpeg', reason='imageio-ffmpeg is not installed')
     path = tmp_path / 'sway.mp4'

@@ -75,7 +75,7 @@ def test_the_page_is_served_and_the_tree_moves() -> None:
 
 
 @pytest.mark.parametrize(
-    ('arguments', 'told'),
+    ('arguments', 'expected'),
     [
         (['--address', '0.0.0.0'], 'without a token'),
         (['--port', '70000'], '--port: 70000 is out of range'),
@@ -85,10 +85,10 @@ def test_the_page_is_served_and_the_tree_moves() -> None:
     ],
 )
 def test_what_cannot_be_served_is_refused_in_words(
-    arguments: list[str], told: str, capsys: pytest.CaptureFixture[str]
+    arguments: list[str], expected: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(['show', str(SEEDLING), '--seconds', '0', *arguments]) == 2
-    assert told in capsys.readouterr().err
+    assert expected in capsys.readouterr().err
 
 
 def test_a_stand_of_a_file_offers_neither_a_model_nor_a_number_of_trees() -> None:

@@ -32,7 +32,7 @@ PACKAGES = 'python3,python3-venv,git,ca-certificates'
 OF_THIS_MACHINE = ('/etc/pip.conf', '/etc/resolv.conf', '/etc/ssl/certs/ca-certificates.crt')
 SHOW = 'python3 .ci/in_venv.py tree-sway show'
 DEMO = 'python3 .ci/in_venv.py tree-sway demo --no-page --seconds 4'
-Browser = runpy.run_path(str(ROOT / 'test' / 'page' / 'conftest.py'))['Browser']
+Browser = runpy.run_path(str(ROOT / 'lab' / 'tree_sway_lab' / 'browser.py'))['Browser']
 
 
 def main() -> None:

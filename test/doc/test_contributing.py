@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A newcomer's changes as CONTRIBUTING has them: in one file, taken up by the tests that stand."""
+"""A newcomer's changes as CONTRIBUTING has them: in one file, taken up by the tests there are."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def blocks_of(heading: str) -> list[str]:
 
 
 def changed_copy(folder: Path, module: str, text: str) -> None:
-    """Link package and tests into a folder, but for one module, which is written anew."""
+    """Link package and tests into a folder, but for one module, which is written as given."""
     (folder / 'test').symlink_to(ROOT / 'test')
     (folder / 'pyproject.toml').symlink_to(ROOT / 'pyproject.toml')
     for source in sorted((ROOT / 'tree_sway').rglob('*')):
@@ -37,44 +37,16 @@ def changed_copy(folder: Path, module: str, text: str) -> None:
     (folder / module).write_text(text, encoding='utf-8')
 
 
-@pytest.mark.parametrize(
-    ('heading', 'module', 'before', 'tests', 'name', 'known'),
-    [
-        (
-            'A new species', 'tree_sway/core/tree/species.csv',
-            [r'^ash,'], 'test/core/tree/test_species.py', 'hornbeam',
-            "from tree_sway import species_named; print(species_named('hornbeam').title)",
-        ),
-        (
-            'A new model of the wind', 'tree_sway/core/wind/simulated/spectra.py',
-            [r'^SPECTRA = ', r"^ +'kaimal': "], 'test/core/wind/simulated/test_spectra.py',
-            'between',
-            'from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS as n;'
-            "print(*next(p for p in n['anemometer'] if p.name == 'turbulence').choices)",
-        ),
-    ],
-    ids=['species', 'wind'],
-)  # fmt: skip
-def test_it_is_one_change_in_one_file(
-    tmp_path: Path, heading: str, module: str, before: list[str], tests: str, name: str, known: str
-) -> None:
+def test_a_new_species_is_one_row_of_one_file(tmp_path: Path) -> None:
+    module = 'tree_sway/core/tree/species.csv'
     text = (ROOT / module).read_text(encoding='utf-8')
-    for place, block in zip(before, blocks_of(heading), strict=True):
-        found = re.search(place, text, re.MULTILINE)
-        assert found, place
-        text = (
-            text[: found.start()]
-            + block
-            + '\n\n' * block.startswith('def')
-            + text[found.start() :]
-        )
-    text = text.replace(
-        'import numpy as np\n', 'import numpy as np\nfrom scipy.special import beta\n'
-    )
-    changed_copy(tmp_path, module, text)
+    (row,) = blocks_of('A new species')
+    changed_copy(tmp_path, module, re.sub('^ash,', f'{row}ash,', text, flags=re.M))
     environment = os.environ | {'PYTHONPATH': str(tmp_path), 'TREE_SWAY_NO_NUMBA': '1'}
-    words = ['-m', 'pytest', '-p', 'no:cacheprovider', '-p', 'no:xdist', tests]
-    for arguments, wanted in ((['-c', known], name), ([*words, '-v'], f'[{name}]')):
+    known = "from tree_sway import species_named; print(species_named('hornbeam').title)"
+    words = ['-m', 'pytest', '-p', 'no:cacheprovider', '-p', 'no:xdist']
+    tests = [*words, 'test/core/tree/test_species.py', '-v']
+    for arguments, wanted in ((['-c', known], 'hornbeam'), (tests, '[hornbeam]')):
         result = subprocess.run(
             [sys.executable, *arguments], cwd=tmp_path, env=environment,
             capture_output=True, text=True, timeout=300, check=False,
@@ -95,18 +67,18 @@ CHANGES = {
         'tree_sway/core/growth/broadleaf_forms.csv', 'ash,0.2,', 'elm,0.2,',
         "from tree_sway.core.growth import forms; print('elm' in str(vars(forms)))", 'True',
     ),
-    'spectrum': (
-        'tree_sway/core/wind/simulated/spectra.py', "'kaimal': Spectrum(", "'kansas': Spectrum(",
-        'from tree_sway.core.wind.simulated.spectra import SPECTRA; print(*SPECTRA)',
-        'kansas von_karman',
+    'turbulence': (
+        'tree_sway/core/wind/simulated/turbulence.py',
+        'REFERENCE_INTENSITY = 0.14', 'REFERENCE_INTENSITY = 0.16',
+        'from tree_sway.core.wind.simulated.turbulence import REFERENCE_INTENSITY as i; print(i)',
+        '0.16',
     ),
-    'event': (
-        'tree_sway/core/wind/simulated/gust_event.py',
-        "    'step': _Shape(lambda x: x, lasts=True),\n",
-        "    'step': _Shape(lambda x: x, lasts=True),\n    'surge': _Shape(lambda x: x * x),\n",
-        'from tree_sway.core.wind.simulated.gust_event import GustEvent;'
-        "print(GustEvent('surge', 4.0, 2.0).at(1.0))",
-        '1.0',
+    'fault': (
+        'tree_sway/core/wind/simulated/sensor_faults.py', '_SPIKE = 20.0', '_SPIKE = 30.0',
+        'from tree_sway.core.wind.simulated.sensor_faults import SensorFaults;'
+        "faults = SensorFaults('spike', every=1.0, duration=0.5);"
+        'print(*(float(each.vector[0]) for each in faults.sent(1.0, 0, [0.0, 0.0, 0.0])))',
+        '30.0',
     ),
     'flutter': (
         'tree_sway/core/leaves/flutter.py', 'LARGEST_ANGLE = 0.7', 'LARGEST_ANGLE = 0.5',
@@ -124,7 +96,7 @@ CHANGES = {
         '0.9144',
     ),
     'format': (
-        'tree_sway/files/trees/formats/swc.py', "TreeFormat('swc'", "TreeFormat('neuron'",
+        'tree_sway/files/trees/formats/swc.py', "FileFormat('swc'", "FileFormat('neuron'",
         'from tree_sway.files.trees.tree_file import TREE_FORMATS;'
         "print('neuron' in [each.name for each in TREE_FORMATS])",
         'True',

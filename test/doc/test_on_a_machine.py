@@ -177,8 +177,7 @@ def test_its_commands_do_what_they_promise(
         (stand,) = (each for _, each in blocks(page, 'python') if 'avenue.yaml").write' in each)
         written = [sys.executable, '-c', stand]
         subprocess.run(written, cwd=machine.folder, env=machine.environment, check=True)
-    if '--scheduler' in text:
-        stand_ins['tcp://login:8786'] = request.getfixturevalue('cluster')
+    if 'config/examples/grown_trees.yaml' in text:
         small = 'trees: [benjamina]\nwinds: [{speed: 4, seeds: 2}]\n'
         small += 'settings: {model: 20}\nseconds: 2\n'
         (machine.folder / 'small.yaml').write_text(small, encoding='utf-8')
@@ -190,16 +189,6 @@ def test_its_commands_do_what_they_promise(
             line = line.replace(word, ours)
         machine.start(line)
     machine.stop()
-
-
-@pytest.fixture
-def cluster() -> Iterator[str]:
-    """Address of a scheduler with one worker, in processes of their own."""
-    distributed = pytest.importorskip('distributed', reason='dask.distributed is not installed')
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, dashboard_address=None
-    ) as own:
-        yield own.scheduler_address
 
 
 def test_the_first_commands_of_the_readme_move_a_tree(machine: Machine) -> None:

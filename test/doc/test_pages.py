@@ -47,7 +47,20 @@ def blocks(page: Path, *languages: str) -> list[tuple[str, str]]:
     return [(language, text) for language, text in found if language in languages]
 
 
-@pytest.mark.parametrize('page', [p for p in PAGES if blocks(p, 'sh', 'python')], ids=name)
+LONG = ('first_trees', 'scan_to_numbers', 'stand', 'study', 'tree_as_a_file', 'trees')
+"""Pages whose commands take longer; `.ci/run` runs them, too."""
+
+
+def runnable() -> list[object]:
+    """Pages with something to run."""
+    found = [page for page in PAGES if blocks(page, 'sh', 'python')]
+    return [
+        pytest.param(page, id=name(page), marks=[pytest.mark.long] if page.stem in LONG else [])
+        for page in found
+    ]
+
+
+@pytest.mark.parametrize('page', runnable())
 def test_it_runs_as_written(
     page: Path,
     tmp_path: Path,

@@ -20,26 +20,36 @@ ON_ROS = {5, 10, 11}
 NEEDS = {6: 'aiohttp', 7: 'pyarrow', 11: 'serial', 13: 'imageio_ffmpeg', 14: 'matplotlib'}
 
 
-@pytest.mark.parametrize(
-    'task',
-    [
-        pytest.param(
-            each,
-            id=each.title,
-            marks=[pytest.mark.long] * (each.number not in QUICK)
-            + [pytest.mark.ros] * (each.number in ON_ROS),
-        )
-        for each in TASKS
-    ],
-)
+def each_task(quick: set[int]) -> pytest.MarkDecorator:
+    """Parametrise by task; those that are not quick are marked as long."""
+    marks = {n: [pytest.mark.long] * (n not in quick) for n in range(1, len(TASKS) + 1)}
+    for number in ON_ROS:
+        marks[number].append(pytest.mark.ros)
+    rows = [pytest.param(each, id=each.title, marks=marks[each.number]) for each in TASKS]
+    return pytest.mark.parametrize('task', rows)
+
+
+@each_task(QUICK)
 def test_it_does_what_the_page_says(
     task: SimpleNamespace, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
+    look(task, tmp_path, request)
+
+
+@each_task(set())
+def test_it_does_so_in_short(
+    task: SimpleNamespace, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    look(timed.in_short(task), tmp_path, request)
+
+
+def look(task: SimpleNamespace, folder: Path, request: pytest.FixtureRequest) -> None:
+    """Run a task in a folder, and look for its result."""
     if task.number in NEEDS:
         pytest.importorskip(NEEDS[task.number], reason=f'needs {NEEDS[task.number]}')
     on_ros = task.number in ON_ROS
     environment = request.getfixturevalue('ros_environment') if on_ros else dict(os.environ)
-    _, said = timed.run(task, tmp_path, environment)
+    _, said = timed.run(task, folder, environment)
     assert timed.result_of(task, said)
 
 

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """``kill -9`` of each process of the chain in turn, and its start by whoever looks after it."""
 
-import hashlib
 import itertools
 import signal
 import subprocess
@@ -15,7 +14,6 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 pytestmark = pytest.mark.ros
 
 from tree_sway_ros.process.topics import SEGMENT_POSES, WIND_FILTERED  # noqa: E402
-from tree_sway_ros.wire.cdr import stamp_of  # noqa: E402
 
 LONGEST = 3.0
 """From a kill to the whole stream [s], with processes that take all of the machine beside."""
@@ -102,47 +100,3 @@ def test_twenty_kills_under_load_cost_three_seconds_each(chain, observer, load):
     found = outages(chain, observer, 'goldcrest', 20)
     print(' '.join(f'{name} {seconds:.2f}' for name, seconds in found))
     assert [each for each in found if each[1] > LONGEST] == []
-
-
-def digests(observer, frames, last):
-    """Digest of each frame of a record by its stamp, up to the last one."""
-    observer.until(lambda: frames and stamp_of(frames[-1]) >= last, 'the end', deadline=60.0)
-    found = {stamp_of(data): hashlib.sha1(data[_POSES:]).digest() for data in list(frames)}
-    return {stamp: digest for stamp, digest in found.items() if 10**9 <= stamp <= last}
-
-
-@pytest.mark.long
-def test_killed_amid_a_replay_the_next_one_is_the_same_bit_for_bit(
-    chain, observer, tree_file, tmp_path
-):
-    record = tmp_path / 'wind.csv'
-    rows = [f'{k / 20:.2f},{6 + k % 7},{0.1 * (k % 5):.1f},0' for k in range(40)]
-    record.write_text('\n'.join(['time,u,v,w', *rows]) + '\n')
-    last = 10**9 + 2 * 10**9 - round(1e9 / 60.0)
-    frames = observer.listen(SEGMENT_POSES, raw=True, depth=1000)
-    told = (
-        'publish_clock:=true',
-        'loop:=false',
-        "wait_for:='wind wind/filtered segment_poses /clock:2'",
-    )
-    chain.start('solver', f'tree:={tree_file}', 'use_sim_time:=true', 'exact_replay:=true')
-    chain.start('wind', 'use_sim_time:=true')
-    chain.start('player', f'file:={record}', *told)
-    first = digests(observer, frames, last)
-    assert len(set(first.values())) > 100
-    for name in ('solver', 'wind', 'player'):
-        if name != 'player':
-            chain.kill('player')
-            frames.clear()
-            chain.start('player')
-            observer.until(
-                lambda: any(15 * 10**8 < stamp_of(data) < last for data in list(frames)),
-                'the middle of the record',
-                deadline=PATIENCE,
-            )
-            chain.kill(name)
-            chain.start(name)
-        chain.kill('player')
-        frames.clear()
-        chain.start('player')
-        assert digests(observer, frames, last) == first, name

@@ -125,12 +125,6 @@ def many_cells(path: Path) -> None:
     assert path.stat().st_size < 400_000
 
 
-def endless_claim(path: Path) -> None:
-    h5py = pytest.importorskip('h5py', reason='h5py is not installed')
-    with h5py.File(path, 'w') as stream:
-        stream.create_dataset('QSM/cylinder/radius', (1_000_000_000,), 'f8')
-
-
 def line_ends(path: Path) -> None:
     path.write_bytes(b'time,u,v\n0,1,2\n' + b'\n' * 200_000_000)
 
@@ -146,7 +140,6 @@ BOMBS: dict[str, tuple[Callable[[Path], None], str]] = {
     'view.db3': (view_without_end, 'missing tables'),
     'computed.db3': (computed_column, 'not a bag that can be read'),
     'cells.mat': (many_cells, 'more than 100000 arrays'),
-    'claim.mat': (endless_claim, 'more than 768 MiB of memory or 20 s, or is damaged'),
     'ends.csv': (line_ends, 'more than 4000000 lines'),
     'keys.yaml': (million_keys, 'more than 600000 keys and values'),
 }

@@ -27,7 +27,7 @@ WINDS = [
 LARGE = ['tree121.csv', 'canopy.toa5.dat']
 TREES = [
     *sorted(path.name for path in DATA.iterdir() if path.name not in (*WINDS, *LARGE)),
-    *('fork5.mat', 'fork7.mat', 'fork73.mat', 'glade.yaml'),
+    *('fork5.mat', 'fork7.mat', 'glade.yaml'),
 ]
 
 SEEDLING = open_tree(DATA / 'seedling.yaml')
@@ -85,15 +85,6 @@ def samples(tmp_path_factory):
     for name, compressed in (('fork5.mat', False), ('fork7.mat', True)):
         savemat(folder / name, {'QSM': {'cylinder': columns}}, do_compression=compressed)
         content[name] = (folder / name).read_bytes()
-    try:
-        import h5py
-
-        with h5py.File(folder / 'fork73.mat', 'w') as file:
-            for name, values in columns.items():
-                file[f'QSM/cylinder/{name}'] = np.atleast_2d(np.transpose(values))
-        content['fork73.mat'] = (folder / 'fork73.mat').read_bytes()
-    except ImportError:
-        pass
     content['glade.yaml'] = b"""name: glade
 anemometer: [0, 0, 10]
 trees:

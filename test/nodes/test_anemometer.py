@@ -28,7 +28,7 @@ def test_samples_come_at_the_rate_and_are_the_models(compose, observer):
 
 
 def test_the_wind_changes_while_it_blows(compose, observer):
-    nodes = compose(anemometer={'turbulence': 'none', 'rate': 50.0})
+    nodes = compose(anemometer={'intensity': 0.0, 'rate': 50.0})
     said = observer.listen(WIND)
     observer.until(lambda: said, 'wind')
     assert said[-1].vector.x == pytest.approx(6.0)
@@ -42,32 +42,17 @@ def test_the_wind_changes_while_it_blows(compose, observer):
     assert said[-1].vector.x == pytest.approx(9.0)
 
 
-@pytest.mark.parametrize('kind', ['one_minus_cos', 'extreme_operating_gust', 'step'])
-def test_gusts_rise_over_the_mean(compose, observer, kind):
-    gust = {'gust': kind, 'gust_speed': 5.0, 'gust_duration': 0.5, 'gust_every': 1.0}
-    compose(anemometer={'turbulence': 'none', 'rate': 50.0, **gust})
-    said = observer.listen(WIND)
-    observer.until(lambda: said and max(m.vector.x for m in said) > 8.0, 'a gust')
-
-
-def test_a_turn_turns(compose, observer):
-    gust = {'gust': 'turn', 'gust_angle': 1.5708, 'gust_duration': 0.3, 'gust_every': 0.5}
-    compose(anemometer={'turbulence': 'none', 'rate': 50.0, **gust})
-    said = observer.listen(WIND)
-    observer.until(lambda: said and max(m.vector.y for m in said) > 5.9, 'a turn to the north')
-
-
-def test_gusts_that_overlap_are_refused(compose):
+def test_faults_that_overlap_are_refused(compose):
     with pytest.raises(TreeSwayError, match='every'):
-        compose(anemometer={'gust': 'step', 'gust_duration': 5.0, 'gust_every': 1.0})
+        compose(anemometer={'fault': 'spike', 'fault_duration': 5.0, 'fault_every': 1.0})
 
 
-@pytest.mark.parametrize(('name', 'value'), [('gust_every', 3), ('gust_duration', 21)])
-def test_a_live_change_that_overlaps_gusts_is_refused_with_an_answer(
+@pytest.mark.parametrize(('name', 'value'), [('fault_every', 0.5), ('fault_duration', 21.0)])
+def test_a_live_change_that_overlaps_faults_is_refused_with_an_answer(
     compose, observer, name, value
 ):
     """Each value is in its range; together they cannot be."""
-    compose(anemometer={'gust': 'step', 'rate': 50.0})
+    compose(anemometer={'fault': 'dropout', 'rate': 50.0})
     request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
     (result,) = observer.call(SetParameters, 'anemometer/set_parameters', request).results
     assert not result.successful
@@ -77,8 +62,8 @@ def test_a_live_change_that_overlaps_gusts_is_refused_with_an_answer(
 
 
 def test_both_together_are_taken(compose):
-    nodes = compose(anemometer={'gust': 'step'})
-    changes = [Parameter('gust_every', value=3.0), Parameter('gust_duration', value=2.0)]
+    nodes = compose(anemometer={'fault': 'dropout'})
+    changes = [Parameter('fault_every', value=30.0), Parameter('fault_duration', value=25.0)]
     assert nodes['anemometer'].set_parameters_atomically(changes).successful
 
 

@@ -11,9 +11,8 @@ from builtin_interfaces.msg import Time  # noqa: E402, I100
 from rosgraph_msgs.msg import Clock  # noqa: E402
 
 from tree_sway.errors import TreeSwayError  # noqa: E402
-from tree_sway_ros.process import rivals  # noqa: E402
 from tree_sway_ros.process.composition import Composition  # noqa: E402
-from tree_sway_ros.process.topics import CLOCK, WIND, WIND_FILTERED  # noqa: E402
+from tree_sway_ros.process.topics import CLOCK, WIND_FILTERED  # noqa: E402
 from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 
 
@@ -61,30 +60,6 @@ def test_an_error_in_a_callback_ends_nothing_and_is_told(domain, observer, statu
         n = len(filtered)
         observer.until(lambda: len(filtered) > n, 'wind again')
         nodes.check()
-
-
-def test_two_of_a_kind_in_one_namespace_are_named(compose, observer, statuses, monkeypatch):
-    monkeypatch.setattr(rivals, 'GHOST', 0.0)
-    nodes = compose(namespace='oak', wind={})
-    compose(namespace='oak', wind={})
-    observer.until(lambda: statuses('oak/wind: topics') is not None, 'a warning')
-    status = statuses('oak/wind: topics')
-    assert status.level[0] == WARN
-    assert '2 nodes publish /oak/wind/filtered: /oak/wind and /oak/wind' in status.message
-    nodes['oak/wind'].report()
-    assert nodes['oak/wind']._alone['/oak/wind/filtered'].said == {status.message}
-
-
-def test_two_senders_of_wind_are_named_though_neither_is_ours(
-    compose, observer, statuses, monkeypatch
-):
-    monkeypatch.setattr(rivals, 'GHOST', 0.0)
-    compose(wind={})
-    for _ in range(2):
-        observer.publisher(WIND)
-    text = '2 nodes publish /wind: /observer and /observer; what they send mixes'
-    observer.until(lambda: text == getattr(statuses('wind: topics'), 'message', ''), 'a warning')
-    assert statuses('wind: topics').level[0] == WARN
 
 
 def test_a_clock_that_cannot_be_ends_nothing(compose, observer):

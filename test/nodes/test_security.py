@@ -89,7 +89,6 @@ def test_what_nodes_say_and_hear_is_allowed(compose, tree_file):
     parameters['player'] = {
         'file': 'canopy',
         'publish_clock': True,
-        'wait_for': 'wind/filtered nobody',
     }
     nodes = compose(**parameters).nodes
     assert {node.get_name() for node in nodes} >= set(parameters)

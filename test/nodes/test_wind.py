@@ -68,7 +68,7 @@ def test_a_westerly_bends_the_tree_to_the_east(
     compose(
         solver={'tree': tree_file},
         wind={'input_type': type_name, **kind},
-        anemometer={'output_type': type_name, 'turbulence': 'none', **kind},
+        anemometer={'output_type': type_name, 'intensity': 0.0, **kind},
     )
     frames = observer.listen(SEGMENT_POSES)
     said = observer.listen(WIND, WIND_CLASSES[type_name])
@@ -81,7 +81,7 @@ def test_a_westerly_bends_the_tree_to_the_east(
 
 @pytest.mark.parametrize('tree', BUILTIN_TREES)
 def test_a_westerly_bends_every_tree_to_the_east(compose, observer, tree):
-    compose(solver={'tree': tree}, wind={}, anemometer={'turbulence': 'none'})
+    compose(solver={'tree': tree}, wind={}, anemometer={'intensity': 0.0})
     frames = observer.listen(SEGMENT_POSES)
     start = builtin_tree(tree).start
     highest = int(np.argmax(start[:, 2]))

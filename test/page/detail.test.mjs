@@ -4,22 +4,15 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import "./files.mjs";
 import { Camera } from "../../tree_sway/page/static/drawing/camera.js";
 import { Detail, levelsOf } from "../../tree_sway/page/static/drawing/detail.js";
-import {
-  barkMesh,
-  branchOrder,
-  highestOf,
-  leafMesh,
-  shadeOf,
-} from "../../tree_sway/page/static/drawing/mesh.js";
+import { barkMesh, leafMesh, shapeOf } from "../../tree_sway/page/static/drawing/mesh.js";
 import { arrowLength } from "../../tree_sway/page/static/drawing/props.js";
 import { Quality } from "../../tree_sway/page/static/drawing/quality.js";
 import { crownShade } from "../../tree_sway/page/static/drawing/shade.js";
 import { lookOf } from "../../tree_sway/page/static/drawing/species.js";
 import { leavesAcross } from "../../tree_sway/page/static/drawing/textures.js";
-import { KindPlacer, Placer } from "../../tree_sway/page/static/placing.js";
+import { Placer } from "../../tree_sway/page/static/placing.js";
 import { decodeDescription } from "../../tree_sway/page/static/protocol.js";
 
 const bytes = readFileSync(new URL("vectors/description.bin", import.meta.url));
@@ -27,9 +20,8 @@ const description = decodeDescription(
   bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength),
 );
 const [kind] = description.kinds;
-const rest = new KindPlacer(kind).rest();
-const shade = shadeOf(kind, rest);
-const placer = new KindPlacer(kind, branchOrder(kind, rest));
+const shape = shapeOf(kind);
+const { placer } = shape;
 
 test("branches come after their parents, thick ones first, what carries the top before all", () => {
   const place = new Map(Array.from(placer.order, (branch, i) => [branch, i]));
@@ -38,7 +30,7 @@ test("branches come after their parents, thick ones first, what carries the top 
   for (const branch of placer.order) {
     if (parent[branch] >= 0) assert.ok(place.get(parent[branch]) < place.get(branch));
   }
-  const top = parent.findIndex((_, b) => first[b + 1] > highestOf(rest));
+  const top = parent.findIndex((_, b) => first[b + 1] > shape.highest);
   const others = Array.from(placer.order).filter((b) => b !== top && parent[b] >= 0);
   assert.ok(others.every((b) => place.get(b) > place.get(top)));
 });
@@ -65,7 +57,7 @@ test("what is placed of a tree stands where the whole tree has it", () => {
 function crowd() {
   const reached = Int32Array.from({ length: 1001 }, (_, i) => 2 * i);
   const slots = Int32Array.from({ length: 2000 }, (_, i) => i);
-  const levels = levelsOf({ reached, slots, order: slots.slice(0, 1000) }, 30, 8000, 3000, 40);
+  const levels = levelsOf({ reached, slots, order: slots.slice(0, 1000) }, 30, { segments: 8000, cards: 3000, far: 40 });
   const trees = Array.from({ length: 1000 }, (_, i) => ({
     kind: 0,
     height: 1,
@@ -78,8 +70,8 @@ function crowd() {
 
 test("levels grow to the whole tree, and the highest segment is of all of them", () => {
   const { levels } = crowd();
-  assert.ok(levels[0].segments > 30);
-  assert.ok(levels[0].isImpostor && levels.slice(1).every((level) => !level.isImpostor));
+  assert.deepEqual([levels[0].branches, levels[0].segments], [0, 1]);
+  assert.ok(levels.slice(1).every((level) => level.segments > 30));
   levels.slice(1).forEach((level, i) => assert.ok(level.segments >= levels[i].segments));
   assert.equal(levels[levels.length - 1].segments, 2000);
   assert.equal(levels[levels.length - 1].cards, 3000);
@@ -89,7 +81,7 @@ test("far trees are coarse, near ones fine, those out of sight nothing, all with
   const { levels, camera, detail } = crowd();
   detail.choose(camera.update(), 800, 8000);
   assert.ok(detail.level.every((level) => level >= 0));
-  assert.ok(detail.segments <= 1000 * levels[0].segments + 8000);
+  assert.ok(detail.segments <= 1000 + 8000);
   camera.distance = 4;
   detail.choose(camera.update(), 800, 8000);
   const counts = detail.level.reduce((all, level) => all.set(level, (all.get(level) ?? 0) + 1),
@@ -97,28 +89,28 @@ test("far trees are coarse, near ones fine, those out of sight nothing, all with
   assert.ok(counts.get(-1) > 100);
   assert.ok(Math.max(...counts.keys()) > 2);
   let row = 0;
-  detail.level.forEach((level, t) => {
+  for (const t of detail.order) {
     assert.equal(detail.start[t], row);
-    row += level < 0 ? 0 : levels[level].segments;
-  });
+    row += levels[detail.level[t]]?.segments ?? 0;
+  }
   assert.equal(row, detail.segments);
   const whole = detail.segments;
   detail.choose(camera.matrix, 800, 500);
-  assert.ok(detail.segments < whole && detail.share < 1);
+  assert.ok(detail.segments < whole);
+  assert.equal(detail.level[0], 1, "the tree that is watched is placed whatever the budget");
 });
 
 /** Edges of a card along and across [m]. */
 function edges({ values, indices }, i) {
-  const [a, b, , c] = [0, 1, 2, 5].map((k) => values.slice(18 * indices[6 * i + k]).slice(0, 3));
+  const [a, b, , c] = [0, 1, 2, 5].map((k) => values.slice(19 * indices[6 * i + k] + 1).slice(0, 3));
   return [b, c].map((each) => Math.hypot(...each.map((x, k) => x - a[k])));
 }
 
 test("few cards are larger and show more leaves, none of which is twice its own size", () => {
-  const level = { branches: kind.nBranches, segments: kind.nSegments, pixels: 800 };
   const { size } = lookOf(kind.species);
   const most = 3 * kind.arrays.leaf_segment.length;
   const areas = [most, Math.round(most / 3), Math.round(most / 12), 6].map((cards) => {
-    const { mesh, across } = leafMesh(kind, placer.order, rest, { ...level, cards }, most, shade);
+    const { mesh, across } = leafMesh(shape, placer.order, cards, most);
     let area = 0;
     for (let i = 0; i < mesh.indices.length / 6; i++) {
       const [long, wide] = edges(mesh, i);
@@ -170,11 +162,11 @@ test("a slow page leaves out pixels first, then frames, and leaves last", () => 
 });
 
 test("a small tree has fewer rings of bark, none thinner than half a pixel", () => {
-  const near = barkMesh(kind, placer.order, rest, 800, shade);
-  const far = barkMesh(kind, placer.order, rest, 12, shade);
-  assert.ok(far.count < near.count / 3);
-  for (let v = 0; v < far.count; v++) {
-    assert.ok(Math.hypot(far.values[7 * v + 1], far.values[7 * v + 2]) > 0.5 / 12 / 2);
+  const near = barkMesh(shape, placer.order, 800);
+  const far = barkMesh(shape, placer.order, 12);
+  assert.ok(far.values.length < near.values.length / 3);
+  for (let v = 0; v < far.values.length / 8; v++) {
+    assert.ok(Math.hypot(far.values[8 * v + 2], far.values[8 * v + 3]) > 0.5 / 12 / 2);
   }
 });
 

@@ -19,8 +19,8 @@ from pathlib import Path
 import tempfile
 
 from PIL import Image
+from tree_sway_lab.browser import Browser
 
-from conftest import Browser
 from tree_sway.commands import cli, show
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.page.session import Choices, Session

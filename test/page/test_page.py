@@ -50,7 +50,9 @@ class Live:
         self.start()
 
     def start(self) -> None:
-        self.server = PageServer(PageSettings(port=self.port), self.panel, self.session.status)
+        self.server = PageServer(
+            PageSettings(port=self.port), self.panel, self.session.status, self.session.written
+        )
         self.server.start()
         self.port = self.server.port
         self.session.serve(self.server)
@@ -238,6 +240,69 @@ def test_a_branch_is_picked_and_read(visit: Visit) -> None:
         )
         await browser.until('treeSway.traces.tip.statistics.greatest > 1e-6')
         assert await browser.run('treeSway.traces.tip.statistics.greatest') < 0.05
+
+    visit(script)
+
+
+def test_strain_and_moment_are_those_of_the_wood(visit: Visit) -> None:
+    """A moment of E I over the radius times the strain, in newton metres."""
+
+    async def script(browser: Browser) -> None:
+        await browser.until('treeSway.scene.load().strain > 1e-6')
+        strain, moment, radius, modulus = await browser.run(
+            '(({strain, moment}, {arrays, modulus}) => [strain, moment, arrays.segment_radius[2],'
+            ' modulus])(treeSway.scene.load(), treeSway.scene.watchedKind)'
+        )
+        assert moment == pytest.approx(0.25 * np.pi * modulus * radius**3 * strain, rel=1e-5)
+        await browser.run(
+            "{const s = document.getElementById('shown'); s.value = 'moment';"
+            " s.dispatchEvent(new Event('change'));}"
+        )
+        await browser.until("document.getElementById('tip-now').textContent.endsWith('N m')")
+
+    visit(script)
+
+
+def test_the_last_minute_is_looked_back_at(visit: Visit) -> None:
+    async def script(browser: Browser) -> None:
+        slide = (
+            "{const s = document.getElementById('time'); s.value = %s;"
+            " s.dispatchEvent(new Event('input'));}"
+        )
+        await browser.until('treeSway.playout._frames.length > 40')
+        await browser.run(slide % -1)
+        assert await browser.run('treeSway.state') == 'paused'
+        assert '1.0 s ago' in await browser.run("document.getElementById('state').textContent")
+        at = 'Array.from(treeSway.stream.sample())'
+        then, first = await browser.run(at), await browser.run('treeSway.playout.received')
+        await browser.until(f'treeSway.playout.received > {first} + 5')
+        assert await browser.run(at) == then
+        await browser.run(slide % -0.5)
+        assert await browser.run(at) != then
+        await browser.run(slide % 0)
+        await browser.until("treeSway.state === 'live'")
+
+    visit(script)
+
+
+def test_clip_and_tree_are_taken_along(visit: Visit) -> None:
+    async def script(browser: Browser) -> None:
+        await browser.run(
+            'window.taken = []; let size; const make = URL.createObjectURL;'
+            'URL.createObjectURL = (blob) => { size = blob.size; return make.call(URL, blob); };'
+            'HTMLAnchorElement.prototype.click ='
+            ' function () { taken.push([this.download, size]); }'
+        )
+        await browser.run("document.getElementById('clip').click()")
+        drawn = await browser.run('treeSway.scene._frame')
+        await browser.until(f'treeSway.scene._frame > {drawn} + 15')
+        for name in ('clip', 'glb', 'html', 'picture'):
+            await browser.run(f"document.getElementById('{name}').click()")
+        await browser.until('taken.length === 4')
+        taken = dict(await browser.run('taken'))
+        assert {Path(name).suffix for name in taken} >= {'.glb', '.html', '.png'}
+        assert {Path(name).stem for name in taken} == {'goldcrest'}
+        assert min(taken.values()) > 1000
 
     visit(script)
 

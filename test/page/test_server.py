@@ -229,6 +229,27 @@ def test_health_and_headers(server: PageServer) -> None:
     run(server, script)
 
 
+def test_a_tree_is_written_or_refused_with_the_reason(server: PageServer) -> None:
+    def written(suffix: str) -> bytes:
+        if suffix == 'html':
+            raise ParameterError('no table', where='model', cure='take 60')
+        return b'glTF'
+
+    async def answers(url: str) -> list[tuple[int, bytes]]:
+        found = []
+        async with aiohttp.ClientSession() as session:
+            for suffix in ('glb', 'html'):
+                async with session.get(f'{url}tree.{suffix}') as answer:
+                    found.append((answer.status, await answer.read()))
+        return found
+
+    assert {status for status, _ in asyncio.run(answers(server.url))} == {404}
+    with PageServer(PageSettings(port=0), None, None, written) as other:
+        (first, data), (second, why) = asyncio.run(answers(other.url))
+    assert (first, data, second) == (200, b'glTF', 409)
+    assert b'take 60' in why
+
+
 def test_the_page_is_sent_packed_and_not_twice(server: PageServer) -> None:
     async def script(viewer: Viewer) -> None:
         url = f'{server.url}static/drawing/scene.js'

@@ -147,6 +147,24 @@ def test_the_wind_changes_at_once_and_a_record_does_not(live: tuple[Session, Sin
         session.apply('mean_speed', 3.0)
 
 
+def test_a_record_goes_on_from_any_of_its_times(live: tuple[Session, Sink]) -> None:
+    session, _ = live
+    wind = RecordedWind(np.arange(10.0), np.outer(np.arange(10.0), [1.0, 0.0, 0.0]))
+    wind.seek(4.0, now=100.0)
+    assert list(wind.between(100.5, 102.0)) == [(101.0, (5, 0, 0)), (102.0, (6, 0, 0))]
+    assert wind.time(107.0) == pytest.approx(1.0)  # from its beginning after its end
+    assert 'record_time' not in session.status()
+    session.wind = wind
+    session.apply('record_time', 7.0)
+    assert session.status()['record_time'] == pytest.approx(7.0, abs=0.2)
+
+
+def test_what_is_shown_is_written_as_a_file(live: tuple[Session, Sink]) -> None:
+    session, _ = live
+    assert session.written('glb')[:4] == b'glTF'
+    assert b'id="scene"' in session.written('html')
+
+
 def test_a_record_that_breaks_off_is_held_and_fades_on_the_page_too() -> None:
     time_of = np.concatenate([np.arange(0.0, 2.0, 0.05), [30.0]])
     wind = RecordedWind(time_of, np.tile([8.0, 0.0, 0.0], (len(time_of), 1)))

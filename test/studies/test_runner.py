@@ -84,7 +84,7 @@ def test_trees_of_any_size_are_on_one_model():
     for name in ('seedling.yaml', 'segments.csv', 'fork.swc'):
         tree = {'file': str(SEEDLING.with_name(name))}
         case = Case(tree, {'speed': 4.0, 'intensity': 0.2, 'seed': 0}, seconds=1.0)
-        rows.append(compute(case)[0])
+        rows.append(compute(case))
     assert len({row['segments'] for row in rows}) == 3
     assert {row['model'] for row in rows} == {str(USUAL)}
 
@@ -188,26 +188,6 @@ def test_a_case_that_cannot_be_leaves_the_others(tmp_path):
     with pytest.raises(TreeSwayError, match="unknown model 'best'"):
         run_study([*wrong, *cases(2)], tmp_path, workers=1)
     assert all(result_path(tmp_path, case).is_file() for case in cases(2))
-
-
-def test_a_series_is_kept_where_it_is_asked_for(tmp_path):
-    case = cases(1, series=True)[0]
-    compute_to_file(case, tmp_path)
-    lines = (tmp_path / f'{case.name}.csv').read_text().splitlines()
-    assert len(lines) == 61
-
-
-def test_a_cluster_of_two_workers_gives_the_same_and_outlives_one(alone, tmp_path, monkeypatch):
-    import distributed
-
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
-    ) as cluster:
-        doomed = next(iter(cluster.workers.values())).pid
-        monkeypatch.setattr(runner, 'bar', watched(2, lambda: os.kill(doomed, signal.SIGKILL)))
-        rows = run_study(cases(6), tmp_path, scheduler=cluster.scheduler_address)
-    assert rows[:4] == alone
-    assert len(rows) == 6
 
 
 def test_tables_are_csv_or_parquet(alone, tmp_path):

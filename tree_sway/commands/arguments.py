@@ -15,20 +15,19 @@ from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import model_of, Settings
-from tree_sway.core.tree.species import Species, species_keys
+from tree_sway.core.tree.species import Species, species_keys, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.reader_options import reader_options
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, open_tree
-from tree_sway.files.trees.yaml.species_yaml import open_species
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind
 from tree_sway.parameters.sway_parameters import SWAY
 
-OUTPUT_HELP = 'file to write; its suffix names the format: .yaml, .glb, .gltf'
+OUTPUT_HELP = 'file to write; its suffix names the format: .yaml, .glb'
 _TREE = 'benjamina, goldcrest, broadleaf, or a file'
 _DRAWN = 1500
 
@@ -69,7 +68,7 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     """
     with waiting(f'opening {arguments.tree}'):
         opened = open_tree(arguments.tree, arguments.seed, **_options(arguments))
-    species = open_species(arguments.species) if arguments.species else opened.species
+    species = species_named(arguments.species) if arguments.species else opened.species
     return opened.of_species(dataclasses.replace(species, **_wood(arguments))).checked()
 
 
@@ -90,7 +89,7 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
         )
     if not wood and not arguments.species:
         return scene
-    species = open_species(arguments.species) if arguments.species else scene.trees[0].species
+    species = species_named(arguments.species) if arguments.species else scene.trees[0].species
     return scene.of_species(dataclasses.replace(species, **wood)).checked()
 
 

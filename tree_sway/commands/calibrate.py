@@ -21,8 +21,8 @@ from tree_sway.commands.arguments import (
 from tree_sway.commands.progress import waiting
 from tree_sway.core.checks import within
 from tree_sway.core.identification.calibration import calibrate, Calibration
+from tree_sway.core.identification.free_decay import FreeDecay
 from tree_sway.core.identification.measured_sway import estimate_sway
-from tree_sway.core.identification.sway_estimate import SwayEstimate
 from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.plausibility import sway_oddity
@@ -123,7 +123,7 @@ def _check(arguments: argparse.Namespace) -> None:
         )
 
 
-def _measured(arguments: argparse.Namespace) -> SwayEstimate:
+def _measured(arguments: argparse.Namespace) -> FreeDecay:
     """Return what the record says, and print it."""
     record = _recorded(arguments.record, arguments.seconds)
     band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
@@ -131,7 +131,7 @@ def _measured(arguments: argparse.Namespace) -> SwayEstimate:
         found = estimate_sway(record.time, record.motion, band)
     print(
         f'{record.source}: {record.quantity} in {", ".join(record.columns)}, '
-        f'{found.kind} ({found.cycles:.0f} cycles)'
+        f'release ({found.cycles:.0f} cycles)'
     )
     print(
         f'  measured   {found.frequency:.4g} +- {found.frequency_error:.2g} Hz, '

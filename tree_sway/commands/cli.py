@@ -41,7 +41,7 @@ _ELSEWHERE = {
 EXTRAS = {
     **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
     **dict.fromkeys(('cryptography', 'dask', 'distributed', 'pyarrow'), 'study'),
-    **{'h5py': 'h5', 'numba': 'fast', 'rosbags': 'bag', 'serial': 'serial', 'tqdm': 'progress'},
+    **{'numba': 'fast', 'rosbags': 'bag', 'serial': 'serial', 'tqdm': 'progress'},
     'imageio_ffmpeg': 'film',
 }
 _OF_ROS = re.compile(r'rclpy|\w+_msgs|\w+_srvs|builtin_interfaces|ament_\w+|rosidl\w*|launch\w*')

@@ -29,7 +29,7 @@ from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
-from tree_sway.files.export.tree_export import GLTF_SUFFIXES, write_gltf, write_tree
+from tree_sway.files.export.tree_export import write_gltf, write_tree
 from tree_sway.files.export.usd_tree import usd_of_tree
 from tree_sway.files.whole_file import write_text_whole
 
@@ -45,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs='?',
         choices=('skin', 'morph'),
         const='skin',
-        help='how a .glb or .gltf is to sway: by a joint per segment, set from segment_poses, or '
+        help='how a .glb is to sway: by a joint per segment, set from segment_poses, or '
         "by some 20 weights, set from the tree's state (skin)",
     )
 
@@ -54,9 +54,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Read a tree and write it."""
     output = output_path(arguments)
     suffix = Path(output).suffix.lower()
-    if arguments.sway is not None and suffix not in GLTF_SUFFIXES:
+    if arguments.sway is not None and suffix != '.glb':
         raise ParameterError(
-            f"'{output}' cannot sway", where='--sway', cure='write a .glb or .gltf file'
+            f"'{output}' cannot sway", where='--sway', cure='write a .glb file'
         )
     scene = opened_scene(arguments)
     for note in scene.notes:
@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
         _write_swaying(scene, arguments, suffix)
     else:
         species = scene.species if scene.is_one_tree else None
-        leaves = drawn_leaves(scene, arguments) if suffix in GLTF_SUFFIXES else None
+        leaves = drawn_leaves(scene, arguments) if suffix == '.glb' else None
         write_tree(output, scene.tree, species, leaves)
     print(what_was_written(output, scene.tree))
     return 0
@@ -105,7 +105,7 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
     with waiting('finding what sways'):
         simulator = SwaySimulator(scene.tree, scene.species, settings)
         leaves = drawn_leaves(scene, arguments)
-        if suffix in GLTF_SUFFIXES:
+        if suffix == '.glb':
             write_gltf(arguments.output, morphing_tree(simulator, leaves))
         else:
             write_text_whole(arguments.output, _OF_ONE_TREE[suffix](simulator, leaves))

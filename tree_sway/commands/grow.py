@@ -20,16 +20,15 @@ from tree_sway.core.growth.grow import grow
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.grown_tree import rooted
-from tree_sway.core.tree.species import species_keys
+from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import TreeError
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.yaml.species_yaml import open_species
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add('--species', required=True, help=f'{", ".join(species_keys())}, or a species file')
+    add('--species', required=True, help=f'{", ".join(species_keys())}')
     add('--height', type=float, required=True, metavar='M', help='height [m]')
     add(
         '--diameter',
@@ -45,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Grow a tree and write it."""
     within('--seed', arguments.seed, 0, 2**63)
     output = output_path(arguments)
-    species = open_species(arguments.species)
+    species = species_named(arguments.species)
     tree = grow(
         species.key,
         arguments.height,

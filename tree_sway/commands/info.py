@@ -44,12 +44,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
     add('--gravity', choices=('on', 'off'), default='on', help='its own weight (%(default)s)')
-    add(
-        '--root-stiffness',
-        type=float,
-        metavar='K',
-        help='of its roots against tilting [N m/rad], inf for rigid ones; its own if left out',
-    )
     add('--count', type=int, default=10, metavar='N', help='how many frequencies (%(default)s)')
     speed = 'mean of a gusty wind [m/s] in which to find the share of its strength that it uses'
     add('--speed', type=float, metavar='U', help=speed)
@@ -79,7 +73,6 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
     tree, species, count = kind.tree, kind.species, arguments.count
     settings = Settings(
         gravity=_GRAVITY if arguments.gravity == 'on' else 0.0,
-        root_stiffness=arguments.root_stiffness,
         in_leaf=chosen_leaves(arguments) if kind.leaf_on is None else kind.leaf_on,
     )
     settings = in_season(tree, species, settings)
@@ -101,8 +94,6 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
         notes.append(f'in gusts of a mean wind of {arguments.speed:g} m/s, {used}; {left_out}')
     frequencies = [mode['frequency'] for mode in modes]
     slow = sway_oddity(tree, species, min(frequencies)) if modes else None
-    given = settings.root_stiffness
-    roots = species.root_stiffness if given is None else given
     return {
         'name': tree.name,
         'notes': notes,
@@ -119,7 +110,7 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
         'modulus': species.modulus,
         'density': species.density,
         'mass': mass,
-        'root_stiffness': None if math.isinf(roots) else roots,
+        'root_stiffness': None if math.isinf(species.root_stiffness) else species.root_stiffness,
         'gravity': settings.gravity,
         'in_leaf': settings.in_leaf,
         'strength': used and used.plain(),
@@ -135,8 +126,7 @@ def _breast_height_diameter(tree: Tree) -> float | None:
     thick = np.append(tree.base_diameter[stem], tree.tip_diameter[stem][-1])
     if level.max() < _BREAST_HEIGHT:
         return None
-    at = int(np.argmax(level >= _BREAST_HEIGHT))
-    return float(np.interp(_BREAST_HEIGHT, level[at - 1 : at + 1], thick[at - 1 : at + 1]))
+    return float(np.interp(_BREAST_HEIGHT, np.maximum.accumulate(level), thick))
 
 
 def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:
@@ -152,12 +142,12 @@ def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:
             {'name': each.name, 'kind': number, 'place': place, 'frequencies': sways, **tree}
         )
     first = {tree['kind']: tree['name'] for tree in reversed(trees)}
-    said = {
+    sentences = {
         what: [f'{first[n]}: {each}' for n, kind in enumerate(kinds) for each in kind[what]]
         for what in ('notes', 'warnings')
     }
     return {
-        **said,
+        **sentences,
         **{name: sum(tree[name] for tree in trees) for name in _SUMS},
         'height': max(tree['place']['z'] + tree['height'] for tree in trees),
         'trees': trees,
@@ -174,10 +164,9 @@ def _text(facts: dict[str, Any]) -> str:
     if modes := facts.get('modes'):
         weight = 'with its own weight' if facts['gravity'] else 'without its own weight'
         lines.append(f'  natural modes, {weight}:')
-        lines.append('       Hz   damping   sways along (east = 0, north = 90)   most in branch')
+        lines.append('       Hz   damping   most in branch')
         lines += [
-            f'  {mode["frequency"]:7.3f}   {mode["damping_ratio"]:7.3f}   '
-            f'{mode["direction"]:35}  {mode["branch"]}'
+            f'  {mode["frequency"]:7.3f}   {mode["damping_ratio"]:7.3f}   {mode["branch"]}'
             for mode in modes
         ]
     return '\n'.join(lines)

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import math
 from pathlib import Path
 import sys
 from typing import Any
@@ -28,7 +27,6 @@ from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.simulate import Rig
-from tree_sway.core.wind.convention import velocity_of_bearing
 from tree_sway.errors import FormatError, ParameterError, TreeError
 from tree_sway.page.wind_source import RecordedWind
 from tree_sway.parameters.sway_parameters import SWAY
@@ -47,19 +45,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--portrait',
         action='store_true',
-        help='draw the tree in a steady wind, with its shape at rest behind it',
+        help='draw the tree in a steady westerly, with its shape at rest behind it',
     )
     strength = 'draw the share of their strength that trees use, up to --speed (30 m/s)'
     parser.add_argument('--strength', action='store_true', help=strength)
     parser.set_defaults(speed=None)
-    parser.add_argument(
-        '--from',
-        dest='bearing',
-        type=float,
-        metavar='DEGREES',
-        help='where the steady or simulated wind comes from, clockwise from north: 90 is from the '
-        'east, at the right of a picture (270, a westerly)',
-    )
     parser.add_argument(
         '--seconds', type=float, default=60.0, metavar='N', help='how long (%(default)s)'
     )
@@ -71,7 +61,6 @@ def run(arguments: argparse.Namespace) -> int:
     within('--seconds', arguments.seconds, 0.0, 3600.0, 's', above=True)
     if arguments.speed is None:
         arguments.speed = 30.0 if arguments.strength else 10.0 if arguments.portrait else 6.0
-    _refuse_bearing(arguments)
     output = output_path(arguments)
     if rows := _rows_of_study(arguments.tree):
         try:
@@ -101,18 +90,9 @@ def _rows_of_study(path: str) -> list[dict[str, str]]:
         return list(csv.DictReader(lines, next(csv.reader([header]))))
 
 
-def _refuse_bearing(arguments: argparse.Namespace) -> None:
-    """Refuse what is no direction, or one for a record, which has its own."""
-    if arguments.bearing is None:
-        arguments.bearing = 270.0
-    elif arguments.wind is not None and not arguments.portrait:
-        raise ParameterError('a direction for a record, which has its own', where='--from')
-    within('--from', arguments.bearing, -360.0, 360.0, 'degrees')
-
-
 def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     simulator = _simulator(scene, arguments)
-    wind = np.array(velocity_of_bearing(arguments.speed, math.radians(arguments.bearing)))
+    wind = np.array([arguments.speed, 0.0, 0.0])
     for _ in bar(range(round(_SETTLING / _SETTLING_STEP)), 'settling in the wind'):
         simulator.step(wind, _SETTLING_STEP)
     picture_in_wind(
@@ -156,13 +136,12 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     if isinstance(wind, RecordedWind):
         source, seconds = Path(arguments.wind).name, min(seconds, wind.length)
     else:
-        source = f'simulated wind, mean {arguments.speed:g} m/s from {arguments.bearing:g} degrees'
-        wind.set('bearing_to', math.radians(arguments.bearing + 180.0))
+        source = f'simulated westerly, mean {arguments.speed:g} m/s'
     if seconds < 2.0 / _RATE:
         raise ParameterError('too short a wind to draw', where=source, cure='give a longer one')
     simulator = _simulator(scene, arguments)
     frames = swaying(simulator, wind, _RATE, seconds)
-    felt = [(simulator.wind.copy(), simulator.tip_displacement.copy()) for _ in frames]
-    winds, tips = np.swapaxes(felt, 0, 1)
+    shown = [(simulator.wind.copy(), simulator.tip_displacement.copy()) for _ in frames]
+    winds, tips = np.swapaxes(shown, 0, 1)
     title = f'{scene.tree.name}, {arguments.model}, {source}'
     plot_wind_and_tip(np.arange(1, len(tips) + 1) / _RATE, winds, tips, output, title=title)

@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 import argparse
+from io import BytesIO
+import sys
 import time
-
-import numpy as np
 
 from tree_sway.commands.arguments import (
     add_output_arguments,
@@ -20,9 +20,8 @@ from tree_sway.commands.arguments import (
 from tree_sway.commands.progress import waiting
 from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
+from tree_sway.page.film import browser, page_pictures
 
-_RUN_IN = 20.0
-"""Time before the film [s] in which the start from rest is forgotten."""
 _LEAVES = 2800
 """Of all leaves: a frame must take less time than it shows."""
 
@@ -32,7 +31,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add_sway_arguments(parser)
     add('--seconds', type=float, default=8.0, metavar='N', help='of the film (%(default)s)')
-    add('--start', type=float, default=0.0, help='of the wind [s] (%(default)s)')
     add('--rate', type=float, default=20.0, help='pictures per second [Hz] (%(default)s)')
     add('--pixels', type=int, default=480, help='height of the picture (%(default)s)')
     add_output_arguments(parser, 'film to write: .gif or .mp4')
@@ -42,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Sway the tree, paint it, and say how long that took."""
     for name, low, high in (('seconds', 0.1, 3600.0), ('rate', 1.0, 120.0), ('pixels', 64, 4320)):
         within(f'--{name}', getattr(arguments, name), low, high)
-    from tree_sway.pictures.animation import animate_poses, check_film
+    from tree_sway.pictures.animation import animate_poses, check_film, write_pictures
 
     target = check_film(output_path(arguments))
     scene = opened_scene(arguments)
@@ -50,24 +48,27 @@ def run(arguments: argparse.Namespace) -> int:
     with waiting('setting up the tree'):
         simulator = scene.simulator(in_leaf=chosen_leaves(arguments), model=arguments.model)
     began = time.monotonic()
-    frames, winds = [], []
-    how = arguments.rate, arguments.seconds, arguments.start, _RUN_IN
-    for _ in swaying(simulator, wind, *how):
-        frames.append(simulator.place().copy())
-        winds.append(simulator.wind.copy())
-    with waiting('painting'):
-        animate_poses(
-            scene.tree,
-            frames,
-            np.array(winds),
-            target,
-            rate=arguments.rate,
-            leaves=scene.leaves(chosen_leaves(arguments), _LEAVES),
-            pixels=arguments.pixels,
-        )
+    rate, pixels = arguments.rate, arguments.pixels
+    frames = swaying(simulator, wind, rate, arguments.seconds)
+    if browser() is not None and isinstance(arguments.model, int):
+        from PIL import Image
+
+        pictures = page_pictures(simulator, frames, rate, pixels, _LEAVES)
+        images = (Image.open(BytesIO(each)).convert('RGB') for each in pictures)
+        write_pictures(images, target, rate)
+    else:
+        print('note: drawn plainly, as there is no Chromium or no --model with a number of '
+              'coordinates', file=sys.stderr)  # fmt: skip
+        shown = [(simulator.place().copy(), simulator.wind.copy()) for _ in frames]
+        leaves = scene.leaves(chosen_leaves(arguments), _LEAVES)
+        with waiting('painting'):
+            poses, winds = zip(*shown, strict=True)
+            animate_poses(
+                scene.tree, poses, winds, target, rate=rate, leaves=leaves, pixels=pixels
+            )
     spent = time.monotonic() - began
     print(
-        f'{target}: {scene.tree.name}, {len(frames)} pictures, {arguments.seconds:g} s of wind '
-        f'in {spent:.1f} s'
+        f'{target}: {scene.name}, {max(1, round(arguments.seconds * rate))} pictures, '
+        f'{arguments.seconds:g} s of wind in {spent:.1f} s'
     )
     return 0

@@ -31,7 +31,7 @@ from tree_sway.files.trees.source import open_scene
 from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET
 from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, Session
-from tree_sway.page.wind_source import SimulatedWind, WindSource
+from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway.parameters.sway_parameters import SWAY
 
 _SPACING = 1.2
@@ -71,8 +71,9 @@ def run(arguments: argparse.Namespace) -> int:
     panel = ControlPanel()
     if not arguments.read_only:
         is_one_tree = session.status()['trees'] == arguments.stand
-        panel = ControlPanel(_controls(choices, wind, is_one_tree=is_one_tree), session.apply)
-    with PageServer(settings, panel, session.status) as server:
+        controls = _controls(choices, wind, is_one_tree=is_one_tree)
+        panel = ControlPanel(controls, session.apply, session.pull)
+    with PageServer(settings, panel, session.status, session.written) as server:
         session.serve(server)
         print(f'open {server.url} (Ctrl-C ends)', flush=True)
         if arguments.open:
@@ -133,6 +134,10 @@ def _controls(
     if isinstance(wind, SimulatedWind):
         for name in ('mean_speed', 'intensity', 'bearing_to'):
             controls.append(Control.of(SWAY[name], _LABELS[name], wind.values[name]))
+    if isinstance(wind, RecordedWind):
+        controls.append(
+            Control('record_time', 'Time', 0.0, 'Of the record.', 's', 0.0, wind.length)
+        )
     if is_one_tree:
         models = tuple(dict.fromkeys(('auto', *map(str, DIAL), *MODELS[1:], choices.model)))
         controls.append(replace(Control.of(SWAY['model'], 'Model', choices.model), choices=models))

@@ -18,12 +18,7 @@ _STEPS_PER_SECOND = 60.0
 
 
 def swaying(
-    simulator: Simulator,
-    wind: WindSource,
-    rate: float,
-    seconds: float,
-    start: float = 0.0,
-    run_in: float = 0.0,
+    simulator: Simulator, wind: WindSource, rate: float, seconds: float
 ) -> Iterator[None]:
     """
     Sway a scene, at least 60 steps per second, and yield after each frame.
@@ -36,18 +31,12 @@ def swaying(
         Frames per second [Hz].
     seconds
         Length of all frames [s].
-    start
-        Time of the wind at which the frames begin [s].
-    run_in
-        Time before that from which on the scene sways [s], as far as there is wind.
 
     """
     steps = max(1, round(_STEPS_PER_SECOND / rate))
     intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
     run = Run(simulator, rate * steps, intake=intake)
-    tick = round(1e9 * start) // run.period
-    for each in range(round(1e9 * max(0.0, start - run_in)) // run.period, tick):
-        blow(run, wind, each * run.period)
+    tick = 0
     for _ in bar(range(max(1, round(seconds * rate))), 'swaying'):
         for _ in range(steps):
             tick += 1

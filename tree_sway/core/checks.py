@@ -82,20 +82,13 @@ def array_to_fill(name: str, array: object, shape: tuple[int, ...]) -> NDArray[n
     `ParameterError` for no array of float64 in the machine's own order, of that shape, whole in
     one piece of memory, row after row, and free to be written.
     """
-    if not isinstance(array, np.ndarray):
-        wrong = f'a {type(array).__name__}'
-    elif array.shape != shape:
-        wrong = f'an array of shape {array.shape}'
-    elif array.dtype != np.float64:
-        wrong = f'an array of {array.dtype}'
-    elif not (array.flags.c_contiguous and array.flags.aligned):
-        wrong = 'an array that is spread over memory'
-    elif not array.flags.writeable:
-        wrong = 'an array that cannot be written'
-    else:
-        return array
+    found = f'a {type(array).__name__}'
+    if isinstance(array, np.ndarray):
+        if array.dtype == np.float64 and array.shape == shape and array.flags.carray:
+            return array
+        found = f'an array of {array.dtype} and shape {array.shape}, or spread or read-only,'
     raise ParameterError(
-        f'{wrong} cannot be filled', where=name, cure=f'give np.empty({shape}) or nothing'
+        f'{found} cannot be filled', where=name, cure=f'give np.empty({shape}) or nothing'
     )
 
 

@@ -10,6 +10,8 @@ lies there.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from importlib import resources
+import json
 from typing import Any
 
 import numpy as np
@@ -31,29 +33,13 @@ _GREATEST = 1e12
 
 Array = NDArray[Any]
 
-_FORMS: dict[str, tuple[str, tuple[str | int, ...]]] = {
-    name: (kind, axes)
-    for kind, axes, names in (
-        ('<i4', ('branches',), 'branch_parent branch_base_segment branch_coordinate'),
-        ('<i4', ('branches',), 'branch_base_turn branch_turn'),
-        ('u1', ('branches',), 'branch_keys'),
-        ('<i4', ('branches + 1',), 'branch_first'),
-        ('<f4', ('branches', 3, 3), 'branch_frame'),
-        ('<f4', ('branches', 2), 'branch_skew'),
-        ('<f4', ('branches', 3), 'branch_offset'),
-        ('<f4', ('rows', 3), 'turn'),
-        ('<f4', ('segments',), 'segment_slope segment_tip_slope segment_length'),
-        ('<f4', ('segments', 3), 'segment_chord'),
-        ('<f4', ('segments', 4), 'segment_rest'),
-        ('<f4', ('segments', 2), 'segment_radius'),
-        ('<f4', ('keys', 'coordinates'), 'basis_matrix'),
-        ('<f4', ('coordinates',), 'basis_scale'),
-        ('<i4', ('clusters',), 'leaf_segment'),
-        ('<f4', ('clusters', 3), 'leaf_offset'),
-        ('<f4', ('clusters', 4), 'leaf_orientation'),
-        ('<f4', ('clusters',), 'leaf_size leaf_frequency leaf_phase'),
-    )
-    for name in names.split()
+_TYPES = {'f32': '<f4', 'i32': '<i4', 'u8': 'u1'}
+
+_FORMS: dict[str, tuple[str, list[str | int]]] = {
+    name: (_TYPES[kind], axes)
+    for name, (kind, *axes) in json.loads(
+        resources.files('tree_sway.page').joinpath('static', 'arrays.json').read_text()
+    )['description'].items()
 }
 """Type and axes of each array of a kind; those of leaves only where it bears any."""
 
@@ -110,7 +96,8 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[i
     _require('branch_parent', b > 0)
     _require('basis_scale', arrays['basis_scale'] > 0.0)
     _require('species', isinstance(kind['species'], str) and isinstance(kind['model'], str))
-    _require('height', _is_finite(kind['height']) and _is_finite(kind['basis_error']))
+    numbers = kind['height'], kind['basis_error'], kind.get('modulus', 0.0)
+    _require('height', all(map(_is_finite, numbers)))
     names = kind['branch_names']
     _require('branch_names', len(names) == b and all(isinstance(name, str) for name in names))
 

@@ -80,6 +80,7 @@ def describe_scene(
                 'height': round(tree.height, 4),
                 'model': kind.simulator.model,
                 'basis_error': kind.basis.error,
+                'modulus': kind.simulator.species.modulus,
                 'branch_names': _names(kind.simulator),
             }
         )

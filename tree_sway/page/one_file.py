@@ -25,9 +25,8 @@ import numpy as np
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import ParameterError
 from tree_sway.page.scene_state import SceneState
-from tree_sway.page.tables import tables_of
 
-_IMPORT = re.compile(r'(\bfrom\s+|\bimport\s+)"(\.[^"]+)"')
+_IMPORT = re.compile(r'(\bfrom\s+|\bimport[\s(]+)"(\.[^"]+)"')
 _LEAVES = 1000
 _BOOT = 'boot.js'
 _BITS = 14
@@ -51,11 +50,15 @@ def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
         A tree on another model.
 
     """
-    scene = SceneState(simulator, n_leaves, is_running=False)
-    tables = tables_of(simulator, scene.kinds, scene.identity)
+    return page_of_state(SceneState(simulator, n_leaves, is_running=False))
+
+
+def page_of_state(scene: SceneState, script: str = '') -> str:
+    """Return the same of a scene that is described, with a module of the page that runs last."""
+    tables = scene.tables()
     if tables is None:
         raise ParameterError(
-            f"model '{simulator.model}' has no table to solve it by",
+            f"model '{scene.simulator.model}' has no table to solve it by",
             where='--model',
             cure='give a number of coordinates, such as 60',
         )
@@ -71,11 +74,17 @@ def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
             f'<script type="text/plain" id="modules">{_packed(_modules(folder))}</script>\n'
             f'    <script type="text/plain" id="scene">{packed}</script>'
         ),
-        '</body>': lambda: f'<script>\n{boot}</script>\n  </body>',
+        '</body>': lambda: (
+            f'<script>\n{boot}</script>\n{_module(folder, script) if script else ""}  </body>'
+        ),
     }
     for place, part in parts.items():
         page = page.replace(place, part())
     return page
+
+
+def _module(folder: Path, name: str) -> str:
+    return f'<script type="module">{(folder / name).read_text(encoding="utf-8")}</script>\n'
 
 
 def _packed(data: bytes) -> str:
@@ -108,7 +117,7 @@ def _modules(folder: Path) -> bytes:
         text = path.read_text(encoding='utf-8')
         if path.suffix in ('.json', '.glsl'):
             files[name.as_posix()] = text
-        elif path.suffix == '.js' and path.name != _BOOT:
+        elif path.suffix == '.js' and path.name not in (_BOOT, 'film.js'):
             modules[f'tree-sway/{name.as_posix()}'] = _with_full_names(text, name.parent)
     return json.dumps({'modules': modules, 'files': files}).encode()
 

@@ -65,9 +65,9 @@ class SceneState:
             self.names, name = (simulator.tree.name,), simulator.tree.name
         self._lay_out()
         count = FULLY_LEAVED * n_leaves // max(FULLY_LEAVED, len(self.kinds))
-        leaves = [_leaves(kind, count) for kind in self.kinds]
+        self.leaves = [_leaves(kind, count) for kind in self.kinds]
         self.description = describe_scene(
-            name, self.kinds, self.names, frame_id=frame_id, leaves=leaves
+            name, self.kinds, self.names, frame_id=frame_id, leaves=self.leaves
         )
         self._described = decode_description(self.description)
         self._sequence = 0

@@ -29,7 +29,7 @@ from typing import Any
 from aiohttp import web, WSCloseCode, WSMsgType
 from aiohttp.typedefs import Handler
 
-from tree_sway.errors import TransportError
+from tree_sway.errors import TransportError, TreeSwayError
 from tree_sway.page.access import given_token, is_token, read_token, refusal, require_token
 from tree_sway.page.controls import ControlPanel, Value
 from tree_sway.page.doorkeeper import Doorkeeper
@@ -166,6 +166,9 @@ class PageServer:
         What viewers may change; nothing if None.
     status
         Called twice a second on the server's thread for what the page shows beside the tree.
+    written
+        Called with ``glb`` or ``html`` on a thread of its own for the tree as a file; raises a
+        `TreeSwayError` to refuse.
 
     Examples
     --------
@@ -180,12 +183,14 @@ class PageServer:
         settings: PageSettings,
         panel: ControlPanel | None = None,
         status: Callable[[], Mapping[str, object]] | None = None,
+        written: Callable[[str], bytes] | None = None,
     ) -> None:
         self.settings = settings
         self._token = settings.token or read_token(settings.token_file)
         require_token(settings.address, self._token)
         self._panel = panel or ControlPanel()
-        self._status = status or dict
+        self._status, self._written = status or dict, written
+        self._writing = asyncio.Lock()
         self._description = b''
         self._tables: Callable[[], bytes | None] = lambda: None
         self._frame: tuple[int, bytes] = (-1, b'')
@@ -313,6 +318,7 @@ class PageServer:
         app.router.add_get('/', _index)
         app.router.add_get('/stream', self._stream)
         app.router.add_get('/healthz', self._health)
+        app.router.add_get('/tree.{suffix:glb|html}', self._tree)
         app.router.add_static('/static/', _STATIC)
         app.on_response_prepare.append(_add_headers)
         logger = logging.Logger('page')
@@ -390,6 +396,18 @@ class PageServer:
     async def _health(self, _request: web.Request) -> web.Response:
         return web.json_response({'status': 'ok', 'described': bool(self._description)})
 
+    async def _tree(self, request: web.Request) -> web.StreamResponse:
+        """Answer with the tree as a file, one at a time."""
+        if self._written is None:
+            return self._refused(404, 'no files are written here: use tree-sway convert')
+        async with self._writing:
+            try:
+                suffix = request.match_info['suffix']
+                data = await asyncio.to_thread(self._written, suffix)
+            except TreeSwayError as error:
+                return self._refused(409, str(error))
+        return web.Response(body=data, content_type='application/octet-stream')
+
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         if len(self._clients) >= self.settings.max_clients:
             return self._refused(503, 'too many pages are connected')
@@ -398,8 +416,8 @@ class PageServer:
         )
         await socket.prepare(request)
         client = _Client(socket, request.transport)
-        hello = {'controls': self._panel.entries(), 'address': self.settings.address}
-        client.say({'hello': hello})
+        hello = {'controls': self._panel.entries(), 'can_pull': self._panel.can_pull}
+        client.say({'hello': {**hello, 'address': self.settings.address}})
         self._clients.add(client)
         sender = self._loop.create_task(self._send(client))
         try:
@@ -439,6 +457,8 @@ class PageServer:
         client.wants_nothing_else |= message.get('wind') == 'only'
         if 'set' in message:
             self._change(client, message['set'])
+        if 'pull' in message and (why := self._panel.pull(message['pull'])) is not None:
+            self._refuse(client, 'pull', why)
         client.wake.set()
 
     def _change(self, client: _Client, change: object) -> None:
@@ -446,11 +466,14 @@ class PageServer:
         name = change.get('name')
         why = self._panel.set(name, change.get('value'))
         if why is not None:
-            self.n_refused += 1
-            refused = {'name': str(name)[:80], 'reason': why[:400]}
-            client.say({'refused': refused, 'values': self._panel.values()})
+            self._refuse(client, str(name)[:80], why)
         else:
             self._send_all({'values': self._panel.values()})
+
+    def _refuse(self, client: _Client, name: str, why: str) -> None:
+        self.n_refused += 1
+        refused = {'name': name, 'reason': why[:400]}
+        client.say({'refused': refused, 'values': self._panel.values()})
 
     def _send_all(self, content: Mapping[str, object]) -> None:
         for client in self._clients:

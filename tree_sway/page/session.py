@@ -10,6 +10,7 @@ while the first goes on, and taken over between two steps.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 import logging
 import threading
@@ -17,20 +18,27 @@ import time
 
 from tree_sway.core.scene.demand import set_demand
 from tree_sway.core.scene.run import Run
-from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.simulator.touch import Spring
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import ParameterError, TreeSwayError
+from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.page.controls import Value
+from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.scene_state import SceneState
 from tree_sway.page.server import PageServer
-from tree_sway.page.wind_source import blow, SimulatedWind, WindSource
+from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, WindSource
 
 _LOGGER = logging.getLogger('tree_sway.page')
 _MOST_LATE = 0.25
 _NEWEST = 0.05
+_PULL_LASTS = 0.5
+"""A pull ends after this time [s] unless its viewer renews it."""
+
 _BUSY = 0.2
 """Share of a period from which on only every second step is sent."""
 
@@ -154,22 +162,74 @@ class Session:
                     'the wind is a record', where=name, cure='start without --wind'
                 )
             self.wind.set(name, float(value or 0.0))
+        elif name == 'record_time' and isinstance(self.wind, RecordedWind):
+            self.wind.seek(float(value or 0.0), self._now)
         elif name in Choices.__dataclass_fields__:
             changed = {name: value}
             self._want(replace(self._wanted or self.choices, **changed))  # type: ignore[arg-type]
         else:
             raise ParameterError(f"'{name}' cannot be changed", where='page')
 
+    def pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
+        """
+        Pull at a segment by a spring to a place [m], (3,), for half a second; let go at 0 N/m.
+
+        Raises
+        ------
+        ParameterError
+            A segment that the tree lacks, a stand, or a model that cannot be pushed.
+
+        """
+        simulator = self._scene.simulator
+        if not isinstance(simulator, SwaySimulator):
+            raise ParameterError('a stand', where='pull', cure='show one tree to pull at it')
+        if not 0 <= segment < simulator.tree.n_segments or simulator.model == 'branch':
+            what = f"no segment {segment} of model '{simulator.model}'"
+            raise ParameterError(what, where='pull')
+        force = Spring(to, stiffness) if stiffness else (0.0, 0.0, 0.0)
+        lasts = _PULL_LASTS if stiffness else 1e-9
+
+        def push() -> None:
+            with suppress(ParameterError):  # of too many at once, which the simulator counts
+                simulator.push(segment, force, lasts, along=0.0)
+
+        self._runtime.request(push)
+
     def status(self) -> dict[str, object]:
         """Return what the page shows beside the tree."""
         simulator = self._scene.simulator
-        return {
+        status = {
             'model': simulator.model,
             'rate': round(1.0 / max(self._spacing, 1e-6), 1),
             'work_us': round(1e6 * self._work, 1),
             'trees': len(self._scene.names),
             'building': self._wanted is not None,
         }
+        if isinstance(self.wind, RecordedWind):
+            status['record_time'] = self.wind.time(self._now)
+        return status
+
+    def written(self, suffix: str) -> bytes:
+        """
+        Write what is shown as a file, ``glb`` or ``html``.
+
+        Raises
+        ------
+        TreeSwayError
+            A stand as glTF, a model without a table as a page.
+
+        """
+        simulator = self._build(self.choices)
+        if suffix == 'html':
+            return page_of_scene(simulator).encode()
+        if isinstance(simulator, SceneSimulator):
+            raise ParameterError('a stand as glTF', where='page', cure='take .html')
+        return morphing_tree(simulator, SceneState(simulator, _LEAVES).leaves[0]).glb()
+
+    @property
+    def _now(self) -> float:
+        """Time of the run [s]."""
+        return 1e-9 * self._ticks * self._runtime.period
 
     def _made(self, choices: Choices) -> tuple[SceneState, Run]:
         simulator = self._build(choices)

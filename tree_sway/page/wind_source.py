@@ -101,9 +101,19 @@ class RecordedWind:
         self._time, self._velocity = time - time[0], velocity
         last = float(self._time[-1])
         self.length = last + max(last / max(len(time) - 1, 1), 1e-3)
+        self._ahead = 0.0
+
+    def seek(self, time: float, now: float) -> None:
+        """Go on from a time of the record, now; both in [s]."""
+        self._ahead = time - now
+
+    def time(self, now: float) -> float:
+        """Time of the record that blows now; both in [s]."""
+        return (now + self._ahead) % self.length
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
         """Give the samples after a time up to a later one, both in [s]."""
+        since, until = since + self._ahead, until + self._ahead
         lap, n = max(math.floor(since / self.length), 0), len(self._time)
         i = int(self._time.searchsorted(since - lap * self.length + 1e-9, 'right'))
         while True:
@@ -112,5 +122,5 @@ class RecordedWind:
             if time > until + 1e-9:
                 return
             x, y, z = self._velocity[i].tolist()
-            yield time, (x, y, z)
+            yield time - self._ahead, (x, y, z)
             i += 1

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from importlib import import_module
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -121,11 +122,16 @@ def animate_poses(
             canvas.draw()
             yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
+    return write_pictures(images(), target, rate)
+
+
+def write_pictures(images: Iterator[Any], target: Path, rate: float) -> Path:
+    """Write pictures of Pillow, all of one even size, as a GIF or a film of a rate in [Hz]."""
     with whole_file(target) as partial:
         if target.suffix.lower() == '.gif':
-            _write_gif(partial, images(), rate)
+            _write_gif(partial, images, rate)
         else:
-            _write_film(partial, images(), size, rate)
+            _write_film(partial, images, rate)
     return target
 
 
@@ -136,15 +142,16 @@ def _write_gif(path: Path, images: Iterator[Any], rate: float) -> None:
     first.save(path, 'GIF', save_all=True, append_images=others, duration=1000.0 / rate, loop=0)
 
 
-def _write_film(path: Path, images: Iterator[Any], size: tuple[int, int], rate: float) -> None:
+def _write_film(path: Path, images: Iterator[Any], rate: float) -> None:
     """Have ffmpeg write what is painted, frame after frame."""
     from imageio_ffmpeg import write_frames
 
+    first = next(images)
     film = write_frames(
-        path, size, fps=rate, macro_block_size=2, output_params=['-movflags', '+faststart']
+        path, first.size, fps=rate, macro_block_size=2, output_params=['-movflags', '+faststart']
     )
     film.send(None)  # starts ffmpeg
-    for image in images:
+    for image in itertools.chain([first], images):
         film.send(image.tobytes())
     film.close()
 

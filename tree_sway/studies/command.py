@@ -30,9 +30,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--force', action='store_true', help='write over a table that is of no study of yours'
     )
-    parser.add_argument(
-        '--scheduler', metavar='ADDRESS', help='of a dask cluster, tcp://HOST:PORT'
-    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -41,17 +38,17 @@ def run(arguments: argparse.Namespace) -> int:
         within('--workers', arguments.workers, 1, 1024)
     cases = read_study(arguments.study)
     output = Path(arguments.output).expanduser()
-    kept = output.with_suffix('.cases')
-    if not (arguments.force or kept.is_dir()):
+    cache = output.with_suffix('.cases')
+    if not (arguments.force or cache.is_dir()):
         refuse_overwriting(output, '--output')
-    missing, workers = missing_cases(cases, kept), arguments.workers or os.cpu_count() or 1
+    missing, workers = missing_cases(cases, cache), arguments.workers or os.cpu_count() or 1
     print(
         f'{len(missing)} of {len(cases)} cases to compute: some '
         f'{estimated_time(missing, workers):.0f} s on {workers} cores, if trees have 900 branches',
         file=sys.stderr, flush=True,
     )  # fmt: skip
     began = time.monotonic()
-    rows = run_study(cases, kept, workers=arguments.workers, scheduler=arguments.scheduler)
+    rows = run_study(cases, cache, workers=arguments.workers)
     write_table(rows, output)
     print(f'{output}: {len(rows)} cases in {time.monotonic() - began:.1f} s')
     return 0

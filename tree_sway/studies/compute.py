@@ -13,7 +13,6 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.scene.simulate import Rig
-from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.files.trees.imported_tree import TreeFile
@@ -25,7 +24,7 @@ from tree_sway.studies.plan import Case, Plain
 _UNITS = {'height': ' [m]', 'speed': ' [m/s]', 'intensity': ' [-]', 'scale': ' [-]'}
 
 
-def compute(case: Case) -> tuple[Plain, SwayRecord]:
+def compute(case: Case) -> Plain:
     """
     Compute a case.
 
@@ -36,8 +35,8 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
 
     Returns
     -------
-    dict, SwayRecord
-        What it asked for beside its numbers, by names with their units; and the record over time.
+    dict
+        What it asked for beside its numbers, by names with their units.
 
     Raises
     ------
@@ -62,7 +61,7 @@ def compute(case: Case) -> tuple[Plain, SwayRecord]:
     row |= _summary('tip', 'm', record.tips[:, 0])
     row |= _summary('base_moment', 'N m', record.base_moment)
     row['strain_largest [-]'] = float(np.abs(record.base_strain).max())
-    return row, record
+    return row
 
 
 @lru_cache(maxsize=2)

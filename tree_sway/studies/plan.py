@@ -47,8 +47,6 @@ class Case:
         Fields of `Settings`.
     seconds, rate
         Length in [s] and steps per second [Hz].
-    series
-        Whether the record over time is kept.
     digest
         Of the files it reads and of the simulator's source.
 
@@ -59,7 +57,6 @@ class Case:
     settings: Plain = field(default_factory=dict)
     seconds: float = 60.0
     rate: float = 60.0
-    series: bool = False
     digest: str = ''
 
     @property
@@ -102,7 +99,7 @@ def read_study(path: str | Path) -> list[Case]:
             where = document.where('winds', number)
             raise FormatError('a wind is a file or a speed', where=where, cure='give one of them')
     varied = _settings(study.get('settings', {}), path)
-    common = {key: study[key] for key in ('seconds', 'rate', 'series') if key in study}
+    common = {key: study[key] for key in ('seconds', 'rate') if key in study}
     code = _code()
     cases = []
     for tree, wind, settings in itertools.product(

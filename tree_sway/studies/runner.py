@@ -32,13 +32,7 @@ _START, _SET_UP, _STEP = 4.0, 2.5, 2e-4
 """Time that workers take to start, a tree of 900 branches to set up, and each of its steps [s]."""
 
 
-def run_study(
-    cases: list[Case],
-    folder: Path,
-    *,
-    workers: int | None = None,
-    scheduler: str | None = None,
-) -> list[Plain]:
+def run_study(cases: list[Case], folder: Path, *, workers: int | None = None) -> list[Plain]:
     """
     Compute what is missing of a study, and return all of it.
 
@@ -50,8 +44,6 @@ def run_study(
         Where finished cases are kept.
     workers
         Processes; one per core if None.
-    scheduler
-        Address of a dask scheduler whose workers compute instead; they see the same folder.
 
     Returns
     -------
@@ -63,14 +55,14 @@ def run_study(
     TreeSwayError
         The first case that cannot be computed, by its name; the others are kept.
     TransportError
-        Workers that die again and again, or a scheduler that does not answer.
+        Workers that die again and again.
     ModuleNotFoundError
         There is something to compute and dask is not installed.
 
     """
     folder.mkdir(parents=True, exist_ok=True)
     missing = missing_cases(cases, folder)
-    outcomes = _outcomes(missing, folder, workers, scheduler) if missing else iter(())
+    outcomes = _outcomes(missing, folder, workers or os.cpu_count() or 1) if missing else iter(())
     failed: TreeSwayError | None = None
     for _, outcome in zip(bar(missing, 'cases'), outcomes, strict=True):
         failed = failed or outcome
@@ -97,15 +89,12 @@ def result_path(folder: Path, case: Case) -> Path:
 
 
 def compute_to_file(case: Case, folder: Path) -> None:
-    """Compute one case and keep it: its row, and its record if the case asks for that."""
+    """Compute one case and keep its row."""
     from tree_sway.studies.compute import compute
 
     if result_path(folder, case).is_file():  # a worker that was killed had come this far
         return
-    row, record = compute(case)
-    if case.series:
-        write_text_whole(folder / f'{case.name}.csv', record.to_csv())
-    write_text_whole(result_path(folder, case), json.dumps(row))
+    write_text_whole(result_path(folder, case), json.dumps(compute(case)))
 
 
 def compute_batch(cases: list[Case], folder: Path) -> list[TreeSwayError | None]:
@@ -140,16 +129,15 @@ def batches(cases: list[Case], workers: int) -> list[list[Case]]:
 
 
 def _outcomes(
-    cases: list[Case], folder: Path, workers: int | None, scheduler: str | None
+    cases: list[Case], folder: Path, workers: int
 ) -> Iterator[TreeSwayError | None]:
     """Outcome of each case as it is finished: None, or what is wrong with it."""
     distributed = import_module('distributed')
     import_module('cryptography')  # of the keys that keep other users of this machine out
-    with _cluster(distributed, workers, scheduler) as client:
-        count = max(len(client.scheduler_info(n_workers=-1)['workers']), workers or 1)
+    with _cluster(distributed, workers) as client:
         futures = [
             client.submit(compute_batch, part, folder.resolve(), key=part[0].name)
-            for part in batches(cases, count)
+            for part in batches(cases, workers)
         ]
         try:
             for future in distributed.as_completed(futures):
@@ -163,18 +151,8 @@ def _outcomes(
 
 
 @contextmanager
-def _cluster(distributed: Any, workers: int | None, scheduler: str | None) -> Iterator[Any]:
-    """Client of a scheduler, or of processes of its own, which end at once with the study."""
-    if scheduler is not None:
-        try:
-            client = distributed.Client(scheduler, timeout=10)
-        except OSError as error:
-            raise TransportError(
-                f'no scheduler answers ({error})', where=scheduler, cure='start dask scheduler'
-            ) from None
-        with client:
-            yield client
-        return
+def _cluster(distributed: Any, workers: int) -> Iterator[Any]:
+    """Client of processes of its own, which end at once with the study."""
     import dask
 
     # This process alone hears Ctrl-C: its threads, and the workers that they start, inherit what
@@ -186,7 +164,7 @@ def _cluster(distributed: Any, workers: int | None, scheduler: str | None) -> It
     with (
         dask.config.set(quiet),
         distributed.LocalCluster(
-            n_workers=workers or os.cpu_count() or 1, threads_per_worker=1, memory_limit=0,
+            n_workers=workers, threads_per_worker=1, memory_limit=0,
             dashboard_address=None, silence_logs='CRITICAL', security=True,
         ) as local,
         distributed.Client(local) as client,

@@ -7,7 +7,6 @@ from __future__ import annotations
 from typing import Any
 
 from tree_sway.core.wind.simulated.anemometer import AnemometerModel
-from tree_sway.core.wind.simulated.gust_event import GustEvent
 from tree_sway.core.wind.simulated.sensor_faults import SensorFaults
 from tree_sway.errors import ParameterError
 from tree_sway_ros.process.node import TreeSwayNode
@@ -26,7 +25,7 @@ class AnemometerNode(TreeSwayNode):
         self._model = self._make_model()
         self._faults = self._make_faults()
         self._ticks = self._faulty_since = 0
-        self._publisher = self.publisher(WIND, self._writer.message_class, alone=True)
+        self._publisher = self.publisher(WIND, self._writer.message_class)
         self.report_with('simulated anemometer', self._report)
         self._pacer = self.pacer_of(self._tick)
 
@@ -35,15 +34,14 @@ class AnemometerNode(TreeSwayNode):
         self.run_worker(self._pacer)
 
     def check_values(self, values: dict[str, Any]) -> None:
-        """Refuse gusts and faults that overlap."""
-        for what in ('gust', 'fault'):
-            duration, every = values[f'{what}_duration'], values[f'{what}_every']
-            if values[what] != 'none' and 0.0 < every < duration:
-                raise ParameterError(
-                    f'{what}s of {duration:g} s every {every:g} s overlap',
-                    where=f"parameters '{what}_duration' and '{what}_every'",
-                    cure=f'give {what}_every not less than {what}_duration, both at once',
-                )
+        """Refuse faults that overlap."""
+        duration, every = values['fault_duration'], values['fault_every']
+        if values['fault'] != 'none' and every < duration:
+            raise ParameterError(
+                f'faults of {duration:g} s every {every:g} s overlap',
+                where="parameters 'fault_duration' and 'fault_every'",
+                cure='give fault_every not less than fault_duration, both at once',
+            )
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Blow otherwise from the next sample on; the gusts of a seed keep their pattern."""
@@ -58,18 +56,8 @@ class AnemometerNode(TreeSwayNode):
         return SensorFaults(values['fault'], values['fault_every'], values['fault_duration'])
 
     def _make_model(self) -> AnemometerModel:
-        names = ('mean_speed', 'bearing_to', 'turbulence', 'height', 'intensity', 'rate', 'seed')
-        return AnemometerModel(events=self._events(), **self.values(*names))
-
-    def _events(self) -> tuple[GustEvent, ...]:
-        values = self.values
-        kind = values['gust']
-        if kind == 'none':
-            return ()
-        is_angle = kind in ('direction_change', 'turn')
-        amplitude = values['gust_angle' if is_angle else 'gust_speed']
-        every, duration = values['gust_every'], values['gust_duration']
-        return (GustEvent(kind, amplitude, duration, start=every or 1.0, every=every),)
+        names = ('mean_speed', 'bearing_to', 'height', 'intensity', 'rate', 'seed')
+        return AnemometerModel(**self.values(*names))
 
     def _tick(self, tick: Tick) -> None:
         self._ticks += tick.periods

@@ -23,7 +23,7 @@ class SensorNode(TreeSwayNode):
     def configure(self) -> None:
         """Prepare the link."""
         self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
-        self._publisher = self.publisher(WIND, self._writer.message_class, alone=True)
+        self._publisher = self.publisher(WIND, self._writer.message_class)
         self._kind = self.values['sentence']
         self._accepted = self._other = 0
         self._refused: dict[str, int] = {}
@@ -62,10 +62,8 @@ class SensorNode(TreeSwayNode):
             self._publisher.publish(self._writer.message(stamp, said.velocity))
 
     def _parsed(self, line: str) -> SensorLine | None:
-        need, heading = self.values['need_checksum'], self.values['heading']
-        return parse_nmea(
-            line, heading, self.values['declination'], need_checksum=need
-        ) or parse_sonic(line, heading, need_checksum=need)
+        heading = self.values['heading']
+        return parse_nmea(line, heading, self.values['declination']) or parse_sonic(line, heading)
 
     def _report(self) -> list[Status]:
         source = self._source

@@ -19,20 +19,18 @@ from tree_sway.core.simulator.live_tuning import LIVE
 from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.averaging import WindAverage
-from tree_sway.core.wind.gate import LARGEST_LEAD
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
 from tree_sway.files.kept_set_ups import KeptSetUps
 from tree_sway.files.trees.source import open_scene
-from tree_sway.files.trees.yaml.species_yaml import open_species
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import CAMERA, PUSH, WIND_FILTERED
 from tree_sway_ros.reports.diagnostics import Status, WARN
 from tree_sway_ros.reports.sway_report import SwayReport
-from tree_sway_ros.timing.handshake import Reach
 from tree_sway_ros.timing.pacer import Tick
 from tree_sway_ros.wire.pose_stream import PoseStream
 from tree_sway_ros.wire.wind_messages import wind_from_message
@@ -71,15 +69,13 @@ class SolverNode(TreeSwayNode):
 
     def activate(self) -> None:
         """Sway, from rest."""
-        self._reach = Reach()
         self.run_worker(self.pacer)
-        self.on_close(self._reach.end)
         self._state.start()
 
     def _open(self) -> Any:
         source = open_scene(self.values['tree'])
         if self.values['species']:
-            source = source.of_species(open_species(self.values['species'])).checked()
+            source = source.of_species(species_named(self.values['species'])).checked()
         x, y, z, yaw = self.values['pose']
         moved = source.moved(x=x, y=y, z=z, yaw=yaw)
         return dealt(moved, self.values['shard.index'], self.values['shard.count'])
@@ -111,12 +107,11 @@ class SolverNode(TreeSwayNode):
         set_cost_scale(self.simulator.simulators, self._run.warm_up())
         self._set_demand()
         self.simulator.reset()  # on the model that is asked for
-        self._reach = Reach()
         self._sway_report = SwayReport()
         leaves = source.leaves(settings.in_leaf, _LEAF_CLUSTERS)
         self.stream = PoseStream(self, source.tree, leaves)
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
-        self._new_wind = self.polled(WIND_FILTERED)
+        self.subscription(WIND_FILTERED, self._receive)
         self.subscription(CAMERA, self._see)
         is_one = isinstance(self.simulator, SwaySimulator)
         names = source.tree.segment_names if is_one else ()
@@ -128,10 +123,7 @@ class SolverNode(TreeSwayNode):
 
     def _receive(self, message: Any) -> None:
         sample = wind_from_message(message)
-        arrival = self._now()
-        if self.pacer.is_simulated and sample.stamp > arrival + LARGEST_LEAD:
-            return  # of before the clock was set back
-        self._reach.add(sample.stamp)
+        arrival = int(self.get_clock().now().nanoseconds)
         components = (sample.u, sample.v, sample.w)
         self._run.offer(sample.stamp, components, arrival, lead=self.clock_lead)
 
@@ -204,26 +196,11 @@ class SolverNode(TreeSwayNode):
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:
             self._run.restart(tick.time)
-            self._reach.forget()
         if self.pacer.is_simulated:  # of a replay every frame comes, however late
             for later in range(tick.periods - 1, -1, -1):
-                now = tick.time - later * self.pacer.period
-                if self.values['exact_replay']:
-                    felt = now - round(1e9 * self.values['wind_delay'])
-                    self._reach.wait(felt, self._take, self._now)
-                else:
-                    self._take()
-                self._frame(now, 1, may_join=False)
+                self._frame(tick.time - later * self.pacer.period, 1, may_join=False)
         else:
-            self._take()
             self._frame(tick.time, tick.periods, may_join=True)
-
-    def _now(self) -> int:
-        return int(self.get_clock().now().nanoseconds)
-
-    def _take(self) -> None:
-        for message in self._new_wind():
-            self._receive(message)
 
     def _frame(self, now: int, periods: int, *, may_join: bool) -> None:
         """Solve up to a time in [ns], and publish what is due then."""

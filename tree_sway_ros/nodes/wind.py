@@ -45,10 +45,10 @@ class WindNode(TreeSwayNode):
         self._intake = WindIntake(self._convention, WindGate(**self.values(*_GATE)))
         self._attitude: Any = None
         self._frames: Any = None
-        self._filtered = self.publisher(WIND_FILTERED, alone=True)
+        self._filtered = self.publisher(WIND_FILTERED)
         self._plane = self.publisher(FORCE_PLANE)
         kind = WIND_CLASSES[self.values['input_type']]
-        self._topic = self.subscription(WIND, self._receive, kind, alone=True).topic_name
+        self._topic = self.subscription(WIND, self._receive, kind).topic_name
         self.report_with('wind', self._statuses)
         self.get_logger().info(f'reading wind as {self._convention}')
 

@@ -4,15 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNodeMixin, TransitionCallbackReturn
 from rclpy.node import Node
-from rclpy.qos import qos_check_compatible, QoSCompatibility
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from tree_sway.core.wind.gate import LARGEST_LEAD
@@ -20,7 +18,6 @@ from tree_sway.errors import TreeSwayError
 from tree_sway_ros.parameters.declaration import ParameterValues
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.process.guard import CallbackGuard
-from tree_sway_ros.process.rivals import Rivals
 from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile, Topic
 from tree_sway_ros.reports.diagnostics import Status, status_array, WARN
 from tree_sway_ros.timing.pacer import Pacer, Tick
@@ -39,23 +36,6 @@ _ENTITIES = {
 """What a node holds, and what destroys one of it."""
 
 
-class _Never(CallbackGroup):  # type: ignore[misc]
-    """The callback group of a subscription that no executor looks at."""
-
-    def can_execute(self, _entity: Any) -> bool:
-        return False
-
-
-def _nobody(_message: Any) -> None:
-    """Do nothing, where rclpy wants a callback."""
-
-
-def _match(offer: Any, request: Any) -> bool:
-    """Whether a subscription receives what a publisher sends."""
-    found, _reason = qos_check_compatible(offer.qos_profile, request.qos_profile)
-    return offer.topic_type == request.topic_type and found != QoSCompatibility.ERROR
-
-
 class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     """
     A node with a table of parameters, found under the name of its class: `WindNode` is ``wind``.
@@ -72,7 +52,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         self.failure: Exception | None = None
         self.is_done = self.is_active = False
         self._refusal: Exception | None = None
-        self._alone: dict[str, Rivals] = {}
         self._closers: list[Callable[[], None]] = []
         try:
             table = NODE_PARAMETERS[name]
@@ -117,7 +96,6 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         for kind, destroy in _ENTITIES.items():
             for each in [each for each in getattr(self, kind) if each not in self._kept]:
                 getattr(self, destroy)(each)
-        self._alone.clear()
         return TransitionCallbackReturn.SUCCESS
 
     def on_shutdown(self, _state: Any) -> TransitionCallbackReturn:
@@ -169,79 +147,23 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         """Start a timer, with the guard around the callback."""
         return super().create_timer(period, self.guard.wrapped(callback), *more, **named)
 
-    def publisher(self, topic: Topic, kind: Any = None, *, alone: bool = False) -> Any:
-        """
-        Make a publisher of a topic of the table, of a kind where a parameter chooses it.
-
-        ``alone``: a second publisher on the topic is a fault, to be reported.
-        """
-        made = self.create_publisher(
+    def publisher(self, topic: Topic, kind: Any = None) -> Any:
+        """Make a publisher of a topic of the table, of a kind where a parameter chooses it."""
+        return self.create_publisher(
             kind or message_class(topic),
             topic.name,
             qos_profile(topic),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
-        if alone:
-            self._alone[made.topic_name] = Rivals()
-        return made
 
-    def subscription(
-        self,
-        topic: Topic,
-        callback: Callable[[Any], None],
-        kind: Any = None,
-        *,
-        alone: bool = False,
-        **options: Any,
-    ) -> Any:
-        """
-        Subscribe to a topic of the table, of a kind where a parameter chooses it.
-
-        ``alone``: a second publisher on the topic is a fault; ``options`` are those of rclpy, such
-        as ``raw`` for bytes.
-        """
-        made = self.create_subscription(
+    def subscription(self, topic: Topic, callback: Callable[[Any], None], kind: Any = None) -> Any:
+        """Subscribe to a topic of the table, of a kind where a parameter chooses it."""
+        return self.create_subscription(
             kind or message_class(topic),
             topic.name,
             callback,
             qos_profile(topic, is_input=True),
-            **options,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-        )
-        if alone:
-            self._alone[made.topic_name] = Rivals()
-        return made
-
-    def polled(self, topic: Topic) -> Callable[[], Iterator[Any]]:
-        """
-        Subscribe without a callback: the function returned takes what has come, oldest first.
-
-        No executor comes between a thread that keeps time and its messages: what came before the
-        clock went on is there when the tick is.
-        """
-        made = self.subscription(topic, _nobody, callback_group=_Never())
-
-        def take() -> Iterator[Any]:
-            for _ in range(made.qos_profile.depth):
-                with made.handle:
-                    taken = made.handle.take_message(made.msg_type, False)
-                if taken is None:
-                    return
-                yield taken[0]
-
-        return take
-
-    def listeners(self, topic: str) -> int:
-        """Count the subscriptions of other nodes that receive what is published on a topic."""
-        name, me = self.resolve_topic_name(topic), (self.get_name(), self.get_namespace())
-        for each in self.publishers:
-            if each.topic_name == name:
-                return int(each.get_subscription_count())
-        offers = self.get_publishers_info_by_topic(topic)
-        return sum(
-            (each.node_name, each.node_namespace) != me
-            and (not offers or any(_match(offer, each) for offer in offers))
-            for each in self.get_subscriptions_info_by_topic(topic)
         )
 
     @property
@@ -262,33 +184,19 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         self.create_timer(REPORT_PERIOD, self.report, clock=steady)
 
     def report(self) -> None:
-        """Publish one report."""
+        """Publish one report, with the failures of callbacks if there are any."""
+        statuses = self._collect()
+        if self.guard.count:
+            values = {'failed': self.guard.count, 'last': self.guard.latest}
+            statuses.append(Status('callbacks', WARN, f'{self.guard.count} failed', values))
         self._diagnostics.publish(
             status_array(
-                [*self._collect(), *self._own_statuses()],
+                statuses,
                 prefix=self.get_fully_qualified_name().lstrip('/'),
                 hardware=self._hardware,
                 stamp=self.get_clock().now().to_msg(),
             )
         )
-
-    def _own_statuses(self) -> list[Status]:
-        """Failures of callbacks, and other publishers where there should be none."""
-        statuses = []
-        if self.guard.count:
-            values = {'failed': self.guard.count, 'last': self.guard.latest}
-            statuses.append(Status('callbacks', WARN, f'{self.guard.count} failed', values))
-        for topic, rivals in self._alone.items():
-            here = [
-                f'{each.node_namespace.rstrip("/")}/{each.node_name}'
-                for each in self.get_publishers_info_by_topic(topic)
-            ]
-            if text := rivals.warning(topic, here):
-                statuses.append(Status('topics', WARN, text))
-                if text not in rivals.said:
-                    rivals.said.add(text)
-                    self.get_logger().warning(f'{text}; end one, or give it another namespace')
-        return statuses
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Raise `ParameterError` where values that are each in range do not go together."""

@@ -10,7 +10,6 @@ from tree_sway.core.scene.demand import adaptive_among
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.gate import GateCounts
-from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
 from tree_sway_ros.timing.pacer import Pacer, Timing
 
@@ -37,9 +36,7 @@ class SwayReport:
     def statuses(self, run: Run, pacer: Pacer, frames: int) -> list[Status]:
         """Report on the wind, the output and the model, after a number of pose arrays."""
         output = self._output(pacer.timing(), 1e9 / pacer.period, frames, pacer.is_simulated)
-        statuses = [_wind(run.wind_state, run.counts), output, _model(run.simulator)]
-        gusts = run.simulator.gusts
-        return statuses if gusts is None else [*statuses, _gusts(gusts)]
+        return [_wind(run.wind_state, run.counts), output, _model(run.simulator)]
 
     def _output(self, timing: Timing, rate: float, frames: int, is_simulated: bool) -> Status:
         now = time.monotonic()
@@ -63,10 +60,9 @@ def _wind(state: str, counts: GateCounts) -> Status:
 
 
 def _model(simulator: Simulator) -> Status:
-    values = {
-        'model': simulator.model,
-        **vars(simulator.counts),
-    }
+    values = {'model': simulator.model, **vars(simulator.counts)}
+    if simulator.gusts is not None:
+        values['longest delay of a gust [s]'] = float(simulator.gusts.delay.max())
     trees = simulator.simulators
     if trees != (simulator,):
         values |= {f'model of {each.tree.name}': each.model for each in trees}
@@ -93,19 +89,3 @@ def _model(simulator: Simulator) -> Status:
         if error <= worst.tolerance:
             level, text = OK, simulator.model
     return Status('model', level, text, values)
-
-
-def _gusts(history: GustHistory) -> Status:
-    """How late the trees of a forest feel the wind."""
-    values = {
-        'longest delay [s]': float(history.delay.max()),
-        'trees upwind': history.n_ahead,
-        'trees beyond the memory': history.n_forgotten,
-    }
-    if history.n_ahead or history.n_forgotten:
-        what = (
-            f'{history.n_ahead} trees are upwind of the anemometer and feel the wind at once, '
-            f'{history.n_forgotten} are too far downwind and feel the oldest wind kept'
-        )
-        return Status('gusts', WARN, what, values)
-    return Status('gusts', OK, f'up to {values["longest delay [s]"]:.1f} s late', values)

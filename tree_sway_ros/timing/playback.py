@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A wind record in time: when each sample is due, at any speed, around and around.
+A thread that plays a wind record: each sample when it is due, at any speed, around and around.
 
 Time goes on over the seam of a loop: a period after the last sample of one round comes the first
 of the next, so whoever follows the stamps or /clock never sees time go back.
@@ -9,63 +9,67 @@ of the next, so whoever follows the stamps or /clock never sees time go back.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 import heapq
 import itertools
-from typing import NamedTuple
+import time
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
-from tree_sway_ros.timing.handshake import LONGEST_LEAD
+from tree_sway_ros.timing.worker import Worker
 
 LONGEST_CLOCK_STEP = 0.25
 """Longest time between two ticks of /clock [s]; half of what a node takes for a jump."""
+
+_CLOCK_RATE = 250.0
+"""Ticks of /clock per second of the machine [Hz]."""
+
 _LAST_TIME = 2.0**31
 """The first date after 1970 that a stamp cannot hold [s]."""
+
 _MARGIN = 86_400.0
 """Loops go on after the end of a record [s]."""
 
-
-class Event(NamedTuple):
-    """
-    Something to publish: its time since the playback began, and when it is due, in [s].
-
-    The row is -1 for a tick of /clock; what goes ahead is due before its time.
-    """
-
-    time: float
-    row: int
-    due: float
+_SECOND = 1_000_000_000
+_SETTLING, _LATEST, _POLL = 0.5, 0.5, 0.02
 
 
-def is_ros_time(epoch: float | None, time: NDArray[np.float64]) -> bool:
+def is_ros_time(epoch: float | None, time: Floats) -> bool:
     """Whether the times [s] of a record, after an epoch if any, can be played as its dates."""
     if epoch is None or not len(time):
         return True
     return bool(epoch + time[0] >= 1.0 and epoch + time[-1] < _LAST_TIME - _MARGIN)
 
 
-class Playback:
+@dataclass(eq=False)
+class Playback(Worker):
     """
-    The events of a record.
+    Plays a record once somebody listens; should the machine sleep, it goes on without a burst.
 
     Parameters
     ----------
-    time
+    times
         Times of the samples in [s], increasing, (n,).
+    publish
+        Called with the row of a sample, -1 for a tick of /clock, and its stamp in [ns]: the
+        record's own time with a clock, else the wall time at which the sample is due.
+    may_start
+        Whether somebody listens; asked again and again until true.
+    on_end, on_error
+        Called at the end of the record, and with what `publish` raised.
+    rate
+        Playback rate: 2 takes half the time.
     epoch
         Date of the record's time 0 in [s] after 1970, None if it has none.
-    start
+    start_at
         Time skipped of the record in [s].
     loop
         Whether it starts again at its end.
-    clock_period
-        Time from one tick of /clock to the next, in the record's time [s]; 0 for none.
-    ahead
-        Whether each sample goes out with the time of the one before: who has heard one later than
-        the clock knows that none is missing.
+    has_clock
+        Whether there are ticks of /clock.
 
     Raises
     ------
@@ -74,62 +78,91 @@ class Playback:
 
     """
 
-    def __init__(
-        self,
-        time: NDArray[np.float64],
-        *,
-        epoch: float | None = None,
-        start: float = 0.0,
-        loop: bool = False,
-        clock_period: float = 0.0,
-        ahead: bool = False,
-    ) -> None:
-        self.first_row = int(np.searchsorted(time, time[0] + start)) if len(time) else 0
-        self._time = time[self.first_row :]
-        if not len(self._time):
+    times: Floats
+    publish: Callable[[int, int], None]
+    may_start: Callable[[], bool]
+    on_end: Callable[[], None]
+    on_error: Callable[[Exception], None]
+    rate: float = 1.0
+    epoch: float | None = None
+    start_at: float = 0.0
+    loop: bool = False
+    has_clock: bool = False
+
+    def __post_init__(self) -> None:
+        """Leave out what is skipped, and prepare the thread."""
+        super().__init__('playback')
+        first = int(np.searchsorted(self.times - self.times[:1], self.start_at))
+        if first >= len(self.times):
             raise FormatError(
-                f'no sample {start:g} s into the record', cure='give a smaller start'
+                f'no sample {self.start_at:g} s into the record', cure='give a smaller start'
             )
-        self._epoch = epoch
-        self._loop = loop
-        self._clock_period = clock_period
-        steps = np.diff(self._time)
-        self.round = float(
-            self._time[-1] - self._time[0] + (np.median(steps) if len(steps) else 1)
-        )
-        self.goes_ahead = ahead
+        self._first_row, self._since = first, self.times[first:] - self.times[first]
+        steps = np.diff(self._since)
+        self.round = float(self._since[-1] + (np.median(steps) if len(steps) else 1.0))
+        self._position = 0.0
+        self._samples = self._stalls = 0
 
     @property
-    def has_clock(self) -> bool:
-        """Whether ticks of /clock are among the events."""
-        return self._clock_period > 0.0
+    def begin(self) -> int:
+        """Time of the first sample in [ns], for /clock: the record's, or 1 s without a date."""
+        if self.epoch is None:
+            return _SECOND
+        return round((self.epoch + float(self.times[self._first_row])) * _SECOND)
 
-    @property
-    def epoch(self) -> int:
-        """Time of the first event in [ns], for /clock: the record's, or 1 s without a date."""
-        if self._epoch is None:
-            return 1_000_000_000
-        return round((self._epoch + float(self._time[0])) * 1e9)
+    def progress(self) -> dict[str, float]:
+        """How far it is, for reports."""
+        return {
+            'position [s]': self._position % self.round,
+            'rounds': float(self._position // self.round),
+            'samples': float(self._samples),
+            'stalls': float(self._stalls),
+        }
 
-    def events(self) -> Iterator[Event]:
-        """Events in order of time; a tick of /clock comes after the sample of its time."""
-        if not self.has_clock:
-            return self._samples()
-        return heapq.merge(self._samples(), self._ticks(), key=lambda event: event.due)
+    def events(self) -> Iterator[tuple[float, int]]:
+        """Return times [s] and rows in order; a tick of /clock, row -1, comes after its sample."""
+        return heapq.merge(self._rows(), self._ticks(), key=lambda event: event[0])
 
-    def _samples(self) -> Iterator[Event]:
-        relative, before = (self._time - self._time[0]).tolist(), 0.0
-        for turn in itertools.count() if self._loop else range(1):
-            for row, since in enumerate(relative, start=self.first_row):
-                time = turn * self.round + since
-                yield Event(
-                    time, row, max(before, time - LONGEST_LEAD) if self.goes_ahead else time
-                )
-                before = time
+    def _rows(self) -> Iterator[tuple[float, int]]:
+        for turn in itertools.count() if self.loop else range(1):
+            for row, since in enumerate(self._since.tolist(), start=self._first_row):
+                yield turn * self.round + since, row
 
-    def _ticks(self) -> Iterator[Event]:
-        for tick in itertools.count():
-            time = tick * self._clock_period
-            if not self._loop and time > self.round:
+    def _ticks(self) -> Iterator[tuple[float, int]]:
+        period = min(self.rate / _CLOCK_RATE, LONGEST_CLOCK_STEP)
+        for tick in itertools.count() if self.has_clock else ():
+            if not self.loop and tick * period > self.round:
                 return
-            yield Event(time, -1, time)
+            yield tick * period, -1
+
+    def _run(self) -> None:
+        try:
+            heard = None
+            while heard is None or time.monotonic() < heard + _SETTLING:
+                if self.has_clock:
+                    self.publish(-1, self.begin)  # time stands, for all who come
+                if heard is None and self.may_start():
+                    heard = time.monotonic()
+                if self._stopping.wait(_POLL):
+                    return
+            self._play()
+        except Exception as error:
+            if not self._stopping.is_set():
+                self.on_error(error)
+
+    def _play(self) -> None:
+        begin, wall = time.monotonic(), time.time_ns()
+        for at, row in self.events():
+            due = at / self.rate
+            wait = begin + due - time.monotonic()
+            if wait > 0.0 and self._stopping.wait(wait):
+                return
+            if wait < -_LATEST:
+                begin -= wait
+                wall -= round(wait * _SECOND)
+                self._stalls += 1
+            begun, passed = (self.begin, at) if self.has_clock else (wall, due)
+            self.publish(row, begun + round(passed * _SECOND))
+            self._position = at
+            self._samples += row >= 0
+        self.on_end()

@@ -30,6 +30,7 @@ def test_fidelity_grows_with_the_dial_and_is_written(tmp_path):
     assert (tmp_path / 'fidelity.png').stat().st_size > 10_000
 
 
+@pytest.mark.long
 def test_cost_is_written_for_every_model_and_size(tmp_path):
     points = chart_cost(tmp_path, cuts=(6,), generations=(2, 3), frames=40, models=['full'])
     sizes = {(p.n_branches, p.segments_a_branch) for p in points}

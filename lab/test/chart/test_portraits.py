@@ -35,6 +35,7 @@ def test_every_picture_is_the_one_that_was_drawn_with_this_code() -> None:
         assert drawing_digest() == row['drawing'], CURE
 
 
+@pytest.mark.long
 @pytest.mark.parametrize('name', [*PORTRAITS, 'film'])
 def test_its_trees_stand_and_sway_as_they_do_now(
     name: str, monkeypatch: pytest.MonkeyPatch

@@ -45,7 +45,10 @@ def settled(model, segment, place, force):
     raise AssertionError('it does not come to rest')
 
 
-@pytest.mark.parametrize('name', ['forked', 'leaning', 'palm'])
+@pytest.mark.parametrize(
+    'name',
+    ['leaning', *(pytest.param(each, marks=pytest.mark.long) for each in ('forked', 'palm'))],
+)
 def test_a_pull_moves_the_tree_as_every_segment_solved(name):
     pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
     tree = forked_tree(0.65, 0.6, generations=3) if name == 'forked' else kind_called(name)

@@ -23,6 +23,7 @@ from tree_sway_lab.bench.engines import race_engines
 from tree_sway_lab.bench.forest import forest_table
 from tree_sway_lab.bench.latency import time_latency
 from tree_sway_lab.bench.measured import as_json, draw, Measured, read_baseline, table
+from tree_sway_lab.bench.page import time_page
 from tree_sway_lab.bench.setup_time import setup_table
 from tree_sway_lab.bench.shards import time_shards
 from tree_sway_lab.bench.sizes import time_sizes
@@ -44,7 +45,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         'poses at 60 Hz to another process; latency: from a start to its first pose, from the '
         'stamp of a wind to its pose, from the vane through all nodes to a page; engines: beside '
         'MuJoCo, DART and Newton; '
-        'shards: a stand on two hosts, cut apart and with a shard killed',
+        'shards: a stand on two hosts, cut apart and with a shard killed; page: frames per second '
+        'of the page without a graphics unit, and its memory',
     )
     parser.add_argument('--rounds', type=int, default=20, help='of 200 steps each (%(default)s)')
     parser.add_argument('--segments', type=int, default=6, help='a branch, for step (%(default)s)')
@@ -53,16 +55,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--tree',
         metavar='TREE',
         help="instead of the benchmark's own: a tree for sizes, latency and engines, many "
-        'trees for stand',
+        'trees for stand, any for page',
     )
     parser.add_argument(
         '--size',
         type=int,
         metavar='N',
-        help='trees of stand and shards, poses of stream, segments of engines, about',
+        help='trees of stand, shards and page, poses of stream, segments of engines, about',
     )
     parser.add_argument(
-        '--seconds', type=float, metavar='S', help='how long stream, latency and engines run'
+        '--seconds', type=float, metavar='S', help='how long stream, latency, engines and page run'
     )
     parser.add_argument('--baseline', metavar='FILE', help='what --json wrote before: show ratios')
     parser.add_argument('--chart', metavar='FILE', help='draw the figures as PNG, SVG or PDF')
@@ -152,6 +154,12 @@ def _latency(arguments: argparse.Namespace) -> list[Measured]:
     return [*time_latency(**given), *time_vane_to_leaf(**given)]
 
 
+def _page(arguments: argparse.Namespace) -> list[Measured]:
+    return time_page(
+        **_given(tree=arguments.tree, size=arguments.size, seconds=arguments.seconds)
+    )
+
+
 def _engines(arguments: argparse.Namespace) -> list[Measured]:
     tree = open_tree(arguments.tree).tree if arguments.tree else None
     if tree is None and arguments.size is not None:
@@ -166,12 +174,13 @@ _FIGURES: dict[str, Callable[[argparse.Namespace], list[Measured]]] = {
     'stream': _stream,
     'latency': _latency,
     'engines': _engines,
+    'page': _page,
     'shards': lambda arguments: time_shards(**_given(n_trees=arguments.size)),
 }
 
 
 def core_name() -> str:
-    """Name of the processor, as it says itself."""
+    """Name of the processor, as the system reports it."""
     try:
         lines = Path('/proc/cpuinfo').read_text(encoding='utf-8').splitlines()
     except OSError:

@@ -6,7 +6,7 @@
 These are the tables of topics, parameters and species, the drawing of the rooms, and the examples
 as notebooks.
 
-A table stands between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between
+A table is between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between
 them is replaced.
 """
 
@@ -66,7 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--check', action='store_true', help='change nothing; exit 2 if not up to date'
     )
     parser.add_argument(
-        '--run', action='store_true', help='run notebooks, and keep what they print and draw'
+        '--run', action='store_true', help='run notebooks, and save what they print and draw'
     )
 
 
@@ -234,16 +234,16 @@ def fidelity_range() -> str:
 def species_table() -> str:
     """Wood, damping, drag and leaves of every species."""
     lines = [
-        '| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | drag in leaf | '
-        'leaves [m^2/m^2] | [kg/m^2] |',
-        '|---|---|---|---|---|---|---|---|',
+        '| key | species | E [GPa] | density [kg/m^3] | damping bare, in leaf | twigs [mm] | '
+        'drag in leaf | leaves [m^2/m^2] | [kg/m^2] |',
+        '|---|---|---|---|---|---|---|---|---|',
     ]
     for key in species_keys():
         wood, leaf = species_named(key), species_named(key).leaves
         mark = ' (an estimate)' if wood.is_estimate else ''
         lines.append(
             f'| `{key}` | {wood.title}{mark} | {wood.modulus / 1e9:.3g} | {wood.density:g} '
-            f'| {wood.damping_bare:g}, {wood.damping_in_leaf:g} '
+            f'| {wood.damping_bare:g}, {wood.damping_in_leaf:g} | {1e3 * wood.twig_diameter:g} '
             f'| {wood.drag_coefficient:g} U^-{wood.drag_exponent:g} '
             f'| {leaf.area_per_section:g}{", evergreen" if leaf.is_evergreen else ""} | '
             f'{leaf.fresh_mass:g} |'

@@ -43,7 +43,7 @@ def test_the_tolerance_chooses_the_number():
 def test_a_budget_comes_before_the_tolerance():
     sim = adaptive(1e-9, budget=1e-3)
     assert number(sim) == 0
-    few, *_, most = sim.estimates(WindClimate.steady(8.0, 0.2))
+    few, *_, most = sim.estimates(WindClimate.of_samples(turbulent(8.0, 3.0), 60.0))
     for wind in turbulent(8.0, 3.0):
         sim.step(wind, DT)
     sim.budget = 0.5 * (few.cost + most.cost)

@@ -34,6 +34,11 @@ def turbulent(speed, seed):
     return simulate_turbulence(speed, rate=60.0, duration=10.0, rng=np.random.default_rng(seed))
 
 
+def climate_of(speed):
+    wind = turbulent(speed, 1) if speed > 0.0 else np.zeros((600, 3))
+    return WindClimate.of_samples(wind, 60.0)
+
+
 @pytest.mark.parametrize('way', [(1, 0, 0), (0, 0, 1), (0, 0, -1)])
 def test_fewer_coordinates_never_err_by_more_than_is_said(sim, estimator, way):
     """Set against all coordinates of the table, in wind from the side, up and down."""
@@ -62,7 +67,7 @@ def test_fewer_coordinates_never_err_by_more_than_is_said(sim, estimator, way):
 
 
 def test_more_coordinates_err_less_and_cost_more(estimator):
-    estimates = estimator.estimates(WindClimate.steady(6.0, 0.3))
+    estimates = estimator.estimates(climate_of(6.0))
     assert [e.n_coordinates for e in estimates] == [0, 3, 6, 12, 20, 40, 60]
     errors, costs = [e.error for e in estimates], [e.cost for e in estimates]
     assert (np.diff(errors) < 0.0).all()
@@ -70,7 +75,7 @@ def test_more_coordinates_err_less_and_cost_more(estimator):
 
 
 def test_errors_rise_with_the_wind_and_with_its_turns(estimator):
-    by_speed = [estimator.estimates(WindClimate.steady(v, 0.2)) for v in (0.0, 3.0, 9.0, 18.0)]
+    by_speed = [estimator.estimates(climate_of(v)) for v in (0.0, 3.0, 9.0, 18.0)]
     assert [e.error for e in by_speed[0]] == [0.0] * len(by_speed[0])
     for slow, fast in pairwise(by_speed[1:]):
         assert all(a.error < b.error for a, b in zip(slow, fast, strict=True))
@@ -86,7 +91,7 @@ def test_still_air_and_a_wind_straight_up_is_no_calm(estimator):
 
 def test_estimates_are_those_of_the_tree_as_it_is_tuned():
     sim = AdaptiveSimulator(bench_tree())
-    climate = WindClimate.steady(6.0, 0.2)
+    climate = climate_of(6.0)
     before = sim.estimates(climate)
     sim.tune(stiffness_factor=3.0)
     for _ in range(60):

@@ -28,7 +28,7 @@ def test_aim_keeps_the_angle_from_the_axis(
     assert way @ axis == pytest.approx(np.cos(polar))
 
 
-def test_aim_tells_right_and_up() -> None:
+def test_aim_knows_right_and_up() -> None:
     north = np.array([0.0, 1.0, 0.0])
     np.testing.assert_allclose(aim(north, np.pi / 2, 0.0), [1, 0, 0], atol=1e-15)
     np.testing.assert_allclose(aim(north, np.pi / 2, np.pi / 2), [0, 0, 1], atol=1e-15)

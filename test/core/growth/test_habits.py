@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """What makes people recognise each plant, as numbers."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
 from tree_sway.core.growth.grow import grow
+from tree_sway.core.tree.species import SPECIES
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
@@ -136,6 +139,35 @@ def test_each_species_keeps_its_habit() -> None:
     assert abs(twig['sitka']) < 0.35
     assert np.median(rise_of(trees['spruce'], 1, at_tip=False)) < tip['spruce'] - 0.3
     assert lowest_limb(trees['pine']) > 0.45
+
+
+def outline(species: str) -> tuple[np.ndarray, float]:
+    """Half-width over height in twelve levels, and the mean rise of twigs, of three trees."""
+    widths, rises = [], []
+    for seed in range(3):
+        tree = grown(species, seed=seed)
+        nodes = np.vstack([tree.start, tree.end])
+        level = np.minimum((12 * nodes[:, 2] / tree.height).astype(int), 11)
+        reach = np.hypot(*(nodes[:, :2] - nodes[0, :2]).T) / tree.height
+        widths.append([np.percentile([0.0, *reach[level == k]], 95) for k in range(12)])
+        rises.append(steepness(tree)[-tree.n_segments // 2 :].mean())
+    return np.mean(widths, axis=0), float(np.mean(rises))
+
+
+def test_silhouettes_differ() -> None:
+    """By the outline, a tenth of the width at least, or by twigs that hang or rise."""
+    own = [key for key, each in SPECIES.items() if each.habit != 'pot' and key != each.habit]
+    assert len(own) == 20
+    outlines = {key: outline(key) for key in own}
+    for one, other in combinations(own, 2):
+        (wide, rise), (width, lift) = outlines[one], outlines[other]
+        apart = np.sqrt(np.mean((wide - width) ** 2)) / (0.5 * (wide.max() + width.max()))
+        assert np.hypot(apart, 0.5 * (rise - lift)) > 0.1, (one, other)
+    # A spruce is a cone and no spindle: it has most of its width low, and less at each level up.
+    spruce = outlines['spruce'][0]
+    assert spruce.argmax() <= 4
+    assert np.all(np.diff(spruce[spruce.argmax() :]) < 0.0)
+    assert outlines['willow'][1] == min(rise for _, rise in outlines.values()) < -0.5
 
 
 def bend(tree: Tree) -> float:

@@ -52,7 +52,7 @@ def test_standard_errors_are_those_of_many_records():
         assert 0.4 < np.mean(errors) / scatter < 2.5
 
 
-def test_quiet_tells_a_release_from_wind():
+def test_quiet_separates_a_release_from_wind():
     assert free_decay(decay([(0.8, 0.05, 1.0)], noise=0.02), DT, 0.8).quiet < 0.1
     has_predecessor = decay([(0.8, 0.05, 1.0), (0.8, 0.0005, 0.9)], duration=100.0)
     assert free_decay(has_predecessor, DT, 0.8).quiet > 0.3

@@ -70,8 +70,8 @@ def test_rotations_of_another_number_are_refused(sim):
     for bad in (good[:-1], np.append(good, 0.0), good[None], ['x'] * len(good)):
         with pytest.raises(ParameterError, match='rotations: '):
             sim.place_rotations(bad)
-    told = sim.place_rotations(np.repeat(good, 2)[::2].astype(np.float32))
-    assert np.abs(told - sim.place_rotations(good)).max() < 1e-5
+    found = sim.place_rotations(np.repeat(good, 2)[::2].astype(np.float32))
+    assert np.abs(found - sim.place_rotations(good)).max() < 1e-5
 
 
 def test_placed_frames_are_kept(sim):
@@ -84,13 +84,13 @@ def test_placed_frames_are_kept(sim):
     assert (first == kept).all()
 
 
-def test_the_tip_is_told_without_placing(sim):
+def test_the_tip_is_known_without_placing(sim):
     for _ in range(20):
         sim.step((9.0, 2.0, 0.0), DT)
-    told = np.array(sim.tip_displacement)
+    found = np.array(sim.tip_displacement)
     sim.place()
-    assert (told == sim.tip_displacement).all()
-    assert (np.abs(told).max() > 1e-6) == (sim.model != '0')
+    assert (found == sim.tip_displacement).all()
+    assert (np.abs(found).max() > 1e-6) == (sim.model != '0')
 
 
 @pytest.mark.parametrize('dt', [0.0, -DT, np.nan, np.inf])

@@ -57,7 +57,7 @@ def running(simulator, **options):
 
 
 def play(made, lateness):
-    """Drive through ten seconds of wind, by ticks that stand for so many periods in turn."""
+    """Drive through ten seconds of wind, by ticks of these numbers of periods in turn."""
     index, sample = 0, 0
     for periods in lateness:
         index += periods

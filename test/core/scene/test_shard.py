@@ -70,5 +70,5 @@ def test_a_shard_that_there_is_not_is_refused(stand, shard, shards, what):
 
 
 def test_one_tree_cannot_be_dealt():
-    with pytest.raises(ParameterError, match='one tree'):
+    with pytest.raises(ParameterError, match='2 shards of 1 trees'):
         dealt(open_scene('benjamina'), 0, 2)

@@ -92,7 +92,7 @@ def test_a_scaled_tree_sways_as_one_that_is_calibrated_at_its_size(kinds):
         alone.step(wind, DT)
     moved = np.linalg.norm(alone.place()[:, :3] - rest, axis=1).max()
     gap = np.linalg.norm(stand.place()[:, :3] - alone.place()[:, :3], axis=1).max()
-    # Paces are told to a hundredth of the scale.
+    # Time steps are rounded to a hundredth of the scale.
     assert gap <= 0.02 * moved
 
 

@@ -55,7 +55,7 @@ def test_a_record_is_cut_into_means_over_steps(stem):
     assert record.wind[:, 0] == pytest.approx(np.arange(20) / 10 + 0.05)
 
 
-def test_chosen_branches_are_told_by_name(fork):
+def test_chosen_branches_are_named(fork):
     record = simulate(fork(), STEADY[:5], branches=[0, 2], model=12)
     assert record.tips.shape == (5, 2, 3)
     assert record.branch_names == tuple(fork().branch_names[k] for k in (0, 2))
@@ -77,14 +77,6 @@ def test_the_record_as_columns(fork):
     frame = pandas.DataFrame(record.columns())
     assert list(frame)[:2] == ['time [s]', 'wind_x [m/s]']
     assert frame['time [s]'].tolist() == record.time.tolist()
-
-
-def test_progress_runs_from_nothing_towards_the_whole(stem):
-    told = []
-    simulate(stem(), STEADY[:300], model='branch', progress=told.append)
-    assert told[0] == 0.0
-    assert told == sorted(told)
-    assert 0.9 < told[-1] < 1.0
 
 
 @pytest.mark.parametrize('model', ['branch', 12, 'auto'])

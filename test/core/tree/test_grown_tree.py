@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What stands for a tree behind every door, and what is refused there with a cure."""
+"""What may be given as a tree to every function, and what is refused there with a cure."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from tree_sway.errors import ParameterError, SpeciesError
 WIND = np.full((3, 3), 4.0)
 SEEDLING = Path(__file__).parents[2] / 'files' / 'data' / 'seedling.yaml'
 DOORS = {
-    'make_simulator': lambda tree, **told: sway.make_simulator(tree, model='branch', **told),
-    'SwaySimulator': lambda tree, **told: SwaySimulator(tree, model='branch', **told),
-    'simulate': lambda tree, **told: sway.simulate(tree, WIND, model='branch', **told),
-    'Scene': lambda tree, **told: sway.Scene([sway.PlacedTree('one', tree)]).simulator(
-        model='branch', **told
+    'make_simulator': lambda tree, **options: sway.make_simulator(tree, model='branch', **options),
+    'SwaySimulator': lambda tree, **options: SwaySimulator(tree, model='branch', **options),
+    'simulate': lambda tree, **options: sway.simulate(tree, WIND, model='branch', **options),
+    'Scene': lambda tree, **options: sway.Scene([sway.PlacedTree('one', tree)]).simulator(
+        model='branch', **options
     ),
 }
 
@@ -75,7 +75,7 @@ def test_what_are_no_settings_is_refused_everywhere(opened, door):
         DOORS[door](opened, gravit=0.0)
 
 
-def test_settings_in_the_place_of_the_species_are_told(opened):
+def test_settings_in_the_place_of_the_species_are_refused(opened):
     for door in (sway.make_simulator, SwaySimulator):
         with pytest.raises(ParameterError, match=r'species: a Settings, .* as settings='):
             door(opened, sway.Settings())
@@ -83,7 +83,7 @@ def test_settings_in_the_place_of_the_species_are_told(opened):
         sway.PlacedTree('one', opened, species='oak')
 
 
-def test_a_species_in_the_place_of_its_key_is_told(opened):
+def test_a_species_in_the_place_of_its_key_is_refused(opened):
     for door in (sway.species_named, lambda key: sway.grow(key, 5.0, rng=None)):
         with pytest.raises(SpeciesError, match=r"a Species, where the name .*'oak'"):
             door(opened.species)

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong units are refused or told, with the likely unit and the option that mends them."""
+"""Wrong units are refused or reported, with the option that mends them."""
 
 from __future__ import annotations
 
@@ -54,9 +54,8 @@ def test_nothing_is_odd_about_grown_trees(key: str) -> None:
 @pytest.mark.parametrize(
     ('wood', 'cure'),
     [
-        ({'modulus': 9.4}, '9.4 GPa are --modulus 9.4e\\+09'),
-        ({'modulus': 9400.0}, '9400 MPa are --modulus 9.4e\\+09'),
-        ({'density': 0.95}, '0.95 g/cm\\^3 are --density 950'),
+        ({'modulus': 9.4}, 'give 1e\\+07 to 5e\\+11 Pa'),
+        ({'density': 0.95}, 'give 40 to 10000 kg/m\\^3'),
         ({'modulus': 9.4e18}, 'give 1e\\+07 to 5e\\+11 Pa'),
         ({'density': float('nan')}, 'give 40 to 10000 kg'),
     ],
@@ -67,19 +66,12 @@ def test_wood_in_another_unit_is_refused(wood: dict[str, float], cure: str) -> N
 
 
 @pytest.mark.parametrize(
-    ('length', 'diameter', 'cure'),
-    [
-        (1.0, 1000.0, 'diameters are in mm: add --option diameter_unit=0.001$'),
-        (1.0, 100.0, 'diameters are in cm: add --option diameter_unit=0.01$'),
-        (100.0, 1.0, 'positions are in cm: add --option length_unit=0.01$'),
-        (1000.0, 1.0, 'positions are in mm: add --option length_unit=0.001$'),
-        (100.0, 100.0, 'in cm: add --option length_unit=0.01 --option diameter_unit=0.01$'),
-        (1000.0, 1000.0, 'in mm: add --option length_unit=0.001 --option diameter_unit=0.001$'),
-    ],
+    ('length', 'diameter'),
+    [(1.0, 1000.0), (1.0, 100.0), (100.0, 1.0), (1000.0, 1.0), (100.0, 100.0), (1000.0, 1000.0)],
 )
-def test_lengths_in_another_unit_are_refused(length: float, diameter: float, cure: str) -> None:
+def test_lengths_in_another_unit_are_refused(length: float, diameter: float) -> None:
     for height in (8.0, 20.0):
-        with pytest.raises(TreeError, match=cure):
+        with pytest.raises(TreeError, match=r'length_unit=0\.01 .* diameter_unit=0.001'):
             refuse_implausible(in_units(oak(height), length, diameter), OAK)
 
 
@@ -93,23 +85,23 @@ def test_lengths_in_another_unit_are_refused(length: float, diameter: float, cur
         ({'density': 300.0}, 'a density of 300 kg/m^3, where green wood has 400 to 1300'),
     ],
 )
-def test_odd_wood_is_told(change: dict[str, float], oddity: str) -> None:
+def test_odd_wood_is_reported(change: dict[str, float], oddity: str) -> None:
     wood = replace(OAK, **change)  # type: ignore[arg-type]
     refuse_implausible(oak(), wood)
-    (told,) = oddities(oak(), wood)
-    assert told.startswith(oddity)
+    (reported,) = oddities(oak(), wood)
+    assert reported.startswith(oddity)
 
 
-def test_a_tree_whose_file_has_y_up_is_told_to_lie() -> None:
+def test_a_tree_whose_file_has_y_up_is_reported_to_lie() -> None:
     lying = oak()
     lying = replace(lying, start=lying.start[:, [0, 2, 1]], end=lying.end[:, [0, 2, 1]])
     refuse_implausible(lying, OAK)
-    (told,) = oddities(lying, OAK)
-    assert told.startswith('a lean of 9')
-    assert told.endswith('add --option up=y')
+    (reported,) = oddities(lying, OAK)
+    assert reported.startswith('a lean of 9')
+    assert reported.endswith('add --option up=y')
 
 
-def test_odd_sizes_are_told() -> None:
+def test_odd_sizes_are_reported() -> None:
     stout = oddities(in_units(oak(), diameter=8.0), OAK)
     assert stout[0].startswith('a height over diameter of 5')
     assert 'too thin' in oddities(in_units(oak(), diameter=0.1), OAK)[0]
@@ -118,7 +110,7 @@ def test_odd_sizes_are_told() -> None:
     assert small[0].startswith('a height of 0.012 m')
 
 
-def test_a_sway_of_no_tree_of_its_size_is_told() -> None:
+def test_a_sway_of_no_tree_of_its_size_is_reported() -> None:
     tree = oak()
     usual = 0.0766 + 3.1219 * 100.0 * tree.base_diameter[0] / tree.height**2
     spruce = species_named('spruce')
@@ -131,14 +123,14 @@ def test_a_sway_of_no_tree_of_its_size_is_told() -> None:
 
 
 @given(length=st.floats(1e-4, 1e4), diameter=st.floats(1e-4, 1e4), modulus=st.floats(1e-2, 1e14))
-def test_whatever_is_given_is_refused_or_told_in_sentences(
+def test_whatever_is_given_is_refused_or_reported_in_sentences(
     length: float, diameter: float, modulus: float
 ) -> None:
     tree = in_units(builtin_tree('goldcrest'), length, diameter)
     wood = replace(OAK, modulus=modulus)
     try:
         refuse_implausible(tree, wood)
-        told = oddities(tree, wood)
+        reported = oddities(tree, wood)
     except (ParameterError, TreeError) as error:
-        told = (error.cure,)
-    assert all(len(each) > 20 for each in told)
+        reported = (error.cure,)
+    assert all(len(each) > 20 for each in reported)

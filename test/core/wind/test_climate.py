@@ -9,25 +9,7 @@ import pytest
 from scipy import signal
 
 from tree_sway.core.wind.climate import ClimateTracker, WindClimate
-
-
-def test_a_described_wind_has_the_moments_of_its_samples():
-    rng = np.random.default_rng(1)
-    n, mean, sigma = 400_000, 8.0, 0.8
-    wind = np.zeros((n, 3))
-    wind[:, 0] = mean + sigma * rng.standard_normal(n)
-    wind[:, 1] = 0.8 * sigma * rng.standard_normal(n)
-    taken = WindClimate.of_samples(wind, 10.0)
-    described = WindClimate.steady(mean, sigma / mean)
-    assert taken.mean[0] == pytest.approx(described.mean[0], rel=0.01)
-    assert taken.covariance[0, 0] == pytest.approx(described.covariance[0, 0], rel=0.03)
-    assert taken.covariance[1, 1] == pytest.approx(described.covariance[1, 1], rel=0.03)
-
-
-def test_the_power_of_a_described_wind_is_its_covariance():
-    climate = WindClimate.steady(5.0, 0.2)
-    power = climate.power(np.concatenate([[0.0], np.geomspace(1e-4, 1e4, 20_000)]))
-    np.testing.assert_allclose(power.sum(axis=0), climate.covariance, rtol=0.01, atol=1e-9)
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
 
 def test_the_power_of_a_record_is_its_mean_square_about_the_mean():
@@ -80,7 +62,10 @@ def test_a_wind_that_beats_is_described_from_turbulence():
     power = tracker.climate.power(frequencies)[:, 0, 0]
     near = np.abs(frequencies - 0.8) < 0.1
     assert power[near].sum() > 0.6 * power.sum()
-    assert WindClimate.steady(5.0, 0.14).power(frequencies)[near, 0, 0].sum() < 0.1 * power.sum()
+    rng = np.random.default_rng(0)
+    turbulent = simulate_turbulence(5.0, rate=20.0, duration=60.0, rng=rng, intensity=0.14)
+    smooth = WindClimate.of_samples(turbulent, 20.0).power(frequencies)
+    assert smooth[near, 0, 0].sum() < 0.1 * power.sum()
 
 
 def test_the_tracker_knows_the_largest_load_of_its_memory():

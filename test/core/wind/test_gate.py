@@ -9,7 +9,6 @@ import pytest
 
 from tree_sway.core.wind import gate as gate_module
 from tree_sway.core.wind.gate import LARGEST_LEAD, SECOND, WindGate
-from tree_sway.core.wind.simulated.gust_event import GustEvent
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
@@ -43,7 +42,8 @@ def record_with_spikes_and_gusts(seed, mean_speed):
     time = np.arange(n) / 20.0
     for start in 10.0 + 45.0 * np.arange(40):
         duration, amplitude = rng.uniform(1.5, 6.0), rng.uniform(4.0, 12.0)
-        wind[:, 0] += GustEvent('one_minus_cos', amplitude, duration, start).at(time)
+        share = np.clip((time - start) / duration, 0.0, 1.0)
+        wind[:, 0] += 0.5 * amplitude * (1.0 - np.cos(2.0 * np.pi * share))  # IEC 61400-1, 6.3.2
     at = 20 * rng.choice(n // 20, 180, replace=False) + rng.integers(0, 10, 180)
     direction = rng.normal(size=(180, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)

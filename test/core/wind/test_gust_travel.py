@@ -49,7 +49,6 @@ def test_at_the_anemometer_the_wind_is_felt_as_it_is():
     winds = gusts(300)
     history = GustHistory([[0.0, 0.0, 5.0], [0.0, 0.0, -2.0]])
     assert (felt(history, winds) == winds[:, None]).all()
-    assert history.n_ahead == 0
 
 
 def test_gusts_may_travel_faster_than_the_mean_wind():
@@ -77,23 +76,22 @@ def test_without_an_anemometer_the_first_place_feels_the_wind_at_once(heading):
     history = GustHistory(places)
     felt(history, np.tile(5.0 * toward, (10, 1)))
     assert history.delay == pytest.approx([0.0, 4.0, 14.0])
-    assert history.n_ahead == 0
 
 
-def test_upwind_of_the_anemometer_the_wind_is_felt_at_once_and_told():
+def test_upwind_of_the_anemometer_the_wind_is_felt_at_once():
     winds = gusts(200)
     history = GustHistory([[-50.0, 0.0, 0.0], [50.0, 0.0, 0.0]], (0.0, 0.0, 0.0))
     result = felt(history, winds)
-    assert history.n_ahead == 1
+    assert history.delay[0] == 0.0
     assert (result[:, 0] == winds).all()
 
 
-def test_beyond_its_memory_the_oldest_wind_is_felt_and_told():
+def test_beyond_its_memory_the_oldest_wind_is_felt():
     history = GustHistory(
         [[100.0, 0.0, 0.0], [1e6, 0.0, 0.0]], np.zeros(3), memory=20.0, capacity=64
     )
     result = felt(history, gusts(1000))
-    assert history.n_forgotten == 1
+    assert history.delay[1] <= 20.0
     assert np.isfinite(result).all()
     assert np.abs(result[:, :, 0]).max() < 40.0
 

@@ -84,11 +84,6 @@ def test_what_is_not_about_the_wind(line):
     assert parse_sonic(line) is None
 
 
-def test_a_checksum_can_be_needed():
-    assert parse_sonic('Q,270,010.00,M,00,', need_checksum=True).refusal == 'no checksum'
-    assert parse_sonic(gill('Q,270,010.00,M,00,'), need_checksum=True).refusal == ''
-
-
 @pytest.mark.parametrize(
     'lines',
     [

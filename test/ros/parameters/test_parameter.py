@@ -13,7 +13,7 @@ from tree_sway.core.simulator.settings import MOST, Settings  # noqa: I100
 from tree_sway.core.wind.convention import WindConvention
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.limits import FASTEST_WIND
-from tree_sway.core.wind.simulated.spectra import SPECTRA
+from tree_sway.core.wind.simulated.sensor_faults import FAULTS
 from tree_sway.errors import ParameterError
 from tree_sway.parameters.parameter import (
     Parameter,
@@ -35,8 +35,8 @@ def test_a_default_is_good(parameter):
 
 
 def test_choices_are_those_of_the_library():
-    (turbulence,) = (each for each in NODE_PARAMETERS['anemometer'] if each.name == 'turbulence')
-    assert turbulence.choices == (*SPECTRA, 'none')
+    (fault,) = (each for each in NODE_PARAMETERS['anemometer'] if each.name == 'fault')
+    assert fault.choices == FAULTS
 
 
 def test_the_defaults_and_limits_are_those_of_the_library():

@@ -1,5 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+import math
 import sys
 
 import pytest
@@ -10,8 +11,7 @@ pytestmark = pytest.mark.ros
 from builtin_interfaces.msg import Time  # noqa: E402, I100
 
 from tree_sway.core.wind.gate import GateCounts, SECOND, WindGate  # noqa: E402
-from tree_sway.core.wind.gust_travel import GustHistory  # noqa: E402
-from tree_sway_ros.reports import sway_report, wind_report  # noqa: E402
+from tree_sway_ros.reports import wind_report  # noqa: E402
 from tree_sway_ros.reports.diagnostics import (  # noqa: E402
     OK,
     STALE,
@@ -60,7 +60,7 @@ def test_a_status_becomes_a_message():
 def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
     report, gate = WindReport(), WindGate()
     assert report.status(TIMEOUT, gate).level == WARN
-    assert report.age is None
+    assert report.age == math.inf
     for _ in range(21):
         clock.now += 0.05
         report.add()
@@ -76,12 +76,10 @@ def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
     assert report.status(TIMEOUT, gate).level == OK
 
 
-@pytest.mark.parametrize('burst', [1, 3])
-def test_a_slow_sensor_is_late_by_its_own_periods(clock, burst):
-    """Also where it is a logger that sends some samples at once."""
+def test_a_slow_sensor_is_late_by_its_own_periods(clock):
     report, gate, timeout = WindReport(), WindGate(), 0.5
-    for number in range(30):
-        clock.now += 0.999 if number % burst == 0 else 0.001
+    for _ in range(30):
+        clock.now += 0.999
         report.add()
     clock.now += 0.99
     assert report.status(timeout, gate).level == OK
@@ -148,15 +146,6 @@ def test_every_state_of_the_wind_has_a_level(state, level):
     status = _wind(state, GateCounts(accepted=7, spike=2, no_time=1))
     assert status.level == level
     assert (status.values['refused'], status.values['spike']) == (3, 2)
-
-
-def test_trees_that_the_gusts_do_not_reach_in_time_are_reported():
-    for x, level in ((40.0, OK), (-40.0, WARN), (4000.0, WARN)):
-        history = GustHistory([[0.0, 0.0, 0.0], [x, 0.0, 0.0]], (0.0, 0.0, 0.0))
-        history.push((8.0, 0.0, 0.0), 1.0 / 60.0)
-        status = sway_report._gusts(history)
-        assert status.level == level
-    assert '1 are too far downwind' in status.message
 
 
 def test_a_report_each_second_takes_no_memory():

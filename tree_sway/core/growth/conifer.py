@@ -4,7 +4,7 @@
 A conifer that stands alone: one straight stem, branches in whorls, a crown of its species' form.
 
 Branches near the ground are the oldest and longest; those near the top are short and point
-upwards. Twigs stand left and right of each branch. The stem tapers as ``(1 - z / H)^0.7``, between
+upwards. Twigs are left and right of each branch. The stem tapers as ``(1 - z / H)^0.7``, between
 a cone and a paraboloid, whatever its branches: its volume is 0.44 to 0.50 of the cylinder of its
 height and diameter at breast height, as yield tables have it.
 """

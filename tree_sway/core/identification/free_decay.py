@@ -16,14 +16,12 @@ ratio.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, linalg, signal
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.identification.sway_estimate import SwayEstimate
 from tree_sway.errors import FormatError
 
 _SAMPLES_PER_CYCLE = 16
@@ -35,17 +33,21 @@ _LATER_STARTS = (0.5, 1.0, 1.5)
 
 
 @dataclass(frozen=True)
-class FreeDecay(SwayEstimate):
+class FreeDecay:
     """
-    One decaying mode, fitted from a time ``start`` [s] after the record's beginning on.
+    One sway that dies away: undamped frequency [Hz], damping ratio with the air's, their errors.
 
-    ``explained`` is the share of all motion's energy within the fit that decaying modes explain;
-    ``quiet`` the largest amplitude around the frequency before and after the decay, over the
-    largest of all; ``speed`` the largest amplitude around the frequency times that, per second.
+    The errors are standard errors; the answer rests on a number of cycles. ``explained`` is the
+    share of all motion's energy within the fit that decaying modes explain; ``quiet`` the largest
+    amplitude around the frequency before and after the decay, over the largest of all; ``speed``
+    the largest amplitude around the frequency times that, per second.
     """
 
-    kind: ClassVar[str] = 'release'
-    start: float
+    frequency: float
+    damping_ratio: float
+    frequency_error: float
+    damping_error: float
+    cycles: float
     explained: float
     quiet: float
     speed: float
@@ -64,8 +66,20 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
     """
     Fit the decay of a pull-and-release record: the strongest mode near a frequency.
 
-    Arguments are those of `ambient_sway`. Raises a `FormatError` for fewer than three cycles, or
-    no motion that decays.
+    Parameters
+    ----------
+    motion
+        Motion at even steps without its mean and drift, one column per axis, (n, c).
+    dt
+        Time step in [s].
+    rough
+        Frequency near which the mode is in [Hz].
+
+    Raises
+    ------
+    FormatError
+        Fewer than three cycles, or no motion that decays.
+
     """
     slow, envelope = _filtered(motion, dt, rough)
     stride = max(1, int(1.0 / (rough * dt * _SAMPLES_PER_CYCLE)))
@@ -102,7 +116,6 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
         float(np.hypot(fit.error, spread[0]) / (2.0 * np.pi)),
         float(np.hypot(fit.error / circular, spread[1])),
         cycles,
-        first * dt,
         fit.explained * min(float(share), 1.0),
         quiet,
         float(envelope[peak]) * rough,

@@ -3,40 +3,34 @@
 """
 From a record of a swaying tree to its natural frequency and damping ratio.
 
-A record is a pull-and-release (one large swing that dies away, quiet before and after) or ambient
-(the tree in natural wind). Both are scale-free: displacement, tilt and acceleration give the same
-answer.
+A record is a pull-and-release: one large swing that dies away, quiet before and after. It is
+scale-free: displacement, tilt and acceleration give the same answer.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeVar
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import signal
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.identification.ambient_sway import ambient_sway, AmbientSway
 from tree_sway.core.identification.free_decay import free_decay, FreeDecay
 from tree_sway.core.identification.spectral_peaks import Band, spectral_peaks
-from tree_sway.core.identification.sway_estimate import SwayEstimate
 from tree_sway.errors import FormatError, ParameterError
-
-_Sway = TypeVar('_Sway', bound=SwayEstimate)
 
 _MIN_SAMPLES = 16
 _LARGEST = 1e100
 _UNSURE = (0.03, 0.25)
 _LEAST_CLEAR = 4.0
 _EXPLAINED, _QUIET = 0.6, 0.5
-_STRONG, _FAST, _CLEAR = 0.03, 0.15, 0.3
+_STRONG, _FAST = 0.03, 0.15
 
 
-def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> SwayEstimate:
+def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> FreeDecay:
     """
-    Find frequency and damping of the slowest sway in a record, and of which kind the record is.
+    Find frequency and damping of the slowest sway in a record.
 
     Parameters
     ----------
@@ -49,7 +43,7 @@ def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> Sway
 
     Returns
     -------
-    SwayEstimate
+    FreeDecay
         Frequency and damping ratio with their standard errors.
 
     Raises
@@ -65,26 +59,21 @@ def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> Sway
             f'band {band[0]:g} to {band[1]:g} Hz', cure='give two rising frequencies above 0'
         )
     even, dt, gap = _even(*_checked(time, motion))
-    refusal = FormatError('the motion does not die away from one swing')
-    try:
-        decay = _release(even, dt, gap, band)
-    except FormatError as error:
-        refusal = error
-    else:
-        if _is_release(decay):
-            _refuse_lost(decay)
-            return decay
-    try:
-        return _ambient(even, dt, gap, band)
-    except FormatError as error:
+    decay = _release(even, dt, gap, band)
+    if not _is_release(decay):
+        frequency, power = signal.welch(even, 1.0 / dt, nperseg=min(len(even), 4096), axis=0)
+        peak = frequency[np.argmax(power.sum(axis=1) * frequency**2)]
         raise FormatError(
-            f'neither a release ({refusal.what}) nor ambient ({error.what})',
-            cure=refusal.cure or error.cure,
-        ) from None
+            f'the motion does not die away from one swing; it is fastest at {peak:.3g} Hz',
+            cure='record a pull and release on a calm day; of a tree in wind, give that frequency '
+            'yourself if it is the sway, and not the damping',
+        )
+    _refuse_lost(decay)
+    return decay
 
 
 def _is_release(decay: FreeDecay) -> bool:
-    """Ambient motion soon swings as far again; a release has a tenth of its swing around it."""
+    """Wind soon makes a tree swing as far again; a release has a tenth of its swing around it."""
     return decay.explained > _EXPLAINED and decay.quiet < _QUIET
 
 
@@ -148,56 +137,32 @@ def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:
     return signal.detrend(even, axis=0), dt, float(steps.max())
 
 
-def _fitted(
-    fit: Callable[[float], _Sway], peaks: Floats, gap: float
-) -> tuple[list[_Sway], dict[int, FormatError]]:
-    """Fit a sway near each peak [Hz]; what was found, and refusals by the number of the peak."""
-    found: list[_Sway] = []
-    refusals: dict[int, FormatError] = {}
-    for number, rough in enumerate(peaks.tolist()):
-        try:
-            if gap * rough > 0.25:
-                raise FormatError(
-                    f'{gap:.3g} s between samples, for a sway of {rough:.3g} Hz',
-                    cure='record at least four samples per cycle, without gaps',
-                )
-            found.append(fit(rough))
-        except FormatError as refusal:
-            refusals[number] = refusal
-    return found, refusals
-
-
 def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
     """Slowest clear decay at strong peaks of the velocity's spectrum, not hidden by a step."""
     padded = 4 * len(motion)
     frequency = np.fft.rfftfreq(padded, dt).astype(np.float64)
     power = (np.abs(np.fft.rfft(motion, padded, axis=0)) ** 2).sum(axis=1) * frequency**2
-    peaks, level = spectral_peaks(frequency, power, len(motion) * dt, band, width=0.06)
+    peaks, level = spectral_peaks(frequency, power, len(motion) * dt, band)
     strong = level > _STRONG * level.max()
-    found, refusals = _fitted(lambda rough: free_decay(motion, dt, rough), peaks[strong], gap)
     # Where the strongest peak has too few cycles, a weaker one is another mode, or noise.
-    strongest = int(np.argmax(level[strong]))
-    if strongest in refusals:
-        raise refusals[strongest]
+    found = [_decay_near(motion, dt, gap, float(peaks[np.argmax(level)]))]
+    for rough in peaks[strong & (level < level.max())].tolist():
+        with suppress(FormatError):
+            found.append(_decay_near(motion, dt, gap, rough))
     # Beside the sway, a step of the rest has slow parts that die away too; they move little per
     # second.
     fastest = max(found, key=lambda decay: decay.speed)
     fast = [one for one in found if one.speed > _FAST * fastest.speed]
+    fast.sort(key=lambda decay: decay.frequency)
     clearest = max(fast, key=lambda decay: decay.explained)
     return next(filter(_is_release, fast), clearest) if fastest.quiet < _QUIET else fastest
 
 
-def _ambient(motion: Floats, dt: float, gap: float, band: Band) -> AmbientSway:
-    """Slowest resonance that is clear next to the clearest."""
-    taper = signal.windows.hann(len(motion))
-    frequency = np.fft.rfftfreq(len(motion), dt).astype(np.float64)
-    power = (np.abs(np.fft.rfft(taper[:, None] * motion, axis=0)) ** 2).sum(axis=1)
-    duration = len(motion) * dt
-    peaks, _ = spectral_peaks(frequency, power, duration, band, width=0.08, min_bins=8)
-    found, refusals = _fitted(lambda rough: ambient_sway(motion, dt, rough), peaks, gap)
-    if not found and len(refusals) > 1:
-        raise FormatError('the spectrum has no peak of a sway', cure=[*refusals.values()][-1].cure)
-    if not found:
-        raise refusals[0]
-    clearest = max(sway.gain for sway in found)
-    return next(sway for sway in found if sway.gain > _CLEAR * clearest)
+def _decay_near(motion: Floats, dt: float, gap: float, rough: float) -> FreeDecay:
+    """Fit the decay near a peak [Hz] where samples and gaps [s] let it be seen."""
+    if gap * rough > 0.25:
+        raise FormatError(
+            f'{gap:.3g} s between samples, for a sway of {rough:.3g} Hz',
+            cure='record at least four samples per cycle, without gaps',
+        )
+    return free_decay(motion, dt, rough)

@@ -15,24 +15,22 @@ from tree_sway.errors import FormatError
 Band: TypeAlias = tuple[float, float] | None
 """Lowest and highest frequency to look at in [Hz]; all if None."""
 
+WIDTH = 0.06
+"""Half of the width over which power is averaged, over the frequency [-]."""
+
 _PROMINENCE = 1.5
 
 
 def spectral_peaks(
-    frequency: Floats,
-    power: Floats,
-    duration: float,
-    band: Band,
-    width: float,
-    min_bins: int = 0,
+    frequency: Floats, power: Floats, duration: float, band: Band
 ) -> tuple[Floats, Floats]:
     """
     Find the peaks of a spectrum within a band, rising, and the averaged power there.
 
     Power (m,), of any unit, is that of a record of a duration [s], at even frequencies [Hz] from
-    0. Averaged is over a half ``width`` relative to the frequency, of ``min_bins`` at least.
-    Within a given band without a peak it is its strongest point; raises a `FormatError` for no
-    peak, or a band that the record does not reach.
+    0; it is averaged over `WIDTH` relative to the frequency on either side. Within a given band
+    without a peak it is its strongest point; raises a `FormatError` for no peak, or a band that
+    the record does not reach.
     """
     low, high = band or (0.0, np.inf)
     low, high = max(low, 0.8 / duration), min(high, 0.9 * float(frequency[-1]))
@@ -41,15 +39,14 @@ def spectral_peaks(
             f'{duration:.3g} s sampled up to {frequency[-1]:.3g} Hz hold nothing in the band',
             cure='record longer, sample faster, or name another band',
         )
-    grid = np.geomspace(low, high, 2 + int(np.log(high / low) / (0.25 * width)))
-    half = np.maximum(width * grid, 0.5 * min_bins * frequency[1])
+    grid = np.geomspace(low, high, 2 + int(np.log(high / low) / (0.25 * WIDTH)))
     total = np.concatenate([[0.0], np.cumsum(power)])
-    left = np.searchsorted(frequency, grid - half)
-    right = np.maximum(np.searchsorted(frequency, grid + half), left + 1)
+    left = np.searchsorted(frequency, grid - WIDTH * grid)
+    right = np.maximum(np.searchsorted(frequency, grid + WIDTH * grid), left + 1)
     level = (total[right] - total[left]) / (right - left) + 1e-300
     at, _ = signal.find_peaks(np.log(level), prominence=np.log(_PROMINENCE))
     if band is not None and not len(at):
         at = np.array([np.argmax(level)])
     if not len(at):
-        raise FormatError('no peak in its spectrum', cure='record longer, or in more wind')
+        raise FormatError('no peak in its spectrum', cure='record longer, or pull farther')
     return grid[at], level[at]

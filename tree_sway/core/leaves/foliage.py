@@ -3,7 +3,7 @@
 """
 Leaves of a tree: mass and area on each branch for the solver, clusters on segments for the viewer.
 
-Leaves stand on branches that carry no others, and on the thinner half of the wood by length. A
+Leaves are on branches that carry no others, and on the thinner half of the wood by length. A
 tree has as much leaf area as its stem can supply, but no more than six times the ground it covers:
 few stands have a higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun
 would: leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction in
@@ -98,7 +98,7 @@ def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
 
 
 def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:
-    """Area of wood on each branch that needles clad, which stand all round it, in [m^2], (b,)."""
+    """Area of wood on each branch that needles clad, which are all round it, in [m^2], (b,)."""
     if not traits.are_needles:
         return np.zeros(tree.n_branches)
     area = 0.5 * (tree.base_diameter + tree.tip_diameter) * leafy_length(tree)

@@ -93,7 +93,7 @@ class ReceivedScene:
         self._first = np.concatenate([[0], np.cumsum(described[self._kind_of])])
 
     def step(self, wind: ArrayLike) -> int:
-        """Advance by a step of mean wind (3,) in [m/s]; how many trees are held at their edge."""
+        """Advance by a step of mean wind (3,) in [m/s]; count trees beyond their tables' edge."""
         felt = self._gusts.push(wind, self._dt)
         arrays = self.tables, self._paces, self._standing, self.instances, self._laws
         return step_standing(*arrays, felt)[0]

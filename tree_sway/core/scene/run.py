@@ -6,7 +6,8 @@ A scene in a live wind: samples in through the gate, steps on a grid of time out
 Steps end at whole multiples of the period since the clock's epoch, and each is solved with the
 mean wind over that very period. A sample is handed on when the steps reach its time, not when it
 arrives: as long as it arrives before, runs over the same samples take the same steps, whatever the
-network did. What is overdue is held and then dies down (`WindAverage`).
+network did. While samples are overdue the last one is used, then the wind dies down
+(`WindAverage`).
 
 Periods that are late are solved one by one, so that lateness leaves no trace in the motion; only
 where a step costs more than half a period may they be joined to one long step, which the exact
@@ -33,7 +34,7 @@ from tree_sway.core.wind.intake import GoodWind, WindIntake
 LONGEST_JUMP = 500_000_000
 """Most time that one `Run.advance` solves [ns]; what was before it is skipped."""
 
-_BACK = 5_000_000_000
+_BACK = 1_000_000_000
 """Step back of the clock in [ns] after which everything begins again."""
 
 _BLOCK = 10_000_000_000_000

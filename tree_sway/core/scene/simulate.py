@@ -52,7 +52,6 @@ def simulate(
     seconds: float | None = None,
     branches: Sequence[int] | None = None,
     settings: Settings | None = None,
-    progress: Callable[[float], None] | None = None,
     **changes: Any,
 ) -> SwayRecord:
     """
@@ -73,8 +72,6 @@ def simulate(
         Branches whose tips are recorded; the one that bears the highest tip if None.
     settings, **changes
         The model, as for `make_simulator`.
-    progress
-        Called now and then with the part that is done, from 0 to 1.
 
     Returns
     -------
@@ -91,7 +88,7 @@ def simulate(
 
     """
     rig = Rig(tree, settings, **changes)
-    return rig.run(wind, rate=rate, seconds=seconds, branches=branches, progress=progress)
+    return rig.run(wind, rate=rate, seconds=seconds, branches=branches)
 
 
 class Rig:
@@ -111,7 +108,6 @@ class Rig:
         rate: float = 60.0,
         seconds: float | None = None,
         branches: Sequence[int] | None = None,
-        progress: Callable[[float], None] | None = None,
     ) -> SwayRecord:
         """Sway the tree in a wind from rest, as `simulate`, whatever it went through before."""
         tree, simulator, chosen = self.tree, self.simulator, _chosen(self.tree, branches)
@@ -130,9 +126,8 @@ class Rig:
         if seconds is not None:
             within('seconds', seconds, 0.0, 1e9, 's', above=True)
             count = min(count, max(round(seconds * rate), 1))
-        for step, _ in zip(range(count), steps, strict=False):
-            if progress is not None and step % max(count // 100, 1) == 0:
-                progress(step / count)
+        for _ in itertools.islice(steps, count):
+            pass
         means, tips, moment, strain = (np.array(column) for column in zip(*rows, strict=True))
         radius = 0.5 * float(tree.base_diameter[0])
         per_moment = radius / (self.reductions.species.modulus * np.pi / 4.0 * radius**4)

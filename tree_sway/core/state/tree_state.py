@@ -11,18 +11,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 import hashlib
-import json
 from typing import Any
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.errors import StateError
-
-VERSION = 1
-"""Version of the form of a state; a state of another version is refused."""
-
-_LARGEST_HEAD = 4096
 
 
 @dataclass(frozen=True)
@@ -30,45 +23,13 @@ class TreeState:
     """
     A tree at one moment: what its model carries from step to step, the last wind [m/s] first.
 
-    The digest is that of tree, species and settings, the version that of the program (`VERSION`).
+    The digest is that of tree, species and settings.
     """
 
     tree: str
     digest: str
     model: str
     values: Floats
-    version: int = VERSION
-
-    def to_bytes(self) -> bytes:
-        """Return one line of JSON, then the values as little-endian float64."""
-        head = {name: getattr(self, name) for name in ('tree', 'digest', 'model', 'version')}
-        return json.dumps(head).encode() + b'\n' + self.values.astype('<f8').tobytes()
-
-    @staticmethod
-    def from_bytes(data: bytes) -> TreeState:
-        """Read what `to_bytes` wrote; a `StateError` for no state, or another version's."""
-        head, _, values = data.partition(b'\n')
-        try:
-            header = json.loads(head[:_LARGEST_HEAD])
-            version = header['version']
-            tree, digest, model = (str(header[name]) for name in ('tree', 'digest', 'model'))
-            numbers = np.frombuffer(values, dtype='<f8').astype(np.float64)
-        except (ValueError, KeyError, TypeError) as error:
-            raise StateError(
-                f'{len(data)} bytes that hold no state', cure='give those of to_bytes'
-            ) from error
-        refuse_version(version)
-        return TreeState(tree, digest, model, numbers)
-
-
-def refuse_version(version: object) -> None:
-    """Refuse, with a `StateError`, a state of another version than `VERSION`."""
-    if version != VERSION:
-        raise StateError(
-            f'a state of version {version}',
-            where='state',
-            cure=f'this program reads version {VERSION}; run the same release at both ends',
-        )
 
 
 def digest_of(*header: Any) -> str:

@@ -107,10 +107,10 @@ class StrengthGauge:
         tree, species = self._reductions.tree, self._reductions.species
         at = int(np.argmax(self._largest))
         stem_mass = species.density * float(tree.volume[tree.segments_of(0)].sum())
-        held = np.nan if species.habit == 'pot' else ROOT_MOMENT * stem_mass
+        capacity = np.nan if species.habit == 'pot' else ROOT_MOMENT * stem_mass
         least, most = WOOD_BAND
         wood = species.modulus * self._largest[at] / species.rupture
-        roots = self._moment / held
+        roots = self._moment / capacity
         return StrengthUse(
             wood * np.array([1.0, 1.0 / most, 1.0 / least]),
             tree.branch_names[int(self._strain.branch[at])],

@@ -86,7 +86,7 @@ def tree_from_segments(
             f'{np.count_nonzero(parents == -1)} roots: a forest of trees that are not connected, '
             'or orphans',
             where=called[second],
-            cure=f'give it a parent, as only {called[first]} may stand on the ground, or make '
+            cure=f'give it a parent, as only {called[first]} may be the root, or make '
             'each tree its own',
         )
     if branch is None:

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree with the species it is made of: what may stand where a tree is asked for."""
+"""A tree with the species it is made of: what may be given where a tree is asked for."""
 
 from __future__ import annotations
 

@@ -13,7 +13,6 @@ is that of 602 measured conifers, ``f = 0.0766 + 3.1219 D / H^2`` in [Hz], D in 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 import math
 
 import numpy as np
@@ -22,17 +21,11 @@ from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 
-_WOOD = {
-    'modulus': ('Pa', (1e7, 5e11), {1e9: 'GPa', 1e6: 'MPa'}),
-    'density': ('kg/m^3', (40.0, 10_000.0), {1e3: 'g/cm^3'}),
-}
-"""Unit, what wood has at the very most, and other units by their factors."""
-
+_WOOD = {'modulus': ('Pa', 1e7, 5e11), 'density': ('kg/m^3', 40.0, 10_000.0)}
+"""Unit, and what wood has at the very most."""
 _HEIGHT_LIMIT, _DIAMETER_LIMIT, _SLENDERNESS_LIMIT = 250.0, 20.0, (2.0, 2000.0)
-_USUAL_HEIGHT, _USUAL_SLENDERNESS = 12.0, 50.0
 _LEAN = 60.0
 _SWAY_FACTOR = 5.0
-_LENGTHS = {0.001: 'mm', 0.01: 'cm'}
 
 
 def refuse_implausible(tree: Tree, species: Species) -> None:
@@ -42,31 +35,21 @@ def refuse_implausible(tree: Tree, species: Species) -> None:
     Raises a `ParameterError` for modulus or density of the wood, a `TreeError` for height or
     diameter.
     """
-    for name, (unit, (low, high), others) in _WOOD.items():
+    for name, (unit, low, high) in _WOOD.items():
         value = getattr(species, name)
         if not low <= value <= high:
-            likely = [factor for factor in others if low <= value * factor <= high]
-            cure = f'give {low:g} to {high:g} {unit}'
-            if likely:
-                factor = _nearest(likely, value, math.sqrt(low * high))
-                cure = f'give {unit}: {value:g} {others[factor]} are --{name} {value * factor:g}'
-            raise ParameterError(f'{value:g} {unit}, which no wood has', where=name, cure=cure)
+            what = f'{value:g} {unit}, which no wood has'
+            raise ParameterError(what, where=name, cure=f'give {low:g} to {high:g} {unit}')
     height, diameter, slenderness = _size(tree)
-    size = f'a height of {height:.4g} m and a diameter of {diameter:.4g} m at the ground'
     low, high = _SLENDERNESS_LIMIT
-    if slenderness > high:
-        factor = _nearest(_LENGTHS, slenderness, _USUAL_SLENDERNESS)
-        unit = f'positions are in {_LENGTHS[factor]}: add --option length_unit={factor:g}'
-    elif slenderness < low and diameter > 1.0:
-        factor = _nearest(_LENGTHS, 1.0 / slenderness, 1.0 / _USUAL_SLENDERNESS)
-        unit = f'diameters are in {_LENGTHS[factor]}: add --option diameter_unit={factor:g}'
-    elif height > _HEIGHT_LIMIT or diameter > _DIAMETER_LIMIT:
-        factor = _nearest(_LENGTHS, height, _USUAL_HEIGHT)
-        unit = f'lengths are in {_LENGTHS[factor]}: add --option length_unit={factor:g}'
-        unit += f' --option diameter_unit={factor:g}'
-    else:
-        return
-    raise TreeError(size, where=tree.name, cure=f'give metres; if {unit}')
+    is_stout = slenderness < low and diameter > 1.0
+    if slenderness > high or is_stout or height > _HEIGHT_LIMIT or diameter > _DIAMETER_LIMIT:
+        raise TreeError(
+            f'a height of {height:.4g} m and a diameter of {diameter:.4g} m at the ground',
+            where=tree.name,
+            cure='give metres, or the units of its file: --option length_unit=0.01 if positions '
+            'are in cm, --option diameter_unit=0.001 if diameters are in mm',
+        )
 
 
 def oddities(tree: Tree, species: Species) -> tuple[str, ...]:
@@ -120,8 +103,3 @@ def _lean(tree: Tree) -> float:
     middle = 0.5 * (tree.start + tree.end) - tree.start[0]
     x, y, z = (tree.length @ middle).tolist()
     return math.degrees(math.atan2(math.hypot(x, y), z))
-
-
-def _nearest(factors: Iterable[float], value: float, usual: float) -> float:
-    """Return the factor that brings a value nearest to the usual one."""
-    return min(factors, key=lambda factor: abs(math.log(value * factor / usual)))

@@ -13,7 +13,10 @@ genus may differ by a quarter. Drag in leaf is C U^-N between 4 and 20 m/s: Mayh
 conifers, Vollsinger et al. (2005) for broadleaves. Where no crown was measured, a broadleaf has
 the mean of the three measured ones and a conifer the drag of spruce. The modulus of rupture is of
 small clear specimens of green wood: Lavers (1983, The strength properties of timber) for European
-trees, tables 5-3 and 5-5 of the Wood Handbook for the others. Entries marked as estimates have no
+trees, tables 5-3 and 5-5 of the Wood Handbook for the others. Diameters of twigs are means of the
+species or of its genus in the table of Morales & MacFarlane (2024, Forestry; R package rTwig 1.4):
+Thuja for goldcrest, its moderately slender twigs for broadleaf, Douglas-fir and alder, its slender
+ones for benjamina, willow and eucalyptus, spruces for conifer. Entries marked as estimates have no
 measurement behind them. Where leaves come from is said in `leaf_traits`. Names are what species
 are called besides by their keys: genus, Latin and other names, abbreviations.
 """

@@ -43,6 +43,8 @@ class Species:
         Its leaves; evergreen ones are there unless a simulator is set otherwise.
     rupture
         Modulus of rupture of green wood in [Pa]: small clear specimens in bending.
+    twig_diameter
+        Diameter of its last twigs in [m], to which scans are corrected.
     bark
         Colour of its bark in pictures, red, green and blue from 0 to 1.
     habit
@@ -65,6 +67,7 @@ class Species:
     root_stiffness: float = math.inf
     leaves: LeafTraits = field(default_factory=LeafTraits)
     rupture: float = 50.0e6
+    twig_diameter: float = 0.0029
     bark: tuple[float, float, float] = (0.36, 0.28, 0.22)
     habit: str = 'broadleaf'
     is_estimate: bool = False

@@ -9,9 +9,11 @@ arrive after the solver has passed their stamp. The solver gets the exact mean o
 its step, which keeps second order where a sample of it would not.
 
 What the solver has been given is never redrawn, so that nothing jumps, whatever comes late, early
-or not at all: a short dropout is held; a long one decays to calm; after either, what was given
-fades over into the new samples. Every mean is one of samples and of calm, and never beyond them.
-Times are those of one clock, handed in by the caller; it may jump.
+or not at all: over a short dropout the last wind is kept; a long one decays to calm; after either,
+what was given fades over into the new samples. Every mean is one of samples and of calm, and never
+beyond them.
+Times are those of one clock, handed in by the caller; it may jump ahead, and begins again with
+`WindAverage.reset` where it is set back.
 """
 
 from __future__ import annotations
@@ -27,12 +29,6 @@ from tree_sway.core.wind.curve import WindCurve
 from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway.errors import ParameterError
 
-CLOCK_RESET = 1.0
-"""
-Backward step in [s] that is a clock set back, not a sample out of order or a look at the past.
-
-"""
-
 BLEND = 0.5
 """
 Longest time in [s] over which the first sample after a dropout is faded in; a dropout shorter than
@@ -41,10 +37,10 @@ that fades in over its own length.
 """
 
 LONGEST_HOLD = 2.0
-"""Time in [s] for which the last sample is held, where no other is given."""
+"""Time in [s] for which the last sample is used, where no other is given."""
 
 CAPACITY = 512
-"""Number of samples kept. A step must not span more."""
+"""Number of samples in memory. A step must not span more."""
 
 _CALM = np.zeros(3)
 _STALE_DECAYS = 5.0  # decay times after which the wind counts as gone
@@ -57,7 +53,7 @@ class WindAverage:
     Parameters
     ----------
     timeout
-        Age of the newest sample in [s] up to which it is held; at least three sensor periods.
+        Age of the newest sample in [s] up to which it is used; at least three sensor periods.
     decay
         Time constant in [s] with which the wind then dies down.
 
@@ -112,12 +108,9 @@ class WindAverage:
 
         """
         value = np.array(three_numbers('wind', vector))
-        is_late = self._newest - CLOCK_RESET < time <= self._newest
-        if is_late or not (math.isfinite(time) and np.isfinite(value).all()):
+        if time <= self._newest or not (math.isfinite(time) and np.isfinite(value).all()):
             self.refused += 1
             return False
-        if time <= self._newest:
-            self._set_clock_back(time)
         self._clamp_clock(time)
         gap = silence = math.inf
         if self._newest > -math.inf and not self._is_new_clock:
@@ -157,8 +150,6 @@ class WindAverage:
         """
         if not (math.isfinite(start) and start <= end < math.inf):
             raise ParameterError(f'no step from {start} to {end}', where='wind average')
-        if end < self._passed - CLOCK_RESET:
-            self._set_clock_back(start)
         self._clamp_clock(start)
         mean = np.array(self._mean(start, end))
         self._passed = max(end, self._passed)
@@ -223,18 +214,6 @@ class WindAverage:
         if start < calm:
             total += (calm - start) * self._curve.mean(start, calm)
         return total / (end - start)
-
-    def _set_clock_back(self, time: float) -> None:
-        """Begin again at a time, from the wind there is."""
-        held = self._mean(self._passed, self._passed)
-        had_wind, period = self._newest > -math.inf, self._timing.period
-        self.reset()
-        if had_wind:
-            self._timing.period = period
-            self._newest = time
-            self._curve.append(time, held)
-        self._passed = time
-        self._is_new_clock = True
 
     def _clamp_clock(self, time: float) -> None:
         """Take a clock that jumps forward for one that was paused."""

@@ -3,9 +3,7 @@
 """
 The wind of the last while as a choice of model needs it: how its load swings, and how fast.
 
-A load goes with ``|U| U``, up and down too. Of a wind that is only described its mean and
-covariance are known, spread over frequencies as von Karman's longitudinal spectrum of the wind's
-integral time (von Karman, 1948). A wind that was measured has a spectrum of its own.
+A load goes with ``|U| U``, up and down too.
 """
 
 from __future__ import annotations
@@ -16,7 +14,6 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.wind.simulated.spectra import von_karman_spectrum
 
 
 @dataclass(frozen=True)
@@ -32,31 +29,16 @@ class WindClimate:
         Covariance in [m^4/s^4], (3, 3).
     speed
         Mean speed in [m/s].
-    integral_time
-        How long a gust lasts in [s], of a wind that is only described.
     record, rate
-        ``|U| U`` as it was measured in [m^2/s^2], (n, 3), and how often in [Hz]; None if it was
-        not.
+        ``|U| U`` as it was measured in [m^2/s^2], (n, 3), and how often in [Hz].
 
     """
 
     mean: Floats
     covariance: Floats
     speed: float
-    integral_time: float = 5.0
-    record: Floats | None = None
-    rate: float = 1.0
-
-    @staticmethod
-    def steady(mean_speed: float, intensity: float) -> WindClimate:
-        """
-        Take a wind that is only described: a mean [m/s] along x, and its intensity [-].
-
-        Across the wind 0.8 of the intensity is taken, upwards 0.5 (IEC 61400-1).
-        """
-        mean = np.array([mean_speed**2 * (1.0 + intensity**2), 0.0, 0.0])
-        deviations = mean_speed**2 * intensity * np.array([2.0, 0.8, 0.5])
-        return WindClimate(mean, np.diag(deviations**2), mean_speed)
+    record: Floats
+    rate: float
 
     @staticmethod
     def of_samples(velocity: Floats, rate: float) -> WindClimate:
@@ -72,11 +54,6 @@ class WindClimate:
         counted too: what a linear model answers to this power is no less than the mean square of
         its motion from rest in that time (Parseval's theorem).
         """
-        if self.record is None:
-            spans = np.gradient(frequencies)
-            spans[[0, -1]] *= 0.5
-            density = von_karman_spectrum(frequencies, 1.0, 1.0, self.integral_time)
-            return np.multiply.outer(density * spans, self.covariance)
         n = len(self.record)
         lines = np.fft.rfft(self.record, 2 * n, axis=0)
         lines[1:-1] *= math.sqrt(2.0)
@@ -146,6 +123,5 @@ _RATE = 20.0
 def _of_loads(loads: Floats, speed: float, rate: float) -> WindClimate:
     mean = loads.mean(axis=0)
     around = loads - mean
-    return WindClimate(
-        mean, around.T @ around / len(loads), speed, record=np.ascontiguousarray(loads), rate=rate
-    )
+    covariance = around.T @ around / len(loads)
+    return WindClimate(mean, covariance, speed, np.ascontiguousarray(loads), rate)

@@ -184,7 +184,7 @@ class WindGate:
             there is.
         lead
             How far stamps may be ahead of the arrival in [ns]: 0 on a clock that runs, up to a
-            tick of simulated time, which stands still in between.
+            tick of simulated time, which does not move in between.
 
         Returns
         -------

@@ -44,9 +44,9 @@ class GustHistory:
     places
         Where wind is felt in [m], (t, 3); heights do not matter.
     anemometer
-        Where it is measured in [m], (3,), best upwind of all: a tree cannot feel what has not been
-        measured, so one upwind of the anemometer feels the wind at once, which is reported in
-        `n_ahead`. If None, at the place that the mean wind reaches first, whichever way it blows.
+        Where it is measured in [m], (3,), best upwind of all: a tree upwind of it cannot feel what
+        has not been measured, and feels the wind at once. If None, at the place that the mean wind
+        reaches first, whichever way it blows.
     convection_ratio
         Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
         everywhere.
@@ -95,16 +95,6 @@ class GustHistory:
         self.delay = np.zeros(len(points))
         """Age of the wind that each place feels in [s], (t,)."""
         self._felt = np.zeros((len(points), 3))
-
-    @property
-    def n_ahead(self) -> int:
-        """Places that stand upwind of the anemometer, by more than the wind travels in 0.1 s."""
-        return int((self._wanted < -0.1).sum())
-
-    @property
-    def n_forgotten(self) -> int:
-        """Places too far downwind for the length of the history: they feel its oldest wind."""
-        return int((self._wanted > self._memory).sum())
 
     def push(self, wind_mean: ArrayLike, dt: float) -> Floats:
         """

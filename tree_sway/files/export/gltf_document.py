@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import struct
 from typing import Any
@@ -85,10 +84,3 @@ class GltfDocument:
         size = 12 + 8 + len(text) + 8 + len(self._bytes)
         head = struct.pack('<4sII', b'glTF', 2, size) + struct.pack('<I4s', len(text), b'JSON')
         return head + text + struct.pack('<I4s', len(self._bytes), b'BIN\0') + bytes(self._bytes)
-
-    def gltf(self) -> bytes:
-        """Return the document as JSON with its bytes in base64."""
-        data = base64.b64encode(self._bytes).decode('ascii')
-        uri = f'data:application/octet-stream;base64,{data}'
-        buffers = [{'byteLength': len(self._bytes), 'uri': uri}]
-        return json.dumps({**self._json, 'buffers': buffers}).encode()

@@ -20,8 +20,7 @@ from tree_sway.files.export.gltf_tree import skinned_tree
 from tree_sway.files.export.yaml_writing import yaml_of_tree
 from tree_sway.files.whole_file import whole_file, write_text_whole
 
-GLTF_SUFFIXES = ('.glb', '.gltf')
-_SUFFIXES = ('.yaml', '.yml', *GLTF_SUFFIXES)
+_SUFFIXES = ('.yaml', '.yml', '.glb')
 
 
 def write_tree(
@@ -36,7 +35,7 @@ def write_tree(
     Parameters
     ----------
     path
-        The file: ``.yaml``, ``.yml``, ``.glb`` or ``.gltf``; overwritten if it exists.
+        The file: ``.yaml``, ``.yml`` or ``.glb``; overwritten if it exists.
     tree
         The tree, alone or with its species.
     species
@@ -61,14 +60,13 @@ def write_tree(
             where=str(path),
             cure=f'use {", ".join(_SUFFIXES)}',
         )
-    if suffix in GLTF_SUFFIXES:
+    if suffix == '.glb':
         write_gltf(path, skinned_tree(tree, leaves))
     else:
         write_text_whole(path, yaml_of_tree(tree, species))
 
 
 def write_gltf(path: str | Path, document: GltfDocument) -> None:
-    """Write a document, in the binary form if the suffix is ``.glb``."""
-    binary = Path(path).suffix.lower() == '.glb'
+    """Write a document in the binary form."""
     with whole_file(path) as partial:
-        partial.write_bytes(document.glb() if binary else document.gltf())
+        partial.write_bytes(document.glb())

@@ -27,12 +27,12 @@ from typing import Any
 
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.tree.species import species_named
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.files.scenes.stand_table import read_stand_table
 from tree_sway.files.scenes.tree_names import refuse_same_names
 from tree_sway.files.text_file import path_of, read_text
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.yaml.species_yaml import open_species
 from tree_sway.files.yaml_document import packaged_schema, read_yaml, YamlDocument
 
 OpenTree = Callable[[str | Path, int], TreeFile]
@@ -95,7 +95,7 @@ def _trees(
     def opened(tree: str, seed: int, species: str | None) -> TreeFile:
         """Open a tree once, so that all of its kind share it."""
         file = open_tree(_beside(folder, tree), seed)
-        return file if species is None else file.of_species(open_species(_beside(folder, species)))
+        return file if species is None else file.of_species(species_named(species))
 
     trees, notes = [], []
     for number, entry in enumerate(entries):

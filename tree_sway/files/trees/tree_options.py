@@ -25,6 +25,13 @@ _RANGES = {
 }  # fmt: skip
 
 
+MEASURED = {'twig_diameter': 0.0}
+"""Defaults of forms whose twigs are no thicker than they are."""
+
+AS_IT_IS = {'to_origin': False, **MEASURED}
+"""Defaults of our own forms, whose trees are also where they are meant to be."""
+
+
 @dataclass(frozen=True)
 class TreeOptions:
     """
@@ -39,10 +46,10 @@ class TreeOptions:
     up
         Axis of the file that points up, ``z`` or ``y``.
     twig_diameter
-        Measured diameter of a twig's tip in [m], to which what is thinner than `trusted_diameter`
-        is made to taper; None to leave the twigs as thick as the scan has them.
+        Diameter in [m] of the last twigs, which are too thick in the file (`corrected_twigs`);
+        that of the species if None, and 0 to leave all twigs as they are.
     trusted_diameter
-        Diameter from which on a scan is trusted in [m]; only used with `twig_diameter`.
+        Diameter from which on a scan is trusted in [m].
     to_origin
         Whether to move the base of the stem to the origin.
     tree
@@ -82,11 +89,15 @@ class TreeOptions:
     def applied(self, content: TreeFile) -> TreeFile:
         """Return a tree in metres with these options applied; its notes say what was changed."""
         tree, notes, origin = content.tree, list(content.notes), np.zeros(3)
-        if self.twig_diameter is not None:
-            tree = corrected_twigs(tree, self.twig_diameter, self.trusted_diameter)
+        species = content.species if self.species is None else species_named(self.species)
+        twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter
+        if twig > 0.0:
+            tree = corrected_twigs(tree, twig, self.trusted_diameter)
+        left = float(tree.volume.sum() / content.tree.volume.sum())
+        if left < 1.0:
             notes.append(
-                f'what is thinner than {self.trusted_diameter:g} m tapers to '
-                f'{self.twig_diameter:g} m at the tips'
+                f'twigs are made {1e3 * twig:g} mm thick: {100.0 * (1.0 - left):.0f} % of the '
+                'wood taken off (twig_diameter=0 leaves it)'
             )
         if self.to_origin and tree.start[0].any():
             origin = tree.start[0].copy()
@@ -95,4 +106,4 @@ class TreeOptions:
             notes.append(f'moved by {moved} m, the base to the origin')
         x, y, z = origin.tolist()
         done = replace(content, tree=tree, notes=tuple(notes), origin=(x, y, z))
-        return done if self.species is None else done.of_species(species_named(self.species))
+        return done if self.species is None else done.of_species(species)

@@ -38,15 +38,12 @@ _GILL = re.compile(r'\x02?([A-Z],[^\x02\x03]*)(?:\x03(.*))?', re.ASCII | re.DOTA
 _STATUS = re.compile(r'[0-9A-F]{2}', re.ASCII)
 
 
-def parse_sonic(
-    line: str, heading: float = 0.0, *, need_checksum: bool = False
-) -> SensorLine | None:
+def parse_sonic(line: str, heading: float = 0.0) -> SensorLine | None:
     """
     Parse a line of a sonic anemometer, with or without STX, ETX and what follows it.
 
     The wind is of a kind of `KINDS`; any other line is None. ``heading`` is where the instrument's
-    north marker points, clockwise from true north, in [rad]. A Gill line without a checksum may be
-    refused; a TriSonica has none.
+    north marker points, clockwise from true north, in [rad].
     """
     begin = line.rfind('\x02') if '\x02' in line else len(line) - len(line.lstrip())
     gill = _GILL.match(line, begin)
@@ -56,12 +53,12 @@ def parse_sonic(
         # not.
         bodies = [body, f'{body}\x03']
         read = partial(_gill, [field.strip() for field in body.split(',')], heading)
-        return line_of(KINDS[0], len(line), readings, bodies, read, need_checksum=need_checksum)
+        return line_of(KINDS[0], len(line), readings, bodies, read)
     words = line[: MAX_LINE + 1].replace(',', ' ').split()
     if len(words) < 4 or words[0] not in ('S', 'S2', 'D', 'U'):
         return None
     read = partial(_trisonica, words, heading)
-    return line_of(KINDS[1], len(line), None, (), read, need_checksum=False)
+    return line_of(KINDS[1], len(line), None, (), read)
 
 
 def read_sonic_wind(path: Path, rate: float = 10.0, heading: float = 0.0) -> WindRecord:

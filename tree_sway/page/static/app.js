@@ -5,7 +5,8 @@
 import { TreeStream } from "./client.js";
 import { DAYLIGHT } from "./drawing/backdrop.js";
 import { Scene } from "./drawing/scene.js";
-import { readLink, savePicture, viewLink } from "./keepsake.js";
+import { Hands } from "./hands.js";
+import { readLink, recordClip, savePicture, saveTree, viewLink } from "./keepsake.js";
 import { keptScene, OwnLine } from "./own_line.js";
 import { Panel } from "./panel.js";
 import { Trace } from "./trace.js";
@@ -22,16 +23,31 @@ const STILL = 4;
  * @returns {T} */
 const element = (id) => /** @type {T} */ (document.getElementById(id));
 
-const canvas = /** @type {HTMLCanvasElement} */ (element("view"));
-const shown = /** @type {HTMLSelectElement} */ (element("shown"));
-const speedUnit = () => ({ factor: 1, unit: "m/s", digits: 0 });
-const shownUnit = (/** @type {number} */ greatest) => {
-  if (shown.value === "strain") return { factor: 1e6, unit: "µm/m", digits: 0 };
-  if (greatest < 0.1) return { factor: 1000, unit: "mm", digits: 0 };
-  return greatest < 2 ? { factor: 100, unit: "cm", digits: 0 } : { factor: 1, unit: "m", digits: 1 };
+/** Write a text where it is another. @param {string} id @param {string} text */
+function write(id, text) {
+  if (element(id).textContent !== text) element(id).textContent = text;
+}
+
+/** @type {HTMLCanvasElement} */
+const canvas = element("view");
+/** @type {HTMLSelectElement} */
+const shown = element("shown");
+/** @type {HTMLInputElement} */
+const timeLine = element("time");
+/** Least value of the scale, and units from below a value, of what is shown.
+ * @type {Record<string, {least: number, units: [number, Unit][]}>} */
+const SHOWN = {
+  motion: { least: 0.02, units: [
+    [0.1, { factor: 1000, unit: "mm", digits: 0 }], [2, { factor: 100, unit: "cm", digits: 0 }],
+    [Infinity, { factor: 1, unit: "m", digits: 1 }]] },
+  strain: { least: 1e-4, units: [[Infinity, { factor: 1e6, unit: "µm/m", digits: 0 }]] },
+  moment: { least: 0.1, units: [
+    [1000, { factor: 1, unit: "N m", digits: 0 }], [Infinity, { factor: 1e-3, unit: "kN m", digits: 1 }]] },
 };
+const shownUnit = (/** @type {number} */ greatest) =>
+  (SHOWN[shown.value].units.find(([below]) => greatest < below) ?? SHOWN[shown.value].units[0])[1];
 const traces = {
-  wind: new Trace(element("wind-trace"), 4, "--blue", speedUnit),
+  wind: new Trace(element("wind-trace"), 4, "--blue", () => ({ factor: 1, unit: "m/s", digits: 0 })),
   tip: new Trace(element("tip-trace"), 0.02, "--green", shownUnit),
 };
 const link = readLink(location.hash);
@@ -41,11 +57,7 @@ let scene = null;
 let line = "connecting";
 let retryAt = 0;
 let lastFrameAt = 0;
-let bytes = 0;
-let frames = 0;
-let drawn = 0;
-let factsAt = performance.now();
-let fps = 0;
+let [bytes, frames, drawn, fps, factsAt] = [0, 0, 0, 0, performance.now()];
 /** Time that leaves flutter by [s]; it stops with the tree. */
 let sceneTime = 0;
 let lastDrawn = 0;
@@ -56,6 +68,8 @@ let controls = [];
 let toastTimer = 0;
 /** @type {keyof typeof DAYLIGHT} */
 let day = "light";
+/** @type {(() => void) | null} */
+let endClip = null;
 
 try {
   scene = new Scene(canvas, new URLSearchParams(location.search).get("quality") === "full");
@@ -78,17 +92,15 @@ const stream = new TreeStream(location.href, {
     const isFirst = !scene?.description;
     scene?.describe(description);
     if (isFirst && link.view) scene?.camera.set(link.view);
-    if (isFirst && link.settings.branch) pick(Number(link.settings.branch));
     showLeaves();
-    element("name").textContent = description.name;
+    write("name", description.name);
     document.title = `${description.name} – tree sway`;
-    element("trees").textContent = description.trees.length.toLocaleString("en");
-    element("segments").textContent = description.nSegments.toLocaleString("en");
-    const models = new Set(description.kinds.map(({ model }) => modelName(model)));
-    element("model").textContent = [...models].join(", ");
+    write("trees", description.trees.length.toLocaleString("en"));
+    write("segments", description.nSegments.toLocaleString("en"));
+    write("model", [...new Set(description.kinds.map(({ model }) => modelName(model)))].join(", "));
     const error = Math.max(...description.kinds.map((kind) => kind.basis_error));
     element("model").title = `± ${(1000 * error).toFixed(1)} mm`;
-    pick(scene?.picked ?? -1);
+    pick(isFirst && link.settings.branch ? Number(link.settings.branch) : scene?.picked ?? -1);
     showState();
   },
   onFrame(_frame, _arrival, size) {
@@ -101,6 +113,7 @@ const stream = new TreeStream(location.href, {
       controls = message.hello.controls;
       panel.build(controls);
       element("panel").hidden = controls.length === 0;
+      if (hands) hands.canPull = message.hello.can_pull === true;
     }
     if (message.refused) toast(message.refused.reason);
     if (message.unreadable) toast(message.unreadable);
@@ -109,11 +122,14 @@ const stream = new TreeStream(location.href, {
       panel.update(message.values, Boolean(message.refused));
     }
     if (message.status) status = message.status;
+    if (Number.isFinite(status.record_time)) panel.update({ record_time: status.record_time });
   },
 }, { kept, byWind: new URLSearchParams(location.search).has("solve") });
 
 const { connection, playout } = stream;
+const hands = scene && new Hands({ scene, stream }, toast);
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
+const treeName = () => connection.description?.name ?? "tree";
 
 /** @returns {["live" | "paused" | "behind" | "empty" | "connecting" | "lost", string]} */
 function stateNow() {
@@ -121,6 +137,7 @@ function stateNow() {
   if (line === "lost") return ["lost", word("lost")];
   if (line === "connecting") return ["connecting", word("connecting")];
   if (!connection.description) return ["empty", word("empty")];
+  if (playout.back) return ["paused", word("back", (playout.back / 1000).toFixed(1))];
   if (!lastFrameAt || age > BEHIND) {
     return ["behind", lastFrameAt ? word("behind", (age / 1000).toFixed(1)) : word("waiting")];
   }
@@ -132,8 +149,7 @@ function showState() {
   const [state, text] = stateNow();
   const chip = element("state");
   if (chip.dataset.state !== state) chip.dataset.state = state;
-  const label = element("state-text");
-  if (label.textContent !== text) label.textContent = text;
+  write("state-text", text);
   if (!scene) return;
   if (state === "lost") {
     notice(word("lost"), word("again", Math.max(0, Math.ceil((retryAt - performance.now()) / 1000))), true);
@@ -149,18 +165,17 @@ function showState() {
 /** @param {string} title @param {string} text @param {boolean} canRetry */
 function notice(title, text, canRetry) {
   element("notice").hidden = false;
-  element("notice-title").textContent = title;
-  element("notice-text").textContent = text;
+  write("notice-title", title);
+  write("notice-text", text);
   element("retry").hidden = !canRetry;
 }
 
 /** @param {string} text */
 function toast(text) {
-  const box = element("toast");
-  box.textContent = text;
-  box.hidden = false;
+  write("toast", text);
+  element("toast").hidden = false;
   clearTimeout(toastTimer);
-  toastTimer = setTimeout(() => (box.hidden = true), 6000);
+  toastTimer = setTimeout(() => (element("toast").hidden = true), 6000);
 }
 
 function showFacts() {
@@ -169,25 +184,22 @@ function showFacts() {
   if (span < FACTS_EVERY / 1000) return;
   fps = drawn / span;
   const leftOut = scene?.leftOut;
-  element("drawn").textContent = `${Math.round(fps)} fps${leftOut ? ` · ${leftOut.leaves} % ❧` : ""}`;
+  write("drawn", `${Math.round(fps)} fps${leftOut ? ` · ${leftOut.leaves} % ❧` : ""}`);
   element("drawn").title = leftOut ? word("left_out", leftOut.pixels, leftOut.leaves) : "";
-  element("stream").textContent = `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`;
+  write("stream", `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`);
   const { corrections = 0, largest = 0 } = stream.byWind ?? {};
   element("stream").title = stream.byWind ? word("corrected", corrections, (100 * largest).toFixed(2)) : "";
-  const half = connection.roundTrip / 2;
-  const latency = Number.isFinite(half) ? half + Math.max(0, playout.lateness) : NaN;
-  element("latency").textContent = Number.isFinite(latency)
-    ? `${latency.toFixed(0)} + ${playout.delay} ms`
-    : "–";
+  const latency = connection.roundTrip / 2 + Math.max(0, playout.lateness);
+  write("latency", Number.isFinite(latency) ? `${latency.toFixed(0)} + ${playout.delay} ms` : "–");
   element("latency").title = "On the way, and delayed so that the motion is smooth";
-  if (status.model && status.trees === 1) element("model").textContent = modelName(status.model);
-  if (status.rate) element("rate").textContent = `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms`;
+  if (status.model && status.trees === 1) write("model", modelName(status.model));
+  if (status.rate) write("rate", `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms`);
   [bytes, frames, drawn, factsAt] = [0, 0, 0, now];
   showState();
   const [x, y] = playout.wind;
-  element("wind-now").textContent = `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(x, y)}`;
+  write("wind-now", `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(x, y)}`);
   const { mean, greatest } = traces.wind.statistics;
-  element("gust").textContent = word("gust", mean.toFixed(1), greatest.toFixed(1));
+  write("gust", word("gust", mean.toFixed(1), greatest.toFixed(1)));
   traces.wind.draw();
   traces.tip.draw();
 }
@@ -198,23 +210,35 @@ const modelName = (model) => (/^\d+$/.test(model) ? word("coordinates", model) :
 /** @param {number} now */
 function draw(now) {
   requestAnimationFrame(draw);
-  if (!scene) return;
+  if (!scene || hands?.isAway) return;
   const coordinates = stream.sample();
+  const isStill = playout.isPaused || playout.back > 0;
   scene.wind = playout.wind;
-  if (!playout.isPaused) sceneTime += Math.min(now - lastDrawn, 100) / 1000;
+  if (!isStill) sceneTime += Math.min(now - lastDrawn, 100) / 1000;
   lastDrawn = now;
-  scene.draw(coordinates, sceneTime, playout.isPaused);
+  scene.draw(coordinates, sceneTime, isStill);
   drawn += 1;
-  if (coordinates && stateNow()[0] === "live") {
+  hands?.frame({ scene, stream });
+  if (coordinates) {
     const [at, rest] = [scene.tip(), scene.restTip()];
-    const isStrain = shown.value === "strain";
-    const value = isStrain ? scene.strain() : Math.hypot(...at.map((each, c) => each - rest[c]));
-    traces.wind.add(now / 1000, Math.hypot(...playout.wind));
-    traces.tip.add(now / 1000, value);
-    const { factor, unit } = shownUnit(value);
-    element("tip-now").textContent = `${(factor * value).toFixed(unit === "m" ? 2 : 0)} ${unit}`;
+    const load = scene.load();
+    const value = { motion: Math.hypot(...at.map((each, c) => each - rest[c])), ...load }[shown.value] ?? 0;
+    if (stateNow()[0] === "live") {
+      traces.wind.add(now / 1000, Math.hypot(...playout.wind));
+      traces.tip.add(now / 1000, value);
+    }
+    const { factor, unit, digits } = shownUnit(value);
+    write("tip-now", `${(factor * value).toFixed(digits && digits + 1)} ${unit}`);
   }
   showFacts();
+}
+
+/** Look at what was, as far back as the time line says. */
+function lookBack() {
+  playout.back = -1000 * Number(timeLine.value);
+  for (const trace of Object.values(traces)) trace.back = -Number(timeLine.value);
+  timeLine.setAttribute("aria-valuetext", stateNow()[1]);
+  showState();
 }
 
 /** @param {keyof typeof DAYLIGHT} time of day */
@@ -229,6 +253,11 @@ function nextDay() {
   setDay(times[(times.indexOf(day) + 1) % times.length]);
 }
 
+/** Say on a button whether something is so. @param {string} id @param {boolean} isSo */
+function press(id, isSo) {
+  element(id).setAttribute("aria-pressed", String(isSo));
+}
+
 function toggleLeaves() {
   if (scene?.hasLeaves) {
     scene.leavesShown = !scene.leavesShown;
@@ -239,27 +268,27 @@ function toggleLeaves() {
 
 /** The button says what is: a tree that was started bare has no leaves to show. */
 function showLeaves() {
-  const button = /** @type {HTMLButtonElement} */ (element("leaves"));
+  /** @type {HTMLButtonElement} */
+  const button = element("leaves");
   const hasLeaves = Boolean(scene?.hasLeaves);
   button.disabled = !hasLeaves;
-  button.setAttribute("aria-pressed", String(hasLeaves && scene?.leavesShown));
+  press("leaves", hasLeaves && Boolean(scene?.leavesShown));
   button.title = word(hasLeaves ? "leaves" : "bare");
 }
 
 function toggleSeason() {
   if (!scene) return;
   scene.setAutumn(!scene.isAutumn);
-  element("season").setAttribute("aria-pressed", String(scene.isAutumn));
+  press("season", scene.isAutumn);
 }
 
 /** @param {number} branch to follow; the highest if -1 */
 function pick(branch) {
   if (!scene) return;
   const names = scene.watchedKind?.branch_names ?? [];
-  const isOne = Number.isInteger(branch) && branch >= 0 && branch < names.length;
-  scene.picked = isOne ? branch : -1;
-  element("branch").textContent = isOne ? names[branch] : word("tallest");
-  traces.tip.least = shown.value === "strain" ? 1e-4 : 0.02;
+  scene.picked = names[branch] === undefined ? -1 : branch;
+  write("branch", names[branch] ?? word("tallest"));
+  traces.tip.least = SHOWN[shown.value].least;
   traces.tip.clear();
 }
 
@@ -280,6 +309,20 @@ async function copyLink() {
   toast(`${word("copied")}: ${location.href}`);
 }
 
+/** Begin a clip, or end and save it. */
+function toggleClip() {
+  endClip?.();
+  try {
+    endClip = endClip ? null : recordClip(canvas, treeName());
+  } catch (error) {
+    toast(String(error));
+  }
+  press("clip", endClip !== null);
+}
+
+/** @param {"glb" | "html"} suffix */
+const takeTree = (suffix) => saveTree(suffix, treeName()).catch((error) => toast(error.message));
+
 function toggleFull() {
   if (document.fullscreenElement) document.exitFullscreen();
   else document.documentElement.requestFullscreen?.().catch(() => undefined);
@@ -292,8 +335,7 @@ function showHelp() {
     return item;
   });
   element("keys-list").replaceChildren(...items);
-  const dialog = /** @type {HTMLDialogElement} */ (element("keys"));
-  if (!dialog.open) dialog.showModal();
+  /** @type {HTMLDialogElement} */ (element("keys")).showModal();
 }
 
 /** @param {string} chosen */
@@ -306,16 +348,16 @@ function speak(chosen) {
   showState();
 }
 
-const takePicture = () => scene && savePicture(scene, connection.description?.name ?? "tree",
-  () => scene?.draw(null, sceneTime, true));
-
-/** @type {Record<string, () => void>} what keys and buttons do */
+/** @type {Record<string, () => void>} what buttons do, and keys that are written beside them */
 const actions = {
   home: () => scene?.camera.home(),
   leaves: toggleLeaves,
   theme: nextDay,
   season: toggleSeason,
-  picture: takePicture,
+  picture: () => scene && savePicture(scene, treeName(), () => scene?.draw(null, sceneTime, true)),
+  clip: toggleClip,
+  glb: () => takeTree("glb"),
+  html: () => takeTree("html"),
   link: copyLink,
   full: toggleFull,
   help: showHelp,
@@ -325,11 +367,13 @@ const actions = {
 for (const [id, action] of Object.entries(actions)) element(id).addEventListener("click", action);
 /** @type {Record<string, () => void>} */
 const keys = {
-  t: nextDay, l: toggleLeaves, a: toggleSeason, p: takePicture, k: copyLink, f: toggleFull, "?": showHelp,
   m: () => scene && (scene.hasPerson = !scene.hasPerson),
   " ": () => element("control-pause")?.click(),
   "[": () => pickNext(-1), "]": () => pickNext(1), escape: () => pick(-1),
 };
+for (const button of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-key]"))) {
+  keys[button.dataset.key ?? ""] = actions[button.id];
+}
 document.addEventListener("keydown", (event) => {
   const target = /** @type {HTMLElement} */ (event.target);
   if (target.closest("input, select, button, summary, dialog") || event.ctrlKey || event.metaKey) return;
@@ -342,11 +386,9 @@ canvas.addEventListener("click", (event) => {
   pick(scene.branchAt(event.clientX / canvas.clientWidth, event.clientY / canvas.clientHeight));
 });
 shown.addEventListener("change", () => pick(scene?.picked ?? -1));
+timeLine.addEventListener("input", lookBack);
 element("language").addEventListener("change", (event) =>
   speak(/** @type {HTMLSelectElement} */ (event.target).value));
-element("keys").addEventListener("click", (event) => {
-  if (event.target === element("keys")) actions.close();
-});
 
 document.addEventListener("dragover", (event) => event.preventDefault());
 document.addEventListener("drop", (event) => {
@@ -361,11 +403,12 @@ const { settings } = link;
 const asked = /** @type {keyof typeof DAYLIGHT} */ (settings.day);
 setDay(asked in DAYLIGHT ? asked : dark.matches ? "dark" : "light");
 dark.addEventListener("change", () => setDay(dark.matches ? "dark" : "light"));
-if (scene) scene.flutters = !calm.matches;
+if (scene) [scene.flutters, scene.leavesShown] = [!calm.matches, settings.leaves !== "false"];
 calm.addEventListener("change", () => scene && (scene.flutters = !calm.matches));
-if (scene && settings.leaves === "false") scene.leavesShown = false;
 if (settings.autumn === "true") toggleSeason();
-if (settings.shown === "strain") shown.value = "strain";
+if (settings.shown in SHOWN) shown.value = settings.shown;
+// A page that is a file is what its `.html` would be.
+for (const id of ["glb", "html"]) element(id).hidden = Boolean(kept);
 speak(settings.lang ?? navigator.language.slice(0, 2));
 /** @type {HTMLDetailsElement} */ (element("panel")).open = window.innerWidth > 700;
 scene?.camera.listen(canvas);
@@ -375,21 +418,10 @@ requestAnimationFrame(draw);
 /** For tests and for the curious at the console. */
 Object.assign(window, {
   treeSway: {
-    stream,
-    connection,
-    playout,
-    traces,
-    get scene() {
-      return scene;
-    },
-    get fps() {
-      return fps;
-    },
-    get state() {
-      return stateNow()[0];
-    },
-    get status() {
-      return status;
-    },
+    stream, connection, playout, traces, hands,
+    get scene() { return scene; },
+    get fps() { return fps; },
+    get state() { return stateNow()[0]; },
+    get status() { return status; },
   },
 });

@@ -8,8 +8,6 @@ import { PART, PAUSED, RESTARTED } from "./protocol.js";
 const MOST_STEPS = 60;
 const NEWEST = 0.05;
 
-/** @typedef {import("./protocol.js").Frame} Frame */
-
 /** Solves a stand by the wind of each frame, and follows the states among them; a frame that is lost is
  * bridged by a wind between the two that came. tree_sway/page/by_wind.py does the same. */
 export class ByWind {

@@ -5,6 +5,8 @@
  * asks the same.
  */
 
+import { textOf } from "./files.js";
+
 /** What cannot be read; its message is for people. */
 export class ProtocolError extends Error {}
 
@@ -14,38 +16,11 @@ const MOST_COORDINATES = 65535;
 /** Of a height or an error [m]. */
 const GREATEST = 1e12;
 
-/** Type and axes of each array of a kind. @type {Record<string, [Function, ...(string | number)[]]>} */
-const ARRAYS = {
-  branch_parent: [Int32Array, "branches"],
-  branch_base_segment: [Int32Array, "branches"],
-  branch_first: [Int32Array, "branches + 1"],
-  branch_coordinate: [Int32Array, "branches"],
-  branch_keys: [Uint8Array, "branches"],
-  branch_frame: [Float32Array, "branches", 3, 3],
-  branch_skew: [Float32Array, "branches", 2],
-  branch_base_turn: [Int32Array, "branches"],
-  branch_turn: [Int32Array, "branches"],
-  branch_offset: [Float32Array, "branches", 3],
-  turn: [Float32Array, "rows", 3],
-  segment_slope: [Float32Array, "segments"],
-  segment_tip_slope: [Float32Array, "segments"],
-  segment_chord: [Float32Array, "segments", 3],
-  segment_rest: [Float32Array, "segments", 4],
-  segment_length: [Float32Array, "segments"],
-  segment_radius: [Float32Array, "segments", 2],
-  basis_matrix: [Float32Array, "keys", "coordinates"],
-  basis_scale: [Float32Array, "coordinates"],
-};
+export const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: Uint8Array };
 
-/** The same of a kind that bears leaves. @type {typeof ARRAYS} */
-const LEAVES = {
-  leaf_segment: [Int32Array, "clusters"],
-  leaf_offset: [Float32Array, "clusters", 3],
-  leaf_orientation: [Float32Array, "clusters", 4],
-  leaf_size: [Float32Array, "clusters"],
-  leaf_frequency: [Float32Array, "clusters"],
-  leaf_phase: [Float32Array, "clusters"],
-};
+/** Type and axes of each array of a kind; those of leaves only where it bears any.
+ * @type {{description: Forms, tables: Forms}} */
+export const FORMS = JSON.parse(await textOf("arrays.json"));
 
 /** Refuse what does not hold. @param {boolean} holds @param {string} name */
 export function need(holds, name) {
@@ -56,13 +31,13 @@ export function need(holds, name) {
 const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREATEST;
 
 /** Refuse arrays that are missing, of another type or shape, or not finite; the sizes of their axes.
- * @param {import("./protocol.js").Arrays} parts @param {typeof ARRAYS} forms */
+ * @param {Arrays} parts @param {Forms} forms */
 export function sizesOf(parts, forms) {
   /** @type {Record<string, number>} */
   const size = {};
   for (const [name, [type, ...axes]] of Object.entries(forms)) {
     const { values, shape } = parts[name] ?? {};
-    need(values?.constructor === type && shape.length === axes.length, name);
+    need(values?.constructor === TYPES[type] && shape.length === axes.length, name);
     axes.forEach((axis, i) => {
       if (typeof axis === "string") size[axis] ??= shape[i];
       need(shape[i] === (typeof axis === "string" ? size[axis] : axis), name);
@@ -73,16 +48,17 @@ export function sizesOf(parts, forms) {
 }
 
 /** Refuse a kind whose arrays do not fit each other, and find its sizes.
- * @param {import("./protocol.js").Kind} kind with its arrays
- * @param {import("./protocol.js").Arrays} parts its arrays with their shapes */
+ * @param {Kind} kind with its arrays
+ * @param {Arrays} parts its arrays with their shapes */
 export function checkKind(kind, parts) {
   const { arrays } = kind;
-  const size = sizesOf(parts, arrays.leaf_segment ? { ...ARRAYS, ...LEAVES } : ARRAYS);
+  const forms = Object.entries(FORMS.description).filter(([name]) => arrays.leaf_segment || !name.startsWith("leaf"));
+  const size = sizesOf(parts, Object.fromEntries(forms));
   const { branches: b, segments: n, keys: nKeys, coordinates, rows } = size;
   need(b > 0 && size["branches + 1"] === b + 1, "branch_first");
   need(arrays.basis_scale.every((value) => value > 0), "basis_scale");
   need(typeof kind.species === "string" && typeof kind.model === "string", "species");
-  need(isFinite(kind.height) && isFinite(kind.basis_error), "height");
+  need([kind.height, kind.basis_error, kind.modulus ?? 0].every(isFinite), "height");
   const names = kind.branch_names;
   need(names.length === b && names.every((name) => typeof name === "string"), "branch_names");
   const first = arrays.branch_first;
@@ -114,8 +90,8 @@ export function checkKind(kind, parts) {
 }
 
 /** Refuse trees that do not fit their kinds.
- * @param {Record<string, any>} header @param {import("./protocol.js").Kind[]} kinds
- * @param {{values: import("./protocol.js").NumberArray, shape: number[]} | undefined} placed */
+ * @param {Record<string, any>} header @param {Kind[]} kinds
+ * @param {{values: NumberArray, shape: number[]} | undefined} placed */
 export function checkTrees(header, kinds, placed) {
   const { values: places, shape } = placed ?? {};
   const { trees } = header;

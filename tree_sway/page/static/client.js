@@ -12,16 +12,6 @@ import { Placer } from "./placing.js";
 import { DELAY, Playout } from "./playout.js";
 import { Stand } from "./sway.js";
 
-/**
- * @typedef {Partial<import("./connection.js").Listeners>} StreamListeners
- *
- * @typedef {object} StreamOptions
- * @property {number} [rate] frames per second that are asked for
- * @property {number} [delay] of the playout [ms]
- * @property {boolean} [byWind] whether the wind alone is asked for, and the scene solved here
- * @property {import("./own_line.js").Kept | null} [kept] scene that is solved here, of no server
- */
-
 /** Playout delay of a scene that is solved here [ms]. */
 const OWN_DELAY = 40;
 
@@ -35,21 +25,23 @@ export class TreeStream {
     this.placer = null;
     /** What solves the scene by its wind; null where states come. @type {ByWind | null} */
     this.byWind = null;
-    /** @type {import("./connection.js").Listeners} */
+    const { onDescription, onFrame } = listeners;
+    /** @type {Listeners} */
     const taking = {
-      onState: (state, retryIn) => listeners.onState?.(state, retryIn),
+      onState: () => undefined,
+      onMessage: () => undefined,
+      ...listeners,
       onDescription: (description) => {
         this.playout.clear();
         this.placer = null;
         this.byWind = null;
-        listeners.onDescription?.(description);
+        onDescription?.(description);
       },
       onFrame: (frame, arrival, size) => {
         const whole = this.byWind ? this.byWind.take(frame) : frame;
         if (whole?.coordinates.length === this.description?.nCoordinates && whole) this.playout.push(whole, arrival);
-        listeners.onFrame?.(frame, arrival, size);
+        onFrame?.(frame, arrival, size);
       },
-      onMessage: (message) => listeners.onMessage?.(message),
       ...(byWind && { onTables: (tables) => this._solve(tables) }),
     };
     this.connection = kept
@@ -57,7 +49,7 @@ export class TreeStream {
       : new Connection(streamUrl(page), taking, options.rate ?? (byWind ? 60 : undefined));
   }
 
-  /** @param {import("./sway.js").Tables} tables */
+  /** @param {Tables} tables */
   _solve(tables) {
     if (this.description) this.byWind = new ByWind(new Stand(tables, this.description));
   }
@@ -81,6 +73,13 @@ export class TreeStream {
    * @param {string} name @param {number | string | boolean | null} value */
   set(name, value) {
     this.connection.send({ set: { name, value } });
+  }
+
+  /** Pull at a branch, where the server lets anybody; say it again within half a second to go on.
+   * @param {Push} pull a spring; one of no stiffness lets go */
+  pull(pull) {
+    this.connection.send({ pull });
+    this.byWind?.stand.push(pull);
   }
 
   /** Coordinates to show; null before the first frame. @param {number} [now] [ms] */

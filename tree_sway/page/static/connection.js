@@ -4,13 +4,7 @@
 
 import { checkMessage } from "./checks.js";
 import {
-  decodeDescription,
-  decodeFrame,
-  frameSize,
-  isFrame,
-  isTables,
-  LARGEST_DESCRIPTION,
-  ProtocolError,
+  decodeDescription, decodeFrame, frameSize, isFrame, isTables, LARGEST_DESCRIPTION, ProtocolError,
 } from "./protocol.js";
 import { decodeTables } from "./sway.js";
 
@@ -27,17 +21,6 @@ const PING_EVERY = 2000;
 const SILENCE = 6000;
 const LARGEST_TEXT = 2 ** 20;
 
-/**
- * @typedef {"connecting" | "open" | "lost"} LineState
- *
- * @typedef {object} Listeners
- * @property {(state: LineState, retryIn: number) => void} onState
- * @property {(description: import("./protocol.js").Description) => void} onDescription
- * @property {(tables: import("./sway.js").Tables) => void} [onTables] after a description, by which to solve it
- * @property {(frame: import("./protocol.js").Frame, arrival: number, size: number) => void} onFrame
- * @property {(message: Record<string, any>) => void} onMessage
- */
-
 /** One line to a server, kept from `open` to `close`. */
 export class Connection {
   /** @param {string} url of the stream @param {Listeners} listeners
@@ -47,7 +30,7 @@ export class Connection {
     this.listeners = listeners;
     this.rate = rate;
     this.roundTrip = NaN;
-    /** @type {import("./protocol.js").Description | null} */
+    /** @type {Description | null} */
     this.description = null;
     /** @type {WebSocket | null} */
     this._socket = null;
@@ -140,8 +123,7 @@ export class Connection {
       this.unreadable += 1;
       const why = error instanceof ProtocolError ? error.message : String(error);
       this._drop();
-      this.listeners.onMessage({ unreadable: why.slice(0, 400) });
-      return;
+      deliver = () => this.listeners.onMessage({ unreadable: why.slice(0, 400) });
     }
     deliver();
   }
@@ -155,7 +137,7 @@ export class Connection {
     return () => this.listeners.onMessage(message);
   }
 
-  /** Read a description or a frame.
+  /** Read a description, its tables or a frame.
    * @param {ArrayBuffer} data @param {number} arrival [ms] @returns {() => void} */
   _binary(data, arrival) {
     const size = data.byteLength;
@@ -165,8 +147,7 @@ export class Connection {
       return () => this.listeners.onTables?.(tables);
     }
     if (!isFrame(data)) {
-      const description = decodeDescription(data);
-      this.description = description;
+      const description = (this.description = decodeDescription(data));
       const fitting = Math.floor(ON_THE_WAY / frameSize(description));
       this._credit = Math.max(LEAST_CREDIT, Math.min(MOST_CREDIT, fitting));
       this._ask();
@@ -175,8 +156,7 @@ export class Connection {
     this._awaited -= 1;
     this._ask();
     const frame = decodeFrame(data, this.description);
-    if (!frame) return () => {};
-    this._wait = SHORTEST_WAIT;
-    return () => this.listeners.onFrame(frame, arrival, size);
+    if (frame) this._wait = SHORTEST_WAIT;
+    return () => frame && this.listeners.onFrame(frame, arrival, size);
   }
 }

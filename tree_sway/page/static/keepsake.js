@@ -1,28 +1,52 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** What people take with them: a picture, and a link that keeps the camera and the view. */
+/** What people take with them: a picture, a clip, the tree, and a link that keeps the view. */
 
-/** @typedef {import("./drawing/scene.js").Scene} Scene */
+const FRAMES_PER_SECOND = 30;
+
+/** Hand a file to whoever looks. @param {Blob} blob @param {string} name @param {string} suffix */
+function save(blob, name, suffix) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = `${name.replace(/[^\p{L}\p{N}]+/gu, "_")}.${suffix}`;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
 
 /** Save what is seen as PNG, in full.
- * @param {Scene} scene @param {string} name @param {() => void} draw a frame */
+ * @param {import("./drawing/scene.js").Scene} scene @param {string} name @param {() => void} draw a frame */
 export function savePicture(scene, name, draw) {
   const { fineness, density } = scene.quality;
   [scene.quality.fineness, scene.quality.density] = [1, 1];
   draw();
-  scene.canvas.toBlob((blob) => {
-    if (!blob) return;
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(blob);
-    link.download = `${name.replace(/[^\p{L}\p{N}]+/gu, "_")}.png`;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-  });
+  scene.canvas.toBlob((blob) => blob && save(blob, name, "png"));
   [scene.quality.fineness, scene.quality.density] = [fineness, density];
 }
 
+/** Record what is drawn from now on; what ends the clip and saves it.
+ * @param {HTMLCanvasElement} canvas @param {string} name */
+export function recordClip(canvas, name) {
+  if (!window.MediaRecorder) throw new Error("this browser records no clips: take Chrome 47, Firefox 25, Safari 14.1 or later");
+  const type = ["video/mp4", "video/webm"].find((each) => MediaRecorder.isTypeSupported(each)) ?? "";
+  const recorder = new MediaRecorder(canvas.captureStream(FRAMES_PER_SECOND), { mimeType: type, videoBitsPerSecond: 8e6 });
+  /** @type {Blob[]} */
+  const parts = [];
+  recorder.ondataavailable = ({ data }) => parts.push(data);
+  recorder.onstop = () => save(new Blob(parts, { type }), name, type.slice(6));
+  recorder.start();
+  return () => recorder.stop();
+}
+
+/** Save the tree as the server writes it; an `Error` with its reason if it does not.
+ * @param {"glb" | "html"} suffix @param {string} name */
+export async function saveTree(suffix, name) {
+  const answer = await fetch(`tree.${suffix}${location.search}`);
+  if (!answer.ok) throw new Error(await answer.text());
+  save(await answer.blob(), name, suffix);
+}
+
 /** The view as the end of an address.
- * @param {Scene} scene @param {Record<string, string | number | boolean>} settings */
+ * @param {import("./drawing/scene.js").Scene} scene @param {Record<string, string | number | boolean>} settings */
 export function viewLink(scene, settings) {
   const { azimuth, elevation, distance, target } = scene.camera;
   const view = [azimuth, elevation, distance, ...target].map((each) => Number(each.toPrecision(5)));

@@ -5,13 +5,11 @@
 import { Connection } from "./connection.js";
 import { decodeDescription, PAUSED, ProtocolError, RESTARTED } from "./protocol.js";
 import { decodeTables, Stand } from "./sway.js";
-import { readWind, Turbulence } from "./wind.js";
+import { readWind, Recorded, Turbulence } from "./wind.js";
 
 /** A page that was slow or hidden catches up no more than this [ms]. */
 const LATEST = 250;
 const STATUS_EVERY = 500;
-
-/** @typedef {{description: import("./protocol.js").Description, stand: Stand}} Kept */
 
 /** What the page itself holds; null on one that is served. A `ProtocolError` if it is damaged.
  * @returns {Promise<Kept | null>} */
@@ -48,7 +46,7 @@ function outOfPlanes(data) {
 
 /** Used as a `Connection`: the same listeners, messages and frames. */
 export class OwnLine {
-  /** @param {Kept} kept @param {import("./connection.js").Listeners} listeners
+  /** @param {Kept} kept @param {Listeners} listeners
    * @param {string | null} [address] of a live wind, `wss://...` */
   constructor({ description, stand }, listeners, address = null) {
     this.description = description;
@@ -58,7 +56,7 @@ export class OwnLine {
     this._turbulence = new Turbulence();
     /** @type {{next: (dt: number) => number[]}} */
     this._wind = this._turbulence;
-    /** @type {import("./protocol.js").Frame | null} newest of a live wind */
+    /** @type {Frame | null} newest of a live wind */
     this._live = null;
     this._isPaused = false;
     this._hasRestarted = false;
@@ -85,7 +83,7 @@ export class OwnLine {
     this.close();
     this.listeners.onState("open", 0);
     this.listeners.onDescription(this.description);
-    this.listeners.onMessage({ hello: { controls: controlsOf(this._turbulence.values) } });
+    this._hello();
     this._time = Date.now();
     this._timer = setInterval(() => this._go(), 1000 * this.stand.dt / 2);
     this._line?.open();
@@ -95,14 +93,22 @@ export class OwnLine {
     clearInterval(this._timer);
   }
 
-  /** Take a change of a control. @param {Record<string, any>} message */
-  send({ set }) {
+  /** Say what can be changed. */
+  _hello() {
+    const controls = controlsOf(this._turbulence.values, this._wind);
+    this.listeners.onMessage({ hello: { controls, can_pull: true } });
+  }
+
+  /** Take a change of a control, or a pull. @param {Record<string, any>} message */
+  send({ set, pull }) {
+    if (pull) this.stand.push(pull);
     if (!set) return;
     const { name, value } = set;
     if (name === "reset") {
       this.stand.reset();
       this._hasRestarted = true;
     } else if (name === "pause") this._isPaused = value;
+    else if (this._wind instanceof Recorded && name === "record_time") this._wind.seek(value);
     else [this._turbulence.values[name], this._wind] = [value, this._turbulence];
     const values = { ...this._turbulence.values, pause: this._isPaused };
     this.listeners.onMessage({ values });
@@ -111,6 +117,7 @@ export class OwnLine {
   /** Let a recorded wind blow; a `ProtocolError` if the file is none. @param {File} file */
   async take(file) {
     this._wind = readWind(await file.text(), file.name);
+    this._hello();
   }
 
   _go() {
@@ -122,6 +129,7 @@ export class OwnLine {
     const { trees, outside, dt } = this.stand;
     this.listeners.onMessage({ status: {
       model: trees[0].state.table.m.toString(), trees: trees.length, rate: 1 / dt, work_us: 1000 * this._work, outside,
+      ...(this._wind instanceof Recorded && { record_time: this._wind.time }),
     } });
   }
 
@@ -140,10 +148,11 @@ export class OwnLine {
   }
 }
 
-/** @param {Record<string, number>} values */
-function controlsOf({ mean_speed: speed, intensity, bearing_to: bearing }) {
+/** @param {Record<string, number>} values @param {Object} wind */
+function controlsOf({ mean_speed: speed, intensity, bearing_to: bearing }, wind) {
   const control = (/** @type {string} */ name, /** @type {any} */ value, unit = "", minimum = 0, maximum = 1) =>
     ({ name, label: name, description: "", value, unit, minimum, maximum, choices: [], is_action: value === null });
   return [control("mean_speed", speed, "m/s", 0, 40), control("intensity", intensity),
-    control("bearing_to", bearing, "rad", -6.3, 6.3), control("pause", false), control("reset", null)];
+    control("bearing_to", bearing, "rad", -6.3, 6.3), ...(wind instanceof Recorded ? [control("record_time", 0, "s", 0, wind.length)] : []),
+    control("pause", false), control("reset", null)];
 }

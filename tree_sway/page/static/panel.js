@@ -6,59 +6,24 @@ import { hasWord, windFrom, word } from "./words.js";
 
 const SEND_EVERY = 80;
 const STEPS = 400;
+/** A range that is wider is one of powers. */
+const WIDE = 1000;
 
-/**
- * @typedef {object} Control
- * @property {string} name
- * @property {string} label
- * @property {string} description
- * @property {string} unit
- * @property {number | string | boolean | null} value
- * @property {number | null} minimum
- * @property {number | null} maximum
- * @property {string[]} choices
- * @property {boolean} is_action
- */
-
-/** How a number is shown and put on a slider. */
-class Scale {
-  /** @param {Control} control */
-  constructor(control) {
-    this.low = control.minimum ?? 0;
-    this.high = control.maximum ?? 1;
-    this.unit = control.unit;
-    this.isBearing = control.name === "bearing_to";
-    this.isAngle = control.unit === "rad";
-    this.isLog = this.low > 0 && this.high / this.low > 1000;
-  }
-
-  /** @param {number} value */
-  toSlider(value) {
-    const share = this.isLog
-      ? Math.log(value / this.low) / Math.log(this.high / this.low)
-      : (value - this.low) / (this.high - this.low);
-    return Math.round(STEPS * share);
-  }
-
-  /** @param {number} slider */
-  toValue(slider) {
-    const share = slider / STEPS;
-    if (this.isLog) return this.low * (this.high / this.low) ** share;
-    return Math.min(this.high, this.low + share * (this.high - this.low));
-  }
-
-  /** @param {number} value */
-  text(value) {
-    if (this.isBearing) return windFrom(Math.sin(value), Math.cos(value));
-    if (this.isAngle) return `${Math.round((value * 180) / Math.PI)}°`;
-    if (this.unit === "m" && value < 0.1) return `${Number((1000 * value).toPrecision(2))} mm`;
-    return `${Number(value.toPrecision(2))} ${this.unit}`.trim();
-  }
+/** An element with properties and what is in it.
+ * @template {keyof HTMLElementTagNameMap} T @param {T} tag
+ * @param {Record<string, any>} properties @param {...(Node | string)} within */
+function made(tag, properties, ...within) {
+  const element = Object.assign(document.createElement(tag), properties);
+  element.append(...within);
+  return element;
 }
 
-/** @param {Control} control */
-function labelOf(control) {
-  return hasWord(control.name) ? word(control.name) : control.label;
+/** A number as people read it. @param {Control} control @param {number} value */
+function textOf({ name, unit }, value) {
+  if (name === "bearing_to") return windFrom(Math.sin(value), Math.cos(value));
+  if (unit === "rad") return `${Math.round((value * 180) / Math.PI)}°`;
+  if (unit === "m" && value < 0.1) return `${Number((1000 * value).toPrecision(2))} mm`;
+  return `${Number(value.toPrecision(unit === "s" ? 4 : 2))} ${unit}`.trim();
 }
 
 export class Panel {
@@ -75,17 +40,12 @@ export class Panel {
   /** @param {Control[]} controls */
   build(controls) {
     this._show.clear();
-    const buttons = document.createElement("div");
-    buttons.className = "buttons";
-    const fields = [];
-    for (const control of controls) {
-      if (control.is_action || typeof control.value === "boolean") {
-        buttons.append(this._button(control));
-      } else {
-        fields.push(control.choices.length ? this._choice(control) : this._slider(control));
-      }
-    }
-    this.form.replaceChildren(...fields, buttons);
+    const isButton = (/** @type {Control} */ { is_action: isAction, value }) => isAction || typeof value === "boolean";
+    const fields = controls.filter((each) => !isButton(each)).map((each) =>
+      each.choices.length ? this._choice(each) : this._slider(each));
+    const buttons = controls.filter(isButton).map((each) => this._button(each));
+    this.form.replaceChildren(...fields, made("div", { className: "buttons" }, ...buttons));
+    for (const { name, value } of controls) this._show.get(name)?.(value);
   }
 
   /** Show values that hold now.
@@ -97,82 +57,67 @@ export class Panel {
     }
   }
 
-  /** @param {Control} control @param {HTMLElement} input */
-  _field(control, input) {
-    const field = document.createElement("div");
-    field.className = "field";
-    const label = document.createElement("label");
-    input.id = `control-${control.name}`;
-    input.title = control.description;
-    label.htmlFor = input.id;
-    label.append(labelOf(control));
-    const shown = document.createElement("span");
-    label.append(shown);
-    field.append(label, input);
-    return { field, shown };
+  /** What every control has. @param {Control} control */
+  _named({ name, description: title }) {
+    return { id: `control-${name}`, title };
+  }
+
+  /** @param {Control} control @param {HTMLElement} input @param {Node} [shown] its value as text */
+  _field(control, input, shown = made("span", {})) {
+    const text = hasWord(control.name) ? word(control.name) : control.label;
+    return made("div", { className: "field" }, made("label", { htmlFor: input.id }, text, shown), input);
   }
 
   /** @param {Control} control */
   _slider(control) {
-    const scale = new Scale(control);
-    const input = document.createElement("input");
-    input.type = "range";
-    input.min = "0";
-    input.max = String(STEPS);
-    const { field, shown } = this._field(control, input);
-    let timer = 0;
-    const show = (/** @type {number} */ value) => {
-      shown.textContent = scale.text(value);
-      input.setAttribute("aria-valuetext", scale.text(value));
+    const { name } = control;
+    const [low, high] = [control.minimum ?? 0, control.maximum ?? 1];
+    const isWide = low > 0 && high / low > WIDE;
+    const shareOf = (/** @type {number} */ value) =>
+      isWide ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+    const input = made("input", { ...this._named(control), type: "range", min: "0", max: String(STEPS) });
+    const valueOf = () => {
+      const share = Number(input.value) / STEPS;
+      return isWide ? low * (high / low) ** share : Math.min(high, low + share * (high - low));
     };
+    const shown = made("span", {});
+    const show = (/** @type {number} */ value) => {
+      shown.textContent = textOf(control, value);
+      input.setAttribute("aria-valuetext", textOf(control, value));
+    };
+    let timer = 0;
     input.addEventListener("input", () => {
-      this._inHand = control.name;
-      show(scale.toValue(Number(input.value)));
+      this._inHand = name;
+      show(valueOf());
       clearTimeout(timer);
-      timer = setTimeout(() => this.send(control.name, scale.toValue(Number(input.value))), SEND_EVERY);
+      timer = setTimeout(() => this.send(name, valueOf()), SEND_EVERY);
     });
     input.addEventListener("change", () => setTimeout(() => (this._inHand = ""), 600));
-    this._show.set(control.name, (value) => {
-      input.value = String(scale.toSlider(value));
+    this._show.set(name, (value) => {
+      input.value = String(Math.round(STEPS * shareOf(value)));
       show(value);
     });
-    this._show.get(control.name)?.(control.value);
-    return field;
+    return this._field(control, input, shown);
   }
 
   /** @param {Control} control */
   _choice(control) {
-    const input = document.createElement("select");
-    for (const choice of control.choices) {
-      const option = document.createElement("option");
-      option.value = choice;
-      option.textContent = choice;
-      input.append(option);
-    }
-    const { field } = this._field(control, input);
+    const options = control.choices.map((each) => made("option", { value: each }, each));
+    const input = made("select", this._named(control), ...options);
     input.addEventListener("change", () => this.send(control.name, input.value));
     this._show.set(control.name, (value) => (input.value = value));
-    this._show.get(control.name)?.(control.value);
-    return field;
+    return this._field(control, input);
   }
 
   /** @param {Control} control */
   _button(control) {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.id = `control-${control.name}`;
-    button.textContent = labelOf(control);
-    button.title = control.description;
-    if (control.is_action) {
-      button.addEventListener("click", () => this.send(control.name, null));
-      return button;
+    const text = hasWord(control.name) ? word(control.name) : control.label;
+    const button = made("button", { ...this._named(control), type: "button" }, text);
+    const next = () => (control.is_action ? null : button.getAttribute("aria-pressed") !== "true");
+    button.addEventListener("click", () => this.send(control.name, next()));
+    if (!control.is_action) {
+      this._show.set(control.name, (value) => button.setAttribute("aria-pressed", String(Boolean(value))));
     }
-    const show = (/** @type {boolean} */ value) => button.setAttribute("aria-pressed", String(value));
-    button.addEventListener("click", () => {
-      this.send(control.name, button.getAttribute("aria-pressed") !== "true");
-    });
-    this._show.set(control.name, show);
-    show(Boolean(control.value));
     return button;
   }
 }

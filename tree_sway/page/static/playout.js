@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
  * From frames that arrive when they will to a smooth motion: shown a little late, on a curve
- * through the states (Catmull-Rom), never extrapolated.
+ * through the states (Catmull-Rom), never extrapolated. The last minute is kept to look back at.
  */
 
 import { PAUSED, RESTARTED } from "./protocol.js";
@@ -12,9 +12,9 @@ export const DELAY = 170;
 const WINDOW = 30000;
 const LONGEST_GAP = 500;
 const BLEND = 400;
-const KEPT = 64;
-
-/** @typedef {import("./protocol.js").Frame} Frame */
+/** How long states are kept [ms], and how many numbers of theirs at most. */
+const KEPT = 62000;
+const MOST_NUMBERS = 8e6;
 
 /** Difference of two clocks from one-way times: arrival less stamp is offset plus travel, so the
  * least of the last half minute is the offset and the quickest travel. */
@@ -28,17 +28,15 @@ export class ClockOffset {
   add(stamp, arrival) {
     const value = arrival - stamp;
     // A sender whose clock was set back or that started again is another clock.
-    if (this._least.length && Math.abs(value - this.value) > 5000) this._least.length = 0;
-    while (this._least.length && this._least[this._least.length - 1].value >= value) {
-      this._least.pop();
-    }
+    if (Math.abs(value - this.value) > 5000) this._least.length = 0;
+    while (this._least.length && this._least[this._least.length - 1].value >= value) this._least.pop();
     this._least.push({ at: arrival, value });
     while (this._least[0].at < arrival - WINDOW) this._least.shift();
   }
 
   /** Own clock less the sender's, and the quickest travel [ms]. */
   get value() {
-    return this._least.length ? this._least[0].value : 0;
+    return this._least[0]?.value ?? 0;
   }
 }
 
@@ -50,6 +48,8 @@ export class Playout {
     this.clock = new ClockOffset();
     /** @type {Frame[]} */
     this._frames = [];
+    /** The first since the stream was cut; those before it are for looking back. */
+    this._first = 0;
     this.received = 0;
     /** Frames that came after they were to be shown. */
     this.late = 0;
@@ -63,20 +63,37 @@ export class Playout {
     /** @type {[number, number, number]} */
     this.wind = [0, 0, 0];
     this.isPaused = false;
+    this._back = 0;
+    /** Stamp of the newest frame when people began to look back [ms]. */
+    this._from = 0;
+  }
+
+  /** How long before the moment at which people began to look back the shown one is [ms]; 0 follows
+   * the stream. */
+  get back() {
+    return this._back;
+  }
+
+  set back(back) {
+    if (!this._back) this._from = this.newest;
+    this._back = back;
   }
 
   /** Forget everything: another tree comes. */
   clear() {
     this._frames.length = 0;
+    this._first = 0;
     this._before = null;
     this._shown = null;
   }
 
   /** Take a frame. @param {Frame} frame @param {number} arrival [ms] */
   push(frame, arrival) {
-    const last = this._frames[this._frames.length - 1];
+    const frames = this._frames;
+    const last = frames[frames.length - 1];
     if (last && frame.stamp <= last.stamp) {
       if (frame.stamp > last.stamp - 1000) return; // twice, or out of order
+      frames.length = 0;
       this._cut(arrival);
     } else if (last && (frame.flags & RESTARTED || frame.stamp - last.stamp > LONGEST_GAP)) {
       this._cut(arrival);
@@ -85,15 +102,19 @@ export class Playout {
     this.clock.add(frame.stamp, arrival);
     this.lateness = arrival - frame.stamp - this.clock.value;
     if (this.lateness > this.delay) this.late++;
-    this._frames.push(frame);
-    if (this._frames.length > KEPT) this._frames.shift();
+    frames.push(frame);
+    const most = Math.max(64, MOST_NUMBERS / frame.coordinates.length);
+    while (frames[0].stamp < frame.stamp - KEPT || frames.length > most) {
+      frames.shift();
+      this._first = Math.max(this._first - 1, 0);
+    }
   }
 
   /** @param {number} now */
   _cut(now) {
     this._before = this._shown ? this._shown.slice() : null;
     this._blendFrom = now;
-    this._frames.length = 0;
+    this._first = this._frames.length;
   }
 
   /** Stamp of the newest frame [ms]; 0 before the first. */
@@ -101,44 +122,41 @@ export class Playout {
     return this._frames.length ? this._frames[this._frames.length - 1].stamp : 0;
   }
 
+  /** Frames that came after one. @param {number} stamp of that one [ms] */
+  since(stamp) {
+    return this._frames.filter((frame) => frame.stamp > stamp);
+  }
+
   /** The state to draw; null before the first frame.
    * @param {number} now own clock [ms] @returns {Float32Array | null} the same array each time */
   sample(now) {
     const frames = this._frames;
     if (!frames.length) return this._shown;
-    const time = now - this.clock.value - this.delay;
-    let after = frames.findIndex((frame) => frame.stamp > time);
-    if (after < 0) after = frames.length - 1;
-    const i2 = Math.max(after, Math.min(1, frames.length - 1));
-    const i1 = Math.max(i2 - 1, 0);
-    const a = frames[i1];
-    const b = frames[i2];
-    const span = b.stamp - a.stamp;
-    const u = span > 0 ? Math.min(Math.max((time - a.stamp) / span, 0), 1) : 1;
-    if (!this._shown || this._shown.length !== b.coordinates.length) {
-      this._shown = new Float32Array(b.coordinates.length);
-    }
-    catmullRom(frames[Math.max(i1 - 1, 0)], a, b, frames[Math.min(i2 + 1, frames.length - 1)], u,
-      this._shown);
+    const time = this._back ? this._from - this._back : now - this.clock.value - this.delay;
+    const first = this._back ? 0 : this._first;
+    let i2 = frames.length - 1;
+    while (i2 > first + 1 && frames[i2 - 1].stamp > time) i2--;
+    const i1 = Math.max(i2 - 1, first);
+    const [a, b] = [frames[i1], frames[i2]];
+    // A jump is shown as one: nothing lies between its ends.
+    const isJump = Boolean(b.flags & RESTARTED) || b.stamp - a.stamp > LONGEST_GAP;
+    const share = isJump ? Number(time >= b.stamp) : (time - a.stamp) / (b.stamp - a.stamp);
+    const u = i1 === i2 ? 1 : Math.min(Math.max(share, 0), 1);
+    if (this._shown?.length !== b.coordinates.length) this._shown = new Float32Array(b.coordinates.length);
+    catmullRom(frames[Math.max(i1 - 1, first)], a, b, frames[Math.min(i2 + 1, frames.length - 1)], u, this._shown);
     for (let c = 0; c < 3; c++) this.wind[c] = a.wind[c] + u * (b.wind[c] - a.wind[c]);
     this.isPaused = (b.flags & PAUSED) !== 0;
-    this._blend(now);
+    if (!this._back) this._blend(now, this._shown);
     return this._shown;
   }
 
-  /** @param {number} now */
-  _blend(now) {
-    const shown = this._shown;
-    if (!this._before || !shown || this._before.length !== shown.length) return;
+  /** @param {number} now @param {Float32Array} shown */
+  _blend(now, shown) {
     const u = (now - this._blendFrom) / BLEND;
-    if (u >= 1) {
-      this._before = null;
-      return;
-    }
+    if (u >= 1 || this._before?.length !== shown.length) this._before = null;
+    if (!this._before) return;
     const share = u * u * (3 - 2 * u);
-    for (let i = 0; i < shown.length; i++) {
-      shown[i] = this._before[i] + share * (shown[i] - this._before[i]);
-    }
+    for (let i = 0; i < shown.length; i++) shown[i] = this._before[i] + share * (shown[i] - this._before[i]);
   }
 }
 
@@ -149,17 +167,12 @@ export function catmullRom(a, b, c, d, u, out) {
   const span = c.stamp - b.stamp;
   const before = c.stamp - a.stamp;
   const behind = d.stamp - b.stamp;
-  const u2 = u * u;
-  const u3 = u2 * u;
-  const hb = 2 * u3 - 3 * u2 + 1;
-  const hc = 3 * u2 - 2 * u3;
+  const [u2, u3] = [u * u, u * u * u];
+  const [hb, hc] = [2 * u3 - 3 * u2 + 1, 3 * u2 - 2 * u3];
   const sb = before > 0 ? ((u3 - 2 * u2 + u) * span) / before : 0;
   const sc = behind > 0 ? ((u3 - u2) * span) / behind : 0;
   for (let i = 0; i < out.length; i++) {
-    out[i] =
-      hb * b.coordinates[i] +
-      hc * c.coordinates[i] +
-      sb * (c.coordinates[i] - a.coordinates[i]) +
-      sc * (d.coordinates[i] - b.coordinates[i]);
+    out[i] = hb * b.coordinates[i] + hc * c.coordinates[i]
+      + sb * (c.coordinates[i] - a.coordinates[i]) + sc * (d.coordinates[i] - b.coordinates[i]);
   }
 }

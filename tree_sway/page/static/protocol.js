@@ -5,7 +5,7 @@
  * need no other frame. Reads what tree_sway/page/protocol.py writes.
  */
 
-import { checkKind, checkTrees, ProtocolError, need } from "./checks.js";
+import { checkKind, checkTrees, ProtocolError, need, TYPES } from "./checks.js";
 
 export { ProtocolError };
 
@@ -25,56 +25,9 @@ const MAGIC = { description: "TSWD", tables: "TSWT" };
 const FRAME_KIND = 0x46;
 const FRAME_SIZE = 28;
 
-/**
- * @typedef {Float32Array | Int32Array | Int16Array | Uint8Array} NumberArray
- *
- * @typedef {object} Kind what trees of one shape share
- * @property {string} species
- * @property {number} height [m]
- * @property {string} model
- * @property {number} basis_error what the basis leaves out [m]
- * @property {string[]} branch_names
- * @property {number} nSegments
- * @property {number} nBranches
- * @property {number} nCoordinates
- * @property {number} nKeys key rotations
- * @property {Record<string, NumberArray>} arrays
- *
- * @typedef {object} Tree
- * @property {string} name
- * @property {number} kind its number among the kinds
- * @property {number} height [m]
- * @property {number[]} place x, y, z [m], how far it is turned about the vertical [rad], its scale
- * @property {number} firstSegment among those of all trees
- * @property {number} firstCoordinate
- *
- * @typedef {object} Description
- * @property {string} name
- * @property {string} frame_id
- * @property {string} identity
- * @property {number} shortIdentity what frames carry of the identity
- * @property {Kind[]} kinds
- * @property {Tree[]} trees
- * @property {{gain: number, largest_angle: number} | null} flutter law of the leaves
- * @property {number} nSegments of all trees
- * @property {number} nCoordinates
- * @property {Float32Array} scale of each coordinate at full scale
- *
- * @typedef {object} Frame
- * @property {number} identity
- * @property {number} sequence
- * @property {number} stamp [ms], of the sender's clock
- * @property {number} flags
- * @property {[number, number, number]} wind blowing to [m/s]
- * @property {Float32Array} coordinates in their own unit; none in a frame of the wind alone
- * @property {number} first number of the first of them
- */
-
 /** Largest message with a description, and header in it [bytes]. */
 export const LARGEST_DESCRIPTION = 64 * 2 ** 20;
 const LARGEST_HEADER = 8 * 2 ** 20;
-
-const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: Uint8Array };
 
 /** Do what reads a message; whatever goes wrong is a `ProtocolError`.
  * @template T @param {keyof typeof MAGIC} what @param {() => T} read @returns {T} */
@@ -93,7 +46,6 @@ export const decodeDescription = (data) => reading("description", () => decoded(
 
 /**
  * Take a message of a header and arrays apart, within `reading`.
- * @typedef {Record<string, {values: NumberArray, shape: number[]}>} Arrays
  * @param {ArrayBuffer} data @param {keyof typeof MAGIC} what
  * @returns {{header: Record<string, any>, kinds: Arrays[], own: Arrays}} own arrays are those of no kind
  */

@@ -16,8 +16,9 @@
  *     placer.place(stand.write(coordinates));     // coordinates of the description, then poses
  */
 
-import { need, ProtocolError, sizesOf } from "./checks.js";
+import { FORMS, need, ProtocolError, sizesOf } from "./checks.js";
 import { reading, unpack } from "./protocol.js";
+import { Touch } from "./touch.js";
 
 /** Time step of a stand unless it is given another [s]. */
 export const STEP = 1 / 60;
@@ -38,36 +39,8 @@ const [SLOWEST_GUST, LARGEST_STRETCH, AVERAGING, MEMORY] = [0.5, 0.5, 60, 60];
 
 /** Functions up to each degree of the harmonics. @type {Record<number, number>} */
 const HARMONICS = { 1: 3, 3: 10, 5: 21 };
-const [A, N] = [AZIMUTHS, LEVELS];
-/** Type and axes of each array of a kind; of slopes as of rows of m x m.
- * @type {Record<string, [Function, ...(string | number)[]]>} */
-const ARRAYS = {
-  stiffness: [Float32Array, "m"],
-  own_damping: [Float32Array, "m"],
-  motion: [Float32Array, "m"],
-  levels: [Float32Array, A, N],
-  harmonics: [Float32Array, "h", "m"],
-  standing: [Float32Array, A, N, "m"],
-  amount: [Float32Array, A, "m"],
-  load: [Float32Array, A, N, "m"],
-  state: [Float32Array, "m", "n"],
-  correction: [Float32Array, "n", "m"],
-};
-/** @type {Record<string, number>} */
-const SLOPES = { turning: A * N, damping: A * N, lean: A, steep_turning: 2, steep_damping: 2 };
-for (const [name, rows] of Object.entries(SLOPES)) {
-  ARRAYS[`${name}_rows`] = [Float32Array, rows, `${name} rank`];
-  ARRAYS[`${name}_shapes`] = [Int16Array, `${name} rank`, "m m"];
-}
-
-/**
- * @typedef {object} Tables
- * @property {string} description identity of what they belong to
- * @property {number[] | null} anemometer where the wind is measured [m]; upwind of all if null
- * @property {number} ratio speed of gusts over that of the mean wind
- * @property {Table[]} kinds
- * @property {ArrayLike<number>} speeds wind of each tree over that of its kind
- */
+/** Slopes by the wind's azimuth and level, and rows of each. */
+const SLOPES = { turning: AZIMUTHS * LEVELS, damping: AZIMUTHS * LEVELS, lean: AZIMUTHS, steep_turning: 2, steep_damping: 2 };
 
 /** Read tables; a `ProtocolError` with a sentence if they are damaged.
  * @param {ArrayBuffer} data @returns {Tables} */
@@ -88,9 +61,9 @@ function decoded(data) {
 
 /** What an even wind does to the coordinates of a kind of tree. */
 export class Table {
-  /** @param {Record<string, any>} numbers @param {import("./protocol.js").Arrays} arrays */
+  /** @param {Record<string, any>} numbers @param {Arrays} arrays */
   constructor(numbers, arrays) {
-    const size = sizesOf(arrays, ARRAYS);
+    const size = sizesOf(arrays, FORMS.tables);
     const { m, n } = size;
     const { degree, most_pressure: mostPressure, most_energy: mostEnergy, drag_law: law } = numbers;
     need(m > 0 && m <= MOST_COORDINATES && size["m m"] === m * m, "stiffness");
@@ -120,18 +93,19 @@ export class Table {
     this.load = of("load");
     this.state = of("state");
     this.correction = of("correction");
-    const slopes = (/** @type {string} */ name) => this._slopes(arrays, name, size[`${name} rank`]);
+    const slopes = (/** @type {keyof typeof SLOPES} */ name) => this._slopes(arrays, name, size[`${name} rank`]);
     // Turning and damping side by side: they are read together.
-    this.slopes = paired(slopes("turning"), slopes("damping"));
-    this.steep = paired(slopes("steep_turning"), slopes("steep_damping"));
-    this.lean = slopes("lean");
+    this.slopes = rowsOf(paired(slopes("turning"), slopes("damping")), 2 * m * m);
+    this.steep = rowsOf(paired(slopes("steep_turning"), slopes("steep_damping")), 2 * m * m);
+    this.lean = rowsOf(Float64Array.from(slopes("lean")), m * m);
     /** What is worked in. */
     this.scratch = Array.from({ length: 8 }, () => new Float64Array(m));
     this.values = new Float64Array(size.h);
   }
 
   /** Slopes from their factors, by the coordinate that is loaded and then the one that moves.
-   * @param {import("./protocol.js").Arrays} arrays @param {string} name @param {number} rank */
+   * @param {Arrays} arrays @param {keyof typeof SLOPES} name
+   * @param {number} rank */
   _slopes(arrays, name, rank) {
     const { m, stiffness } = this;
     const [rows, shapes] = [arrays[`${name}_rows`].values, arrays[`${name}_shapes`].values];
@@ -166,6 +140,10 @@ function paired(a, b) {
   for (let i = 0; i < a.length; i++) [both[2 * i], both[2 * i + 1]] = [a[i], b[i]];
   return both;
 }
+
+/** @param {Float64Array} all @param {number} size of a row */
+const rowsOf = (all, size) =>
+  Array.from({ length: all.length / size }, (_, row) => all.subarray(row * size, (row + 1) * size));
 
 /**
  * How oscillators of unit inertia go on exactly in a time under a constant force, per coordinate:
@@ -249,6 +227,19 @@ export class TreeState {
     }
     return isOutside;
   }
+
+  /** Write the coordinates of the description that hold this state, or their rates.
+   * @template {Float32Array | Float64Array} T @param {T} out @param {number} [from]
+   * @param {"eta" | "rate"} [what] @returns {T} */
+  coordinates(out, from = 0, what = "eta") {
+    const { m, n, state: matrix } = this.table;
+    for (let k = 0; k < n; k++) {
+      let sum = 0;
+      for (let i = 0; i < m; i++) sum += this[what][i] * matrix[i * n + k];
+      out[from + k] = sum;
+    }
+    return out;
+  }
 }
 
 /** Modal forces of an even wind on a tree half a step on, and the diagonal of their slope by the
@@ -280,39 +271,39 @@ function windForce(table, [x, y, z], push, drag) {
     leaned[i] = Math.fround(f4 * Math.fround(eta[i]));
   }
   const dragged = drag * Math.sqrt(moving);
-  const [s4, pole] = [Math.fround(steep), z > 0 ? 2 * m * m : 0];
-  const row = 2 * m;
-  for (let i = 0; i < m; i++) {
-    const [pa, pb] = [2 * m * (ia + i), 2 * m * (ia + m + i)];
-    const [pc, pd] = [2 * m * (ic + i), 2 * m * (ic + m + i)];
-    const own = 2 * i + 1;
-    diagonal[i] = dragged
-      * (a * slopes[pa + own] + b * slopes[pb + own] + c * slopes[pc + own] + d * slopes[pd + own]);
-    let [ta, tb, tc, td, va, vb, vc, vd] = [0, 0, 0, 0, 0, 0, 0, 0];
-    for (let k = 0, at = 0; k < m; k++, at += 2) {
+  const s4 = Math.fround(steep);
+  const [corner, other] = [first * LEVELS + j, second * LEVELS + j];
+  const [sa, sb, sc, sd] = [slopes[corner], slopes[corner + 1], slopes[other], slopes[other + 1]];
+  const [here, there, pole] = [lean[first], lean[second], poles[z > 0 ? 1 : 0]];
+  for (let i = 0, at = 0, flat = 0; i < m; i++) {
+    const own = at + 2 * i + 1;
+    diagonal[i] = dragged * (a * sa[own] + b * sb[own] + c * sc[own] + d * sd[own]);
+    let ta = 0, tb = 0, tc = 0, td = 0;
+    let va = 0, vb = 0, vc = 0, vd = 0;
+    for (let k = 0; k < m; k++, at += 2) {
       const o = off[k];
       const r = rate[k];
-      ta += o * slopes[pa + at];
-      va += r * slopes[pa + at + 1];
-      tb += o * slopes[pb + at];
-      vb += r * slopes[pb + at + 1];
-      tc += o * slopes[pc + at];
-      vc += r * slopes[pc + at + 1];
-      td += o * slopes[pd + at];
-      vd += r * slopes[pd + at + 1];
+      ta += o * sa[at];
+      va += r * sa[at + 1];
+      tb += o * sb[at];
+      vb += r * sb[at + 1];
+      tc += o * sc[at];
+      vc += r * sc[at + 1];
+      td += o * sd[at];
+      vd += r * sd[at + 1];
     }
     let turned = a4 * ta + b4 * tb + c4 * tc + d4 * td;
     let damped = a4 * va + b4 * vb + c4 * vc + d4 * vd;
     if (slant !== 0) {
-      const [p, q] = [(first * m + i) * m, (second * m + i) * m];
-      for (let k = 0; k < m; k++) turned += leaning[k] * lean[p + k] + leaned[k] * lean[q + k];
+      let lean = 0;
+      for (let k = 0; k < m; k++, flat++) lean += leaning[k] * here[flat] + leaned[k] * there[flat];
+      turned += lean;
     }
     if (steep > 0) {
-      let p = pole + row * i;
-      diagonal[i] += dragged * steep * poles[p + own];
-      for (let k = 0; k < m; k++) {
-        turned += Math.fround(s4 * Math.fround(eta[k])) * poles[p++];
-        damped += s4 * rate[k] * poles[p++];
+      diagonal[i] += dragged * steep * pole[own];
+      for (let k = 0, p = 2 * m * i; k < m; k++) {
+        turned += Math.fround(s4 * Math.fround(eta[k])) * pole[p++];
+        damped += s4 * rate[k] * pole[p++];
       }
     }
     force[i] = push * (force[i] + turned) + dragged * damped;
@@ -426,7 +417,7 @@ class Gusts {
 
 /** Described trees that sway in one wind. */
 export class Stand {
-  /** @param {Tables} tables @param {import("./protocol.js").Description} description
+  /** @param {Tables} tables @param {Description} description
    * @param {number} [dt] time step [s] */
   constructor(tables, description, dt = STEP) {
     const { kinds, trees, identity } = description;
@@ -440,6 +431,8 @@ export class Stand {
     this.outside = 0;
     /** @type {Map<string, Float64Array>} */
     const propagators = new Map();
+    /** Pushes by the numbers of trees. @type {Map<number, Touch>} */
+    this._touches = new Map();
     this.trees = trees.map(({ kind, place, firstCoordinate }, number) => {
       const table = tables.kinds[kind];
       const step = Math.round(Math.log(place[4]) / FINEST_SCALE);
@@ -466,21 +459,33 @@ export class Stand {
     this.trees.forEach(({ state, half, whole, speed, turn: [c, s] }, i) => {
       const [u, v, w] = this._gusts.felt[i];
       if (state.step(half, whole, c * u + s * v, c * v - s * u, speed * w)) this.outside++;
+      const touch = this._touches.get(i);
+      if (!touch) return;
+      const goesOn = touch.step(state, state.coordinates(new Float64Array(state.table.n)), half, whole, this.dt);
+      if (!goesOn) this._touches.delete(i);
     });
+  }
+
+  /** Push at the root side of a segment, or pull it by a spring, while the trees go on swaying.
+   * @param {Push} push a spring of no stiffness lets go
+   * @param {number} [seconds] that it lasts unless it is renewed [s] */
+  push(push, seconds = push.to && !push.stiffness ? 1e-6 : 0.5) {
+    const { segment, force = [], to = [], stiffness = 0 } = push;
+    const { trees, kinds } = this.description;
+    const tree = trees.findIndex(({ kind, firstSegment: from }) =>
+      segment >= from && segment < from + kinds[kind].nSegments);
+    need(Number.isInteger(segment) && tree >= 0, "segment");
+    need([...force, ...to].length === 3 && [...force, ...to, stiffness, seconds].every(Number.isFinite), "push");
+    need(stiffness >= 0 && seconds > 0, "push");
+    if (!this._touches.has(tree)) this._touches.set(tree, new Touch(this.description, tree));
+    this._touches.get(tree)?.add(push, seconds);
   }
 
   /** Write the coordinates of the description that hold the state, or their rates.
    * @template {Float32Array | Float64Array} T @param {T} out @param {"eta" | "rate"} [what]
    * @returns {T} */
   write(out, what = "eta") {
-    for (const { state, firstCoordinate } of this.trees) {
-      const { m, n, state: matrix } = state.table;
-      for (let k = 0; k < n; k++) {
-        let sum = 0;
-        for (let i = 0; i < m; i++) sum += state[what][i] * matrix[i * n + k];
-        out[firstCoordinate + k] = sum;
-      }
-    }
+    for (const { state, firstCoordinate } of this.trees) state.coordinates(out, firstCoordinate, what);
     return out;
   }
 

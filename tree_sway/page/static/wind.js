@@ -58,18 +58,25 @@ export class Recorded {
   constructor(times, winds) {
     this.times = times;
     this.winds = winds;
-    this._time = times[0];
+    this.length = times[times.length - 1] - times[0];
+    this.time = 0;
     this._row = 0;
+  }
+
+  /** Go on from a time after the beginning [s]. @param {number} time */
+  seek(time) {
+    [this.time, this._row] = [time, 0];
   }
 
   /** Mean wind of the next step. @param {number} dt [s] */
   next(dt) {
     const { times, winds } = this;
-    this._time += dt;
-    if (this._time > times[times.length - 1]) [this._time, this._row] = [times[0], 0];
-    while (times[this._row + 1] < this._time) this._row++;
+    this.time += dt;
+    if (this.time > this.length) this.seek(0);
+    const now = times[0] + this.time;
+    while (times[this._row + 1] < now) this._row++;
     const [a, b] = [this._row, this._row + 1];
-    const u = (this._time - times[a]) / (times[b] - times[a]);
+    const u = (now - times[a]) / (times[b] - times[a]);
     return winds[a].map((each, c) => each + u * (winds[b][c] - each));
   }
 }

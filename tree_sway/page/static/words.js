@@ -17,7 +17,7 @@ export function setLanguage(language) {
   document.documentElement.lang = LANGUAGES[chosen];
   for (const each of document.querySelectorAll("[data-word]")) {
     const text = word(/** @type {HTMLElement} */ (each).dataset.word ?? "");
-    if (each.matches("#tools button")) {
+    if (each.matches("#tools button, input")) {
       each.setAttribute("title", text);
       each.setAttribute("aria-label", text);
     } else each.textContent = text;

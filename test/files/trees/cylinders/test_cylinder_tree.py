@@ -29,7 +29,8 @@ def cylinders_of(rows, continues=None):
 
 
 def built(rows, continues=None, **options):
-    return TreeOptions(**options).applied(tree_of_cylinders(cylinders_of(rows, continues), FILE))
+    options = TreeOptions(**{'twig_diameter': 0.0, **options})
+    return options.applied(tree_of_cylinders(cylinders_of(rows, continues), FILE))
 
 
 STEM = [((0, 0, 0), (0, 0, 1), 0.2, -1), ((0, 0, 1), (0, 0, 2), 0.1, 0)]

@@ -1,7 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 import io
-import os
 import struct
 
 import numpy as np
@@ -86,31 +85,3 @@ def test_cells_in_cells_without_end(file):
     file.write_bytes(mat_bytes({})[:128] + array(1, inside, b'QSM'))
     with pytest.raises(FormatError, match='nested deeper than 8'):
         read_mat(file)
-
-
-class TestVersion73:
-    """Files of version 7.3, which are HDF5."""
-
-    @pytest.fixture
-    def h5py(self):
-        return pytest.importorskip('h5py', reason='h5py is not installed')
-
-    def test_another_file_is_not_followed(self, h5py, file, tmp_path):
-        (tmp_path / 'secret').write_bytes(np.arange(4.0).tobytes())
-        with h5py.File(file, 'w') as stream:
-            stream.create_dataset('a', (4,), 'f8', external=[(str(tmp_path / 'secret'), 0, 32)])
-        with pytest.raises(FormatError, match='/a is stored in another file'):
-            read_mat(file)
-        with h5py.File(tmp_path / 'other.h5', 'w') as stream:
-            stream['b'] = np.ones(3)
-        with h5py.File(file, 'w') as stream:
-            stream['link'] = h5py.ExternalLink(os.fspath(tmp_path / 'other.h5'), 'b')
-            stream['own'] = np.ones(3)
-        assert list(read_mat(file)) == ['own']
-
-    def test_a_group_inside_itself(self, h5py, file):
-        with h5py.File(file, 'w') as stream:
-            group = stream.create_group('a')
-            group['a'] = group
-        with pytest.raises(FormatError, match='nested deeper than 8'):
-            read_mat(file)

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from tree_sway.errors import FormatError, MissingDependencyError, TreeError, TreeSwayError
+from tree_sway.errors import FormatError, TreeError, TreeSwayError
 from tree_sway.files.trees.formats.treeqsm import read_treeqsm_text
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 
 DATA = Path(__file__).parents[2] / 'data'
 CYLINDER_FILES = ['fork.simpleforest.csv', 'fork.archi.csv', 'fork.treeqsm23.txt',
                   'fork.treeqsm24.txt', 'fork.pytlidar.txt']  # fmt: skip
+AS_SCANNED = {'twig_diameter': 0.0}
 OFFSET = (100.0, 200.0, 50.0)
 VOLUME = np.pi * (0.10**2 + 0.08**2 + 0.03**2 + 0.02**2)
 
@@ -34,14 +35,14 @@ def assert_is_the_fork(tree_file, volume=VOLUME):
 
 @pytest.mark.parametrize('name', CYLINDER_FILES)
 def test_the_same_tree_from_each(name):
-    assert_is_the_fork(read_tree(DATA / name))
+    assert_is_the_fork(read_tree(DATA / name, **AS_SCANNED))
 
 
 @pytest.mark.parametrize('name', CYLINDER_FILES)
 def test_where_it_stands_is_reported_or_kept(name):
-    moved = read_tree(DATA / name)
+    moved = read_tree(DATA / name, **AS_SCANNED)
     assert 'moved by -100, -200, -50 m, the base to the origin' in moved.notes
-    kept = read_tree(DATA / name, to_origin=False)
+    kept = read_tree(DATA / name, to_origin=False, **AS_SCANNED)
     np.testing.assert_allclose(kept.tree.start[0], OFFSET)
     assert kept.notes == ()
 
@@ -62,7 +63,7 @@ def columns_of_fork(base=1):
 def test_matlab_structs(tmp_path, compressed):
     path = tmp_path / 'fork.mat'
     savemat(path, {'QSM': {'cylinder': columns_of_fork(), 'x': 1}}, do_compression=compressed)
-    assert_is_the_fork(read_tree(path))
+    assert_is_the_fork(read_tree(path, **AS_SCANNED))
 
 
 def test_matlab_arrays_of_structs(tmp_path):
@@ -70,32 +71,16 @@ def test_matlab_arrays_of_structs(tmp_path):
     structs = np.array([(columns_of_fork(),), (columns_of_fork(),)], dtype=[('cylinder', object)])
     for models in (cells, structs):
         savemat(tmp_path / 'two.mat', {'models': models})
-        for tree_file in read_trees(tmp_path / 'two.mat'):
+        for tree_file in read_trees(tmp_path / 'two.mat', **AS_SCANNED):
             assert_is_the_fork(tree_file)
         assert read_tree(tmp_path / 'two.mat').notes[-1] == 'the file holds 1 more trees'
 
 
-@pytest.mark.parametrize('referenced', [False, True])
-def test_matlab_7_3(tmp_path, referenced):
-    h5py = pytest.importorskip('h5py', reason='h5py is not installed')
-    path = tmp_path / 'fork.mat'
-    with h5py.File(path, 'w', userblock_size=512) as file:
-        inside = '#refs#/a' if referenced else 'QSM/cylinder'
-        for name, values in columns_of_fork().items():
-            file[f'{inside}/{name}'] = np.atleast_2d(values.T)
-        if referenced:
-            file.create_dataset('QSM/cylinder', (1, 1), dtype=h5py.ref_dtype)
-            file['QSM/cylinder'][0, 0] = file[inside].ref
-    with path.open('r+b') as stream:
-        stream.write(b'MATLAB 7.3 MAT-file, Platform: GLNXA64'.ljust(512))
-    assert_is_the_fork(read_tree(path))
-
-
-def test_matlab_7_3_without_h5py(tmp_path, monkeypatch):
-    (tmp_path / 'h5py.py').write_text("raise ModuleNotFoundError(name='h5py')")
-    monkeypatch.setenv('PYTHONPATH', str(tmp_path))
-    (tmp_path / 'new.mat').write_bytes(b'MATLAB 7.3 MAT-file'.ljust(600))
-    with pytest.raises(MissingDependencyError, match='needs h5py; pip install h5py'):
+def test_matlab_7_3_says_how_to_save_it(tmp_path):
+    (tmp_path / 'new.mat').write_bytes(
+        b'MATLAB 7.3 MAT-file'.ljust(124) + b'\x00\x02IM' + bytes(400)
+    )
+    with pytest.raises(FormatError, match=r'v7\.3 files.*; save it again with the option -v7'):
         read_tree(tmp_path / 'new.mat')
 
 
@@ -162,15 +147,15 @@ def test_a_bare_matrix_of_cylinders(tmp_path, stretch):
     for separator in ('\t', ' ', ',', '; '):
         rows = [separator.join(f'{value:.9g}' for value in row) for row in matrix]
         (tmp_path / 'a.txt').write_text('\n'.join(rows))
-        assert_is_the_fork(read_tree(tmp_path / 'a.txt'))
+        assert_is_the_fork(read_tree(tmp_path / 'a.txt', **AS_SCANNED))
         (tmp_path / 'b.txt').write_text('\n'.join([separator.join('abcdefghijklmn'), *rows]))
-        assert_is_the_fork(read_tree(tmp_path / 'b.txt'))
+        assert_is_the_fork(read_tree(tmp_path / 'b.txt', **AS_SCANNED))
 
 
 def test_a_first_row_does_not_mislead(tmp_path):
     text = (DATA / 'fork.treeqsm23.txt').read_text().replace('0\t0\t1\t0\t3', '0\t0\t0.5\t0\t3', 1)
     (tmp_path / 'a.txt').write_text(text)
-    assert_is_the_fork(read_tree(tmp_path / 'a.txt'))
+    assert_is_the_fork(read_tree(tmp_path / 'a.txt', **AS_SCANNED))
     (tmp_path / 'a.txt').write_text(text.replace('0\t0\t0.5\t0\t3', '0\t0\t0\t0\t3', 1))
     with pytest.raises(FormatError, match=r'a.txt:1: cylinder 1: an axis of no direction'):
         read_tree(tmp_path / 'a.txt')

@@ -32,7 +32,7 @@ def test_swc_in_micrometres():
 
 
 def test_treefile_of_two_trees():
-    fork, pole = read_trees(DATA / 'forest.treefile.txt')
+    fork, pole = read_trees(DATA / 'forest.treefile.txt', twig_diameter=0.0)
     assert (fork.tree.name, pole.tree.name) == ('forest.treefile1', 'forest.treefile2')
     assert (fork.tree.n_segments, fork.tree.n_branches) == (4, 2)
     volume = np.pi * (0.1**2 + 0.08**2 + 0.03**2 * np.sqrt(0.61) + 0.02**2)

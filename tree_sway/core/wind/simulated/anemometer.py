@@ -1,20 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A simulated anemometer: mean wind, turbulence and events, sampled tick by tick without end.
+A simulated anemometer: mean wind and turbulence, sampled tick by tick without end.
 
 The turbulence is one period of a `Turbulence`, over and over: its end joins its beginning.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
-from tree_sway.core.wind.simulated.gust_event import GustEvent, with_events
 from tree_sway.core.wind.simulated.turbulence import (
     along_bearing,
     SHORTEST_PERIOD,
@@ -35,14 +32,10 @@ class AnemometerModel:
         Mean wind speed in [m/s], 0 to 40; a mean of 0 has no turbulence.
     bearing_to
         Where the mean wind blows to, clockwise from north in [rad]; the default is a westerly.
-    turbulence
-        ``kaimal``, ``von_karman`` or ``none``.
     height, intensity
         As in `Turbulence`.
     rate
         Samples per second in [Hz], 1 to 100.
-    events
-        Gusts, steps and turns, timed from tick 0.
     seed
         Seed of the turbulence. Under one seed the gusts keep their pattern when speed or intensity
         change, so that a live change makes no jump but its own.
@@ -59,33 +52,25 @@ class AnemometerModel:
         mean_speed: float = 5.0,
         *,
         bearing_to: float = 0.5 * np.pi,
-        turbulence: str = 'kaimal',
         height: float = 10.0,
         intensity: float | None = None,
         rate: float = 20.0,
-        events: Sequence[GustEvent] = (),
         seed: int = 0,
     ) -> None:
         """Check the parameters."""
         within('mean_speed', mean_speed, 0.0, 40.0, 'm/s')
-        self.rate = within('rate', rate, 1.0, 100.0, 'Hz')
-        """Samples per second in [Hz]."""
+        within('rate', rate, 1.0, 100.0, 'Hz')
         self._bearing_to = within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
-        self._events = tuple(events)
         self._mean = np.array([mean_speed, 0.0, 0.0])
         self._gusts = np.zeros((1, 3))
-        if turbulence != 'none':
-            parameters = Turbulence(mean_speed or 1.0, turbulence, height, intensity)
-            rng = np.random.default_rng(int(within('seed', seed, 0, 2**63)))
-            if mean_speed > 0.0:
-                n_samples = max(_SAMPLES, round(SHORTEST_PERIOD * rate))
-                self._gusts = parameters.record(n_samples, rate, rng)
+        turbulence = Turbulence(mean_speed or 1.0, height, intensity)
+        rng = np.random.default_rng(int(within('seed', seed, 0, 2**63)))
+        if mean_speed > 0.0:
+            n_samples = max(_SAMPLES, round(SHORTEST_PERIOD * rate))
+            self._gusts = turbulence.record(n_samples, rate, rng)
 
     def sample(self, tick: int) -> Floats:
         """Wind at a tick of the sample period from 0 on: blowing to, ENU in [m/s], (3,)."""
         within('tick', tick, 0, 2**63)
         wind = self._mean + self._gusts[tick % len(self._gusts)]
-        enu = along_bearing(wind, self._bearing_to)
-        if not self._events:
-            return enu
-        return with_events(tick / self.rate, enu, self._events, self._bearing_to)
+        return along_bearing(wind, self._bearing_to)

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Turbulent wind at one point: records drawn from a spectrum of `SPECTRA`.
+Turbulent wind at one point: records drawn from Kaimal's spectra (IEC 61400-1:2005, annex B.2).
 
 A record is the inverse FFT of the spectrum with fixed amplitudes and random phases (Shinozuka &
 Deodatis 1991), the usual practice of wind engineering: every record holds its spectrum line by
@@ -28,11 +28,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import one_of, within
-from tree_sway.core.wind.simulated.spectra import SPECTRA
+from tree_sway.core.checks import within
 
 # IEC 61400-1: standard deviations over that of u, for u, v, w.
 _DEVIATION_RATIOS = np.array([1.0, 0.8, 0.5])
+# Integral scales of u, v, w over Lambda1.
+_SCALE_RATIOS = np.array([8.1, 2.7, 0.66])
 
 STRESS = -1.0 / 3.0
 """
@@ -57,8 +58,6 @@ class Turbulence:
     ----------
     mean_speed
         Mean wind speed in [m/s], above 0 and up to 40.
-    model
-        Spectrum, one of `SPECTRA`.
     height
         Height above the ground in [m]; sets the integral scales.
     intensity
@@ -72,13 +71,11 @@ class Turbulence:
     """
 
     mean_speed: float
-    model: str = 'kaimal'
     height: float = 10.0
     intensity: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse what no wind can be."""
-        one_of('spectrum', self.model, SPECTRA)
         within('mean_speed', self.mean_speed, 0.0, 40.0, 'm/s', above=True)
         within('height', self.height, 0.0, 1000.0, 'm', above=True)
         if self.intensity is not None:
@@ -96,18 +93,14 @@ class Turbulence:
     @cached_property
     def scales(self) -> Floats:
         """Integral scales of u, v, w in [m], (3,)."""
-        return turbulence_scale(self.height) * np.array(SPECTRA[self.model].scales)
+        return turbulence_scale(self.height) * _SCALE_RATIOS
 
     def spectrum(self, frequency: ArrayLike) -> Floats:
         """Return one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3)."""
-        of_component = SPECTRA[self.model].of_component
-        columns = [
-            of_component(frequency, self.mean_speed, deviation, scale, across=component > 0)
-            for component, (deviation, scale) in enumerate(
-                zip(self.deviations.tolist(), self.scales.tolist(), strict=True)
-            )
-        ]
-        return np.stack(columns, axis=-1)
+        time = self.scales / self.mean_speed
+        x = np.asarray(frequency, dtype=np.float64)[..., None] * time
+        spectra: Floats = self.deviations**2 * 4.0 * time / (1.0 + 6.0 * x) ** (5 / 3)
+        return spectra
 
     def record(self, n_samples: int, rate: float, rng: np.random.Generator) -> Floats:
         """
@@ -180,7 +173,6 @@ def simulate_turbulence(
     rate: float,
     duration: float,
     rng: np.random.Generator,
-    model: str = 'kaimal',
     height: float = 10.0,
     intensity: float | None = None,
     bearing_to: float = 0.5 * np.pi,
@@ -190,7 +182,7 @@ def simulate_turbulence(
 
     Parameters
     ----------
-    mean_speed, model, height, intensity
+    mean_speed, height, intensity
         As in `Turbulence`.
     rate
         Samples per second in [Hz], up to 1000.
@@ -213,7 +205,7 @@ def simulate_turbulence(
         If a value is out of its range.
 
     """
-    turbulence = Turbulence(mean_speed, model, height, intensity)
+    turbulence = Turbulence(mean_speed, height, intensity)
     within('rate', rate, 0.0, 1000.0, 'Hz', above=True)
     within('duration', duration, 0.0, 1e6, 's', above=True)
     within('bearing_to', bearing_to, -1e3, 1e3, 'rad')

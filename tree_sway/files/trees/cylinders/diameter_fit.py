@@ -13,35 +13,27 @@ from dataclasses import replace
 
 import numpy as np
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.tree.tree import Tree
-
-_LEAST_DIAMETER = 1e-4
 
 
 def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -> Tree:
     """
-    Make what is thinner than a scan can see taper to a measured twig diameter, both in [m].
+    Make what is thinner than a scan can see as thin as it is, diameters in [m].
 
-    From the place where a branch first gets thinner than is trusted, its diameter falls in a
-    straight line to that of a twig at its tip; it begins no thicker than what it sits on. After
-    the idea of Morales & MacFarlane (2024, Forestry), which replaces the radii of untrusted
-    cylinders by a taper towards twigs measured by hand.
+    What is as thick as the ends of branches are in the scan, in the median, gets the diameter of a
+    twig; what is as thick as is trusted stays, and between the two diameters follow in a straight
+    line. After the idea of Morales & MacFarlane (2024, Forestry), which lets untrusted cylinders
+    taper to twigs measured by hand. Nothing becomes thicker, and a scan that ends in thicker wood
+    than is trusted, or in thinner than twigs, stays as it is.
     """
-    base, tip = tree.base_diameter.copy(), tree.tip_diameter.copy()
-    for branch in range(tree.n_branches):
-        part = tree.segments_of(branch)
-        reach = np.concatenate([[0.0], np.cumsum(tree.length[part])])
-        thin = np.flatnonzero(base[part] < trusted_diameter)
-        if len(thin) == 0:
-            continue
-        first = int(thin[0])
-        widest = float(base[part][first])
-        if first > 0:
-            widest = min(widest, float(tip[part][first - 1]))
-        elif tree.segment_parent[part.start] >= 0:
-            widest = min(widest, float(base[tree.segment_parent[part.start]]))
-        widest = max(widest, twig_diameter, _LEAST_DIAMETER)
-        along = (reach - reach[first]) / (reach[-1] - reach[first])
-        line = np.maximum(widest + (twig_diameter - widest) * along, _LEAST_DIAMETER)
-        base[part][first:], tip[part][first:] = line[first:-1], line[first + 1 :]
+    end = float(np.median(tree.tip_diameter[tree.branch_first[1:] - 1]))
+    if not twig_diameter < end < trusted_diameter:
+        return tree
+
+    def thinned(diameter: Floats) -> Floats:
+        seen = np.interp(diameter, [end, trusted_diameter], [twig_diameter, trusted_diameter])
+        return np.where(diameter < trusted_diameter, np.minimum(seen, diameter), diameter)
+
+    base, tip = thinned(tree.base_diameter), thinned(tree.tip_diameter)
     return replace(tree, base_diameter=base, tip_diameter=tip)

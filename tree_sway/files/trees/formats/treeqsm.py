@@ -21,48 +21,29 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
+from tree_sway.files.file_format import FileFormat
 from tree_sway.files.table_file import parse_columns
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.mat_file import looks_like_mat, numbers, read_mat
-from tree_sway.files.trees.tree_format import TreeFormat
 
 _FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extension': 1}
 """Fields of ``cylinder`` in the order of the columns, and their widths."""
 _COLUMNS = 10
 _LEAST_COLUMNS = 13
-"""Fewer columns do not distinguish a matrix of cylinders from other tables."""
-_MANY = 15
-"""Rows from the beginning of a text that are judged."""
-
-
-def _are_cylinders(table: NDArray[np.generic]) -> bool:
-    """Whether a matrix is a table of cylinders: seven of ten of its rows must fit."""
-    if len(table) == 0 or not _LEAST_COLUMNS <= table.shape[1] <= 2 * _LEAST_COLUMNS:
-        return False
-    used = table[:, :_COLUMNS].astype(np.float64)
-    numbers = used[:, 8:]
-    fits = np.isfinite(used).all(axis=1) & (used[:, 0] > 0.0) & (used[:, 1] >= 0.0)
-    fits &= (used[:, 5:8] != 0.0).any(axis=1) & (np.abs(used[:, 5:8]) <= 100.0).all(axis=1)
-    fits &= (numbers == np.round(numbers)).all(axis=1) & (numbers >= -1.0).all(axis=1)
-    return bool(np.mean(fits) >= 0.7) and bool((numbers > 0.0).any() or len(table) == 1)
+"""Fewer columns without a header do not distinguish cylinders from other tables."""
 
 
 def _is_text(head: str) -> bool:
-    """Whether a file is a TreeQSM text, judged by many rows of its beginning."""
-    lines = [line for line in head.splitlines() if line.strip()]
+    """Whether a file is a TreeQSM text: by its header, or by how wide its first rows are."""
+    lines = [line for line in head.splitlines() if line.strip()][:2]
     if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
         return True
-    rows = [[finite(cell) for cell in _cells(line)] for line in lines[:_MANY]]
-    # The first line may be a header of some kind, the last one of many cut in the middle.
-    whole = [row for row in rows if None not in row]
-    width = max(map(len, whole), default=0)
-    table = np.array([row for row in whole if len(row) == width], dtype=np.float64)
-    return width > 0 and len(table) >= 0.7 * (len(rows) - 1) and _are_cylinders(table)
+    rows = [[finite(cell) for cell in _cells(line)] for line in lines]
+    return any(len(row) >= _LEAST_COLUMNS and None not in row for row in rows)
 
 
 def _read_mat(path: Path) -> tuple[Cylinders, ...]:
@@ -165,5 +146,5 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     return Cylinders(starts, ends, 2.0 * table[:, [0, 0]], above, continues, labels)
 
 
-MAT = TreeFormat('treeqsm-mat', ('.mat',), looks_like_mat, _read_mat)
-TEXT = TreeFormat('treeqsm-text', ('.cyl',), _is_text, read_treeqsm_text)
+MAT = FileFormat('treeqsm-mat', ('.mat',), looks_like_mat, _read_mat)
+TEXT = FileFormat('treeqsm-text', ('.cyl',), _is_text, read_treeqsm_text)

@@ -4,8 +4,6 @@
 
 const FIELD = (32 * Math.PI) / 180;
 
-/** @typedef {[number, number, number]} Vector */
-
 export class Camera {
   constructor() {
     this.azimuth = -0.6;
@@ -22,7 +20,7 @@ export class Camera {
     this.eye = [0, 0, 0];
   }
 
-  /** Frame a scene. @param {Vector} low corner of its box @param {Vector} high */
+  /** Frame a scene. @param {number[]} low corner of its box @param {number[]} high */
   frame(low, high) {
     this._home = () => {
       const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
@@ -75,56 +73,47 @@ export class Camera {
 
   /** How the picture lies in the scene: half its width, half its height, and back to the eye. */
   axes() {
-    const ce = Math.cos(this.elevation);
-    const back = [ce * Math.cos(this.azimuth), ce * Math.sin(this.azimuth), Math.sin(this.elevation)];
-    const right = [-Math.sin(this.azimuth), Math.cos(this.azimuth), 0];
-    const up = [
-      back[1] * right[2] - back[2] * right[1],
-      back[2] * right[0] - back[0] * right[2],
-      back[0] * right[1] - back[1] * right[0],
-    ];
+    const [ca, sa, ce, se] = [Math.cos(this.azimuth), Math.sin(this.azimuth), Math.cos(this.elevation), Math.sin(this.elevation)];
     const half = Math.tan(FIELD / 2);
-    return { right: right.map((r) => half * this.aspect * r), up: up.map((u) => half * u), back };
+    const [right, up] = [[-sa, ca, 0], [-se * ca, -se * sa, ce]];
+    return { right: right.map((r) => half * this.aspect * r), up: up.map((u) => half * u), back: [ce * ca, ce * sa, se] };
   }
 
   /** @returns {Float32Array} from the scene to clip space, column by column */
   update() {
-    const { right: wide, up: high, back } = this.axes();
-    const half = Math.tan(FIELD / 2);
-    const right = wide.map((w) => w / half / this.aspect);
-    const up = high.map((h) => h / half);
+    const { right, up, back } = this.axes();
     const [x, y, z] = this.target.map((each, c) => each + this.distance * back[c]);
     this.eye = [x, y, z];
     const near = 0.02 * this.distance;
     const far = this.distance + 30 * this._size;
-    const f = 1 / Math.tan(FIELD / 2);
-    const g = f / this.aspect;
-    const a = (far + near) / (near - far);
-    const b = (2 * far * near) / (near - far);
-    const m = this.matrix;
-    const rows = [right, up, back];
-    const at = rows.map((r) => -(r[0] * this.eye[0] + r[1] * this.eye[1] + r[2] * this.eye[2]));
-    for (let c = 0; c < 3; c++) {
-      m[4 * c] = g * right[c];
-      m[4 * c + 1] = f * up[c];
-      m[4 * c + 2] = a * back[c];
-      m[4 * c + 3] = -back[c];
-    }
-    m[12] = g * at[0];
-    m[13] = f * at[1];
-    m[14] = a * at[2] + b;
-    m[15] = -at[2];
-    return m;
+    const half = Math.tan(FIELD / 2);
+    const deep = (far + near) / (near - far);
+    const rows = [
+      right.map((r) => r / (half * this.aspect) ** 2), up.map((u) => u / half ** 2), back.map((b) => deep * b),
+      back.map((b) => -b),
+    ];
+    rows.forEach((row, r) => {
+      for (let c = 0; c < 3; c++) this.matrix[4 * c + r] = row[c];
+      this.matrix[12 + r] = -row.reduce((sum, each, c) => sum + each * this.eye[c], 0);
+    });
+    this.matrix[14] += (2 * far * near) / (near - far);
+    return this.matrix;
   }
 
   /** Where a point is seen, 0 to 1 from the left and from the top.
    * @param {ArrayLike<number>} p @returns {[number, number]} */
   project(p) {
     const m = this.matrix;
-    const w = m[3] * p[0] + m[7] * p[1] + m[11] * p[2] + m[15];
-    const x = (m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12]) / w;
-    const y = (m[1] * p[0] + m[5] * p[1] + m[9] * p[2] + m[13]) / w;
-    return [0.5 + 0.5 * x, 0.5 - 0.5 * y];
+    const [x, y, w] = [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
+    return [0.5 + (0.5 * x) / w, 0.5 - (0.5 * y) / w];
+  }
+
+  /** The point under a place of the picture that is as deep in it as another point.
+   * @param {number} x 0 to 1 from the left @param {number} y from the top @param {number[]} p */
+  under(x, y, p) {
+    const { right, up, back } = this.axes();
+    const depth = this.eye.reduce((sum, each, c) => sum + (each - p[c]) * back[c], 0);
+    return this.eye.map((each, c) => each + depth * ((2 * x - 1) * right[c] + (1 - 2 * y) * up[c] - back[c]));
   }
 
   /** Let mouse, touch and keys move the camera. @param {HTMLElement} element */
@@ -158,14 +147,10 @@ export class Camera {
       pointers.set(event.pointerId, event);
     });
     element.addEventListener("contextmenu", (event) => event.preventDefault());
-    element.addEventListener(
-      "wheel",
-      (event) => {
-        event.preventDefault();
-        this.zoom(Math.exp(0.0012 * Math.max(-400, Math.min(400, event.deltaY))));
-      },
-      { passive: false },
-    );
+    element.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.zoom(Math.exp(0.0012 * Math.max(-400, Math.min(400, event.deltaY))));
+    }, { passive: false });
     element.addEventListener("keydown", (event) => {
       const step = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
       const move = step[/** @type {keyof typeof step} */ (event.key)];

@@ -2,39 +2,33 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Far trees: each kind is painted once from all sides, then drawn as pictures that lean. */
 
+import { AT_ORIGIN, STRIDE } from "../placing.js";
 import { canvasTexture, discard, drawable, use } from "./gl.js";
 import { ELEVATIONS, ROUND } from "./shaders.js";
 
 const TILE = 128;
-/** Rows of a picture that bends. */
-const ROWS = 4;
-/** Numbers per corner. */
+/** Numbers per corner, of which a picture has four. */
 const PER_CORNER = 9;
 
-/**
- * @typedef {object} Box of a kind
- * @property {number} wide half its width [m]
- * @property {number} middle its height over the root [m]
- * @property {number} tall [m]
- */
-
 export class Impostor {
-  /** @param {WebGL2RenderingContext} gl @param {import("./gl.js").Program} used @param {Box} box
-   * @param {number[]} tip the highest node at rest @param {number} most how many trees
+  /** @param {WebGL2RenderingContext} gl @param {Program} used
+   * @param {Shape} shape @param {number} most how many trees
    * @param {boolean} isPlain the nearest point alone is looked up, which costs less */
-  constructor(gl, used, box, tip, most, isPlain) {
+  constructor(gl, used, shape, most, isPlain) {
+    const { kind, low, high, rest, highest } = shape;
+    const leaf = Math.max(0, ...(kind.arrays.leaf_size ?? []));
+    const tall = high[2] + 0.7 * leaf;
     this.gl = gl;
-    this.box = box;
-    this.tip = tip;
+    /** Half its width, its middle height over the root, its height [m]. */
+    this.box = { wide: leaf + Math.max(...[0, 1].map((c) => Math.max(-low[c], high[c]))), middle: 0.5 * tall, tall };
+    /** The highest node at rest, and how each coordinate moves it. */
+    this.tip = Array.from(rest.subarray(STRIDE * highest, STRIDE * highest + 3));
+    this._moves = movesOf(shape, this.tip);
     this.count = 0;
     this._atlas = canvasTexture(gl, ROUND * TILE, ELEVATIONS.length * TILE, gl.RGBA8, true);
     if (isPlain) gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-    this._values = new Float32Array(PER_CORNER * 2 * ROWS * most);
-    const indices = new Uint32Array(6 * (ROWS - 1) * most);
-    for (let i = 0; i < (ROWS - 1) * most; i++) {
-      const a = 2 * (i + Math.floor(i / (ROWS - 1)));
-      indices.set([a, a + 1, a + 2, a + 1, a + 3, a + 2], 6 * i);
-    }
+    this._values = new Float32Array(4 * PER_CORNER * most);
+    const indices = Array.from({ length: most }, (_, i) => [0, 1, 2, 1, 3, 2].map((corner) => 4 * i + corner)).flat();
     // Not as instances: without a graphics unit each of them costs as much as a whole picture.
     this._part = drawable(gl, used, this._values, [["corner", 2], ["stand", 4], ["tree", 3]], indices);
   }
@@ -46,7 +40,6 @@ export class Impostor {
     const { gl } = this;
     const { wide, middle, tall } = this.box;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this._atlas.target);
-    gl.disable(gl.SCISSOR_TEST);
     gl.clearColor(0.6 * color[0], 0.6 * color[1], 0.6 * color[2], 0);
     gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -59,23 +52,14 @@ export class Impostor {
         const [c, s] = [Math.cos(turn), Math.sin(turn)];
         const axes = [[-s / wide, c / wide, 0], [(-se * c) / high, (-se * s) / high, ce / high],
           [(-ce * c) / deep, (-ce * s) / deep, -se / deep]];
-        const m = new Float32Array(16);
-        axes.forEach((axis, r) => {
-          for (let k = 0; k < 3; k++) m[4 * k + r] = axis[k];
-          m[12 + r] = -axis[2] * middle;
-        });
-        m[15] = 1;
+        const camera = [0, 1, 2].flatMap((k) => [...axes.map((axis) => axis[k]), 0]);
+        camera.push(...axes.map((axis) => -axis[2] * middle), 1);
         gl.viewport(side * TILE, row * TILE, TILE, TILE);
-        paint(m, [100 * deep * ce * c, 100 * deep * ce * s, middle + 100 * deep * se]);
+        paint(Float32Array.from(camera), [100 * deep * ce * c, 100 * deep * ce * s, middle + 100 * deep * se]);
       }
     });
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     this._atlas.release();
-  }
-
-  /** Forget which trees are drawn. */
-  clear() {
-    this.count = 0;
   }
 
   /** Draw a tree, too.
@@ -83,11 +67,10 @@ export class Impostor {
    * @param {number} number among all trees */
   add(place, row, number) {
     const tint = 0.86 + 0.28 * ((number * 0.618034) % 1);
-    const [x, y, z, yaw, scale] = place;
-    let at = PER_CORNER * 2 * ROWS * this.count++;
-    for (let i = 0; i < 2 * ROWS; i++, at += PER_CORNER) {
-      const high = (2 * Math.floor(i / 2)) / (ROWS - 1) - 1;
-      this._values.set([i % 2 ? 1 : -1, high, x, y, z, yaw, scale, row, tint], at);
+    let at = 4 * PER_CORNER * this.count++;
+    for (const [x, y] of [[-1, -1], [1, -1], [-1, 1], [1, 1]]) {
+      this._values.set([x, y, ...place, row, tint], at);
+      at += PER_CORNER;
     }
   }
 
@@ -95,23 +78,54 @@ export class Impostor {
   upload() {
     const { gl } = this;
     gl.bindBuffer(gl.ARRAY_BUFFER, this._part.buffers[0]);
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, PER_CORNER * 2 * ROWS * this.count);
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, 4 * PER_CORNER * this.count);
   }
 
-  /** @param {import("./gl.js").Program} used
+  /** Place the top of a tree, which is linear in the coordinates of what is far.
+   * @param {ArrayLike<number>} coordinates @param {number} from its first @param {number[]} place
+   * @param {Float32Array} poses @param {number} row */
+  place(coordinates, from, [x, y, z, yaw, scale], poses, row) {
+    let [u, v, w] = this.tip;
+    const moves = this._moves;
+    for (let k = 0, at = 0; at < moves.length; k++, at += 3) {
+      const by = coordinates[from + k];
+      u += by * moves[at];
+      v += by * moves[at + 1];
+      w += by * moves[at + 2];
+    }
+    const [c, s] = [scale * Math.cos(yaw), scale * Math.sin(yaw)];
+    poses[STRIDE * row] = x + c * u - s * v;
+    poses[STRIDE * row + 1] = y + s * u + c * v;
+    poses[STRIDE * row + 2] = z + scale * w;
+  }
+
+  /** @param {Program} used
    * @param {number} shade of the foot of a tree among others */
   draw(used, shade) {
     const { gl, box, tip } = this;
     const picture = [2, this._atlas.texture];
     use(gl, used, { picture, box: [box.wide, box.middle, box.tall, shade], restTip: tip });
     gl.bindVertexArray(this._part.vao);
-    gl.drawElements(gl.TRIANGLES, 6 * (ROWS - 1) * this.count, gl.UNSIGNED_INT, 0);
+    gl.drawElements(gl.TRIANGLES, 6 * this.count, gl.UNSIGNED_INT, 0);
   }
 
   /** Give its memory back. */
   free() {
-    const { gl } = this;
-    gl.deleteTexture(this._atlas.texture);
-    discard(gl, this._part);
+    this.gl.deleteTexture(this._atlas.texture);
+    discard(this.gl, this._part);
   }
+}
+
+/** How far the highest node moves per unit of each coordinate, three numbers each.
+ * @param {Shape} shape @param {number[]} tip the node at rest */
+function movesOf({ kind, placer, highest }, tip) {
+  const row = STRIDE * placer.slots[highest];
+  const branches = placer.reached.findIndex((reached) => reached > placer.slots[highest]);
+  const poses = new Float32Array(STRIDE * placer.reached[branches]);
+  const moved = new Float32Array(kind.nCoordinates);
+  return Array.from(kind.arrays.basis_scale).flatMap((scale, k) => {
+    moved.fill(0)[k] = 0.5 * scale;
+    placer.place(moved, 0, AT_ORIGIN, branches, poses, 0);
+    return tip.map((each, c) => (poses[row + c] - each) / (0.5 * scale));
+  });
 }

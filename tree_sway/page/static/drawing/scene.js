@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Draws a described tree from its poses: bark, leaves, what is beside it, ground and sky. */
 
-import { KindPlacer, STRIDE } from "../placing.js";
+import { AT_ORIGIN, STRIDE } from "../placing.js";
+import { between } from "../quaternions.js";
 import { Backdrop, DAYLIGHT, GROUNDS } from "./backdrop.js";
 import { Camera } from "./camera.js";
 import { Detail, levelsOf } from "./detail.js";
-import { canvasTexture, discard, drawable, drawPart, filled, isSoftware, pictureTexture, use } from "./gl.js";
+import { canvasTexture, contextOf, discard, drawable, drawPart, pictureTexture, poseTexture, use } from "./gl.js";
 import { Impostor } from "./impostors.js";
-import {
-  barkMesh, boxOf, branchOrder, conjugate, highestOf, leafMesh, multiply, quaternion, shadeOf,
-} from "./mesh.js";
-import { arrowLength, arrowMesh, personMesh, potMesh } from "./props.js";
+import { barkMesh, leafMesh, shapeOf } from "./mesh.js";
+import { arrowLength, arrowMesh, propMesh } from "./props.js";
 import { Quality } from "./quality.js";
 import * as shaders from "./shaders.js";
 import { isPotted, lookOf } from "./species.js";
@@ -32,49 +31,25 @@ const CHOOSE_EVERY = 6;
 const POT_HEIGHT = 0.17;
 /** Height of a tree from which a person is beside it [m]. */
 const WITH_PERSON = 2.5;
-/** Vertices of the trees that are drawn in one go, at most. */
-const BATCH = 6000;
 /** The arrow follows the mean of the wind over this time [s]. */
 const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
 const PAINTED = 260;
-const AT_ORIGIN = [0, 0, 0, 0, 1];
 
-/**
- * @typedef {import("./gl.js").Drawable} Drawable
- * @typedef {import("./gl.js").Program} Program
- *
- * @typedef {object} DrawnLevel trees of a kind that are drawn on one level
- * @property {Uint32Array} starts rows of their first segments, then of nothing
- * @property {number} count of them
- * @property {Drawable | null} bark
- * @property {Drawable | null} leaf
- * @property {number} across leaves in the picture of a card
- * @property {Impostor | null} impostor
- *
- * @typedef {object} DrawnKind
- * @property {KindPlacer} placer
- * @property {Float32Array} rest poses of its segments, as they are described
- * @property {ReturnType<typeof shadeOf>} shade
- * @property {(DrawnLevel | null)[]} drawn per level; null before it is first used
- */
+/** @type {Record<"bark" | "leaf" | "solid", [string, number][]>} what a vertex has */
+const FIELDS = {
+  bark: [["segment", 1], ["ring", 4], ["skin", 3]],
+  leaf: [["segment", 1], ["place", 3], ["swing", 3], ["facing", 3], ["towards", 3], ["flutter", 4], ["corner", 2]],
+  solid: [["at", 3], ["facing", 3], ["tint", 3]],
+};
 
 export class Scene {
   /** @param {HTMLCanvasElement} canvas
    * @param {boolean} [isFine] whether nothing is left out, however slow that is */
   constructor(canvas, isFine = false) {
-    const probe = document.createElement("canvas").getContext("webgl2");
-    if (!probe) throw new Error("this browser has no WebGL 2");
+    const { gl, isSoftware } = contextOf(canvas);
     /** Without a graphics unit: fewer points, fewer shadows. */
-    const hasUnit = !isSoftware(probe);
-    this.isSlow = !hasUnit && !isFine;
-    probe.getExtension("WEBGL_lose_context")?.loseContext();
-    const gl = canvas.getContext("webgl2", {
-      antialias: hasUnit,
-      alpha: false,
-      powerPreference: "high-performance",
-    });
-    if (!gl) throw new Error("this browser has no WebGL 2");
+    this.isSlow = isSoftware && !isFine;
     this.gl = gl;
     this.canvas = canvas;
     this.camera = new Camera();
@@ -84,12 +59,11 @@ export class Scene {
     this.detail = null;
     /** @type {DrawnKind[]} */
     this._kinds = [];
-    /** Tree whose tip is followed, and its highest segment. */
+    /** Tree whose tip is followed. */
     this._watched = 0;
-    this._highest = 0;
     this._budget = 0;
-    this._chosenFor = new Float64Array(18);
-    /** @type {import("../protocol.js").Description | null} */
+    this._chosenFor = "";
+    /** @type {Description | null} */
     this.description = null;
     this.leavesShown = true;
     this.hasPerson = true;
@@ -112,18 +86,15 @@ export class Scene {
     this._backdrop = new Backdrop(gl);
     /** @type {Map<string, WebGLTexture>} */
     this._pictures = new Map();
-    this._texture = /** @type {WebGLTexture} */ (gl.createTexture());
+    this._texture = gl.createTexture();
     /** Where the shaders look poses up. */
     this._poses = this._texture;
-    this._rows = 0;
     /** Poses of the segments that are drawn, tree after tree. */
     this._texels = new Float32Array(0);
     /** @type {Float32Array} */
     this._coordinates = new Float32Array(0);
-    /** @type {[string, number][]} */
-    const solid = [["at", 3], ["facing", 3], ["tint", 3]];
-    const [arrow, pot, person] = [arrowMesh(), potMesh(), personMesh()].map((mesh) =>
-      drawable(gl, this._programs.solid, mesh.values, solid, mesh.indices));
+    const [arrow, pot, person] = [arrowMesh(), propMesh("pot"), propMesh("person")].map((mesh) =>
+      drawable(gl, this._programs.solid, mesh.values, FIELDS.solid, mesh.indices));
     const shadow = drawable(gl, this._programs.shadow, [-1, -1, 1, -1, 1, 1, -1, 1], [["corner", 2]],
       [0, 1, 2, 0, 2, 3]);
     this._parts = { arrow, pot, person, shadow };
@@ -135,17 +106,23 @@ export class Scene {
     this._groundHeight = 0;
     this._low = [0, 0, 0];
     this._high = [1, 1, 1];
-    this._middle = [0, 0];
     this._extent = 1;
     this._treeHeight = 1;
     this._potSize = 0;
-    this._root = [0, 0, 0];
   }
 
   /** @returns {number[]} unit vector towards the sun */
   get light() {
-    const size = Math.hypot(...this.day.light);
-    return this.day.light.map((each) => each / size);
+    return this.day.light.map((each) => each / Math.hypot(...this.day.light));
+  }
+
+  /** Height of the ground [m], and of the highest tree. */
+  get ground() {
+    return this._groundHeight;
+  }
+
+  get height() {
+    return this._treeHeight;
   }
 
   /** Whether any tree of the scene bears leaves. */
@@ -153,7 +130,7 @@ export class Scene {
     return Boolean(this.description?.kinds.some((kind) => kind.arrays.leaf_segment?.length));
   }
 
-  /** Another time of day. @param {import("./backdrop.js").Daylight} day */
+  /** Another time of day. @param {Daylight} day */
   setDay(day) {
     this.day = day;
     if (this.description) this._frameShadow();
@@ -171,67 +148,43 @@ export class Scene {
     this.repaint();
   }
 
-  /** Take another tree. @param {import("../protocol.js").Description} description */
+  /** Take another tree. @param {Description} description */
   describe(description) {
+    const { kinds, trees } = description;
+    const isSame = this.description?.name === description.name;
+    const most = !this.isSlow ? MOST : trees.length > CROWD ? MOST_CROWD : MOST_SLOW;
     this._free();
     this.resize();
-    const { kinds, trees } = description;
-    const most = !this.isSlow ? MOST : trees.length > CROWD ? MOST_CROWD : MOST_SLOW;
     this.description = description;
     this._coordinates = new Float32Array(description.nCoordinates);
-    this._kinds = kinds.map((kind) => {
-      const rest = new KindPlacer(kind).rest();
-      const placer = new KindPlacer(kind, branchOrder(kind, rest));
-      return { placer, rest, shade: shadeOf(kind, rest), drawn: [] };
-    });
-    const levels = this._kinds.map(({ placer, rest }) =>
-      levelsOf(placer, highestOf(rest), most.segments, most.cards, most.far));
-    const boxes = this._kinds.map(({ rest }) => boxOf(rest));
-    const radii = boxes.map(({ low, high }) => 0.6 * Math.hypot(...low.map((l, c) => high[c] - l)));
-    const low = [Infinity, Infinity, Infinity];
-    const high = [-Infinity, -Infinity, -Infinity];
-    this._watched = 0;
-    trees.forEach((tree, number) => {
-      const box = boxes[tree.kind];
-      const [x, y, z, yaw, scale] = tree.place;
-      const [c, s] = [scale * Math.cos(yaw), scale * Math.sin(yaw)];
-      for (const u of [box.low[0], box.high[0]]) {
-        for (const v of [box.low[1], box.high[1]]) {
-          const corner = [x + c * u - s * v, y + s * u + c * v];
-          for (const i of [0, 1]) {
-            low[i] = Math.min(low[i], corner[i]);
-            high[i] = Math.max(high[i], corner[i]);
-          }
-        }
+    this._kinds = kinds.map((kind) => ({ ...shapeOf(kind), drawn: [] }));
+    const levels = this._kinds.map(({ placer, highest }) => levelsOf(placer, highest, most));
+    const radii = this._kinds.map(({ low, high }) => 0.6 * Math.hypot(...low.map((l, c) => high[c] - l)));
+    const tops = trees.map(({ kind, place }) => place[2] + place[4] * this._kinds[kind].high[2]);
+    this._watched = tops.reduce((best, top, t) => (top > tops[best] ? t : best), 0);
+    this._low = [Infinity, Infinity, Infinity];
+    this._high = [-Infinity, -Infinity, -Infinity];
+    for (const { kind, place } of trees) {
+      const { low, high } = this._kinds[kind];
+      for (let corner = 0; corner < 8; corner++) {
+        const at = placed(place, [0, 1, 2].map((c) => (corner & (1 << c) ? high[c] : low[c])));
+        this._low = this._low.map((each, c) => Math.min(each, at[c]));
+        this._high = this._high.map((each, c) => Math.max(each, at[c]));
       }
-      low[2] = Math.min(low[2], z + scale * box.low[2]);
-      const top = z + scale * box.high[2];
-      if (top > high[2]) this._watched = number;
-      high[2] = Math.max(high[2], top);
-    });
-    this.detail = new Detail(trees, levels, radii, this._watched);
-    this._highest = highestOf(this._kinds[trees[this._watched].kind].rest);
-    this._budget = most.segments + most.cards;
-    this._chosenFor.fill(NaN);
-    const isSame = this._name === description.name;
-    if (!isSame) this.picked = -1;
-    this._name = description.name;
-    const high2 = Math.max(high[2] - low[2], 0.05);
-    const wide = Math.max(high[0] - low[0], high[1] - low[1], 0.4 * high2);
-    const root = trees[0].place;
-    this._treeHeight = Math.max(high2, 0.2 * wide);
-    const inPot = trees.length === 1 && isPotted(kinds[0].species);
-    this._potSize = inPot ? POT_HEIGHT * high2 : 0;
-    this._root = root.slice(0, 3);
-    this._groundHeight = (inPot ? root[2] : Math.min(low[2], root[2])) - this._potSize;
-    this._middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
-    this._extent = Math.max(wide, high2);
-    [this._low, this._high] = [low, high];
-    this._frameShadow();
-    if (!isSame) {
-      this.camera.frame([low[0], low[1], this._groundHeight], [high[0], high[1], high[2]]);
     }
+    this.detail = new Detail(trees, levels, radii, this._watched);
+    this._budget = most.segments + most.cards;
+    if (!isSame) this.picked = -1;
+    const [wide, deep, tall] = this._high.map((each, c) => each - this._low[c]);
+    this._extent = Math.max(wide, deep, tall, 0.05);
+    this._treeHeight = Math.max(tall, 0.2 * wide, 0.2 * deep, 0.05);
+    const { place: root } = trees[0];
+    this._potSize = trees.length === 1 && isPotted(kinds[0].species) ? POT_HEIGHT * this._treeHeight : 0;
+    this._groundHeight = this._potSize ? root[2] - this._potSize : Math.min(this._low[2], root[2]);
+    this._frameShadow();
+    if (!isSame) this.camera.frame([this._low[0], this._low[1], this._groundHeight], this._high);
     this._frame = 0;
+    this._chosenFor = "";
     this._chooseDetail(this.camera.update());
     this._place();
   }
@@ -243,24 +196,38 @@ export class Scene {
 
   /** The same at rest. */
   restTip() {
+    return this.restPosition(this._followed);
+  }
+
+  /** Where a segment's root-side node is at rest. @param {number} segment */
+  restPosition(segment) {
     if (!this.description) return [0, 0, 0];
-    const { kind, place: [x, y, z, yaw, scale] } = this.description.trees[this._watched];
-    const [u, v, w] = this._kinds[kind].rest.subarray(STRIDE * this._followed);
-    const [c, s] = [scale * Math.cos(yaw), scale * Math.sin(yaw)];
-    return [x + c * u - s * v, y + s * u + c * v, z + scale * w];
+    const { rest, place } = this.watched;
+    return placed(place, rest.subarray(STRIDE * segment));
+  }
+
+  /** The tree that is followed: what it is, where it is, and its kind's poses at rest. */
+  get watched() {
+    const { kind: number, ...tree } = /** @type {Detail} */ (this.detail).trees[this._watched];
+    const { kind, rest } = this._kinds[number];
+    return { ...tree, number: this._watched, kind, rest };
   }
 
   /** Where a segment's root-side node is now; of the tallest tree, if it is drawn.
    * @param {number} segment */
   position(segment) {
-    const { detail, description } = this;
-    if (!detail || !description) return [0, 0, 0];
-    const { slots } = this._kinds[description.trees[this._watched].kind].placer;
-    const from = STRIDE * (detail.start[this._watched] + slots[segment]);
+    const from = STRIDE * this._row(segment);
     return Array.from(this._texels.subarray(from, from + 3));
   }
 
-  /** The kind of the watched tree. @returns {import("../protocol.js").Kind | null} */
+  /** Row of a segment of the watched tree. @param {number} segment */
+  _row(segment) {
+    if (!this.detail || !this.description) return 0;
+    const { slots } = this._kinds[this.description.trees[this._watched].kind].placer;
+    return this.detail.start[this._watched] + slots[segment];
+  }
+
+  /** The kind of the watched tree. @returns {Kind | null} */
   get watchedKind() {
     return this.description?.kinds[this.description.trees[this._watched].kind] ?? null;
   }
@@ -269,17 +236,22 @@ export class Scene {
    * @param {number} x 0 to 1 from the left @param {number} y from the top
    * @param {number} [reach] share of the height */
   branchAt(x, y, reach = 0.03) {
-    const kind = this.watchedKind;
-    if (!kind || !this.detail || !this.description) return -1;
-    const { placer } = this._kinds[this.description.trees[this._watched].kind];
-    const level = this.detail.levels[this.description.trees[this._watched].kind][this.detail.level[this._watched]];
-    const { branch_first: first } = kind.arrays;
-    let [best, found] = [reach, -1];
-    for (const branch of placer.order.subarray(0, level?.branches ?? 0)) {
+    return this.nearest(x, y, reach).branch;
+  }
+
+  /** The same, and which of its segments it is. @param {number} x @param {number} y
+   * @param {number} [reach] */
+  nearest(x, y, reach = 0.03) {
+    let [best, found] = [reach, { branch: -1, segment: -1 }];
+    if (!this.detail || !this.description) return found;
+    const { kind } = this.description.trees[this._watched];
+    const { branches } = this.detail.levels[kind][this.detail.level[this._watched]];
+    const { placer: { order }, kind: { arrays: { branch_first: first } } } = this._kinds[kind];
+    for (const branch of order.subarray(0, branches)) {
       for (let s = first[branch]; s < first[branch + 1]; s++) {
         const [px, py] = this.camera.project(this.position(s));
         const away = Math.hypot((px - x) * this.camera.aspect, py - y);
-        if (away < best) [best, found] = [away, branch];
+        if (away < best) [best, found] = [away, { branch, segment: s }];
       }
     }
     return found;
@@ -287,164 +259,113 @@ export class Scene {
 
   /** The last segment of the branch that is picked, or the highest. */
   get _followed() {
-    const first = this.watchedKind?.arrays.branch_first;
-    return first && this.picked >= 0 ? first[this.picked + 1] - 1 : this._highest;
+    const { description, picked, watchedKind } = this;
+    if (watchedKind && picked >= 0) return watchedKind.arrays.branch_first[picked + 1] - 1;
+    return description ? this._kinds[description.trees[this._watched].kind].highest : 0;
   }
 
-  /**
-   * Strain of the outer wood at the base of the branch that is picked, or of the stem: its further
-   * bend between its first two segments.
-   */
-  strain() {
-    const { detail, description, watchedKind: kind } = this;
-    if (!detail || !description || !kind) return 0;
-    const { placer, rest } = this._kinds[description.trees[this._watched].kind];
+  /** At the base of the branch that is picked, or of the stem: further strain of the outer wood, and
+   * further bending moment [N m], by the bend between the first two segments. */
+  load() {
+    const { description, watchedKind: kind } = this;
+    if (!description || !kind) return { strain: 0, moment: 0 };
+    const { kind: number, place } = description.trees[this._watched];
     const { branch_first: first, segment_length: length, segment_radius: radius } = kind.arrays;
     const base = first[Math.max(0, this.picked)];
-    if (first[Math.max(0, this.picked) + 1] - base < 2) return 0;
-    const at = (/** @type {number} */ s) => detail.start[this._watched] + placer.slots[s];
-    const now = apart(this._texels, at(base), at(base + 1));
-    const before = apart(rest, base, base + 1);
-    const bend = 2 * Math.hypot(now[0] - before[0], now[1] - before[1], now[2] - before[2]);
-    return (bend * radius[2 * (base + 1)]) / (0.5 * (length[base] + length[base + 1]));
+    if (first[Math.max(0, this.picked) + 1] - base < 2) return { strain: 0, moment: 0 };
+    const bendOf = (/** @type {Float32Array} */ poses, /** @type {number[]} */ [from, to]) =>
+      between(poses, STRIDE * from + 4, poses, STRIDE * to + 4);
+    const now = bendOf(this._texels, [this._row(base), this._row(base + 1)]);
+    const before = bendOf(this._kinds[number].rest, [base, base + 1]);
+    const bend = 2 * Math.hypot(...[0, 1, 2].map((c) => Math.sign(now[3]) * now[c] - Math.sign(before[3]) * before[c]));
+    const thick = radius[2 * (base + 1)];
+    const strain = (bend * thick) / (0.5 * (length[base] + length[base + 1]));
+    return { strain, moment: 0.25 * Math.PI * (kind.modulus ?? 0) * (place[4] * thick) ** 3 * strain };
   }
 
-  /** Choose what of each tree is drawn, where the camera or the budget is another than before.
+  /** Choose what of each tree is drawn, where the camera or the picture is another than before.
    * @param {Float32Array} matrix */
   _chooseDetail(matrix) {
-    const { gl, detail, _chosenFor: before } = this;
-    const tall = this.canvas.clientHeight;
-    if (!detail) return;
-    if (before[16] === tall && before[17] === this._budget && matrix.every((m, i) => m === before[i])) {
-      return;
-    }
-    before.set(matrix);
-    [before[16], before[17]] = [tall, this._budget];
-    detail.choose(matrix, tall, this._budget);
-    for (const { drawn } of this._kinds) {
-      for (const level of drawn) {
-        if (level) level.count = 0;
-        level?.impostor?.clear();
-      }
-    }
+    const { gl, detail } = this;
+    const wanted = [...matrix, this.canvas.clientHeight].join();
+    if (!detail || wanted === this._chosenFor) return;
+    this._chosenFor = wanted;
+    detail.choose(matrix, this.canvas.clientHeight, this._budget);
+    this._eachLevel((level) => {
+      level.starts.length = 0;
+      if (level.impostor) level.impostor.count = 0;
+    });
     // Near trees first: what they hide costs less then.
-    const { eye } = this.camera;
-    const away = detail.trees.map(({ place }) => Math.hypot(place[0] - eye[0], place[1] - eye[1]));
-    for (const t of Uint32Array.from(away, (_, i) => i).sort((a, b) => away[a] - away[b])) {
+    for (const t of detail.order) {
       if (detail.level[t] < 0) continue;
       const { kind, place } = detail.trees[t];
-      const level = this._drawnLevel(kind, detail.level[t]);
-      level.starts[level.count++] = detail.start[t];
-      const { placer, rest } = this._kinds[kind];
-      level.impostor?.add(place, detail.start[t] + placer.slots[highestOf(rest)], t);
+      const level = (this._kinds[kind].drawn[detail.level[t]] ??= this._levelOf(kind, detail.level[t]));
+      level.starts.push(detail.start[t]);
+      level.impostor?.add(place, detail.start[t], t);
     }
-    for (const { drawn } of this._kinds) {
-      for (const level of drawn) {
-        level?.starts.fill(shaders.NOTHING, level.count);
-        level?.impostor?.upload();
-      }
-    }
+    this._eachLevel((level) => level.impostor?.upload());
     const rows = Math.ceil((2 * detail.segments) / shaders.TEXTURE_WIDTH);
-    if (rows <= this._rows) return;
-    this._rows = Math.ceil(1.25 * rows);
-    this._texels = new Float32Array(4 * shaders.TEXTURE_WIDTH * this._rows);
-    poseTexture(gl, this._texture, this._rows, null);
+    if (4 * shaders.TEXTURE_WIDTH * rows <= this._texels.length) return;
+    this._texels = new Float32Array(4 * shaders.TEXTURE_WIDTH * Math.ceil(1.25 * rows));
+    poseTexture(gl, this._texture, shaders.TEXTURE_WIDTH, this._texels);
   }
 
-  /** A level of a kind, made when it is first used.
-   * @param {number} kind @param {number} level @returns {DrawnLevel} */
-  _drawnLevel(kind, level) {
-    const { gl } = this;
-    const { placer, rest, drawn, shade } = this._kinds[kind];
-    const made = drawn[level];
-    if (made) return made;
+  /** A level of a kind, when it is first used.
+   * @param {number} number of the kind @param {number} level @returns {DrawnLevel} */
+  _levelOf(number, level) {
+    const { gl, _programs: programs } = this;
     const { levels, trees } = /** @type {Detail} */ (this.detail);
-    const wanted = levels[kind][level];
-    const branches = placer.order.slice(0, wanted.branches);
-    const n = trees.filter((tree) => tree.kind === kind).length;
-    const starts = new Uint32Array(n + shaders.MOST_COPIES);
-    if (wanted.isImpostor) {
-      const impostor = this._bake(kind, n);
-      return (drawn[level] = { starts, count: 0, bark: null, leaf: null, across: 1, impostor });
-    }
-    const bark = barkMesh(placer.kind, branches, rest, wanted.pixels, shade);
-    const most = levels[kind][levels[kind].length - 1].cards;
-    const { mesh, across } = leafMesh(placer.kind, branches, rest, wanted, most, shade);
-    const fields = /** @type {[string, number][]} */ ([
-      ["place", 3],
-      ["swing", 3],
-      ["facing", 3],
-      ["towards", 3],
-      ["flutter", 4],
-      ["corner", 2],
-    ]);
-    return (drawn[level] = {
-      starts,
-      count: 0,
-      bark: this._hung("bark", bark, [["ring", 4], ["skin", 3]], placer.slots, n),
-      leaf: mesh.count ? this._hung("leaf", mesh, fields, placer.slots, n) : null,
-      across,
-      impostor: null,
-    });
+    const shape = this._kinds[number];
+    const none = { starts: [], bark: null, leaf: null, across: 1, impostor: null };
+    if (level === 0) return { ...none, impostor: this._bake(number, trees.filter(({ kind }) => kind === number).length) };
+    const wanted = levels[number][level];
+    const branches = shape.placer.order.slice(0, wanted.branches);
+    const bark = barkMesh(shape, branches, wanted.pixels);
+    const { mesh: leaf, across } = leafMesh(shape, branches, wanted.cards, levels[number][levels[number].length - 1].cards);
+    return {
+      ...none, across,
+      bark: drawable(gl, programs.bark, bark.values, FIELDS.bark, bark.indices),
+      leaf: leaf.indices.length ? drawable(gl, programs.leaf, leaf.values, FIELDS.leaf, leaf.indices) : null,
+    };
   }
 
-  /** Paint the picture of a kind that far trees are drawn by.
-   * @param {number} kind @param {number} most how many trees */
-  _bake(kind, most) {
-    const { gl } = this;
-    const { placer, rest } = this._kinds[kind];
-    const levels = /** @type {Detail} */ (this.detail).levels[kind];
-    const number = Math.max(1, levels.findIndex((level) => level.pixels >= PAINTED));
-    const level = this._drawnLevel(kind, number);
-    const { low, high } = boxOf(rest);
-    const leaf = Math.max(0, ...(placer.kind.arrays.leaf_size ?? []));
-    const wide = leaf + Math.max(...[0, 1].map((c) => Math.max(-low[c], high[c])));
-    const tall = high[2] + 0.7 * leaf;
-    const tip = highestOf(rest) * STRIDE;
-    const impostor = new Impostor(gl, this._programs.impostor, { wide, middle: 0.5 * tall, tall },
-      Array.from(rest.subarray(tip, tip + 3)), most, this.isSlow);
-    const texels = new Float32Array(4 * shaders.TEXTURE_WIDTH
-      * Math.ceil((2 * levels[number].segments) / shaders.TEXTURE_WIDTH));
-    placer.place(new Float32Array(placer.kind.nCoordinates), 0, AT_ORIGIN, levels[number].branches,
-      texels, 0);
-    const poses = /** @type {WebGLTexture} */ (gl.createTexture());
-    this._poses = poses;
-    gl.activeTexture(gl.TEXTURE0);
-    poseTexture(gl, poses, texels.length / 4 / shaders.TEXTURE_WIDTH, texels);
-    const alone = { ...level, starts: new Uint32Array(shaders.MOST_COPIES).fill(shaders.NOTHING), count: 1 };
-    alone.starts[0] = 0;
-    const { leaf: color } = lookOf(placer.kind.species);
-    const kindOf = this._kinds[kind];
-    impostor.bake((camera, eye) => this._paintTree(kindOf, alone, camera, eye), color);
+  /** Paint the picture of a kind that far trees are drawn by: a tree at rest in even light.
+   * @param {number} number of the kind @param {number} most how many trees */
+  _bake(number, most) {
+    const { gl, _programs: { bark, leaf } } = this;
+    const shape = this._kinds[number];
+    const levels = /** @type {Detail} */ (this.detail).levels[number];
+    const finest = Math.max(1, levels.findIndex(({ pixels }) => pixels >= PAINTED));
+    const level = { ...(shape.drawn[finest] ??= this._levelOf(number, finest)), starts: [0] };
+    const impostor = new Impostor(gl, this._programs.impostor, shape, most, this.isSlow);
+    const rows = Math.ceil((2 * levels[finest].segments) / shaders.TEXTURE_WIDTH);
+    const texels = new Float32Array(4 * shaders.TEXTURE_WIDTH * rows);
+    const still = new Float32Array(shape.kind.nCoordinates);
+    shape.placer.place(still, 0, AT_ORIGIN, levels[finest].branches, texels, 0);
+    this._poses = gl.createTexture();
+    poseTexture(gl, this._poses, shaders.TEXTURE_WIDTH, texels);
+    impostor.bake((camera, eye) => {
+      const even = { eye, sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0 };
+      this._begin(bark, camera, false, { ...even, picked: [-2, -2] });
+      this._drawBark(shape, level);
+      this._begin(leaf, camera, false, { ...even, isBaked: 1, speed: 0, law: [0, 1] });
+      if (this.leavesShown) this._drawLeaves(shape, level, 1);
+    }, lookOf(shape.kind.species).leaf);
+    gl.deleteTexture(this._poses);
     this._poses = this._texture;
-    gl.deleteTexture(poses);
     return impostor;
-  }
-
-  /** Paint a tree at rest in even light.
-   * @param {DrawnKind} kind @param {DrawnLevel} level @param {Float32Array} camera
-   * @param {number[]} eye */
-  _paintTree(kind, level, camera, eye) {
-    const { bark, leaf } = this._programs;
-    const even = { eye, sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0 };
-    this._begin(bark, camera, false, even);
-    this._drawBark(kind, level);
-    if (!this.leavesShown) return;
-    this._begin(leaf, camera, false, { ...even, isBaked: 1, speed: 0, law: [0, 1] });
-    this._drawLeaves(kind, level, 1);
   }
 
   /** Place what is drawn of each tree. */
   _place() {
-    const { detail } = this;
-    if (!detail) return;
-    for (let t = 0; t < detail.trees.length; t++) {
+    const { detail, _coordinates: values, _texels: texels } = this;
+    detail?.trees.forEach(({ kind, firstCoordinate, place }, t) => {
       const level = detail.level[t];
-      if (level < 0) continue;
-      const { kind, firstCoordinate, place } = detail.trees[t];
-      this._kinds[kind].placer.place(this._coordinates, firstCoordinate, place,
-        detail.levels[kind][level].branches, this._texels, detail.start[t]);
-    }
+      const { drawn, placer } = this._kinds[kind];
+      if (level > 0) {
+        placer.place(values, firstCoordinate, place, detail.levels[kind][level].branches, texels, detail.start[t]);
+      } else if (level === 0) drawn[0].impostor?.place(values, firstCoordinate, place, texels, detail.start[t]);
+    });
   }
 
   /** Fit the picture to the element. */
@@ -462,11 +383,11 @@ export class Scene {
 
   /** Draw.
    * @param {Float32Array | null} coordinates the state; the poses stay as they are if null
-   * @param {number} time [s] @param {boolean} isPaused nothing of the picture changes then */
-  draw(coordinates, time, isPaused) {
-    const { gl } = this;
-    this.resize();
-    const matrix = this.camera.update();
+   * @param {number} time [s] @param {boolean} isPaused nothing of the picture changes then
+   * @param {View[]} [views] of a headset, in place of the picture's own */
+  draw(coordinates, time, isPaused, views) {
+    if (!views) this.resize();
+    const matrix = (views?.[0].camera ?? this.camera).update();
     if (this._frame % CHOOSE_EVERY === 0) this._chooseDetail(matrix);
     if (coordinates && coordinates.length === this._coordinates.length) this._coordinates = coordinates;
     this._place();
@@ -476,68 +397,73 @@ export class Scene {
     for (const c of [0, 1]) this._calmWind[c] += (passed / CALM) * (this.wind[c] - this._calmWind[c]);
     // The eye takes a shadow that is some frames old for one that is not.
     const every = this.isSlow ? (this.isCrowd ? 3 : 1) * SHADOW_EVERY : 1;
-    if (this.detail && this._frame % every === 0) this._castShadow(matrix, time);
+    if (this.detail && this._frame % every === 0) this._castShadow(matrix);
     if (this.isSlow && !isPaused) this.quality.count(performance.now(), this._hasCards);
     this._frame++;
-    const [width, height] = [this.canvas.width, this.canvas.height];
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, width, height);
+    const own = this.camera;
+    const area = [0, 0, this.canvas.width, this.canvas.height];
+    for (const view of views ?? [{ camera: own, target: null, area }]) this._paint(view, !views);
+    this.camera = own;
+  }
+
+  /** Draw what one eye sees. @param {View} view @param {boolean} isOwn whether it may be still */
+  _paint({ camera, target, area: [x, y, width, height] }, isOwn) {
+    const { gl } = this;
+    this.camera = /** @type {Camera} */ (camera);
+    const matrix = camera.update();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.viewport(x, y, width, height);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    this._backdrop.draw(this.camera, this.day, this._ground, width, height);
+    this._backdrop.draw(this.camera, this.day, this._ground, isOwn ? width : 0, height);
+    gl.enable(gl.DEPTH_TEST);
     if (!this.detail) return;
     this._drawShadow(matrix);
-    this._drawTrees(matrix, time, false);
+    this._drawTrees(matrix, false);
     this._drawSolids(matrix, false);
   }
 
-  /** Whether any leaves are drawn near enough to be left out. */
+  /** Whether so many trees are drawn with leaves that some may be left out; far ones are pictures. */
   get _hasCards() {
-    return this._kinds.some(({ drawn }) => drawn.some((level) => level?.count && level.leaf));
+    const drawn = this.detail?.level.filter((level) => level > 0).length ?? 0;
+    return this.hasLeaves && this.leavesShown && (drawn > 1 || !this.isCrowd);
   }
 
-  /** The ground of the scene. */
+  /** The ground of the scene, and one over how far one sees [1/m]. */
   get _ground() {
-    const n = this.detail?.trees.length ?? 0;
-    const kind = this._potSize > 0 || !n ? GROUNDS.terrace : GROUNDS.meadow;
-    return { kind, height: this._groundHeight, haze: this._haze };
-  }
-
-  /** One over how far one sees [1/m]. */
-  get _haze() {
-    return 1 / (this._potSize > 0 ? 30 * this._treeHeight : Math.max(1500, 30 * this._extent));
+    const kind = this._potSize > 0 || !this.detail ? GROUNDS.terrace : GROUNDS.meadow;
+    const haze = 1 / (this._potSize > 0 ? 30 * this._treeHeight : Math.max(1500, 30 * this._extent));
+    return { kind, height: this._groundHeight, haze };
   }
 
   _upload() {
     const { gl } = this;
-    const segments = this.detail?.segments ?? 0;
-    if (!segments) return;
+    const rows = Math.ceil((2 * (this.detail?.segments ?? 0)) / shaders.TEXTURE_WIDTH);
+    if (!rows) return;
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this._texture);
-    const rows = Math.ceil((2 * segments) / shaders.TEXTURE_WIDTH);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, shaders.TEXTURE_WIDTH, rows, gl.RGBA, gl.FLOAT,
-      this._texels);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, shaders.TEXTURE_WIDTH, rows, gl.RGBA, gl.FLOAT, this._texels);
   }
 
-  /** @param {Float32Array} matrix @param {number} time */
-  _castShadow(matrix, time) {
+  /** @param {Float32Array} matrix */
+  _castShadow(matrix) {
     const { gl } = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this._shadow.target);
     gl.viewport(0, 0, this._shadowSize, this._shadowSize);
     gl.clearColor(0, 0, 0, 1);
     gl.disable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT);
-    this._drawTrees(matrix, time, true);
+    this._drawTrees(matrix, true);
     this._drawSolids(matrix, true);
   }
 
-  /** @param {Program} used @param {Float32Array} camera @param {boolean} shadow
+  /** @param {Program} used @param {Float32Array} camera @param {boolean} isShadow
    * @param {Record<string, any>} [own] what it is given beside the usual */
-  _begin(used, camera, shadow, own = {}) {
-    const isShadow = shadow ? 1 : 0;
-    const shadowArea = [...this._shadowMiddle, 1 / this._shadowHalf, isShadow];
+  _begin(used, camera, isShadow, own = {}) {
+    const shadowArea = [...this._shadowMiddle, 1 / this._shadowHalf, Number(isShadow)];
+    const { height: ground, haze } = this._ground;
     use(this.gl, used, {
-      ...this.day, camera, light: this.light, eye: this.camera.eye, haze: this._haze,
-      ground: this._groundHeight, isShadow, shadowArea, poses: [0, this._poses], ...own,
+      ...this.day, camera, light: this.light, eye: this.camera.eye, haze, ground,
+      isShadow: Number(isShadow), shadowArea, poses: [0, this._poses], ...own,
     });
   }
 
@@ -558,95 +484,90 @@ export class Scene {
     return this.isSlow ? this.quality.leftOut : null;
   }
 
-  /** @param {Float32Array} matrix @param {number} time @param {boolean} isShadow */
-  _drawTrees(matrix, time, isShadow) {
-    const description = /** @type {import("../protocol.js").Description} */ (this.description);
-    const law = description.flutter ?? { gain: 0, largest_angle: 1 };
+  /** @param {Float32Array} matrix @param {boolean} isShadow */
+  _drawTrees(matrix, isShadow) {
+    const law = this.description?.flutter ?? { gain: 0, largest_angle: 1 };
     const { bark, leaf, impostor } = this._programs;
     this._begin(bark, matrix, isShadow, { picked: this._pickedRows() });
     this._eachLevel((level, kind) => this._drawBark(kind, level));
     if (this.leavesShown) {
       this._begin(leaf, matrix, isShadow, {
-        isBaked: 0, time: time % 1000, speed: Math.hypot(...this.wind),
+        isBaked: 0, time: this._time % 1000, speed: Math.hypot(...this.wind),
         law: [this.flutters ? law.gain : 0, law.largest_angle],
       });
       const density = this.isSlow ? this.quality.density * (isShadow ? SHADOW_LEAVES : 1) : 1;
       this._eachLevel((level, kind) => this._drawLeaves(kind, level, density));
     }
     this._begin(impostor, matrix, isShadow);
-    const shade = this.isCrowd ? 0.35 : 0.9;
-    this._eachLevel((level) => level.impostor?.draw(impostor, shade));
+    this._eachLevel((level) => level.impostor?.draw(impostor, this.isCrowd ? 0.35 : 0.9));
   }
 
   /** @param {(level: DrawnLevel, kind: DrawnKind) => void} draw */
   _eachLevel(draw) {
-    for (const kind of this._kinds) {
-      for (const level of kind.drawn) if (level?.count) draw(level, kind);
-    }
+    for (const kind of this._kinds) kind.drawn.forEach((level) => draw(level, kind));
   }
 
   /** @param {DrawnKind} kind @param {DrawnLevel} level */
-  _drawBark(kind, level) {
-    const { gl } = this;
+  _drawBark({ kind: { species } }, { bark, starts }) {
     const used = this._programs.bark;
-    if (!level.bark) return;
-    const { bark: barkColor, twig: twigColor, pattern } = lookOf(kind.placer.kind.species);
-    const picture = this._picture(`bark ${pattern}`, gl.REPEAT, () => barkPicture(pattern));
-    use(gl, used, { barkColor, twigColor, relief: [2, picture] });
-    drawBatches(gl, level.bark, level, used);
+    if (!bark) return;
+    const { bark: barkColor, twig: twigColor, pattern } = lookOf(species);
+    const picture = this._picture(`bark ${pattern}`, this.gl.REPEAT, () => barkPicture(pattern));
+    use(this.gl, used, { barkColor, twigColor, relief: [2, picture] });
+    this._drawEach(bark, used, starts, 1);
   }
 
   /** @param {DrawnKind} kind @param {DrawnLevel} level @param {number} density share of them */
-  _drawLeaves(kind, level, density) {
-    const { gl } = this;
+  _drawLeaves({ kind: { species } }, { leaf, starts, across }, density) {
     const used = this._programs.leaf;
-    if (!level.leaf) return;
-    const { species } = kind.placer.kind;
-    const picture = this._picture(`leaves ${species} ${level.across} ${this.isAutumn}`, gl.CLAMP_TO_EDGE,
-      () => leafPicture(species, level.across, this.isAutumn));
-    use(gl, used, { leaves: [2, picture] });
-    drawBatches(gl, level.leaf, level, used, density);
+    if (!leaf) return;
+    const picture = this._picture(`leaves ${species} ${across} ${this.isAutumn}`, this.gl.CLAMP_TO_EDGE,
+      () => leafPicture(species, across, this.isAutumn));
+    use(this.gl, used, { leaves: [2, picture] });
+    this._drawEach(leaf, used, starts, density);
+  }
+
+  /** Draw a part of each tree of a level. @param {Drawable} part @param {Program} used
+   * @param {number[]} starts rows of their first segments @param {number} share of its triangles */
+  _drawEach(part, used, starts, share) {
+    for (const start of starts) {
+      used.uniforms.start(start);
+      drawPart(this.gl, part, share);
+    }
   }
 
   /** A picture that is painted when it is first used.
-   * @param {string} name @param {number} wrap @param {() => import("./textures.js").Mips} paint */
+   * @param {string} name @param {number} wrap @param {() => ImageData[]} paint */
   _picture(name, wrap, paint) {
-    const { gl } = this;
-    let texture = this._pictures.get(name);
-    if (!texture) {
-      texture = pictureTexture(gl, paint(), wrap, this.isSlow);
-      this._pictures.set(name, texture);
-    }
-    return texture;
+    const known = this._pictures.get(name) ?? pictureTexture(this.gl, paint(), wrap, this.isSlow);
+    this._pictures.set(name, known);
+    return known;
   }
 
   /** Rows of the first and the last segment of the branch that is picked. */
   _pickedRows() {
-    const { detail, description, picked } = this;
-    if (!detail || !description || picked < 0) return [-2, -2];
-    const { kind } = description.trees[this._watched];
-    const { placer } = this._kinds[kind];
-    const { branch_first: first } = placer.kind.arrays;
-    const start = detail.start[this._watched];
-    return [start + placer.slots[first[picked]], start + placer.slots[first[picked + 1] - 1]];
+    const { watchedKind, picked } = this;
+    if (!watchedKind || picked < 0) return [-2, -2];
+    const { branch_first: first } = watchedKind.arrays;
+    return [this._row(first[picked]), this._row(first[picked + 1] - 1)];
   }
 
   /** The pot, somebody beside the tree, and the arrow of the wind.
    * @param {Float32Array} matrix @param {boolean} isShadow */
   _drawSolids(matrix, isShadow) {
-    const { gl, _root: root, _parts: parts } = this;
+    const { gl, _low: low, _high: high, _parts: parts } = this;
+    const [x, y, z] = this.detail?.trees[0].place ?? AT_ORIGIN;
     const used = this._programs.solid;
     this._begin(used, matrix, isShadow);
-    const draw = (/** @type {Drawable} */ part, /** @type {number[]} */ placed, c = 1, s = 0) => {
-      use(gl, used, { placed, heading: [c, s] });
+    const draw = (/** @type {Drawable} */ part, /** @type {number[]} */ where, c = 1, s = 0) => {
+      use(gl, used, { placed: where, heading: [c, s] });
       drawPart(gl, part);
     };
-    if (this._potSize > 0) draw(parts.pot, [...root, this._potSize]);
+    if (this._potSize > 0) draw(parts.pot, [x, y, z, this._potSize]);
     if (this.hasPerson && this._treeHeight > WITH_PERSON && !this._potSize) {
       // Beside it, as the camera first sees it.
-      const away = 0.5 * Math.max(this._high[0] - this._low[0], this._high[1] - this._low[1]) + 0.5;
-      const at = this.isCrowd ? [this._high[0] + 3, this._low[1] - 3]
-        : [root[0] + 0.8 * away, root[1] + 0.66 * away];
+      const away = 0.5 * Math.max(high[0] - low[0], high[1] - low[1]) + 0.5;
+      const at = this.isCrowd ? [high[0] + 3, low[1] - 3] : [x + 0.8 * away, y + 0.66 * away];
       draw(parts.person, [...at, this._groundHeight, 1], Math.cos(-0.9), Math.sin(-0.9));
     }
     const [u, v] = this._calmWind;
@@ -654,7 +575,7 @@ export class Scene {
     if (speed > 0.2 && !isShadow) {
       const long = arrowLength(this._treeHeight, speed);
       const away = 0.42 * this._extent + long;
-      draw(parts.arrow, [this._middle[0] - (u / speed) * away, this._middle[1] - (v / speed) * away,
+      draw(parts.arrow, [0.5 * (low[0] + high[0]) - (u / speed) * away, 0.5 * (low[1] + high[1]) - (v / speed) * away,
         this._groundHeight + 0.01 * this._treeHeight, long], u / speed, v / speed);
     }
   }
@@ -682,75 +603,19 @@ export class Scene {
 
   /** Forget the trees. */
   _free() {
-    const { gl } = this;
-    for (const { drawn } of this._kinds) {
-      for (const level of drawn) {
-        level?.impostor?.free();
-        for (const part of [level?.bark, level?.leaf]) if (part) discard(gl, part);
-      }
-    }
-    for (const texture of this._pictures.values()) gl.deleteTexture(texture);
+    this._eachLevel(({ impostor, bark, leaf }) => {
+      impostor?.free();
+      for (const part of [bark, leaf]) if (part) discard(this.gl, part);
+    });
+    for (const texture of this._pictures.values()) this.gl.deleteTexture(texture);
     this._pictures.clear();
     this._kinds = [];
   }
-
-  /** @param {"bark" | "leaf"} name
-   * @param {{values: number[], segments: number[], indices: number[], width: number}} mesh
-   * @param {[string, number][]} fields @param {Int32Array} slots of the segments in a tree
-   * @param {number} n how many trees may be drawn so @returns {Drawable} */
-  _hung(name, mesh, fields, slots, n) {
-    const { gl } = this;
-    const used = this._programs[name];
-    const { segments, values, indices } = mesh;
-    const room = Math.floor(BATCH / Math.max(segments.length, 1));
-    const copies = Math.max(1, Math.min(shaders.MOST_COPIES, n, room));
-    const rows = new Uint32Array(copies * segments.length);
-    const all = new Float32Array(copies * values.length);
-    const corners = new Uint32Array(copies * indices.length);
-    for (let copy = 0; copy < copies; copy++) {
-      all.set(values, copy * values.length);
-      const from = copy * segments.length;
-      for (let v = 0; v < segments.length; v++) rows[from + v] = slots[segments[v]] | (copy << 24);
-      // Card after card, so that any first part is as much of every tree; wood tree after tree.
-      const [each, apart] = name === "leaf" ? [copies, copy] : [1, copy * (indices.length / 6)];
-      for (let i = 0; i < indices.length; i++) {
-        corners[6 * (each * Math.floor(i / 6) + apart) + (i % 6)] = from + indices[i];
-      }
-    }
-    const part = drawable(gl, used, all, fields, corners);
-    const at = gl.getAttribLocation(used.program, "segment");
-    part.buffers.push(filled(gl, gl.ARRAY_BUFFER, rows));
-    gl.enableVertexAttribArray(at);
-    gl.vertexAttribIPointer(at, 1, gl.UNSIGNED_INT, 0, 0);
-    return { ...part, copies };
-  }
 }
 
-/** Draw the trees of a level, a batch at a time.
- * @param {WebGL2RenderingContext} gl @param {Drawable} part @param {DrawnLevel} level
- * @param {Program} used @param {number} [share] of its triangles */
-function drawBatches(gl, part, { starts, count }, used, share = 1) {
-  for (let from = 0; from < count; from += part.copies) {
-    used.uniforms.starts(starts.subarray(from, from + 4 * Math.ceil(part.copies / 4)));
-    drawPart(gl, part, share);
-  }
-}
-
-/** A texture that poses lie in.
- * @param {WebGL2RenderingContext} gl @param {WebGLTexture} texture @param {number} rows
- * @param {Float32Array | null} texels */
-function poseTexture(gl, texture, rows, texels) {
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
-    gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
-  }
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, shaders.TEXTURE_WIDTH, rows, 0, gl.RGBA, gl.FLOAT,
-    texels);
-}
-
-/** Vector of the rotation from one segment to another. @param {Float32Array} poses
- * @param {number} from row of its pose @param {number} to */
-function apart(poses, from, to) {
-  const [w, ...vector] = multiply(conjugate(quaternion(poses, from)), quaternion(poses, to));
-  return vector.map((each) => (w < 0 ? -each : each));
+/** Where a point of a kind at rest is in a tree that has its place. @param {number[]} place
+ * @param {ArrayLike<number>} point */
+function placed([x, y, z, yaw, scale], point) {
+  const [c, s] = [scale * Math.cos(yaw), scale * Math.sin(yaw)];
+  return [x + c * point[0] - s * point[1], y + s * point[0] + c * point[1], z + scale * point[2]];
 }

@@ -8,61 +8,48 @@
 const CELLS = 14;
 /** Of the light that a leaf stops; it lets some through. */
 const EXTINCTION = 0.3;
-
-/**
- * @typedef {object} Shade
- * @property {number} open share of the light of all directions that arrives, 0 to 1
- * @property {number[]} towards where most of it comes from, shorter than 1
- */
+/** Directions of light: most of the sky is above; what comes from below is light off the ground. */
+const WAYS = Array.from({ length: 16 }, (_, i) => {
+  const z = 1 - (1.45 * (i + 0.5)) / 16;
+  const flat = Math.sqrt(1 - z * z);
+  return [flat * Math.cos(2.399963 * i), flat * Math.sin(2.399963 * i), z];
+});
 
 /** @param {number[][]} places of leaves [m] @param {number[]} areas of theirs [m^2]
  * @param {number[]} low corner of the box of the tree @param {number[]} high
  * @returns {(place: ArrayLike<number>) => Shade} */
 export function crownShade(places, areas, low, high) {
   if (!places.length) return () => ({ open: 1, towards: [0, 0, 0] });
-  const size = low.map((l, c) => Math.max(high[c] - l, 0.1) * 1.02);
-  const step = size.map((s) => s / CELLS);
-  const cellOf = (/** @type {ArrayLike<number>} */ p) => [0, 1, 2].map((c) =>
-    Math.min(CELLS - 1, Math.max(0, Math.floor((p[c] - low[c]) / step[c]))));
+  const step = low.map((l, c) => (Math.max(high[c] - l, 0.1) * 1.02) / CELLS);
+  const stride = Math.min(...step);
+  const cellOf = (/** @type {ArrayLike<number>} */ p) => [0, 1, 2].map((c) => Math.floor((p[c] - low[c]) / step[c]));
+  const inside = (/** @type {number[]} */ cell) => cell.map((i) => Math.min(CELLS - 1, Math.max(0, i)));
   const index = (/** @type {number[]} */ [i, j, k]) => i + CELLS * (j + CELLS * k);
   const density = new Float32Array(CELLS ** 3);
-  const volume = step[0] * step[1] * step[2];
-  places.forEach((place, i) => (density[index(cellOf(place))] += areas[i] / volume));
-  /** @type {number[][]} */
-  const ways = [];
-  for (let i = 0; i < 16; i++) {
-    // Most of the sky is above; what comes from below is light off the ground.
-    const z = 1 - (1.45 * (i + 0.5)) / 16;
-    const turn = 2.399963 * i;
-    const flat = Math.sqrt(1 - z * z);
-    ways.push([flat * Math.cos(turn), flat * Math.sin(turn), z]);
-  }
-  const stride = Math.min(...step);
-  /** @type {(Shade | null)[]} */
-  const found = new Array(CELLS ** 3).fill(null);
+  places.forEach((place, i) => (density[index(inside(cellOf(place)))] += areas[i] / (step[0] * step[1] * step[2])));
+  /** @type {Map<number, Shade>} */
+  const found = new Map();
   const shadeAt = (/** @type {number[]} */ cell) => {
-    const sum = [0, 0, 0];
+    const towards = [0, 0, 0];
     let open = 0;
-    for (const way of ways) {
-      const at = cell.map((i, c) => low[c] + (i + 0.5) * step[c]);
+    for (const way of WAYS) {
       let passed = 0.35 * density[index(cell)] * stride;
-      for (;;) {
-        let isOut = false;
-        for (let c = 0; c < 3; c++) {
-          at[c] += stride * way[c];
-          isOut ||= at[c] < low[c] || at[c] > low[c] + size[c];
-        }
-        if (isOut) break;
-        passed += density[index(cellOf(at))] * stride;
+      const middle = cell.map((i, c) => low[c] + (i + 0.5) * step[c]);
+      for (let far = stride; ; far += stride) {
+        const next = cellOf(middle.map((each, c) => each + far * way[c]));
+        if (next.some((i) => i < 0 || i >= CELLS)) break;
+        passed += density[index(next)] * stride;
       }
-      const light = Math.exp(-EXTINCTION * passed);
-      open += light / ways.length;
-      for (let c = 0; c < 3; c++) sum[c] += (2 * light * (way[c] - (c === 2 ? 0.27 : 0))) / ways.length;
+      const light = Math.exp(-EXTINCTION * passed) / WAYS.length;
+      open += light;
+      way.forEach((each, c) => (towards[c] += 2 * light * (each - (c === 2 ? 0.27 : 0))));
     }
-    return { open, towards: sum };
+    return { open, towards };
   };
   return (place) => {
-    const cell = cellOf(place);
-    return (found[index(cell)] ??= shadeAt(cell));
+    const cell = inside(cellOf(place));
+    const known = found.get(index(cell)) ?? shadeAt(cell);
+    found.set(index(cell), known);
+    return known;
   };
 }

@@ -25,11 +25,9 @@ float clearness(vec3 p) { float far = haze * distance(eye, p); return 1.0 / (1.0
 #part hung seen
 // What hangs on a segment: its pose, and the scale of its tree.
 uniform highp sampler2D poses;
-uniform uvec4 starts[MOST_COPIES / 4]; // rows of the first segments of the trees of a batch
-in uint segment; // of its tree, and in the upper byte which tree of the batch
-uint start() { return starts[segment >> 26][(segment >> 24) & 3u]; }
-uint rowOf() { return 2u * (start() + (segment & 0xffffffu)); }
-vec4 seenIfAny(vec3 p) { return start() == NOTHING ? vec4(2.0, 2.0, 2.0, 1.0) : seen(p); }
+uniform float start; // row of the first segment of its tree
+in float segment; // of its tree
+uint rowOf() { return 2u * uint(start + segment); }
 vec4 texel(uint at) { return texelFetch(poses, ivec2(int(at & 1023u), int(at >> 10)), 0); }
 
 #part lit
@@ -71,7 +69,7 @@ void main() {
   tone = vec3(thickness, skin.z, clearness(p));
   float own = 0.5 * float(row);
   mark = own > picked.x - 0.5 && own < picked.y + 0.5 ? 1.0 : 0.0;
-  gl_Position = seenIfAny(p);
+  gl_Position = seen(p);
 }
 
 #part bark.fragment lit
@@ -118,7 +116,7 @@ void main() {
   float a = law.y * wild * inversesqrt(1.0 + wild * wild) * sin(6.2831853 * flutter.x * time + flutter.y);
   vec3 p = root.xyz + root.w * turned(q, place + a * swing);
   at = corner;
-  gl_Position = seenIfAny(p);
+  gl_Position = seen(p);
   if (shadowArea.w > 0.5) return;
   vec3 outward = turned(q, towards);
   vec3 n = normalize(turned(q, facing) + 0.5 * outward);

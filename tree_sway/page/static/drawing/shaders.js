@@ -6,17 +6,11 @@ import { textOf } from "../files.js";
 import { program } from "./gl.js";
 
 export const TEXTURE_WIDTH = 1024;
-/** Trees that are drawn in one go at most: many small ones cost little more than one. */
-export const MOST_COPIES = 32;
-/** Start of no tree. */
-export const NOTHING = 0xffffffff;
 /** Directions that an impostor is baked from: round the tree, and elevations [rad]. */
 export const ROUND = 8;
 export const ELEVATIONS = [0.08, 0.5];
 
 const HEAD = `#version 300 es
-#define MOST_COPIES ${MOST_COPIES}
-#define NOTHING ${NOTHING}u
 #define ROUND ${ROUND}
 #define LOW ${ELEVATIONS[0]}
 #define HIGH ${ELEVATIONS[1]}

@@ -5,27 +5,13 @@
 import { textOf } from "../files.js";
 
 /**
- * @typedef {"ovate" | "pointed" | "lobed" | "palmate" | "compound" | "needles" | "tufts" | "fronds"} LeafForm
- *
- * @typedef {object} Look
- * @property {number[]} bark colour, red, green and blue from 0 to 1
- * @property {"furrows" | "plates" | "smooth" | "dashes" | "flakes"} pattern of the bark
- * @property {number[]} twig
- * @property {LeafForm} form of a leaf
- * @property {number} size of a leaf or a leaflet, or of a shoot with its needles [m]
- * @property {number} slender width of a leaf over its length
- * @property {number[]} leaf
- * @property {number[]} fresh colour of a leaf with the sun behind it
- * @property {number[] | null} autumn colour of a leaf before it falls; null of an evergreen
- */
-
-/**
  * The average broadleaf whole; what is other of the average conifer, and of each species than of its
- * group.
+ * group. Patterns of bark, and halves of outlines of blades from the stalk to the tip.
  * @type {{broadleaf: Look, conifer: Partial<Look>, broadleaves: Record<string, Partial<Look>>,
- * conifers: Record<string, Partial<Look>>}}
+ * conifers: Record<string, Partial<Look>>, patterns: Record<string, Pattern>,
+ * outlines: Record<string, [number, number][]>}}
  */
-const { broadleaf, conifer, broadleaves, conifers } = JSON.parse(await textOf("species.json"));
+const { broadleaf, conifer, broadleaves, conifers, patterns, outlines } = JSON.parse(await textOf("species.json"));
 
 /** The look of a species; that of an average broadleaf where it is unknown.
  * @param {string} species @returns {Look} */
@@ -34,15 +20,20 @@ export function lookOf(species) {
   return { ...broadleaf, ...group, ...(conifers[species] ?? broadleaves[species]) };
 }
 
-/** @param {string} species */
-export function hasNeedles(species) {
-  return species in conifers;
+/** Points of a blade above its middle, of unit length. @param {Look} look */
+export function outlineOf({ form, slender }) {
+  const half = outlines[form] ?? outlines.ovate;
+  return half.map(([x, y]) => [x, 0.5 * slender * y]);
 }
 
+/** @param {Look["pattern"]} name */
+export const barkPattern = (name) => patterns[name];
+
 /** @param {string} species */
-export function isPotted(species) {
-  return species === "benjamina" || species === "goldcrest";
-}
+export const hasNeedles = (species) => species in conifers;
+
+/** @param {string} species */
+export const isPotted = (species) => species === "benjamina" || species === "goldcrest";
 
 /** Numbers from 0 to 1 that are the same on every page. */
 export function seeded(state = 12345) {

@@ -1,0 +1,134 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A headless Chromium, driven over its DevTools protocol."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import json
+import re
+import shutil
+import subprocess
+import tempfile
+import time
+from types import TracebackType
+from typing import Any
+
+DEADLINE = 60.0
+_FLAGS = (
+    '--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run', '--mute-audio',
+    '--disable-background-networking', '--disable-component-update', '--disable-sync',
+    '--remote-debugging-port=0',
+)  # fmt: skip
+
+
+def chromium() -> str | None:
+    """Where Chromium is installed; None if it is not."""
+    return shutil.which('chromium') or shutil.which('chromium-browser')
+
+
+class Browser:
+    """One page in a browser of its own."""
+
+    def __init__(self) -> None:
+        self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        command = [str(chromium()), *_FLAGS, f'--user-data-dir={self._folder.name}', 'about:blank']
+        self._process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        self._number = 0
+        self._target = ''
+        self.console: list[str] = []
+        self.requests: list[str] = []
+
+    @property
+    def process(self) -> int:
+        """Number of its process."""
+        return self._process.pid
+
+    async def __aenter__(self) -> Browser:
+        assert self._process.stderr is not None
+        for line in self._process.stderr:
+            found = re.search(r'DevTools listening on (ws://\S+)', line)
+            if found:
+                break
+        else:
+            raise AssertionError('Chromium did not start')
+        import aiohttp
+
+        self._session = aiohttp.ClientSession()
+        self._ws = await self._session.ws_connect(found[1], max_msg_size=0)
+        created = await self.call('Target.createTarget', url='about:blank')
+        answer = await self.call('Target.attachToTarget', flatten=True, **created)
+        self._target = answer['sessionId']
+        for domain in ('Page', 'Runtime', 'Network'):
+            await self.call(f'{domain}.enable')
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        await self._ws.close()
+        await self._session.close()
+        self._process.kill()
+        self._process.wait()
+        assert self._process.stderr is not None
+        self._process.stderr.close()
+        self._folder.cleanup()
+
+    async def call(self, method: str, **parameters: Any) -> Any:
+        """Call a method of the protocol."""
+        self._number += 1
+        message: dict[str, Any] = {'id': self._number, 'method': method, 'params': parameters}
+        if self._target:
+            message['sessionId'] = self._target
+        await self._ws.send_str(json.dumps(message))
+        while True:
+            answer = json.loads((await asyncio.wait_for(self._ws.receive(), DEADLINE)).data)
+            if answer.get('id') == self._number:
+                assert 'error' not in answer, answer['error']
+                return answer['result']
+            self._note(answer)
+
+    def _note(self, message: dict[str, Any]) -> None:
+        """Keep what went wrong on the page, and every address that it asked for."""
+        method, details = message.get('method'), message.get('params', {})
+        if method == 'Runtime.exceptionThrown':
+            self.console.append(json.dumps(details['exceptionDetails'])[:600])
+        elif method == 'Network.requestWillBeSent':
+            self.requests.append(details['request']['url'])
+
+    async def open(  # noqa: A003
+        self, url: str, width: int = 1280, height: int = 800, dark: bool = False
+    ) -> None:
+        """Open a page at a size and a colour scheme."""
+        self.requests = []
+        scheme = {'name': 'prefers-color-scheme', 'value': 'dark' if dark else 'light'}
+        await self.call('Emulation.setEmulatedMedia', features=[scheme])
+        await self.call(
+            'Emulation.setDeviceMetricsOverride',
+            width=width, height=height, deviceScaleFactor=1, mobile=width < 700,
+        )  # fmt: skip
+        await self.call('Page.navigate', url=url)
+
+    async def run(self, script: str) -> Any:
+        """Value of an expression on the page."""
+        answer = await self.call(
+            'Runtime.evaluate', expression=script, returnByValue=True, awaitPromise=True
+        )
+        assert 'exceptionDetails' not in answer, answer['exceptionDetails']
+        return answer['result'].get('value')
+
+    async def until(self, script: str, deadline: float = DEADLINE) -> None:
+        """Wait until an expression is true on the page."""
+        end = time.monotonic() + deadline
+        while not await self.run(f'Boolean({script})'):
+            assert time.monotonic() < end, (script, self.console)
+            await asyncio.sleep(0.05)
+
+    async def screenshot(self) -> bytes:
+        """Return the page as PNG."""
+        return base64.b64decode((await self.call('Page.captureScreenshot'))['data'])

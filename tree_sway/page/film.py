@@ -1,0 +1,115 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Pictures of a scene as the page draws it, one for each state, by a browser without a screen.
+
+The browser opens the scene as one file (`page_of_state`) from this machine; ``static/film.js``
+then asks for one state after another and sends back what it has drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+import json
+import os
+from queue import Empty, Queue
+import shutil
+import subprocess
+from tempfile import TemporaryDirectory
+from threading import Thread
+from urllib.parse import urlencode
+
+from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.errors import TransportError
+from tree_sway.page.one_file import page_of_state
+from tree_sway.page.scene_state import SceneState
+
+_NAMES = ('chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable')
+_FLAGS = (
+    '--headless', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--mute-audio',
+    '--force-device-scale-factor=1', '--no-first-run', '--disable-background-networking',
+)  # fmt: skip
+_WIDTH = 1.6
+"""Width of a picture over its height."""
+_PATIENCE = 120.0
+"""Time after which a browser that draws nothing is given up [s]."""
+
+
+def browser() -> str | None:
+    """Return the path of a Chromium or Chrome; None if none is installed."""
+    return next(filter(None, map(shutil.which, _NAMES)), None)
+
+
+def page_pictures(
+    simulator: Simulator, frames: Iterable[None], rate: float, pixels: int, n_leaves: int
+) -> Iterator[bytes]:
+    """
+    Yield a PNG of a simulator's state at each frame.
+
+    Parameters
+    ----------
+    simulator
+        A tree or a scene on a number of coordinates, at rest.
+    frames
+        Takes the simulator from one frame to the next.
+    rate
+        Frames per second [Hz].
+    pixels
+        Height of the pictures in [px].
+    n_leaves
+        Number of clusters of leaves, as of `SceneState`.
+
+    Raises
+    ------
+    ParameterError
+        A tree on another model.
+    TransportError
+        No browser, or one that draws nothing.
+
+    """
+    scene = SceneState(simulator, n_leaves, is_running=False)
+    page = page_of_state(scene, 'film.js')
+    states, pictures = Queue[bytes](), Queue[bytes]()
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self._answer(page.encode(), 'text/html')
+
+        def do_POST(self) -> None:
+            if size := int(self.headers['Content-Length'] or 0):
+                pictures.put(self.rfile.read(size))
+            self._answer(states.get(), 'application/json')
+
+        def _answer(self, body: bytes, kind: str) -> None:
+            self.send_response(200)
+            self.send_header('Content-Type', f'{kind}; charset=utf-8')
+            self.end_headers()
+            self.wfile.write(body)
+
+        def log_message(self, *_: object) -> None:
+            """Log nothing."""
+
+    with (
+        ThreadingHTTPServer(('127.0.0.1', 0), Handler) as server,
+        TemporaryDirectory(ignore_cleanup_errors=True) as profile,
+    ):
+        Thread(target=server.serve_forever, daemon=True).start()
+        size = {'width': f'{2 * round(0.5 * _WIDTH * pixels)}px', 'height': f'{pixels}px'}
+        address = f'http://127.0.0.1:{server.server_port}/?quality=full&{urlencode(size)}'
+        sandbox = ['--no-sandbox'] if getattr(os, 'geteuid', lambda: 1)() == 0 else []
+        words = [str(browser()), *_FLAGS, *sandbox, f'--user-data-dir={profile}', address]
+        process = subprocess.Popen(words, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        try:
+            for number, _ in enumerate(frames):
+                wind, coordinates = simulator.wind.tolist(), scene.coordinates().tolist()
+                state = {'time': number / rate, 'wind': wind, 'coordinates': coordinates}
+                states.put(json.dumps(state).encode())
+                yield pictures.get(timeout=_PATIENCE)
+        except Empty:
+            what = f'the browser drew nothing for {_PATIENCE:.0f} s'
+            raise TransportError(what, where=words[0], cure='give fewer --pixels') from None
+        finally:
+            process.kill()
+            process.wait()
+            server.shutdown()

@@ -1,0 +1,55 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** Quaternions x y z w that lie in arrays, each from an index on; results are written, not made anew. */
+
+/** Product of two, first b, then a. @param {Numbers} a @param {number} i @param {Numbers} b
+ * @param {number} j @param {Numbers} out @param {number} [o] */
+export function multiply(a, i, b, j, out, o = 0) {
+  const [ax, ay, az, aw] = [a[i], a[i + 1], a[i + 2], a[i + 3]];
+  const [bx, by, bz, bw] = [b[j], b[j + 1], b[j + 2], b[j + 3]];
+  out[o] = aw * bx + ax * bw + ay * bz - az * by;
+  out[o + 1] = aw * by - ax * bz + ay * bw + az * bx;
+  out[o + 2] = aw * bz + ax * by - ay * bx + az * bw;
+  out[o + 3] = aw * bw - ax * bx - ay * by - az * bz;
+}
+
+/** Add a vector, turned by a quaternion and scaled. @param {Numbers} q @param {number} i
+ * @param {Numbers} v @param {number} j @param {number} scale @param {Numbers} out */
+export function addTurned(q, i, v, j, scale, out) {
+  const [qx, qy, qz, qw] = [q[i], q[i + 1], q[i + 2], q[i + 3]];
+  const [x, y, z] = [scale * v[j], scale * v[j + 1], scale * v[j + 2]];
+  const tx = 2 * (qy * z - qz * y);
+  const ty = 2 * (qz * x - qx * z);
+  const tz = 2 * (qx * y - qy * x);
+  out[0] += x + qw * tx + qy * tz - qz * ty;
+  out[1] += y + qw * ty + qz * tx - qx * tz;
+  out[2] += z + qw * tz + qx * ty - qy * tx;
+}
+
+/** Of half a rotation vector [rad]. @param {Numbers} half @param {Numbers} out */
+export function fromHalf(half, out) {
+  const [x, y, z] = [half[0], half[1], half[2]];
+  const square = x * x + y * y + z * z;
+  const angle = Math.sqrt(square);
+  const sinc = square > 1e-8 ? Math.sin(angle) / angle : 1 - square / 6;
+  out[0] = sinc * x;
+  out[1] = sinc * y;
+  out[2] = sinc * z;
+  out[3] = square > 1e-8 ? Math.cos(angle) : 1 - square / 2;
+}
+
+/** A vector turned by a quaternion, as a new one. @param {Numbers} q @param {Numbers} v
+ * @param {number} [i] where the quaternion begins */
+export function turned(q, v, i = 0) {
+  const out = [0, 0, 0];
+  addTurned(q, i, v, 0, 1, out);
+  return out;
+}
+
+/** The turn from one to another, in the frame of the first. @param {Numbers} a @param {number} i
+ * @param {Numbers} b @param {number} j */
+export function between(a, i, b, j) {
+  const out = [0, 0, 0, 1];
+  multiply([-a[i], -a[i + 1], -a[i + 2], a[i + 3]], 0, b, j, out);
+  return out;
+}

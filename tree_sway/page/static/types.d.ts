@@ -1,0 +1,273 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** Types of what is sent, drawn and shown, for the checks of JSDoc and for editors. */
+
+// What is sent: see doc/streaming.md.
+
+type NumberArray = Float32Array | Int32Array | Int16Array | Uint8Array;
+type Numbers = NumberArray | Float64Array | number[];
+type Arrays = Record<string, { values: NumberArray; shape: number[] }>;
+type Vector = [number, number, number];
+/** Type and axes of arrays by name. */
+type Forms = Record<string, ["f32" | "i32" | "i16" | "u8", ...(string | number)[]]>;
+
+/** What trees of one shape share. */
+interface Kind {
+  species: string;
+  /** [m] */
+  height: number;
+  model: string;
+  /** What the basis leaves out [m]. */
+  basis_error: number;
+  /** Young's modulus of its wood [Pa]. */
+  modulus?: number;
+  branch_names: string[];
+  nSegments: number;
+  nBranches: number;
+  nCoordinates: number;
+  /** Key rotations. */
+  nKeys: number;
+  arrays: Record<string, NumberArray>;
+}
+
+interface Tree {
+  name: string;
+  /** Its number among the kinds. */
+  kind: number;
+  /** [m] */
+  height: number;
+  /** x, y, z [m], how far it is turned about the vertical [rad], its scale. */
+  place: number[];
+  /** Among those of all trees. */
+  firstSegment: number;
+  firstCoordinate: number;
+}
+
+interface Description {
+  name: string;
+  frame_id: string;
+  identity: string;
+  /** What frames carry of the identity. */
+  shortIdentity: number;
+  kinds: Kind[];
+  trees: Tree[];
+  /** Law of the leaves. */
+  flutter: { gain: number; largest_angle: number } | null;
+  /** Of all trees. */
+  nSegments: number;
+  nCoordinates: number;
+  /** Of each coordinate at full scale. */
+  scale: Float32Array;
+}
+
+interface Frame {
+  identity: number;
+  sequence: number;
+  /** Of the sender's clock [ms]. */
+  stamp: number;
+  flags: number;
+  /** Blowing to [m/s]. */
+  wind: Vector;
+  /** In their own unit; none in a frame of the wind alone. */
+  coordinates: Float32Array;
+  /** Number of the first of them. */
+  first: number;
+}
+
+interface Tables {
+  /** Identity of what they belong to. */
+  description: string;
+  /** Where the wind is measured [m]; upwind of all if null. */
+  anemometer: number[] | null;
+  /** Speed of gusts over that of the mean wind. */
+  ratio: number;
+  kinds: import("./sway.js").Table[];
+  /** Wind of each tree over that of its kind. */
+  speeds: ArrayLike<number>;
+}
+
+/** Who hears what comes over a line. */
+interface Listeners {
+  onState: (state: "connecting" | "open" | "lost", retryIn: number) => void;
+  onDescription: (description: Description) => void;
+  /** After a description, by which to solve it. */
+  onTables?: (tables: Tables) => void;
+  onFrame: (frame: Frame, arrival: number, size: number) => void;
+  onMessage: (message: Record<string, any>) => void;
+}
+
+type StreamListeners = Partial<Listeners>;
+
+interface StreamOptions {
+  /** Frames per second that are asked for. */
+  rate?: number;
+  /** Of the playout [ms]. */
+  delay?: number;
+  /** Whether the wind alone is asked for, and the scene solved here. */
+  byWind?: boolean;
+  /** Scene that is solved here, of no server. */
+  kept?: Kept | null;
+}
+
+interface Kept {
+  description: Description;
+  stand: import("./sway.js").Stand;
+}
+
+/** What a viewer may change. */
+interface Control {
+  name: string;
+  label: string;
+  description: string;
+  unit: string;
+  value: number | string | boolean | null;
+  minimum: number | null;
+  maximum: number | null;
+  choices: string[];
+  is_action: boolean;
+}
+
+// What is drawn.
+
+interface Program {
+  program: WebGLProgram;
+  /** What sets each of them. */
+  uniforms: Record<string, (value: any) => void>;
+}
+
+interface Drawable {
+  vao: WebGLVertexArrayObject;
+  /** Of its indices. */
+  count: number;
+  buffers: WebGLBuffer[];
+}
+
+interface Mesh {
+  values: number[];
+  indices: number[];
+}
+
+/** How much of a kind is drawn. */
+interface Level {
+  /** The first of its order. */
+  branches: number;
+  /** Of these. */
+  segments: number;
+  /** Of its leaves. */
+  cards: number;
+  /** Height of a tree that it is shaped for. */
+  pixels: number;
+  /** Height [px] from which on it is drawn. */
+  from: number;
+}
+
+type Shape = ReturnType<typeof import("./drawing/mesh.js").shapeOf>;
+
+/** Trees of a kind that are drawn on one level. */
+interface DrawnLevel {
+  /** Rows of their first segments. */
+  starts: number[];
+  bark: Drawable | null;
+  leaf: Drawable | null;
+  /** Leaves in the picture of a card. */
+  across: number;
+  impostor: import("./drawing/impostors.js").Impostor | null;
+}
+
+/** A kind with the levels that have been used. */
+type DrawnKind = Shape & { drawn: DrawnLevel[] };
+
+interface Daylight {
+  /** Towards the sun. */
+  light: number[];
+  /** Colour of its light. */
+  sun: number[];
+  /** Colour of the light of the sky. */
+  sky: number[];
+  zenith: number[];
+  horizon: number[];
+  /** Brightness of the ground. */
+  dimmed: number;
+}
+
+interface Look {
+  /** Colour: red, green and blue from 0 to 1. */
+  bark: number[];
+  pattern: "furrows" | "plates" | "smooth" | "dashes" | "flakes";
+  twig: number[];
+  /** Of a leaf. */
+  form: "ovate" | "pointed" | "lobed" | "palmate" | "compound" | "needles" | "tufts" | "fronds";
+  /** Of a leaf or a leaflet, or of a shoot with its needles [m]. */
+  size: number;
+  /** Width of a leaf over its length. */
+  slender: number;
+  leaf: number[];
+  /** Colour of a leaf with the sun behind it. */
+  fresh: number[];
+  /** Colour of a leaf before it falls; null of an evergreen. */
+  autumn: number[] | null;
+}
+
+/** The relief of bark. */
+interface Pattern {
+  /** Of its noise, around and up a tile. */
+  cells: [number, number];
+  /** How steep furrows are. */
+  ridge?: number;
+  /** Share without dark spots. */
+  spot?: number;
+  /** Of its shade. */
+  depth: number;
+  grain: number;
+}
+
+/** Shapes turned about the vertical. */
+interface Turned {
+  sides: number;
+  /** One of it beside each [m]. */
+  middles: number[];
+  /** Width over depth. */
+  wide?: number;
+  /** Radius, height [m] and colour. */
+  profile: [number, number, string][];
+}
+
+/** Light within a crown. */
+interface Shade {
+  /** Share of the light of all directions that arrives, 0 to 1. */
+  open: number;
+  /** Where most of it comes from, shorter than 1. */
+  towards: number[];
+}
+
+/** What a number is shown in. */
+interface Unit {
+  factor: number;
+  unit: string;
+  digits: number;
+}
+
+/** What one eye sees. */
+interface View {
+  camera: {
+    matrix: Float32Array;
+    eye: Vector;
+    axes(): { right: number[]; up: number[]; back: number[] };
+    update(): Float32Array;
+  };
+  target: WebGLFramebuffer | null;
+  /** Of the target: x, y, width, height [px]. */
+  area: number[];
+}
+
+/** A force at the root side of a segment, or a spring from it to a place. */
+interface Push {
+  /** Its number among those of all trees. */
+  segment: number;
+  /** [N] */
+  force?: number[];
+  /** [m] */
+  to?: number[];
+  /** Of the spring [N/m]; 0 lets go. */
+  stiffness?: number;
+}
