@@ -7,7 +7,7 @@ The wind at which a stem would break: base strain against mean speed, up to what
 
 The largest strain of a minute is fitted by ``a U^b`` over several speeds; it crosses the strain of
 rupture, modulus of rupture over Young's modulus, at the critical speed. This is the stem's own
-strength: what holds the roots is not in the model.
+strength: the anchorage of the roots is not in the model.
 
 """
 

@@ -22,7 +22,7 @@ RATE, SECONDS, SPEED = 20.0, 600.0, 8.0
 
 
 def main(name: str = 'goldcrest', picture: str = '') -> Figure:
-    """Simulate ten minutes, print the peak, and draw; keep the picture if it is named."""
+    """Simulate ten minutes, print the peak, and draw; save the picture if it is named."""
     rng = np.random.default_rng(1)
     wind = simulate_turbulence(SPEED, rate=RATE, duration=SECONDS, rng=rng)
     record = simulate(open_tree(name), wind, rate=RATE)

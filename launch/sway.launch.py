@@ -94,7 +94,7 @@ def start_nodes(context):
 
 
 def is_true(name, text):
-    """Return whether an argument says yes: True, true and 1 do; refuse what is neither."""
+    """Return whether an argument is True, true or 1; refuse what is neither true nor false."""
     if text.lower() in ('true', '1'):
         return True
     if text.lower() in ('', 'false', '0'):
@@ -143,7 +143,7 @@ def shards_here(given):
 
 
 def make_shard(shard, given, config, around):
-    """Make the solver of one shard: it hears the one wind of all, and comes back if it ends."""
+    """Make the solver of one shard: it receives the common wind, and is restarted if it ends."""
     wind = '/' + '/'.join(filter(None, (around.strip('/'), given['namespace'].strip('/'), WIND)))
     return make_node(
         'solver',

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Follow a tree that sways somewhere else, and say where its highest tip is.
+Follow a tree that sways on another machine, and print where its highest tip is.
 
     tree-sway show goldcrest --port 8765
     python examples/python/follow.py http://127.0.0.1:8765/ --seconds 5

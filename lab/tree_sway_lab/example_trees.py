@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Trees to measure on: three of 40 branches, one of 121, and plain stems, made of numbers alone.
+Trees to measure on: three of 40 branches, one of 121, and plain stems, made by formulas.
 
 How a tree sways is decided by how children compare with their parent. A child of length ratio l
 and diameter ratio d has d / l^2 times its parent's frequency: near 1 they swing together, and

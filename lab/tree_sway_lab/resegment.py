@@ -4,7 +4,7 @@
 A tree cut again: its branches in more or fewer segments, its shape and its motion the same.
 
 A branch moves as one body of few coordinates, so how finely it is cut decides how smoothly it is
-drawn and not how it sways (Kanda & Ohya, 3.2). Finer cuts only split segments and keep every node.
+drawn and not how it sways (Kanda & Ohya, 3.2). Finer cuts only split segments; every node remains.
 Coarser cuts stand evenly along the branch and take the corners between them off. What a branch
 carries stays where it is, at the same place along it.
 
@@ -22,7 +22,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
 MOST_SEGMENTS = 10_000
-"""Segments of one branch that nobody needs more of."""
+"""Largest number of segments of one branch."""
 
 
 def resegment(
@@ -85,9 +85,9 @@ def _wished(tree: Tree, number: int | None, longest: float | None) -> Ints:
     elif longest > 0.0:
         # What fits to rounding is not cut once more.
         wished = np.maximum(np.ceil(tree.branch_length / longest - 1e-9), 1.0)
-        kept = np.maximum(np.ceil(tree.length / longest - 1e-9), 1.0)
-        keeping = np.add.reduceat(kept, tree.branch_first[:-1])
-        wished = np.where(wished < np.diff(tree.branch_first), wished, keeping)
+        n_pieces = np.maximum(np.ceil(tree.length / longest - 1e-9), 1.0)
+        sums = np.add.reduceat(n_pieces, tree.branch_first[:-1])
+        wished = np.where(wished < np.diff(tree.branch_first), wished, sums)
     else:
         raise ParameterError(
             f'segments of {longest} m', where='max_segment_length', cure='give a length above 0'

@@ -96,7 +96,7 @@ CHANGES = {
         '0.9144',
     ),
     'format': (
-        'tree_sway/files/trees/formats/swc.py', "TreeFormat('swc'", "TreeFormat('neuron'",
+        'tree_sway/files/trees/formats/swc.py', "FileFormat('swc'", "FileFormat('neuron'",
         'from tree_sway.files.trees.tree_file import TREE_FORMATS;'
         "print('neuron' in [each.name for each in TREE_FORMATS])",
         'True',

@@ -80,7 +80,7 @@ def stamps(rng, times):
 
 
 class Sender:
-    """Messages of all types that wind comes in, each one object that is written anew."""
+    """Messages of all types that wind comes in, each one object that is written repeatedly."""
 
     def __init__(self):
         from geometry_msgs import msg
@@ -114,7 +114,7 @@ def fuzz(wind, solver, n, seed):
     """
     Send n messages through the callbacks of both nodes; all frames are looked at.
 
-    What a callback raises is raised here: no guard stands around it.
+    What a callback raises is raised here: no guard is around it.
 
     """
     from tree_sway_ros.timing.pacer import Tick
@@ -170,9 +170,7 @@ def fuzz_lines(n, seed):
             place = rng.randrange(len(line)) if line else 0
             line[place : place + rng.randrange(3)] = chr(rng.choice((rng.randrange(128), 0x20AC)))
         text = ''.join(line)
-        said = parse_nmea(text, 0.0, 0.0, need_checksum=False) or parse_sonic(
-            text, 0.0, need_checksum=False
-        )
+        said = parse_nmea(text, 0.0, 0.0) or parse_sonic(text, 0.0)
         if said is not None and said.velocity is not None:
             good += 1
             assert all(math.isfinite(each) for each in said.velocity)

@@ -4,7 +4,7 @@
 // `node test/page/measure_sway.mjs`. Prints the least of many batches, as other programs run beside.
 import { Stand, Table } from "../../tree_sway/page/static/sway.js";
 
-const [A, N] = [24, 5];
+const [A, N] = [24, 6];
 let seed = 1;
 const random = () => ((seed = (seed * 16807) % 2147483647) / 2147483647 - 0.5);
 const singles = (count, scale = 1, shift = 0) => Float32Array.from({ length: count }, () => shift + scale * random());

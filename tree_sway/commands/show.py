@@ -71,7 +71,8 @@ def run(arguments: argparse.Namespace) -> int:
     panel = ControlPanel()
     if not arguments.read_only:
         is_one_tree = session.status()['trees'] == arguments.stand
-        panel = ControlPanel(_controls(choices, wind, is_one_tree=is_one_tree), session.apply)
+        controls = _controls(choices, wind, is_one_tree=is_one_tree)
+        panel = ControlPanel(controls, session.apply, session.pull)
     with PageServer(settings, panel, session.status, session.written) as server:
         session.serve(server)
         print(f'open {server.url} (Ctrl-C ends)', flush=True)

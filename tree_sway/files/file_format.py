@@ -4,11 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 import re
-from typing import Any, TypeVar
+from typing import Any
 
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.text_file import read_head
@@ -21,13 +21,15 @@ class FileFormat:
 
     ``name`` is also the value of the option ``format``; suffixes are in lower case. ``recognise``
     decides by the beginning of a file, as text with all else replaced; arguments of ``read`` after
-    the path are the format's own options.
+    the path are the format's own options. ``defaults`` are those of the options of all trees that
+    are not as in `TreeOptions`.
     """
 
     name: str
     suffixes: tuple[str, ...]
     recognise: Callable[[str], bool]
     read: Callable[..., Any]
+    defaults: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def own_options(self) -> tuple[str, ...]:
@@ -42,9 +44,6 @@ class FileFormat:
                     f"format {self.name} has no option '{option}'",
                     cure=f'it has: {", ".join(known)}',
                 )
-
-
-Format = TypeVar('Format', bound=FileFormat)
 
 
 def contains(pattern: str) -> Callable[[str], bool]:
@@ -69,12 +68,12 @@ def has_columns(*names: str) -> Callable[[str], bool]:
 def format_of(
     path: Path,
     name: str | None,
-    formats: Sequence[Format],
+    formats: Sequence[FileFormat],
     kind: str,
     *,
     folder: str = '',
     head: str | None = None,
-) -> Format:
+) -> FileFormat:
     """
     Return the format of a file: the one that is named; else its content decides, then its suffix.
 

@@ -7,12 +7,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
+from tree_sway.core.checks import within
+from tree_sway.core.simulator.touch import STIFFEST
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.parameters.parameter import Parameter
 
 _GREATEST = 1e15
+_FARTHEST = 1e5
 Value = bool | float | str | None
 """Value of a control, as JSON has it; None for a button."""
+
+
+Pull = Callable[[int, tuple[float, ...], float], None]
+"""Pulls at a segment towards a place [m], (3,), by a stiffness [N/m]; 0 lets it go."""
 
 
 @dataclass(frozen=True)
@@ -92,14 +99,24 @@ class ControlPanel:
         What may be changed.
     apply
         Called with name and checked value; raises `TreeSwayError` to refuse.
+    pull
+        Called for a branch that a viewer drags; nothing can be pulled if None.
 
     """
 
     def __init__(
-        self, controls: tuple[Control, ...] = (), apply: Callable[[str, Value], None] | None = None
+        self,
+        controls: tuple[Control, ...] = (),
+        apply: Callable[[str, Value], None] | None = None,
+        pull: Pull | None = None,
     ) -> None:
         self._controls = {control.name: control for control in controls}
-        self._apply = apply
+        self._apply, self._pull = apply, pull
+
+    @property
+    def can_pull(self) -> bool:
+        """Whether a branch can be pulled."""
+        return self._pull is not None
 
     def entries(self) -> list[dict[str, object]]:
         """All controls as JSON has them."""
@@ -127,4 +144,19 @@ class ControlPanel:
             return str(error)
         if not control.is_action:
             self._controls[control.name] = replace(control, value=checked)
+        return None
+
+    def pull(self, given: object) -> str | None:
+        """Pull at a segment as a viewer asks; returns why not, None if it was done."""
+        if self._pull is None:
+            return 'no branch can be pulled here'
+        try:
+            match given:
+                case {'segment': int(segment), 'to': [_, _, _] as to, 'stiffness': stiffness}:
+                    far = tuple(within('pull: to', x, -_FARTHEST, _FARTHEST, 'm') for x in to)
+                    self._pull(segment, far, within('pull: stiffness', stiffness, 0.0, STIFFEST))
+                case _:
+                    return 'a pull has a segment, a place to pull it to, and a stiffness'
+        except (TreeSwayError, TypeError) as error:
+            return str(error)
         return None

@@ -26,7 +26,7 @@ from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import ParameterError
 from tree_sway.page.scene_state import SceneState
 
-_IMPORT = re.compile(r'(\bfrom\s+|\bimport\s+)"(\.[^"]+)"')
+_IMPORT = re.compile(r'(\bfrom\s+|\bimport[\s(]+)"(\.[^"]+)"')
 _LEAVES = 1000
 _BOOT = 'boot.js'
 _BITS = 14

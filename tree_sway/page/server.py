@@ -416,8 +416,8 @@ class PageServer:
         )
         await socket.prepare(request)
         client = _Client(socket, request.transport)
-        hello = {'controls': self._panel.entries(), 'address': self.settings.address}
-        client.say({'hello': hello})
+        hello = {'controls': self._panel.entries(), 'can_pull': self._panel.can_pull}
+        client.say({'hello': {**hello, 'address': self.settings.address}})
         self._clients.add(client)
         sender = self._loop.create_task(self._send(client))
         try:
@@ -457,6 +457,8 @@ class PageServer:
         client.wants_nothing_else |= message.get('wind') == 'only'
         if 'set' in message:
             self._change(client, message['set'])
+        if 'pull' in message and (why := self._panel.pull(message['pull'])) is not None:
+            self._refuse(client, 'pull', why)
         client.wake.set()
 
     def _change(self, client: _Client, change: object) -> None:
@@ -464,11 +466,14 @@ class PageServer:
         name = change.get('name')
         why = self._panel.set(name, change.get('value'))
         if why is not None:
-            self.n_refused += 1
-            refused = {'name': str(name)[:80], 'reason': why[:400]}
-            client.say({'refused': refused, 'values': self._panel.values()})
+            self._refuse(client, str(name)[:80], why)
         else:
             self._send_all({'values': self._panel.values()})
+
+    def _refuse(self, client: _Client, name: str, why: str) -> None:
+        self.n_refused += 1
+        refused = {'name': name, 'reason': why[:400]}
+        client.say({'refused': refused, 'values': self._panel.values()})
 
     def _send_all(self, content: Mapping[str, object]) -> None:
         for client in self._clients:

@@ -10,6 +10,7 @@ while the first goes on, and taken over between two steps.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 import logging
 import threading
@@ -19,6 +20,8 @@ from tree_sway.core.scene.demand import set_demand
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.simulator.touch import Spring
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.limits import FASTEST_WIND
@@ -33,6 +36,9 @@ from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, WindSo
 _LOGGER = logging.getLogger('tree_sway.page')
 _MOST_LATE = 0.25
 _NEWEST = 0.05
+_PULL_LASTS = 0.5
+"""A pull ends after this time [s] unless its viewer renews it."""
+
 _BUSY = 0.2
 """Share of a period from which on only every second step is sent."""
 
@@ -163,6 +169,31 @@ class Session:
             self._want(replace(self._wanted or self.choices, **changed))  # type: ignore[arg-type]
         else:
             raise ParameterError(f"'{name}' cannot be changed", where='page')
+
+    def pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
+        """
+        Pull at a segment by a spring to a place [m], (3,), for half a second; let go at 0 N/m.
+
+        Raises
+        ------
+        ParameterError
+            A segment that the tree lacks, a stand, or a model that cannot be pushed.
+
+        """
+        simulator = self._scene.simulator
+        if not isinstance(simulator, SwaySimulator):
+            raise ParameterError('a stand', where='pull', cure='show one tree to pull at it')
+        if not 0 <= segment < simulator.tree.n_segments or simulator.model == 'branch':
+            what = f"no segment {segment} of model '{simulator.model}'"
+            raise ParameterError(what, where='pull')
+        force = Spring(to, stiffness) if stiffness else (0.0, 0.0, 0.0)
+        lasts = _PULL_LASTS if stiffness else 1e-9
+
+        def push() -> None:
+            with suppress(ParameterError):  # of too many at once, which the simulator counts
+                simulator.push(segment, force, lasts, along=0.0)
+
+        self._runtime.request(push)
 
     def status(self) -> dict[str, object]:
         """Return what the page shows beside the tree."""

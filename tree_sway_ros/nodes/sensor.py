@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The sensor node: a real anemometer that speaks NMEA 0183, or as Gill and TriSonica do."""
+"""The sensor node: a real anemometer that speaks NMEA 0183, or as Gill's do."""
 
 from __future__ import annotations
 
@@ -62,10 +62,8 @@ class SensorNode(TreeSwayNode):
             self._publisher.publish(self._writer.message(stamp, said.velocity))
 
     def _parsed(self, line: str) -> SensorLine | None:
-        need, heading = self.values['need_checksum'], self.values['heading']
-        return parse_nmea(
-            line, heading, self.values['declination'], need_checksum=need
-        ) or parse_sonic(line, heading, need_checksum=need)
+        heading = self.values['heading']
+        return parse_nmea(line, heading, self.values['declination']) or parse_sonic(line, heading)
 
     def _report(self) -> list[Status]:
         source = self._source

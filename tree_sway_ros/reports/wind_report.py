@@ -4,20 +4,15 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
+import math
 import time
 
-import numpy as np
-
 from tree_sway.core.wind.gate import WindGate
+from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
 
-_WINDOW = 5.0
 _PERIODS = 3.0
-_LATEST = 21
-_SHORTER = 0.8
-"""Share of the gaps between samples that are shorter than the period: some come in bursts."""
 STALE_AFTER = 5.0
 """Number of time-outs after which a lost wind is stale, the trees are at rest again."""
 
@@ -26,31 +21,24 @@ class WindReport:
     """Good samples by arrival, in wall time: stamps do not show whether a sensor is alive."""
 
     def __init__(self) -> None:
-        self._arrivals: deque[float] = deque(maxlen=1000)
+        self._timing, self._newest = SensorTiming(0.0), -math.inf
 
     def add(self) -> None:
         """Count a good sample."""
-        self._arrivals.append(time.monotonic())
+        now = time.monotonic()
+        self._timing.note_interval(now - self._newest)
+        self._newest = now
 
     @property
-    def age(self) -> float | None:
-        """Time since the last good sample in [s]; None if there was none."""
-        return time.monotonic() - self._arrivals[-1] if self._arrivals else None
+    def age(self) -> float:
+        """Time since the last good sample in [s]; infinite if there was none."""
+        return time.monotonic() - self._newest
 
     @property
     def rate(self) -> float:
-        """Good samples per second over the last five seconds [Hz]."""
-        now = time.monotonic()
-        recent = [arrival for arrival in list(self._arrivals) if now - arrival <= _WINDOW]
-        if len(recent) < 2 or now - recent[-1] > 1.0 + 2.0 * (recent[-1] - recent[-2]):
-            return 0.0
-        return (len(recent) - 1) / max(1e-9, recent[-1] - recent[0])
-
-    @property
-    def _period(self) -> float:
-        """Period of the sensor [s]; 0 before the second sample. Few dropouts do not change it."""
-        gaps = sorted(np.diff(list(self._arrivals)[-_LATEST:]).tolist())
-        return float(gaps[int(_SHORTER * len(gaps))]) if gaps else 0.0
+        """Good samples per second [Hz], 0 where none has come for a second and two periods."""
+        period = self._timing.period or math.inf
+        return 0.0 if self.age > 1.0 + 2.0 * period else 1.0 / max(period, 1e-9)
 
     def status(self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()) -> Status:
         """
@@ -59,15 +47,15 @@ class WindReport:
         The wind counts as lost when its last good sample is older than a timeout [s]; three
         periods of a sensor that is slower.
         """
-        age, timeout = self.age, max(timeout, _PERIODS * self._period)
+        age, timeout = self.age, max(timeout, _PERIODS * (self._timing.period or 0.0))
         values: dict[str, object] = {
             'rate [Hz]': self.rate,
-            'age [s]': 'never' if age is None else age,
+            'age [s]': 'never' if math.isinf(age) else age,
             'refused': gate.counts.refused,
             **vars(gate.counts),
         }
         level, text = OK, f'{self.rate:.1f} Hz'
-        if age is None:
+        if math.isinf(age):
             level, text = WARN, 'no wind yet'
             if gate.counts.refused:
                 text += f'; {gate.counts.refused} samples refused'

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the battery and reports what held: a table in the terminal, a JSON file, an exit code."""
+"""Runs the battery and reports what was met: a table in the terminal, JSON, an exit code."""
 
 from __future__ import annotations
 

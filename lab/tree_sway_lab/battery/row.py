@@ -39,9 +39,9 @@ class Row:
         return self.verdict in (PASS, REPRODUCED)
 
 
-def holds(case: str, must_hold: str, measured: str, held: bool) -> Row:
+def holds(case: str, must_hold: str, measured: str, is_met: bool) -> Row:
     """Row of something that must hold."""
-    return Row(case, must_hold, measured, PASS if held else FAIL)
+    return Row(case, must_hold, measured, PASS if is_met else FAIL)
 
 
 def fails(case: str, failure: str, measured: str, seen: bool) -> Row:

@@ -49,8 +49,8 @@ def bench_tree(
     Returns
     -------
     Tree
-        With 121 branches, of ``121 * segments_a_branch`` segments, if nothing is said of its
-        children.
+        With 121 branches, of ``121 * segments_a_branch`` segments, if nothing else is given for
+        its children.
 
     """
     start: list[Floats] = []

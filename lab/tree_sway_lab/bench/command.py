@@ -180,7 +180,7 @@ _FIGURES: dict[str, Callable[[argparse.Namespace], list[Measured]]] = {
 
 
 def core_name() -> str:
-    """Name of the processor, as it says itself."""
+    """Name of the processor, as the system reports it."""
     try:
         lines = Path('/proc/cpuinfo').read_text(encoding='utf-8').splitlines()
     except OSError:

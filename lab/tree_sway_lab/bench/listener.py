@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The other process of `stream` and `latency`: hears poses as bytes, reports when each arrived."""
+"""The other process of `stream` and `latency`: receives poses, reports when each arrived."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def main(seconds: float, topic: str = 'bench/segment_poses') -> None:
     stamps: list[int] = []
     arrivals: list[int] = []
 
-    def hear(data: bytes) -> None:
+    def receive(data: bytes) -> None:
         arrivals.append(time.time_ns())
         stamps.append(stamp_of(data))
 
     rclpy.init()
     node = rclpy.create_node('bench_listener')
-    node.create_subscription(PoseArray, topic, hear, QoSProfile(depth=5), raw=True)
+    node.create_subscription(PoseArray, topic, receive, QoSProfile(depth=5), raw=True)
     executor = rclpy.executors.SingleThreadedExecutor()
     executor.add_node(node)
     begun, cpu = time.monotonic(), 0.0

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a benchmark measured: as a table, as JSON, as a chart, against what was kept before."""
+"""What a benchmark measured: as a table, as JSON, as a chart, against an earlier file."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Measured:
     name
         What was measured.
     value
-        The figure; the less the better, but for what says otherwise.
+        The figure; less is better, unless stated otherwise.
     unit
         Its unit, ``-`` for none.
 
@@ -43,7 +43,7 @@ def read_baseline(path: str | Path) -> dict[str, float]:
     Raises
     ------
     FormatError
-        A file that holds no figures.
+        A file without figures.
 
     """
     try:

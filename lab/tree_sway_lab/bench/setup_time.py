@@ -3,7 +3,7 @@
 """
 Setting a tree up, timed: from its segments to a simulator that is ready to step.
 
-What is compiled and kept on disk is loaded before, by setting a small tree up.
+What is compiled and cached on disk is loaded before, by setting a small tree up.
 
 """
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A host's own process of `shards`: hears all shards, and sends the one wind if asked to."""
+"""A host's own process of `shards`: receives all shards, and publishes the wind if asked to."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _WIND_RATE = 20.0
 
 
 def main(sends_wind: bool, n_shards: int) -> None:
-    """Say once that all shards are heard; at a line of input report when each frame arrived."""
+    """Report that all shards are received; at a line of input report when each frame arrived."""
     from geometry_msgs.msg import PoseArray, Vector3Stamped
     import rclpy
     from rclpy.executors import SingleThreadedExecutor
@@ -26,12 +26,12 @@ def main(sends_wind: bool, n_shards: int) -> None:
     node = rclpy.create_node('bench_side')
     arrivals: list[list[float]] = [[] for _ in range(n_shards)]
 
-    def hear(shard: int, _data: bytes) -> None:
+    def take(shard: int, _data: bytes) -> None:
         arrivals[shard].append(time.monotonic())
 
     for shard in range(n_shards):
         node.create_subscription(
-            PoseArray, f'/shard{shard}/segment_poses', partial(hear, shard), QoSProfile(depth=5),
+            PoseArray, f'/shard{shard}/segment_poses', partial(take, shard), QoSProfile(depth=5),
             raw=True,
         )  # fmt: skip
     if sends_wind:

@@ -43,7 +43,7 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
     Parameters
     ----------
     n_trees
-        How many trees are dealt over the two.
+        Number of trees of both.
     cut
         How long the cable is cut in [s].
 
@@ -55,7 +55,7 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
     Raises
     ------
     TransportError
-        Where no network namespace can be made, or a shard is not heard.
+        Where no network namespace can be made, or no frames of a shard arrive.
 
     """
     with (
@@ -68,8 +68,8 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
             f'{5.0 * i},0,{("pine", "oak")[i % 2]},{8.0 + 0.1 * i:.1f}' for i in range(n_trees)
         ]
         stand.write_text('\n'.join(['x,y,species,height', *rows]) + '\n', encoding='utf-8')
-        with waiting('the whole stand on one host'), contextlib.ExitStack() as alone:
-            whole, side = _start(alone, stand, 1)
+        with waiting('the whole stand on one host'), contextlib.ExitStack() as one_host:
+            whole, side = _start(one_host, stand, 1)
             one = _Load(whole, side)
             heard_alone = _end(side)
         with waiting('two hosts with a shard each'):
@@ -88,12 +88,12 @@ def time_shards(n_trees: int = 40, cut: float = 5.0) -> list[Measured]:
             gone_at = time.monotonic()
             children.enter_context(_shard(1, 2, stand))
             _let_run(sides, _BACK)
-            heard = _end(sides)
-    gaps = [_longest_gap(np.array(heard[k][k]), cut_at, joined_at) for k in (0, 1)]
-    rejoined = [_first_after(heard[k][1 - k], joined_at) for k in (0, 1)]
-    lost = [sum(cut_at + 0.5 < at < joined_at for at in heard[k][1 - k]) for k in (0, 1)]
-    back = _first_after(heard[1][1], gone_at) + gone_at - killed_at
-    own = [heard[k][k] for k in (0, 1)]
+            received = _end(sides)
+    gaps = [_longest_gap(np.array(received[k][k]), cut_at, joined_at) for k in (0, 1)]
+    rejoined = [_first_after(received[k][1 - k], joined_at) for k in (0, 1)]
+    lost = [sum(cut_at + 0.5 < at < joined_at for at in received[k][1 - k]) for k in (0, 1)]
+    back = _first_after(received[1][1], gone_at) + gone_at - killed_at
+    own = [received[k][k] for k in (0, 1)]
     return [
         *one.reported('one shard', [heard_alone[0][0]]),
         *both.reported('each of two shards', own),
@@ -116,7 +116,7 @@ class _Load:
         self._share = (sum(map(_cpu_time, shards)) - cpu) / seconds
 
     def reported(self, whose: str, arrivals: list[list[float]]) -> list[Measured]:
-        """Return means over the shards: CPU time per time, and frames heard on their own host."""
+        """Return means over the shards: CPU time per time, and frames on their own host."""
         frames = [sum(self._begin < at < self._end for at in each) for each in arrivals]
         rate = float(np.mean(frames)) / (self._end - self._begin)
         return [
@@ -136,7 +136,7 @@ def _cpu_time(process: Any) -> float:
 def _start(
     children: contextlib.ExitStack, stand: Path, n_shards: int
 ) -> tuple[list[Any], list[Any]]:
-    """Start shards, each on its host with one that listens, until all are heard."""
+    """Start shards, each on its host with a listener, until frames of all arrive."""
     hosts = range(n_shards)
     shards = [children.enter_context(_shard(k, n_shards, stand)) for k in hosts]
     sides = [
@@ -151,7 +151,7 @@ def _start(
 
 
 def _end(sides: list[Any]) -> list[Any]:
-    """Return when which host heard which shard."""
+    """Return when each host received each shard."""
     return [json.loads(side.communicate(b'\n', timeout=30.0)[0]) for side in sides]
 
 
@@ -220,7 +220,7 @@ def _shard(number: int, shards: int, stand: Path) -> contextlib.AbstractContextM
 
 
 def _wait_until_ready(host: int, side: subprocess.Popen[bytes], shards: list[Any]) -> None:
-    """Wait until a side hears both shards."""
+    """Wait until a side receives both shards."""
     assert side.stdout is not None
     deadline = time.monotonic() + _START
     os.set_blocking(side.stdout.fileno(), False)
@@ -228,7 +228,7 @@ def _wait_until_ready(host: int, side: subprocess.Popen[bytes], shards: list[Any
         ended = [k for k, each in enumerate(shards) if each.poll() is not None]
         if ended or side.poll() is not None or time.monotonic() > deadline:
             raise TransportError(
-                f'host {host} does not hear both shards'
+                f'host {host} does not receive both shards'
                 + (f'; shards that ended: {ended}' if ended else ''),
                 cure='see that multicast is not cut off, and run a shard by itself',
             )

@@ -3,7 +3,7 @@
 """
 The default model timed by the size of the tree, and how far it is from `full`.
 
-The step is timed alone, as the kernel runs it, and with placing, as a program calls them.
+The step is timed without placing, as the kernel runs it, and with it, as a program calls both.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ def time_stream(
     Raises
     ------
     TransportError
-        If the listener hears nothing.
+        If the listener receives nothing.
 
     """
     environment = isolated(os.getpid())
@@ -94,10 +94,10 @@ def time_stream(
                 sent += 1
                 pause.wait(max(0.0, begun + sent / rate - time.monotonic()))
             cpu = time.process_time() - cpu
-            heard = json.loads(child.communicate(timeout=seconds + _PATIENCE)[0] or '{}')
+            received = json.loads(child.communicate(timeout=seconds + _PATIENCE)[0] or '{}')
     finally:
         rclpy.try_shutdown()
-    return _figures(heard, sent, seconds, cpu, f'{n_poses} poses at {rate:g} Hz')
+    return _figures(received, sent, seconds, cpu, f'{n_poses} poses at {rate:g} Hz')
 
 
 def _wait_for(publisher: Any, child: subprocess.Popen[str]) -> None:
@@ -110,11 +110,11 @@ def _wait_for(publisher: Any, child: subprocess.Popen[str]) -> None:
 
 
 def _figures(
-    heard: dict[str, Any], sent: int, seconds: float, cpu: float, what: str
+    received: dict[str, Any], sent: int, seconds: float, cpu: float, what: str
 ) -> list[Measured]:
-    stamps, arrivals = np.array(heard['stamps']), np.array(heard['arrivals'])
+    stamps, arrivals = np.array(received['stamps']), np.array(received['arrivals'])
     if not len(stamps):
-        raise TransportError('nothing was heard', cure='see that localhost is not cut off')
+        raise TransportError('nothing was received', cure='see that localhost is not cut off')
     late = 1e-6 * (arrivals - stamps)
     return [
         Measured(f'rate of {what}', len(stamps) / seconds, 'Hz'),
@@ -122,5 +122,5 @@ def _figures(
         Measured('latency, p50', float(np.quantile(late, 0.5)), 'ms'),
         Measured('latency, p99', float(np.quantile(late, 0.99)), 'ms'),
         Measured('CPU of the sender', cpu / seconds, 'cores'),
-        Measured('CPU of the listener', heard['cpu'] / seconds, 'cores'),
+        Measured('CPU of the listener', received['cpu'] / seconds, 'cores'),
     ]

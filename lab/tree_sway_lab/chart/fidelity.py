@@ -137,9 +137,9 @@ def _engine_runs(
     key = digest_of_arrays(f'{kind} {versions} {code}', tree.end, wind)
     path = cache_folder() / f'engines-{key}.npz'
     if path.is_file():
-        with np.load(path) as kept:
-            return {name: EngineRun(kept[name], float(kept[f'{name} cost'])) for name in engines
-                    if name in kept}  # fmt: skip
+        with np.load(path) as runs:
+            there = [name for name in engines if name in runs]
+            return {name: EngineRun(runs[name], float(runs[f'{name} cost'])) for name in there}
     found = run_engines(
         tree, WOOD, DAMPING_RATIO, wind, gravity=GRAVITY, match_beam=False, names=engines
     )

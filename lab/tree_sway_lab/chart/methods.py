@@ -18,7 +18,7 @@ from tree_sway_lab.battery.work_precision import measure, Point, REFERENCE_RATE
 SYSTEMS, WINDS = ('1 segment', '6 segments'), ('smooth', 'gusty', 'turning')
 NAMED = {
     'exact_foh': ('#c2293a', 'exact, linear load:\nthe default', 2, (-8, -32), 'center'),
-    'exact_zoh': ('#2f8f5b', 'exact, held load', 2, (0, -18), 'right'),
+    'exact_zoh': ('#2f8f5b', 'exact, constant load', 2, (0, -18), 'right'),
     'semi_implicit_euler': ('#3b6ea5', 'semi-implicit Euler', 0, (0, 9), 'left'),
     'rk4': ('#7a4fa3', 'Runge-Kutta 4', 2, (-4, -17), 'left'),
     'tr_bdf2': ('#1b9aaa', 'TR-BDF2', 2, (9, -6), 'left'),

@@ -3,7 +3,7 @@
 """
 Trees at rest and in a steady westerly, as the pages show them, and what each picture was made of.
 
-``portraits.csv`` holds a row per picture: its own digest, that of the code that drew it, and the
+``portraits.csv`` has a row per picture: its own digest, that of the code that drew it, and the
 figures of the trees, so that a picture older than the code is found.
 
 """
@@ -119,8 +119,8 @@ def drawing_digest(sources: Iterable[Path] | None = None) -> str:
         for node in ast.walk(tree):
             body = getattr(node, 'body', None)
             if isinstance(body, list):
-                kept = [each for each in body if not _is_text(each)]
-                node.body = kept  # type: ignore[attr-defined]
+                statements = [each for each in body if not _is_text(each)]
+                node.body = statements  # type: ignore[attr-defined]
         found.update(ast.dump(tree).encode())
     return found.hexdigest()[:32]
 

@@ -37,7 +37,7 @@ def run_engines(
     newton_frames: int = 120,
 ) -> dict[str, EngineRun]:
     """
-    Run engines, and say which are not installed.
+    Run engines, and report which are not installed.
 
     Parameters
     ----------

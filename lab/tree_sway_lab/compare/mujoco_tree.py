@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The tree in MuJoCo: the same bodies, springs and drag in an engine that nobody here wrote.
+The tree in MuJoCo: the same bodies, springs and drag in an independent engine.
 
 The bodies are those of the articulated reference: each piece of a segment bends at one place, on
 two hinges of stiffness ``1 / integral(ds / EI)`` across it, and twists on a third along it. Joints
@@ -56,7 +56,7 @@ def mujoco_module() -> Any:
         raise MissingDependencyError(
             'MuJoCo is not installed', cure='pip install mujoco'
         ) from error
-    mujoco.set_mju_user_warning(_WARNINGS.append)  # else it writes a log where it stands
+    mujoco.set_mju_user_warning(_WARNINGS.append)  # else it writes a log into the current folder
     return mujoco
 
 

@@ -52,7 +52,7 @@ class NewtonTree:
         warp.config.quiet = True
         self.twin, self._warp = twin, warp
         bodies, scale = twin.bodies, twin.spring_scale
-        held = articulated_bodies(
+        moments = articulated_bodies(
             twin.tree, twin.species.modulus, twin.species.density, gravity, 1.0
         ).rest_torque
         builder = newton.ModelBuilder(gravity=(0.0, 0.0, -gravity))
@@ -73,8 +73,8 @@ class NewtonTree:
             bend, twist = scale * float(bodies.bend[i]), scale * float(bodies.twist[i])
             along = Rotation.align_vectors([axis], [[0.0, 0.0, 1.0]])[0]
             # The spring rests where the moment it bears against the weight has turned it back.
-            about = (held[i] @ axis) * axis
-            unloaded = along.inv().apply((held[i] - about) / bend + about / twist)
+            about = (moments[i] @ axis) * axis
+            unloaded = along.inv().apply((moments[i] - about) / bend + about / twist)
             frame = warp.quat(*along.as_quat())
             joints.append(
                 builder.add_joint_rod(

@@ -42,7 +42,7 @@ class FrameModel:
         Node each segment is fixed to, (n,), and its start from there in [m], (n, 3).
     stiffness, mass
         Of the free coordinates, six per node; of the root none if it is clamped, and its rotation
-        if a spring holds it.
+        if it is on a spring.
     load
         Maps forces spread over the segments, 3 n, to the free coordinates.
 
@@ -94,8 +94,8 @@ class FrameModel:
 
     def _whole(self, free: Floats) -> Floats:
         """Displacements and rotations of all nodes, (..., m, 6), from the free coordinates."""
-        held = np.zeros((*free.shape[:-1], 6 * len(self.node) - free.shape[-1]))
-        out: Floats = np.concatenate([held, free], axis=-1)
+        fixed = np.zeros((*free.shape[:-1], 6 * len(self.node) - free.shape[-1]))
+        out: Floats = np.concatenate([fixed, free], axis=-1)
         return out.reshape(*free.shape[:-1], -1, 6)
 
     def static(self, force: Floats) -> Floats:
@@ -170,7 +170,7 @@ def frame_model(
         Shear modulus over Young's modulus in [-]: 1/2.6 for an isotropic rod of Poisson ratio 0.3,
         about 1/14 for wood along the grain (Wood Handbook FPL-GTR-282, table 5-1).
     root_stiffness
-        Of a spring that holds the root against tilting in [N m/rad], and 2 G/E times that against
+        Of a spring at the root against tilting in [N m/rad], and 2 G/E times that against
         twist, as the stem itself; infinite if it is clamped.
 
     """
@@ -222,16 +222,16 @@ def frame_model(
         along = np.outer(tree.direction[0], tree.direction[0])
         spring = root_stiffness * (np.eye(3) + (2.0 * shear_ratio - 1.0) * along)
         stiffness[0, 3:6, 3:6] += spring
-    held = 6 if is_clamped else 3
+    fixed = 6 if is_clamped else 3
     return FrameModel(
         tree=tree,
         node=node,
         end_node=1 + sub * np.arange(n, dtype=np.int64) + sub - 1,
         base_node=base_node,
         base_offset=base_offset,
-        stiffness=_assembled(stiffness, columns, columns, (size, size))[held:, held:].tocsc(),
-        mass=_assembled(mass, columns, columns, (size, size))[held:, held:].tocsc(),
-        load=_assembled(load, columns, segment, (size, 3 * n))[held:].tocsc(),
+        stiffness=_assembled(stiffness, columns, columns, (size, size))[fixed:, fixed:].tocsc(),
+        mass=_assembled(mass, columns, columns, (size, size))[fixed:, fixed:].tocsc(),
+        load=_assembled(load, columns, segment, (size, 3 * n))[fixed:].tocsc(),
     )
 
 

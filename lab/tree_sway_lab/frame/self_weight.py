@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Internal force and moment of a tree of tapered elements that stands still under its own weight.
+Internal force and moment of a tree of tapered elements at rest under its own weight.
 
 A tree is statically determinate: what a section carries is the weight beyond it, whatever the
 wood.

@@ -61,10 +61,10 @@ def step_bank(state: Floats, load: Floats, coefficients: Floats, guard: Floats) 
     Returns
     -------
     int
-        How many loads were held at their limit.
+        Number of loads that were clamped.
 
     """
-    held = 0
+    clamped = 0
     for i in range(state.shape[1]):
         c, g = coefficients[i], guard[i]
         x, y, vx, vy, over = step_branch(
@@ -73,5 +73,5 @@ def step_bank(state: Floats, load: Floats, coefficients: Floats, guard: Floats) 
             c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], g[0], g[1], g[2],
         )  # fmt: skip
         state[0, i], state[1, i], state[2, i], state[3, i] = x, y, vx, vy
-        held += over
-    return held
+        clamped += over
+    return clamped

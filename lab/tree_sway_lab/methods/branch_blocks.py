@@ -76,7 +76,7 @@ class BranchBlocks:
         self._held = int(np.count_nonzero(~(square <= self._limit)))
 
     def step(self) -> int:
-        """Step every branch under its load; return how many loads were held at their limit."""
+        """Step every branch under its load; return how many loads were clamped."""
         _step(self._data.ravel(), len(self._data))
         return self._held
 

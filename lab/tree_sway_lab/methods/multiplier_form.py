@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The chain as the paper writes it: X, Y, theta of each centre of mass, held by multipliers.
+The chain as the paper writes it: X, Y, theta of each centre of mass, constrained by multipliers.
 
 ::
 

@@ -4,7 +4,7 @@
 The paper's rotation plane taken literally: rebuilt from branch and wind at each step.
 
 The state is one angle and its rate, in the plane of the branch and the wind of the moment. Kept
-for comparison: the plane does not exist where wind and branch are parallel, and an angle kept
+for comparison: the plane does not exist where wind and branch are parallel, and an angle reused
 while the plane turns with the wind is an angle in a direction the branch never moved in.
 
 """

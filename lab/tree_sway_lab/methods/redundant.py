@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Accelerations under constraints of which some may say the same."""
+"""Accelerations under constraints of which some may be redundant."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def exact_foh(x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> Sta
 
 
 def exact_zoh(x: Array, v: Array, m0: Array, m1: Array, body: Oscillator) -> State:
-    """Exact for the moment of the start, held."""
+    """Exact for the moment at the start, constant over the step."""
     return exact_foh(x, v, m0, m0, body)
 
 

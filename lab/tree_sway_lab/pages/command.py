@@ -6,7 +6,7 @@
 These are the tables of topics, parameters and species, the drawing of the rooms, and the examples
 as notebooks.
 
-A table stands between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between
+A table is between two comments, ``<!-- table: NAME -->`` and ``<!-- end -->``; what is between
 them is replaced.
 """
 
@@ -66,7 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--check', action='store_true', help='change nothing; exit 2 if not up to date'
     )
     parser.add_argument(
-        '--run', action='store_true', help='run notebooks, and keep what they print and draw'
+        '--run', action='store_true', help='run notebooks, and save what they print and draw'
     )
 
 

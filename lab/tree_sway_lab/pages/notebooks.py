@@ -70,7 +70,7 @@ def notebook(script: Path) -> str:
 
 
 def with_outputs(text: str) -> str:
-    """Run the cells of a notebook, and keep what they print and draw."""
+    """Run the cells of a notebook, and save what they print and draw."""
     whole = json.loads(text)
     names: dict[str, Any] = {'__name__': '__main__'}
     for cell in whole['cells']:

@@ -4,7 +4,7 @@
 The drawing of the three packages: every room and the arrows of its imports, from the source.
 
 Layers stand above each other as deep as imports go. An arrow that follows from two others is left
-out, so that what can be seen is what holds the house together.
+out, so that the drawing shows the essential ones.
 
 """
 
@@ -31,7 +31,7 @@ def room_imports(root: Path = ROOT) -> Rooms:
     Parameters
     ----------
     root
-        Folder that holds the packages.
+        Folder of the packages.
 
     Returns
     -------

@@ -212,7 +212,7 @@ def _frames(speed: Floats) -> Floats:
 
 
 def _instants(frames: int, substeps: int, nodes: tuple[float, ...]) -> Floats:
-    """Return the times at which a method wants its load in [s], (steps, nodes)."""
+    """Return the times at which a method needs its load in [s], (steps, nodes)."""
     steps = np.arange((frames - 1) * substeps)[:, None] + np.asarray(nodes)
     return steps / (RATE * substeps)
 

@@ -77,7 +77,7 @@ class ArticulatedTree:
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
     root_stiffness
-        Of the spring that holds the root in [N m/rad].
+        Stiffness of the spring at the root in [N m/rad].
 
     """
 

@@ -103,13 +103,13 @@ def articulated_bodies(
 
     mass, first, second = _part_moments(tree, axis, hinge, density, np.asarray(leaf_mass))
     total, moment, tensor = mass[:, 1].copy(), first[:, 1].copy(), second[:, 1].copy()
-    held = carrier >= 0
-    arm = joint - np.where(held[:, None], joint[carrier], 0.0)
-    np.add.at(total, carrier[held], mass[held, 0])
-    root_side = first[held, 0] + mass[held, 0, None] * arm[held]
-    np.add.at(moment, carrier[held], root_side)
-    moved = second[held, 0] + _parallel(mass[held, 0], arm[held], first[held, 0])
-    np.add.at(tensor, carrier[held], moved)
+    carried = carrier >= 0
+    arm = joint - np.where(carried[:, None], joint[carrier], 0.0)
+    np.add.at(total, carrier[carried], mass[carried, 0])
+    root_side = first[carried, 0] + mass[carried, 0, None] * arm[carried]
+    np.add.at(moment, carrier[carried], root_side)
+    moved = second[carried, 0] + _parallel(mass[carried, 0], arm[carried], first[carried, 0])
+    np.add.at(tensor, carrier[carried], moved)
     centre = moment / total[:, None]
 
     bend = 3.0 * np.pi / 64.0 * modulus * d0**3 * d1**3 / (tree.length * square)
@@ -173,7 +173,7 @@ def _parallel(mass: Floats, shift: Floats, first: Floats) -> Floats:
 def _holding_torque(
     carrier: Ints, arm: Floats, mass: Floats, moment: Floats, gravity: float
 ) -> Floats:
-    """Torque of each joint that keeps all it carries up, (n, 3)."""
+    """Torque at each joint that supports all that it carries, (n, 3)."""
     carried, lever = mass.copy(), moment.copy()
     for i in range(len(carrier) - 1, 0, -1):
         if carrier[i] >= 0:

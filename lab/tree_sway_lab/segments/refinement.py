@@ -15,7 +15,7 @@ def refined(tree: Tree, pieces: int) -> Tree:
     """
     Cut every segment of a tree in this many equal pieces.
 
-    Piece j of segment i becomes segment ``pieces * i + j``. A branch goes on sitting at the same
+    Piece j of segment i becomes segment ``pieces * i + j``. A branch remains at the same
     point.
     """
     if pieces == 1:

@@ -113,7 +113,7 @@ def run(arguments: argparse.Namespace) -> int:
 def health(since: float, process: int | str = 'self') -> Health:
     """Look at a process, this one if none is named, a time after the start [s]."""
     where = Path(f'/proc/{process}')
-    # Counted page by page; what `status` says is some 100 kB off.
+    # Counted page by page; the figure of `status` is some 100 kB off.
     pages = (where / 'smaps_rollup').read_text(encoding='ascii').splitlines()
     memory = next(int(line.split()[1]) for line in pages if line.startswith('Rss:'))
     handles, threads = (len(os.listdir(where / of)) for of in ('fd', 'task'))

@@ -3,8 +3,8 @@
 """
 The page ``validation.md``: a section per subject, each measured and replaced on its own.
 
-A section stands between two comments, ``<!-- section: NAME -->`` and ``<!-- end -->``. The page is
-written again after each, so a run that ends early keeps what it has measured.
+A section is between two comments, ``<!-- section: NAME -->`` and ``<!-- end -->``. The page is
+written again after each, so a run that ends early has written what it has measured.
 
 """
 

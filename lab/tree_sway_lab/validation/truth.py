@@ -102,8 +102,8 @@ def true_frequencies(tree: Tree, count: int, fineness: Fineness = FINE) -> Float
     """Lowest natural frequencies in [Hz], (count,), with weight."""
     path = cache_folder() / f'modes-{_digest(tree, fineness, np.array(count))}.npy'
     if path.is_file():
-        kept: Floats = np.load(path)
-        return kept
+        cached: Floats = np.load(path)
+        return cached
     frequencies = true_model(tree, fineness).linear_modes(count)[0]
     _keep(path, frequencies)
     return frequencies

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Placing: rest is the input, lengths and joints are kept, the chord turns by the key."""
+"""Placing: rest is the input, lengths and joints do not change, the chord turns by the key."""
 
 from __future__ import annotations
 
@@ -146,7 +146,7 @@ def test_poses_are_those_of_the_keys_alone_bit_for_bit(fork, enrich):
     assert (used.poses(keys) == new.poses(keys)).all()
 
 
-def test_the_root_stands_still(gappy_doll):
+def test_the_root_does_not_move(gappy_doll):
     moved = gappy_doll.poses(gappy_doll.random(1))
     assert moved[0, :3].tolist() == gappy_doll.tree.start[0].tolist()
 
@@ -188,7 +188,7 @@ def test_the_chord_goes_on_with_the_key_where_the_shapes_change_over(stem, taper
 
 @pytest.mark.parametrize('taper', [0.0, 0.5])
 def test_the_bent_branch_is_the_beams_curve(stem, taper):
-    """The static slope, drawn with lengths kept: segments' angles over the key's, if small."""
+    """The static slope, drawn with constant lengths: segments' angles over the key's, if small."""
     tree = stem(length=1.0, tip=0.02 * (1 - taper), cuts=40)
     doll = Puppet(tree, 'branch')
     small = 1e-3

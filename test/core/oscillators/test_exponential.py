@@ -30,7 +30,7 @@ def found(alpha, kappa):
 
 
 def exact(alpha, kappa):
-    """Take textbook formulas in 80 digits; tell the size of what g and d are a sum of, too."""
+    """Evaluate textbook formulas in 80 digits; also return the size of the terms of g and d."""
     with mpmath.workdps(80):
         a, k = mpmath.mpf(alpha), mpmath.mpf(kappa)
         root = mpmath.sqrt(mpmath.mpc(a * a - k))

@@ -143,7 +143,7 @@ def test_mass_is_kinetic_energy_in_the_limit_of_fine_segments(fork, differences,
         matrix = reduced.reduction.mass.toarray()
         error.append(relative(matrix, mass_by_differences(reduced, differences)))
     assert error[1] < 0.02
-    # Straight segments stand for a curve: second order.
+    # Straight segments approximate a curve: second order.
     order = np.log2(error[0] / error[-1]) / (len(cuts) - 1)
     assert order == pytest.approx(2.0, abs=0.1)
 

@@ -13,7 +13,7 @@ from tree_sway_lab.validation.truth import WOOD
 
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.simulator.simulator import LOAD_CLAMPED
-from tree_sway.core.simulator.touch import Touch
+from tree_sway.core.simulator.touch import MOST_PUSHES, Spring, Touch
 from tree_sway.errors import ParameterError
 
 DT = 1.0 / 60.0
@@ -26,7 +26,7 @@ def tree():
 
 
 def place_of(poses, tree, segment, along=0.5):
-    """Where on a segment somebody pushes, (3,)."""
+    """Where on a segment the push acts, (3,)."""
     away = (along * tree.length[segment], 0.0, 0.0)
     return poses[segment, :3] + Rotation.from_quat(poses[segment, 3:]).apply(away)
 
@@ -195,3 +195,38 @@ def test_a_reset_ends_every_push(tree):
     sim.reset()
     sim.step(CALM, DT)
     assert not sim.rotations().any()
+
+
+@pytest.mark.parametrize('model', [60, 'full'])
+@pytest.mark.parametrize('stiffness', [30.0, 1e6])
+def test_a_spring_holds_a_branch_between_its_rest_and_its_place(tree, model, stiffness):
+    segment = outer_segment(tree)
+    sim = make_simulator(tree, WOOD, model=model)
+    rest = 0.5 * (tree.start[segment] + tree.end[segment])
+    to = rest + np.array([0.2, 0.1, 0.0])
+    for _ in range(round(20.0 / DT)):
+        sim.push(segment, Spring(to, stiffness), 0.5)
+        sim.step(CALM, DT)
+    place = place_of(sim.place(), tree, segment)
+    force = sim.push_load[:3]
+    assert 0.0 < np.linalg.norm(to - place) < np.linalg.norm(to - rest)
+    if stiffness < 100.0:  # as stiff as it is: a step can follow it
+        np.testing.assert_allclose(force, stiffness * (to - place), rtol=1e-3, atol=1e-3)
+    pushed = make_simulator(tree, WOOD, model=model)
+    for _ in range(round(20.0 / DT)):
+        pushed.push(segment, force, 0.5)
+        pushed.step(CALM, DT)
+    there = moved(pushed, segment)
+    np.testing.assert_allclose(place - rest, there, atol=0.02 * np.linalg.norm(there))
+
+
+def test_springs_that_are_none_and_pushes_that_are_too_many_are_refused(tree):
+    sim = make_simulator(tree, WOOD, model=6)
+    for stiffness in (0.0, -1.0, float('nan'), 1e9):
+        with pytest.raises(ParameterError, match='stiffness'):
+            sim.push(1, Spring((0.0, 0.0, 1.0), stiffness), 1.0)
+    for segment in range(MOST_PUSHES):
+        sim.push(segment, (1.0, 0.0, 0.0), 1.0)
+    with pytest.raises(ParameterError, match='more than 64 pushes'):
+        sim.push(MOST_PUSHES, (1.0, 0.0, 0.0), 1.0)
+    assert sim.counts.refused_pushes == 5

@@ -60,7 +60,7 @@ def test_heading_and_rate():
     ],
 )
 def test_left_and_right_of_the_bow(body, velocity):
-    said = parse_nmea(f'${body}*{checksum_of(body)}\r\n', need_checksum=True)
+    said = parse_nmea(f'${body}*{checksum_of(body)}\r\n')
     np.testing.assert_allclose(said.velocity, velocity, atol=1e-12)
     x, y, _ = said.velocity
     turned = parse_nmea(f'${body}', heading=pi / 2)
@@ -86,12 +86,6 @@ def test_refusals(line, refusal):
 @pytest.mark.parametrize('line', ['', '$', '$IIMWV', '$IIMWV,1', '$PMWV,1,R,2,N,A', '$IIHDT,1,T'])
 def test_what_is_not_about_the_wind(line):
     assert parse_nmea(line) is None
-
-
-def test_a_checksum_can_be_needed():
-    line = '$IIMWV,270,R,12.0,N,A'
-    assert parse_nmea(line, need_checksum=True).refusal == 'no checksum'
-    assert parse_nmea(f'{line}*15', need_checksum=True).refusal == ''
 
 
 def test_errors(tmp_path):

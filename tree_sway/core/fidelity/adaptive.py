@@ -23,6 +23,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,6 +41,9 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import ClimateTracker, WindClimate
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+
+if TYPE_CHECKING:
+    from tree_sway.core.simulator.touch import Spring
 
 LEAVE_IN = 1.0
 """How long coordinates that are left out take to fade in [s]."""
@@ -149,7 +153,9 @@ class AdaptiveSimulator(SwaySimulator):
         self._fade(dt)
         return status
 
-    def push(self, segment: int, force: ArrayLike, seconds: float, *, along: float = 0.5) -> None:
+    def push(
+        self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
+    ) -> None:
         """Push as `SwaySimulator.push`, on most coordinates until the tree has swung freely."""
         super().push(segment, force, seconds, along=along)
         was_free, self._touched_for = self._touched_for <= 0.0, seconds + SWINGS_ON

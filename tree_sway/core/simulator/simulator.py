@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from tree_sway.core.simulator.crown_gusts import CrownGusts
     from tree_sway.core.simulator.live_tuning import LiveTuning, Tuning
     from tree_sway.core.simulator.set_up_cache import SetUpCache
-    from tree_sway.core.simulator.touch import Touch
+    from tree_sway.core.simulator.touch import Spring, Touch
     from tree_sway.core.wind.gust_travel import GustHistory
 
 OK, WIND_REFUSED, LOAD_CLAMPED, RESTARTED = 0, 1, 2, 4
@@ -275,7 +275,9 @@ class SwaySimulator:
             wx, wy, wz = self._gusts.felt(wx, wy, wz, dt)
         return status | self._count(self._advance(wx, wy, wz, load)) | self._touched(dt)
 
-    def push(self, segment: int, force: ArrayLike, seconds: float, *, along: float = 0.5) -> None:
+    def push(
+        self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
+    ) -> None:
         """
         Push or pull at a segment while the tree goes on swaying.
 
@@ -288,7 +290,7 @@ class SwaySimulator:
         segment
             Number of the segment.
         force
-            Force in [N], (3,).
+            Force in [N], (3,), or a `Spring` to a place.
         seconds
             How long it acts from the next step on in [s].
         along

@@ -4,7 +4,7 @@
 Read a tree from a file of any known format.
 
 The content decides before the suffix: files of the field come with the suffix of the day. A new
-format is one module in `formats`, with a `TreeFormat`.
+format is one module in `formats`, with a `FileFormat`.
 """
 
 from __future__ import annotations
@@ -16,19 +16,18 @@ import pkgutil
 from typing import Any
 
 from tree_sway.errors import ParameterError
-from tree_sway.files.file_format import format_of
+from tree_sway.files.file_format import FileFormat, format_of
 from tree_sway.files.text_file import path_of
 from tree_sway.files.trees import formats
 from tree_sway.files.trees.cylinders.cylinder_tree import tree_of_cylinders
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.tree_format import TreeFormat
 from tree_sway.files.trees.tree_options import TreeOptions
 
-TREE_FORMATS: tuple[TreeFormat, ...] = tuple(
+TREE_FORMATS: tuple[FileFormat, ...] = tuple(
     each
     for module in pkgutil.iter_modules(formats.__path__)
     for each in vars(import_module(f'{formats.__name__}.{module.name}')).values()
-    if isinstance(each, TreeFormat)
+    if isinstance(each, FileFormat)
 )
 """Every format, in the order of modules and of their contents."""
 

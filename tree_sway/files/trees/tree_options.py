@@ -25,6 +25,13 @@ _RANGES = {
 }  # fmt: skip
 
 
+MEASURED = {'twig_diameter': 0.0}
+"""Defaults of forms whose twigs are no thicker than they are."""
+
+AS_IT_IS = {'to_origin': False, **MEASURED}
+"""Defaults of our own forms, whose trees are also where they are meant to be."""
+
+
 @dataclass(frozen=True)
 class TreeOptions:
     """

@@ -42,9 +42,7 @@ _UNITS = {'N': _KNOT, 'K': 1.0 / 3.6, 'M': 1.0, 'S': 0.44704}
 _SENTENCE = re.compile(r'\$[A-Z]{2}(MWV|MWD|MDA|VWR|VWT|XDR),([^*]*)(\*.*)?', re.ASCII | re.DOTALL)
 
 
-def parse_nmea(
-    line: str, heading: float = 0.0, declination: float = 0.0, *, need_checksum: bool = False
-) -> SensorLine | None:
+def parse_nmea(line: str, heading: float = 0.0, declination: float = 0.0) -> SensorLine | None:
     """
     Parse a line of NMEA 0183, to the wind of a kind of `SENTENCES`; None for any other line.
 
@@ -58,8 +56,6 @@ def parse_nmea(
         Of the bow, clockwise from true north, in [rad].
     declination
         Of the magnetic needle, east positive, in [rad]; for a MWD without a true direction.
-    need_checksum
-        Whether to refuse a sentence without a checksum, which is optional in the standard.
 
     """
     sentence = _SENTENCE.match(line, max(line.rfind('$'), 0))
@@ -78,7 +74,7 @@ def parse_nmea(
     body = line[sentence.start() + 1 : sentence.start(3)]
     own_angle = declination if name in ('MWD', 'MDA') else heading
     read = partial(_READERS[name[:3]], fields, own_angle)
-    return line_of(name, len(line), sent_sum, [body], read, need_checksum=need_checksum)
+    return line_of(name, len(line), sent_sum, [body], read)
 
 
 def read_nmea_wind(

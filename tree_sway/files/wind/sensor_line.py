@@ -47,8 +47,6 @@ def line_of(
     sent_sum: str | None,
     bodies: Sequence[str],
     read: Callable[[], Velocity | str],
-    *,
-    need_checksum: bool,
 ) -> SensorLine:
     """
     Return what `read` finds in a line of a length in characters, if its length and checksum fit.
@@ -57,8 +55,6 @@ def line_of(
     """
     if length > MAX_LINE:
         found: Velocity | str = f'a line of {length} characters'
-    elif sent_sum is None and need_checksum:
-        found = 'no checksum'
     elif sent_sum is not None and sent_sum not in map(checksum_of, bodies):
         found = 'wrong checksum'
     else:

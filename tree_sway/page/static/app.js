@@ -5,6 +5,7 @@
 import { TreeStream } from "./client.js";
 import { DAYLIGHT } from "./drawing/backdrop.js";
 import { Scene } from "./drawing/scene.js";
+import { Hands } from "./hands.js";
 import { readLink, recordClip, savePicture, saveTree, viewLink } from "./keepsake.js";
 import { keptScene, OwnLine } from "./own_line.js";
 import { Panel } from "./panel.js";
@@ -112,6 +113,7 @@ const stream = new TreeStream(location.href, {
       controls = message.hello.controls;
       panel.build(controls);
       element("panel").hidden = controls.length === 0;
+      if (hands) hands.canPull = message.hello.can_pull === true;
     }
     if (message.refused) toast(message.refused.reason);
     if (message.unreadable) toast(message.unreadable);
@@ -125,6 +127,7 @@ const stream = new TreeStream(location.href, {
 }, { kept, byWind: new URLSearchParams(location.search).has("solve") });
 
 const { connection, playout } = stream;
+const hands = scene && new Hands({ scene, stream }, toast);
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
 const treeName = () => connection.description?.name ?? "tree";
 
@@ -207,7 +210,7 @@ const modelName = (model) => (/^\d+$/.test(model) ? word("coordinates", model) :
 /** @param {number} now */
 function draw(now) {
   requestAnimationFrame(draw);
-  if (!scene) return;
+  if (!scene || hands?.isAway) return;
   const coordinates = stream.sample();
   const isStill = playout.isPaused || playout.back > 0;
   scene.wind = playout.wind;
@@ -215,6 +218,7 @@ function draw(now) {
   lastDrawn = now;
   scene.draw(coordinates, sceneTime, isStill);
   drawn += 1;
+  hands?.frame({ scene, stream });
   if (coordinates) {
     const [at, rest] = [scene.tip(), scene.restTip()];
     const load = scene.load();
@@ -414,7 +418,7 @@ requestAnimationFrame(draw);
 /** For tests and for the curious at the console. */
 Object.assign(window, {
   treeSway: {
-    stream, connection, playout, traces,
+    stream, connection, playout, traces, hands,
     get scene() { return scene; },
     get fps() { return fps; },
     get state() { return stateNow()[0]; },

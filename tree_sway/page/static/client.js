@@ -75,6 +75,13 @@ export class TreeStream {
     this.connection.send({ set: { name, value } });
   }
 
+  /** Pull at a branch, where the server lets anybody; say it again within half a second to go on.
+   * @param {Push} pull a spring; one of no stiffness lets go */
+  pull(pull) {
+    this.connection.send({ pull });
+    this.byWind?.stand.push(pull);
+  }
+
   /** Coordinates to show; null before the first frame. @param {number} [now] [ms] */
   sample(now = Date.now()) {
     return this.playout.sample(now);

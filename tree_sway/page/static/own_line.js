@@ -95,11 +95,13 @@ export class OwnLine {
 
   /** Say what can be changed. */
   _hello() {
-    this.listeners.onMessage({ hello: { controls: controlsOf(this._turbulence.values, this._wind) } });
+    const controls = controlsOf(this._turbulence.values, this._wind);
+    this.listeners.onMessage({ hello: { controls, can_pull: true } });
   }
 
-  /** Take a change of a control. @param {Record<string, any>} message */
-  send({ set }) {
+  /** Take a change of a control, or a pull. @param {Record<string, any>} message */
+  send({ set, pull }) {
+    if (pull) this.stand.push(pull);
     if (!set) return;
     const { name, value } = set;
     if (name === "reset") {

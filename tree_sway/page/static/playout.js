@@ -122,6 +122,11 @@ export class Playout {
     return this._frames.length ? this._frames[this._frames.length - 1].stamp : 0;
   }
 
+  /** Frames that came after one. @param {number} stamp of that one [ms] */
+  since(stamp) {
+    return this._frames.filter((frame) => frame.stamp > stamp);
+  }
+
   /** The state to draw; null before the first frame.
    * @param {number} now own clock [ms] @returns {Float32Array | null} the same array each time */
   sample(now) {

@@ -18,6 +18,7 @@
 
 import { FORMS, need, ProtocolError, sizesOf } from "./checks.js";
 import { reading, unpack } from "./protocol.js";
+import { Touch } from "./touch.js";
 
 /** Time step of a stand unless it is given another [s]. */
 export const STEP = 1 / 60;
@@ -94,9 +95,9 @@ export class Table {
     this.correction = of("correction");
     const slopes = (/** @type {keyof typeof SLOPES} */ name) => this._slopes(arrays, name, size[`${name} rank`]);
     // Turning and damping side by side: they are read together.
-    this.slopes = paired(slopes("turning"), slopes("damping"));
-    this.steep = paired(slopes("steep_turning"), slopes("steep_damping"));
-    this.lean = slopes("lean");
+    this.slopes = rowsOf(paired(slopes("turning"), slopes("damping")), 2 * m * m);
+    this.steep = rowsOf(paired(slopes("steep_turning"), slopes("steep_damping")), 2 * m * m);
+    this.lean = rowsOf(Float64Array.from(slopes("lean")), m * m);
     /** What is worked in. */
     this.scratch = Array.from({ length: 8 }, () => new Float64Array(m));
     this.values = new Float64Array(size.h);
@@ -139,6 +140,10 @@ function paired(a, b) {
   for (let i = 0; i < a.length; i++) [both[2 * i], both[2 * i + 1]] = [a[i], b[i]];
   return both;
 }
+
+/** @param {Float64Array} all @param {number} size of a row */
+const rowsOf = (all, size) =>
+  Array.from({ length: all.length / size }, (_, row) => all.subarray(row * size, (row + 1) * size));
 
 /**
  * How oscillators of unit inertia go on exactly in a time under a constant force, per coordinate:
@@ -222,6 +227,19 @@ export class TreeState {
     }
     return isOutside;
   }
+
+  /** Write the coordinates of the description that hold this state, or their rates.
+   * @template {Float32Array | Float64Array} T @param {T} out @param {number} [from]
+   * @param {"eta" | "rate"} [what] @returns {T} */
+  coordinates(out, from = 0, what = "eta") {
+    const { m, n, state: matrix } = this.table;
+    for (let k = 0; k < n; k++) {
+      let sum = 0;
+      for (let i = 0; i < m; i++) sum += this[what][i] * matrix[i * n + k];
+      out[from + k] = sum;
+    }
+    return out;
+  }
 }
 
 /** Modal forces of an even wind on a tree half a step on, and the diagonal of their slope by the
@@ -253,39 +271,39 @@ function windForce(table, [x, y, z], push, drag) {
     leaned[i] = Math.fround(f4 * Math.fround(eta[i]));
   }
   const dragged = drag * Math.sqrt(moving);
-  const [s4, pole] = [Math.fround(steep), z > 0 ? 2 * m * m : 0];
-  const row = 2 * m;
-  for (let i = 0; i < m; i++) {
-    const [pa, pb] = [2 * m * (ia + i), 2 * m * (ia + m + i)];
-    const [pc, pd] = [2 * m * (ic + i), 2 * m * (ic + m + i)];
-    const own = 2 * i + 1;
-    diagonal[i] = dragged
-      * (a * slopes[pa + own] + b * slopes[pb + own] + c * slopes[pc + own] + d * slopes[pd + own]);
-    let [ta, tb, tc, td, va, vb, vc, vd] = [0, 0, 0, 0, 0, 0, 0, 0];
-    for (let k = 0, at = 0; k < m; k++, at += 2) {
+  const s4 = Math.fround(steep);
+  const [corner, other] = [first * LEVELS + j, second * LEVELS + j];
+  const [sa, sb, sc, sd] = [slopes[corner], slopes[corner + 1], slopes[other], slopes[other + 1]];
+  const [here, there, pole] = [lean[first], lean[second], poles[z > 0 ? 1 : 0]];
+  for (let i = 0, at = 0, flat = 0; i < m; i++) {
+    const own = at + 2 * i + 1;
+    diagonal[i] = dragged * (a * sa[own] + b * sb[own] + c * sc[own] + d * sd[own]);
+    let ta = 0, tb = 0, tc = 0, td = 0;
+    let va = 0, vb = 0, vc = 0, vd = 0;
+    for (let k = 0; k < m; k++, at += 2) {
       const o = off[k];
       const r = rate[k];
-      ta += o * slopes[pa + at];
-      va += r * slopes[pa + at + 1];
-      tb += o * slopes[pb + at];
-      vb += r * slopes[pb + at + 1];
-      tc += o * slopes[pc + at];
-      vc += r * slopes[pc + at + 1];
-      td += o * slopes[pd + at];
-      vd += r * slopes[pd + at + 1];
+      ta += o * sa[at];
+      va += r * sa[at + 1];
+      tb += o * sb[at];
+      vb += r * sb[at + 1];
+      tc += o * sc[at];
+      vc += r * sc[at + 1];
+      td += o * sd[at];
+      vd += r * sd[at + 1];
     }
     let turned = a4 * ta + b4 * tb + c4 * tc + d4 * td;
     let damped = a4 * va + b4 * vb + c4 * vc + d4 * vd;
     if (slant !== 0) {
-      const [p, q] = [(first * m + i) * m, (second * m + i) * m];
-      for (let k = 0; k < m; k++) turned += leaning[k] * lean[p + k] + leaned[k] * lean[q + k];
+      let lean = 0;
+      for (let k = 0; k < m; k++, flat++) lean += leaning[k] * here[flat] + leaned[k] * there[flat];
+      turned += lean;
     }
     if (steep > 0) {
-      let p = pole + row * i;
-      diagonal[i] += dragged * steep * poles[p + own];
-      for (let k = 0; k < m; k++) {
-        turned += Math.fround(s4 * Math.fround(eta[k])) * poles[p++];
-        damped += s4 * rate[k] * poles[p++];
+      diagonal[i] += dragged * steep * pole[own];
+      for (let k = 0, p = 2 * m * i; k < m; k++) {
+        turned += Math.fround(s4 * Math.fround(eta[k])) * pole[p++];
+        damped += s4 * rate[k] * pole[p++];
       }
     }
     force[i] = push * (force[i] + turned) + dragged * damped;
@@ -413,6 +431,8 @@ export class Stand {
     this.outside = 0;
     /** @type {Map<string, Float64Array>} */
     const propagators = new Map();
+    /** Pushes by the numbers of trees. @type {Map<number, Touch>} */
+    this._touches = new Map();
     this.trees = trees.map(({ kind, place, firstCoordinate }, number) => {
       const table = tables.kinds[kind];
       const step = Math.round(Math.log(place[4]) / FINEST_SCALE);
@@ -439,21 +459,33 @@ export class Stand {
     this.trees.forEach(({ state, half, whole, speed, turn: [c, s] }, i) => {
       const [u, v, w] = this._gusts.felt[i];
       if (state.step(half, whole, c * u + s * v, c * v - s * u, speed * w)) this.outside++;
+      const touch = this._touches.get(i);
+      if (!touch) return;
+      const goesOn = touch.step(state, state.coordinates(new Float64Array(state.table.n)), half, whole, this.dt);
+      if (!goesOn) this._touches.delete(i);
     });
+  }
+
+  /** Push at the root side of a segment, or pull it by a spring, while the trees go on swaying.
+   * @param {Push} push a spring of no stiffness lets go
+   * @param {number} [seconds] that it lasts unless it is renewed [s] */
+  push(push, seconds = push.to && !push.stiffness ? 1e-6 : 0.5) {
+    const { segment, force = [], to = [], stiffness = 0 } = push;
+    const { trees, kinds } = this.description;
+    const tree = trees.findIndex(({ kind, firstSegment: from }) =>
+      segment >= from && segment < from + kinds[kind].nSegments);
+    need(Number.isInteger(segment) && tree >= 0, "segment");
+    need([...force, ...to].length === 3 && [...force, ...to, stiffness, seconds].every(Number.isFinite), "push");
+    need(stiffness >= 0 && seconds > 0, "push");
+    if (!this._touches.has(tree)) this._touches.set(tree, new Touch(this.description, tree));
+    this._touches.get(tree)?.add(push, seconds);
   }
 
   /** Write the coordinates of the description that hold the state, or their rates.
    * @template {Float32Array | Float64Array} T @param {T} out @param {"eta" | "rate"} [what]
    * @returns {T} */
   write(out, what = "eta") {
-    for (const { state, firstCoordinate } of this.trees) {
-      const { m, n, state: matrix } = state.table;
-      for (let k = 0; k < n; k++) {
-        let sum = 0;
-        for (let i = 0; i < m; i++) sum += state[what][i] * matrix[i * n + k];
-        out[firstCoordinate + k] = sum;
-      }
-    }
+    for (const { state, firstCoordinate } of this.trees) state.coordinates(out, firstCoordinate, what);
     return out;
   }
 

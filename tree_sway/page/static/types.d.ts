@@ -246,3 +246,28 @@ interface Unit {
   unit: string;
   digits: number;
 }
+
+/** What one eye sees. */
+interface View {
+  camera: {
+    matrix: Float32Array;
+    eye: Vector;
+    axes(): { right: number[]; up: number[]; back: number[] };
+    update(): Float32Array;
+  };
+  target: WebGLFramebuffer | null;
+  /** Of the target: x, y, width, height [px]. */
+  area: number[];
+}
+
+/** A force at the root side of a segment, or a spring from it to a place. */
+interface Push {
+  /** Its number among those of all trees. */
+  segment: number;
+  /** [N] */
+  force?: number[];
+  /** [m] */
+  to?: number[];
+  /** Of the spring [N/m]; 0 lets go. */
+  stiffness?: number;
+}

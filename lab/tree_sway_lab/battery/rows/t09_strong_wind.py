@@ -47,7 +47,7 @@ def run(full: bool = False) -> list[Row]:
         )
         rows.append(
             holds(
-                f'held loads, {kind.__name__}',
+                f'clamped loads, {kind.__name__}',
                 'counted, each one and no other',
                 'counted' if counted else 'miscounted',
                 counted,

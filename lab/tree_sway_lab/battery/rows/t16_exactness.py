@@ -65,7 +65,7 @@ def worst_coefficient(exponents: range) -> float:
 
 @kernel
 def summed_clock(ticks: int, dt: float) -> float:
-    """Time as t += h: not how the clock is kept."""
+    """Time as t += h, which is not how the clock counts."""
     t = 0.0
     for _ in range(ticks):
         t += dt

@@ -17,7 +17,7 @@ STEPS, AT = 240, 120
 
 
 def run(full: bool = False) -> list[Row]:
-    """Pass a smooth wind with one bad sample through gate and kernel; then the kernel alone."""
+    """Pass a smooth wind with one bad sample through gate and kernel; then only the kernel."""
     rows = []
     for kind in (np.float64, np.float32):
         for bad in BAD:
@@ -53,15 +53,15 @@ def run(full: bool = False) -> list[Row]:
 
 
 def _gated(bad: float | None, kind: type) -> NDArray[np.float64]:
-    """States under a smooth wind of 60 samples per second, the last good one held at bad ones."""
+    """States under a smooth wind at 60 Hz, bad samples replaced by the last good one."""
     gate, branch = WindGate(), Branch()
-    held, loads = np.zeros(3), np.zeros((STEPS, 3))
+    last, loads = np.zeros(3), np.zeros((STEPS, 3))
     for n in range(STEPS):
         t = n / 60
         wind = np.array([5 + np.sin(1.5 * t), 2 * np.sin(1.1 * t), 0.3 * np.cos(2 * t)])
         if n == AT and bad is not None:
             wind[0] = bad
         if gate.offer(round((t + 1.0) * SECOND), wind).accepted:
-            held = wind
-        loads[n] = 0.004 * np.linalg.norm(held) * held[[2, 0, 1]]
+            last = wind
+        loads[n] = 0.004 * np.linalg.norm(last) * last[[2, 0, 1]]
     return branch.run(loads, dtype=kind)

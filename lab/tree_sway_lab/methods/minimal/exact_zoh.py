@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The exact propagator with a held moment."""
+"""The exact propagator with a moment that is constant over the step."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The exponential Rosenbrock-Euler method: exact about where it stands."""
+"""The exponential Rosenbrock-Euler method: exact about the state at the beginning of the step."""
 
 from __future__ import annotations
 

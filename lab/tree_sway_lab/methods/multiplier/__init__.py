@@ -3,7 +3,7 @@
 """
 Methods on the paper's coordinates with Lagrange multipliers: one step per file.
 
-The constraint is kept, stabilised or projected.
+The constraint is enforced, stabilised or projected.
 Shared mechanics in ``multiplier_form``.
 
 """

@@ -143,7 +143,7 @@ def _system(
 
 
 class RadauGgl(MultiplierMethod):
-    """Fifth order, L-stable, constraints of position and velocity held to rounding."""
+    """Fifth order, L-stable, constraints of position and velocity met to rounding."""
 
     name: ClassVar[str] = 'radau_ggl'
     order: ClassVar[int] = 5

@@ -18,10 +18,10 @@ from pathlib import Path
 
 import numpy as np
 
+from tree_sway.files.file_format import FileFormat
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.table_file import parse_columns
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.tree_format import TreeFormat
 
 
 def read_poles(path: Path) -> tuple[Cylinders, ...]:
@@ -34,7 +34,7 @@ def read_poles(path: Path) -> tuple[Cylinders, ...]:
     )
 
 
-FORMAT = TreeFormat("poles", (".poles",), lambda head: head.startswith("POLES"), read_poles)
+FORMAT = FileFormat("poles", (".poles",), lambda head: head.startswith("POLES"), read_poles)
 '''
 USE = """
 import sys

@@ -18,11 +18,10 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.core.tree.parents_first import first_of_each
-from tree_sway.files.file_format import has_columns
+from tree_sway.files.file_format import FileFormat, has_columns
 from tree_sway.files.table_file import parse_table
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.cylinders.cylinders import cylinder_axes, Cylinders
-from tree_sway.files.trees.tree_format import TreeFormat
 
 
 def _read_archi(path: Path) -> tuple[Cylinders, ...]:
@@ -46,7 +45,7 @@ def _read_simpleforest(path: Path) -> tuple[Cylinders, ...]:
     return (Cylinders(*cylinder_axes(table, 'radius'), parent, continues, labels),)
 
 
-ARCHI = TreeFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read_archi)
-SIMPLEFOREST = TreeFormat(
+ARCHI = FileFormat('archi', (), has_columns('cyl_ID', 'extension_ID'), _read_archi)
+SIMPLEFOREST = FileFormat(
     'simpleforest', (), has_columns('ID', 'parentID', 'growthLength'), _read_simpleforest
 )

@@ -23,9 +23,10 @@ import re
 import numpy as np
 
 from tree_sway.errors import FormatError, TreeError
+from tree_sway.files.file_format import FileFormat
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
-from tree_sway.files.trees.tree_format import MEASURED, TreeFormat
+from tree_sway.files.trees.tree_options import MEASURED
 
 _POSITION = ('XX', 'YY', 'ZZ')
 _DIAMETER = 'TopDia'
@@ -194,4 +195,4 @@ def _add(
 
 
 _UNITS = {'length_unit': 0.01, 'diameter_unit': 0.001, **MEASURED}
-FORMAT = TreeFormat('mtg', ('.mtg',), _is_mtg, _read, _UNITS)
+FORMAT = FileFormat('mtg', ('.mtg',), _is_mtg, _read, _UNITS)

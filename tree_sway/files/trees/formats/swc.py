@@ -16,11 +16,12 @@ import numpy as np
 
 from tree_sway.core.tree.parents_first import checked_order
 from tree_sway.errors import FormatError
+from tree_sway.files.file_format import FileFormat
 from tree_sway.files.table_file import filled_lines, parse_columns
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
-from tree_sway.files.trees.tree_format import MEASURED, TreeFormat
+from tree_sway.files.trees.tree_options import MEASURED
 
 _COLUMNS = ('number', 'type', 'x', 'y', 'z', 'radius', 'parent')
 
@@ -57,4 +58,4 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     return tuple(trees)
 
 
-FORMAT = TreeFormat('swc', ('.swc',), _is_swc, _read, MEASURED)
+FORMAT = FileFormat('swc', ('.swc',), _is_swc, _read, MEASURED)

@@ -16,12 +16,11 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.errors import FormatError, TreeError
-from tree_sway.files.file_format import contains
+from tree_sway.files.file_format import contains, FileFormat
 from tree_sway.files.table_file import filled_lines, split_row, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.skeleton import cylinders_of_nodes
-from tree_sway.files.trees.tree_format import TreeFormat
 
 _FIELDS = ('x', 'y', 'z', 'radius', 'parent_id')
 
@@ -78,4 +77,4 @@ def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
     return cylinders_of_nodes(values[:, :3], 2.0 * radius, above, labels, where, cones=False)
 
 
-FORMAT = TreeFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read)
+FORMAT = FileFormat('treefile', (), contains(r'^(?!#).*\bx,y,z,radius\b'), _read)

@@ -24,11 +24,11 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
+from tree_sway.files.file_format import FileFormat
 from tree_sway.files.table_file import parse_columns
 from tree_sway.files.text_file import finite, read_lines
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.mat_file import looks_like_mat, numbers, read_mat
-from tree_sway.files.trees.tree_format import TreeFormat
 
 _FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extension': 1}
 """Fields of ``cylinder`` in the order of the columns, and their widths."""
@@ -146,5 +146,5 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     return Cylinders(starts, ends, 2.0 * table[:, [0, 0]], above, continues, labels)
 
 
-MAT = TreeFormat('treeqsm-mat', ('.mat',), looks_like_mat, _read_mat)
-TEXT = TreeFormat('treeqsm-text', ('.cyl',), _is_text, read_treeqsm_text)
+MAT = FileFormat('treeqsm-mat', ('.mat',), looks_like_mat, _read_mat)
+TEXT = FileFormat('treeqsm-text', ('.cyl',), _is_text, read_treeqsm_text)

@@ -5,24 +5,12 @@
  * their pixels are many, and may cost something.
  */
 
+import { textOf } from "../files.js";
 import { canvasTexture, drawable, drawPart, use } from "./gl.js";
 import { shaded } from "./shaders.js";
 
-/** @type {Record<"light" | "evening" | "dark", Daylight>} */
-export const DAYLIGHT = {
-  light: {
-    light: [0.45, -0.5, 0.95], sun: [0.86, 0.81, 0.7], sky: [0.62, 0.68, 0.74],
-    zenith: [0.42, 0.6, 0.8], horizon: [0.85, 0.89, 0.91], dimmed: 1,
-  },
-  evening: {
-    light: [0.85, -0.5, 0.42], sun: [1.0, 0.68, 0.38], sky: [0.5, 0.52, 0.62],
-    zenith: [0.34, 0.42, 0.6], horizon: [0.95, 0.78, 0.62], dimmed: 0.95,
-  },
-  dark: {
-    light: [0.45, -0.5, 0.95], sun: [0.4, 0.46, 0.56], sky: [0.3, 0.35, 0.43],
-    zenith: [0.045, 0.06, 0.09], horizon: [0.13, 0.165, 0.2], dimmed: 0.36,
-  },
-};
+/** Times of day. @type {Record<"light" | "evening" | "dark", Daylight>} */
+export const DAYLIGHT = JSON.parse(await textOf("drawing/daylight.json"));
 
 /** What lies under a scene. */
 export const GROUNDS = { terrace: 0, meadow: 1 };
@@ -40,11 +28,12 @@ export class Backdrop {
   }
 
   /** @param {import("./camera.js").Camera} camera @param {Daylight} day
-   * @param {{kind: number, height: number, haze: number}} ground @param {number} width [px]
-   * @param {number} height */
+   * @param {{kind: number, height: number, haze: number}} ground @param {number} width [px]; 0 paints
+   * at once, for a camera that is never still @param {number} height */
   draw(camera, day, ground, width, height) {
     const { gl } = this;
     gl.disable(gl.DEPTH_TEST);
+    if (!width) return this._paint(camera, day, ground);
     const wanted = [...camera.matrix, day.zenith, ground.kind, ground.height, width, height].join();
     if (this._paintedFor !== wanted) {
       this._paintedFor = wanted;
@@ -56,7 +45,6 @@ export class Backdrop {
       use(gl, this._copy, { picture: [2, this._kept.texture] });
       drawPart(gl, this._whole);
     }
-    gl.enable(gl.DEPTH_TEST);
   }
 
   /** Paint into a texture of the size of the picture.

@@ -108,6 +108,14 @@ export class Camera {
     return [0.5 + (0.5 * x) / w, 0.5 - (0.5 * y) / w];
   }
 
+  /** The point under a place of the picture that is as deep in it as another point.
+   * @param {number} x 0 to 1 from the left @param {number} y from the top @param {number[]} p */
+  under(x, y, p) {
+    const { right, up, back } = this.axes();
+    const depth = this.eye.reduce((sum, each, c) => sum + (each - p[c]) * back[c], 0);
+    return this.eye.map((each, c) => each + depth * ((2 * x - 1) * right[c] + (1 - 2 * y) * up[c] - back[c]));
+  }
+
   /** Let mouse, touch and keys move the camera. @param {HTMLElement} element */
   listen(element) {
     /** @type {Map<number, PointerEvent>} */

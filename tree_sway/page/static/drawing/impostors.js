@@ -7,9 +7,7 @@ import { canvasTexture, discard, drawable, use } from "./gl.js";
 import { ELEVATIONS, ROUND } from "./shaders.js";
 
 const TILE = 128;
-/** Rows of a picture that bends. */
-const ROWS = 4;
-/** Numbers per corner. */
+/** Numbers per corner, of which a picture has four. */
 const PER_CORNER = 9;
 
 export class Impostor {
@@ -29,12 +27,8 @@ export class Impostor {
     this.count = 0;
     this._atlas = canvasTexture(gl, ROUND * TILE, ELEVATIONS.length * TILE, gl.RGBA8, true);
     if (isPlain) gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-    this._values = new Float32Array(PER_CORNER * 2 * ROWS * most);
-    const indices = new Uint32Array(6 * (ROWS - 1) * most);
-    for (let i = 0; i < (ROWS - 1) * most; i++) {
-      const a = 2 * (i + Math.floor(i / (ROWS - 1)));
-      indices.set([a, a + 1, a + 2, a + 1, a + 3, a + 2], 6 * i);
-    }
+    this._values = new Float32Array(4 * PER_CORNER * most);
+    const indices = Array.from({ length: most }, (_, i) => [0, 1, 2, 1, 3, 2].map((corner) => 4 * i + corner)).flat();
     // Not as instances: without a graphics unit each of them costs as much as a whole picture.
     this._part = drawable(gl, used, this._values, [["corner", 2], ["stand", 4], ["tree", 3]], indices);
   }
@@ -73,10 +67,10 @@ export class Impostor {
    * @param {number} number among all trees */
   add(place, row, number) {
     const tint = 0.86 + 0.28 * ((number * 0.618034) % 1);
-    let at = PER_CORNER * 2 * ROWS * this.count++;
-    for (let i = 0; i < 2 * ROWS; i++, at += PER_CORNER) {
-      const high = (2 * Math.floor(i / 2)) / (ROWS - 1) - 1;
-      this._values.set([i % 2 ? 1 : -1, high, ...place, row, tint], at);
+    let at = 4 * PER_CORNER * this.count++;
+    for (const [x, y] of [[-1, -1], [1, -1], [-1, 1], [1, 1]]) {
+      this._values.set([x, y, ...place, row, tint], at);
+      at += PER_CORNER;
     }
   }
 
@@ -84,7 +78,7 @@ export class Impostor {
   upload() {
     const { gl } = this;
     gl.bindBuffer(gl.ARRAY_BUFFER, this._part.buffers[0]);
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, PER_CORNER * 2 * ROWS * this.count);
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, 4 * PER_CORNER * this.count);
   }
 
   /** Place the top of a tree, which is linear in the coordinates of what is far.
@@ -112,7 +106,7 @@ export class Impostor {
     const picture = [2, this._atlas.texture];
     use(gl, used, { picture, box: [box.wide, box.middle, box.tall, shade], restTip: tip });
     gl.bindVertexArray(this._part.vao);
-    gl.drawElements(gl.TRIANGLES, 6 * (ROWS - 1) * this.count, gl.UNSIGNED_INT, 0);
+    gl.drawElements(gl.TRIANGLES, 6 * this.count, gl.UNSIGNED_INT, 0);
   }
 
   /** Give its memory back. */

@@ -116,6 +116,15 @@ export class Scene {
     return this.day.light.map((each) => each / Math.hypot(...this.day.light));
   }
 
+  /** Height of the ground [m], and of the highest tree. */
+  get ground() {
+    return this._groundHeight;
+  }
+
+  get height() {
+    return this._treeHeight;
+  }
+
   /** Whether any tree of the scene bears leaves. */
   get hasLeaves() {
     return Boolean(this.description?.kinds.some((kind) => kind.arrays.leaf_segment?.length));
@@ -187,9 +196,21 @@ export class Scene {
 
   /** The same at rest. */
   restTip() {
+    return this.restPosition(this._followed);
+  }
+
+  /** Where a segment's root-side node is at rest. @param {number} segment */
+  restPosition(segment) {
     if (!this.description) return [0, 0, 0];
-    const { kind, place } = this.description.trees[this._watched];
-    return placed(place, this._kinds[kind].rest.subarray(STRIDE * this._followed));
+    const { rest, place } = this.watched;
+    return placed(place, rest.subarray(STRIDE * segment));
+  }
+
+  /** The tree that is followed: what it is, where it is, and its kind's poses at rest. */
+  get watched() {
+    const { kind: number, ...tree } = /** @type {Detail} */ (this.detail).trees[this._watched];
+    const { kind, rest } = this._kinds[number];
+    return { ...tree, number: this._watched, kind, rest };
   }
 
   /** Where a segment's root-side node is now; of the tallest tree, if it is drawn.
@@ -215,16 +236,22 @@ export class Scene {
    * @param {number} x 0 to 1 from the left @param {number} y from the top
    * @param {number} [reach] share of the height */
   branchAt(x, y, reach = 0.03) {
-    if (!this.detail || !this.description) return -1;
+    return this.nearest(x, y, reach).branch;
+  }
+
+  /** The same, and which of its segments it is. @param {number} x @param {number} y
+   * @param {number} [reach] */
+  nearest(x, y, reach = 0.03) {
+    let [best, found] = [reach, { branch: -1, segment: -1 }];
+    if (!this.detail || !this.description) return found;
     const { kind } = this.description.trees[this._watched];
     const { branches } = this.detail.levels[kind][this.detail.level[this._watched]];
     const { placer: { order }, kind: { arrays: { branch_first: first } } } = this._kinds[kind];
-    let [best, found] = [reach, -1];
     for (const branch of order.subarray(0, branches)) {
       for (let s = first[branch]; s < first[branch + 1]; s++) {
         const [px, py] = this.camera.project(this.position(s));
         const away = Math.hypot((px - x) * this.camera.aspect, py - y);
-        if (away < best) [best, found] = [away, branch];
+        if (away < best) [best, found] = [away, { branch, segment: s }];
       }
     }
     return found;
@@ -356,11 +383,11 @@ export class Scene {
 
   /** Draw.
    * @param {Float32Array | null} coordinates the state; the poses stay as they are if null
-   * @param {number} time [s] @param {boolean} isPaused nothing of the picture changes then */
-  draw(coordinates, time, isPaused) {
-    const { gl } = this;
-    this.resize();
-    const matrix = this.camera.update();
+   * @param {number} time [s] @param {boolean} isPaused nothing of the picture changes then
+   * @param {View[]} [views] of a headset, in place of the picture's own */
+  draw(coordinates, time, isPaused, views) {
+    if (!views) this.resize();
+    const matrix = (views?.[0].camera ?? this.camera).update();
     if (this._frame % CHOOSE_EVERY === 0) this._chooseDetail(matrix);
     if (coordinates && coordinates.length === this._coordinates.length) this._coordinates = coordinates;
     this._place();
@@ -373,11 +400,22 @@ export class Scene {
     if (this.detail && this._frame % every === 0) this._castShadow(matrix);
     if (this.isSlow && !isPaused) this.quality.count(performance.now(), this._hasCards);
     this._frame++;
-    const [width, height] = [this.canvas.width, this.canvas.height];
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, width, height);
+    const own = this.camera;
+    const area = [0, 0, this.canvas.width, this.canvas.height];
+    for (const view of views ?? [{ camera: own, target: null, area }]) this._paint(view, !views);
+    this.camera = own;
+  }
+
+  /** Draw what one eye sees. @param {View} view @param {boolean} isOwn whether it may be still */
+  _paint({ camera, target, area: [x, y, width, height] }, isOwn) {
+    const { gl } = this;
+    this.camera = /** @type {Camera} */ (camera);
+    const matrix = camera.update();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.viewport(x, y, width, height);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    this._backdrop.draw(this.camera, this.day, this._ground, width, height);
+    this._backdrop.draw(this.camera, this.day, this._ground, isOwn ? width : 0, height);
+    gl.enable(gl.DEPTH_TEST);
     if (!this.detail) return;
     this._drawShadow(matrix);
     this._drawTrees(matrix, false);

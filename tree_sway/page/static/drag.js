@@ -1,0 +1,194 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** A branch pulled by hand: a spring to the pointer, and the pull test when it is let go. */
+
+import { KindPlacer, STRIDE } from "./placing.js";
+import { chainTo, Touch } from "./touch.js";
+import { word } from "./words.js";
+
+/** Modulus of wood whose own is not described [Pa]. */
+const MODULUS = 8e9;
+const RENEW_EVERY = 100;
+const [HARDER, STIFFEST] = [1.4, 1e5];
+/** A free decay is recorded for this time [s], and offered from the other on. */
+const [RECORDED, OFFERED] = [30, 3];
+/** Until a tree elsewhere is surely let go [ms]. */
+const RELEASED = 250;
+const MOST_UNEVEN = 4;
+
+/** Stiffness of the wood that bears a segment [N/m]: a spring of it bends a branch half the way.
+ * @param {import("./drawing/scene.js").Scene} scene @param {number} segment of the watched tree */
+function stiffnessAt(scene, segment) {
+  const { kind, rest, place } = scene.watched;
+  const { branch_first: first, segment_length: length, segment_radius: radius } = kind.arrays;
+  let compliance = 0;
+  for (const branch of chainTo(kind, segment)) {
+    for (let s = first[branch]; s < Math.min(first[branch + 1], segment); s++) {
+      const away = Math.hypot(...[0, 1, 2].map((c) => rest[STRIDE * segment + c] - rest[STRIDE * s + c]));
+      compliance += (away ** 2 * length[s]) / ((kind.modulus ?? MODULUS) * 0.25 * Math.PI * radius[2 * s] ** 4);
+    }
+  }
+  return Math.min(STIFFEST, place[4] / Math.max(compliance, 1e-9));
+}
+
+/** The hand at a branch: where it was, what it pulls by, and what came of it. */
+export class Pull {
+  /** @param {import("./drawing/scene.js").Scene} scene @param {import("./client.js").TreeStream} stream
+   * @param {number} segment of the watched tree */
+  constructor(scene, stream, segment) {
+    this.scene = scene;
+    this.stream = stream;
+    this.segment = segment;
+    this.stiffness = stiffnessAt(scene, segment);
+    this.to = scene.position(segment);
+    this._sentAt = -Infinity;
+    /** Time [s] and displacement [m] since it was let go. @type {number[][]} */
+    this.record = [];
+    this._from = Infinity;
+    this.isHeld = true;
+    /** @type {Touch | null} */
+    this._touch = null;
+    /** @type {KindPlacer | null} */
+    this._placer = null;
+    /** The newest of the record, and the least time between two [s]. @type {Frame | null} */
+    this._last = null;
+    this._spacing = Infinity;
+  }
+
+  /** What the spring pulls by [N]. */
+  get force() {
+    const at = this.scene.position(this.segment);
+    return this.isHeld ? this.stiffness * Math.hypot(...this.to.map((each, c) => each - at[c])) : 0;
+  }
+
+  /** Pull on, now and then, harder until the branch comes half of the way. @param {number} now [ms] */
+  renew(now) {
+    if (!this.isHeld || now - this._sentAt < RENEW_EVERY) return;
+    this._sentAt = now;
+    const [at, rest] = [this.scene.position(this.segment), this.scene.restPosition(this.segment)];
+    const [left, whole] = [at, rest].map((from) => Math.hypot(...this.to.map((each, c) => each - from[c])));
+    if (left > 0.5 * whole) this.stiffness = Math.min(HARDER * this.stiffness, STIFFEST);
+    this._say(this.stiffness);
+  }
+
+  /** Let go; the free decay begins with the state that comes next. */
+  release() {
+    this.isHeld = false;
+    this._from = this.stream.playout.newest + RELEASED;
+    this._say(0);
+  }
+
+  /** Note where the states since the last have it. */
+  note() {
+    const { description, playout } = this.stream;
+    if (this.isHeld || !description || this.seconds > RECORDED) return;
+    this._touch ??= new Touch(description, this.scene.watched.number);
+    this._placer ??= new KindPlacer(this._touch.kind, chainTo(this._touch.kind, this.segment));
+    const { firstCoordinate: first } = this._touch.tree;
+    const rest = this.scene.restPosition(this.segment);
+    for (const frame of playout.since(this._last?.stamp ?? this._from)) {
+      const own = Float64Array.from(frame.coordinates.subarray(first, first + this._touch.kind.nCoordinates));
+      const at = this._touch.place(this._placer, this.segment, own);
+      this.record.push([this._timeOf(frame), ...rest.map((each, c) => at[c] - each)]);
+      this._last = frame;
+    }
+  }
+
+  /** Time of a frame [s]; where a busy machine made the solver wait, the tree waited, too.
+   * @param {Frame} frame */
+  _timeOf({ stamp, sequence }) {
+    if (!this._last) return 0;
+    const count = Math.max(1, (sequence - this._last.sequence) >>> 0);
+    const spacing = (stamp - this._last.stamp) / 1000 / count;
+    this._spacing = Math.min(this._spacing, spacing);
+    return this.seconds + count * (spacing > MOST_UNEVEN * this._spacing ? this._spacing : spacing);
+  }
+
+  /** How long the record is [s]. */
+  get seconds() {
+    return this.record.at(-1)?.[0] ?? 0;
+  }
+
+  /** The free decay as `tree-sway calibrate --record` reads it. */
+  csv() {
+    const rows = this.record.map((row) => row.map((each) => each.toFixed(6)).join(","));
+    return ["time [s],x [m],y [m],z [m]", ...rows, ""].join("\n");
+  }
+
+  /** @param {number} stiffness */
+  _say(stiffness) {
+    this.stream.pull({ segment: this.scene.watched.firstSegment + this.segment, to: this.to, stiffness });
+  }
+}
+
+/** Drags on the canvas. */
+export class Drag {
+  /** @param {import("./drawing/scene.js").Scene} scene @param {import("./client.js").TreeStream} stream */
+  constructor(scene, stream) {
+    this.scene = scene;
+    this.stream = stream;
+    this.isOn = false;
+    /** @type {Pull | null} */
+    this.pull = null;
+    this._pointer = -1;
+    const box = (/** @type {string} */ tag, /** @type {string} */ id) =>
+      Object.assign(document.body.appendChild(document.createElement(tag)), { id, hidden: true });
+    this._line = box("i", "pull-line");
+    this._label = box("output", "pull-force");
+    this._save = /** @type {HTMLAnchorElement} */ (box("a", "pull-save"));
+    this._save.download = "pull_test.csv";
+    this._save.addEventListener("click", () => {
+      const text = new Blob([this.pull?.csv() ?? ""], { type: "text/csv" });
+      this._save.href = URL.createObjectURL(text);
+    });
+    const listen = (/** @type {"pointerdown" | "pointermove" | "pointerup" | "pointercancel"} */ type,
+      /** @type {(event: PointerEvent) => void} */ act) => scene.canvas.addEventListener(type, (event) => {
+      if (type === "pointerdown" ? !this.isOn || !this._grab(event) : event.pointerId !== this._pointer) return;
+      event.stopImmediatePropagation();
+      act(event);
+    }, { capture: true });
+    listen("pointerdown", (event) => scene.canvas.setPointerCapture(event.pointerId));
+    listen("pointermove", (event) => this._move(event));
+    for (const type of /** @type {const} */ (["pointerup", "pointercancel"])) listen(type, () => this._release());
+  }
+
+  /** @param {PointerEvent} event */
+  _grab({ pointerId, clientX, clientY }) {
+    const { clientWidth: wide, clientHeight: high } = this.scene.canvas;
+    const segment = this._pointer < 0 ? this.scene.nearest(clientX / wide, clientY / high).segment : -1;
+    if (segment < 0) return false;
+    this.pull = new Pull(this.scene, this.stream, segment);
+    this._pointer = pointerId;
+    return true;
+  }
+
+  /** @param {PointerEvent} event */
+  _move({ clientX, clientY }) {
+    if (!this.pull) return;
+    const { canvas, camera } = this.scene;
+    this.pull.to = camera.under(clientX / canvas.clientWidth, clientY / canvas.clientHeight, this.pull.to);
+  }
+
+  _release() {
+    this._pointer = -1;
+    this.pull?.release();
+  }
+
+  /** Go on with what is drawn. */
+  frame() {
+    const { pull, scene: { camera, canvas }, _line: line, _label: label } = this;
+    line.hidden = label.hidden = !pull?.isHeld;
+    if (!pull) return;
+    pull.renew(performance.now());
+    pull.note();
+    this._save.hidden = pull.isHeld || pull.seconds < OFFERED;
+    this._save.textContent = word("decay", pull.seconds.toFixed(0));
+    if (!pull.isHeld) return;
+    const [[x, y], [u, v]] = [this.scene.position(pull.segment), pull.to].map((each) =>
+      camera.project(each).map((share, c) => share * (c ? canvas.clientHeight : canvas.clientWidth)));
+    line.style.cssText = `left:${x}px;top:${y}px;width:${Math.hypot(u - x, v - y)}px;`
+      + `rotate:${Math.atan2(v - y, u - x)}rad`;
+    label.style.cssText = `left:${u + 14}px;top:${v - 14}px`;
+    label.textContent = `${Number(pull.force.toPrecision(3))} N`;
+  }
+}

@@ -1,0 +1,51 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** The wind as one hears it: air that roars lower or higher with its speed, leaves that rustle as they move. */
+
+/** Speeds at which air and leaves are as loud as they get [m/s]. */
+const [LOUD_AIR, LOUD_LEAVES] = [18, 10];
+/** What is heard follows within this time [s]. */
+const FOLLOWS = 0.15;
+
+export class Sound {
+  constructor() {
+    this.context = new AudioContext();
+    const { context } = this;
+    const noise = context.createBuffer(1, 4 * context.sampleRate, context.sampleRate);
+    const samples = noise.getChannelData(0);
+    for (let i = 0; i < samples.length; i++) samples[i] = 2 * Math.random() - 1;
+    /** What is heard. */
+    this.out = context.createGain();
+    this.out.connect(context.destination);
+    const voice = (/** @type {BiquadFilterType} */ type, /** @type {number} */ frequency) => {
+      const source = new AudioBufferSourceNode(context, { buffer: noise, loop: true });
+      const filter = new BiquadFilterNode(context, { type, frequency, Q: 0.8 });
+      const gain = new GainNode(context, { gain: 0 });
+      source.connect(filter).connect(gain).connect(this.out);
+      // Each begins elsewhere in the noise.
+      source.start(0, 4 * Math.random());
+      return { filter, gain };
+    };
+    this._air = voice("bandpass", 200);
+    this._leaves = voice("highpass", 2500);
+    this.isOn = false;
+  }
+
+  /** On or off. @returns {Promise<boolean>} whether it is on */
+  async toggle() {
+    this.isOn = !this.isOn;
+    await (this.isOn ? this.context.resume() : this.context.suspend());
+    return this.isOn;
+  }
+
+  /** Sound as the tree is now. @param {number} wind speed [m/s]
+   * @param {boolean} hasLeaves @param {number} motion of the tip [m/s] */
+  follow(wind, hasLeaves, motion) {
+    const { currentTime: now } = this.context;
+    const air = Math.min(1, wind / LOUD_AIR);
+    const leaves = hasLeaves ? Math.min(1, (wind + 2 * motion) / LOUD_LEAVES) : 0;
+    this._air.gain.gain.setTargetAtTime(0.5 * air ** 2, now, FOLLOWS);
+    this._air.filter.frequency.setTargetAtTime(120 + 500 * air, now, FOLLOWS);
+    this._leaves.gain.gain.setTargetAtTime(0.08 * leaves ** 1.5, now, FOLLOWS);
+  }
+}
