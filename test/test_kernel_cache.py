@@ -19,8 +19,10 @@ pytest.importorskip('numba', reason='there is no cache of kernels without numba'
 
 #: Prints what a kernel makes of the function of another file that it calls.
 PROGRAM = """
-from tree_sway.core.oscillators.propagator import propagator
-print(propagator(0.0, 1.0, 2.0, 0.02)[0, 7])
+from tree_sway.core.wind.crown_wind import CrownWind
+wind = CrownWind(1.0, 0.5)
+wind.push(3.0, 0.0, 0.0, 0.02)
+print(wind.record['mean'][0, 0])
 """
 
 
@@ -53,10 +55,10 @@ def test_an_edited_callee_is_run_by_callers_in_other_files(copy, compiled):
     cache, before, _ = compiled
     assert copy(cache)[0] == before, 'compiled and cached runs give the same bits'
     assert list(cache.glob('*.kernel'))
-    path = copy.package / 'core' / 'oscillators' / 'exponential.py'
+    path = copy.package / 'core' / 'wind' / 'gust_travel.py'
     text = path.read_text(encoding='utf-8')
-    assert 'return math.expm1(z) / z' in text
-    path.write_text(text.replace('return math.', 'return 2.0 * math.'), encoding='utf-8')
+    assert 'weight = dt / mean[2]' in text
+    path.write_text(text.replace('weight = dt', 'weight = 2.0 * dt'), encoding='utf-8')
     try:
         assert copy(cache)[0] == 2.0 * before
     finally:

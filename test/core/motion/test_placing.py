@@ -11,7 +11,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.branch.shapes import across
-from tree_sway.core.motion.placing import place
 from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
@@ -35,15 +34,7 @@ class Puppet:
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
         bank, origin = self.bank, self.tree.start[0].copy()
-        place(
-            bank.branches,
-            bank.segments,
-            bank.heads,
-            bank.bases,
-            np.array(x, float),
-            origin,
-            out,
-        )
+        bank.place(np.array(x, float), origin, out)
         return out
 
     def nodes(self, x):
