@@ -105,16 +105,16 @@ def little_effort():
     peak = _peak_memory()
     began = time.process_time()
     yield
-    spent, grown = time.process_time() - began, _peak_memory(anew=False) - peak
+    spent, grown = time.process_time() - began, _peak_memory(restarted=False) - peak
     assert spent < 5.0, f'{spent:.1f} s of a processor'
     assert grown < 2**30, f'{grown / 2**20:.0f} MiB'
 
 
-def _peak_memory(anew=True):
-    """Return the most memory that this process had, from now on if anew [bytes]; 0 elsewhere."""
+def _peak_memory(restarted=True):
+    """Return the peak memory of this process, to be counted from now on [bytes]; 0 elsewhere."""
     if not sys.platform.startswith('linux'):
         return 0
-    if anew:
+    if restarted:
         Path('/proc/self/clear_refs').write_text('5')
     status = Path('/proc/self/status').read_text(encoding='ascii')
     return 1024 * int(status.partition('VmHWM:')[2].split()[0])

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What keeps the repository in order: its settings are files that their programs can read."""
+"""The order of the repository: its settings are files that their programs can read."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The one-command set-up: what it refuses, what it keeps out, when it does its work again."""
+"""The one-command set-up: what it refuses, what it leaves out, when it does its work again."""
 
 from __future__ import annotations
 

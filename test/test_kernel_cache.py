@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 import os
 from pathlib import Path
 import shutil
@@ -12,14 +13,16 @@ import sys
 
 import pytest
 
-from tree_sway.kernel_cache import ROOT, source_digest
+from tree_sway.kernel_cache import KernelCache, ROOT, source_digest
 
 pytest.importorskip('numba', reason='there is no cache of kernels without numba')
 
 #: Prints what a kernel makes of the function of another file that it calls.
 PROGRAM = """
-from tree_sway.core.oscillators.propagator import propagator
-print(propagator(0.0, 1.0, 2.0, 0.02)[0, 7])
+from tree_sway.core.wind.crown_wind import CrownWind
+wind = CrownWind(1.0, 0.5)
+wind.push(3.0, 0.0, 0.0, 0.02)
+print(wind.record['mean'][0, 0])
 """
 
 
@@ -52,10 +55,10 @@ def test_an_edited_callee_is_run_by_callers_in_other_files(copy, compiled):
     cache, before, _ = compiled
     assert copy(cache)[0] == before, 'compiled and cached runs give the same bits'
     assert list(cache.glob('*.kernel'))
-    path = copy.package / 'core' / 'oscillators' / 'exponential.py'
+    path = copy.package / 'core' / 'wind' / 'gust_travel.py'
     text = path.read_text(encoding='utf-8')
-    assert 'return math.expm1(z) / z' in text
-    path.write_text(text.replace('return math.', 'return 2.0 * math.'), encoding='utf-8')
+    assert 'weight = dt / mean[2]' in text
+    path.write_text(text.replace('weight = dt', 'weight = 2.0 * dt'), encoding='utf-8')
     try:
         assert copy(cache)[0] == 2.0 * before
     finally:
@@ -82,23 +85,30 @@ def test_a_folder_that_cannot_be_written_is_passed_by(copy, tmp_path):
     assert 'Traceback' not in said
 
 
-def test_the_digest_follows_imports_and_nothing_else():
-    first = ROOT / 'core' / 'motion' / 'uncoupled.py'
-    assert len(source_digest(first)) == 32
-    assert source_digest(first) != source_digest(ROOT / 'core' / 'motion' / 'modal.py')
-    assert source_digest(ROOT / 'nowhere.py') == ''
+def test_the_digest_follows_what_is_in_a_folder(tmp_path):
+    assert source_digest(ROOT / 'nowhere') == ''
+    (tmp_path / 'inside').mkdir()
+    digests = set()
+    for name, text in (('a.py', '1'), ('a.py', '2'), ('inside/b.py', '2'), ('c.csv', 'x,y')):
+        (tmp_path / name).write_text(text)
+        source_digest.cache_clear()
+        digests.add(source_digest(tmp_path))
+    assert len(digests) == 4
+    (tmp_path / 'notes.txt').write_text('of no effect')
+    source_digest.cache_clear()
+    assert source_digest(tmp_path) in digests
 
 
-def test_the_digest_follows_imports_within_another_package(tmp_path):
+def test_a_kernel_of_another_package_follows_all_of_that(tmp_path, monkeypatch):
     package = tmp_path / 'orchard'
     (package / 'methods').mkdir(parents=True)
     for folder in (package, package / 'methods'):
         (folder / '__init__.py').touch()
-    caller, callee = package / 'methods' / 'caller.py', package / 'callee.py'
-    caller.write_text('from orchard.callee import one\nfrom tree_sway.core import kernel\n')
-    digests = []
+    (package / 'methods' / 'caller.py').write_text('def one():\n    return 1\n')
+    monkeypatch.syspath_prepend(tmp_path)
+    keys = []
     for text in ('one = 1\n', 'one = 2\n'):
-        callee.write_text(text)
+        (package / 'callee.py').write_text(text)
         source_digest.cache_clear()
-        digests.append(source_digest(caller))
-    assert digests[0] != digests[1]
+        keys.append(KernelCache(import_module('orchard.methods.caller').one, '')._key)
+    assert keys[0] != keys[1]

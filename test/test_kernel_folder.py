@@ -64,7 +64,7 @@ def test_so_is_one_below_a_folder_that_others_may_write(
     place.chmod(0o777)
     with pytest.warns(RuntimeWarning, match='others may write'):
         assert chosen(inner, monkeypatch) != inner
-    place.chmod(0o1777)  # as /tmp: nobody removes what is another's
+    place.chmod(0o1777)  # as /tmp: no user removes the files of another
     assert chosen(inner, monkeypatch) == inner
 
 

@@ -43,7 +43,7 @@ def test_about_twenty_names_and_no_other() -> None:
         _ = tree_sway.trunk
 
 
-def test_type_checkers_are_told_the_same_names_from_the_same_modules() -> None:
+def test_type_checkers_are_reported_the_same_names_from_the_same_modules() -> None:
     told = {
         alias.name: node.module
         for block in ast.parse(SOURCE.read_text(encoding='utf-8')).body
@@ -69,7 +69,7 @@ def test_importing_it_imports_nothing_else() -> None:
 
 
 def test_a_simulator_loads_few_modules_and_no_laboratory() -> None:
-    """Counted are modules that hold code, not the rooms they stand in."""
+    """Modules with code are counted, not their packages."""
     program = (
         'import sys; import tree_sway.core.simulator.simulator;'
         "ours = [m for n, m in sys.modules.items() if n.startswith('tree_sway.')];"

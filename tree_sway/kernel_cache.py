@@ -4,8 +4,8 @@
 Compiled kernels on disk, keyed by all the source that goes into them.
 
 numba's own cache looks at the file of a function alone, so that after an edit the callers of a
-changed function run the old code. Here the key is a digest of a function's module and of every
-module of this package that it imports, directly or not, beside signature, processor, compiler
+changed function run the old code. Here the key is a digest of all modules of the core, and of the
+package that a function belongs to if that is another, beside signature, processor, compiler
 version and flags. A kernel that cannot be read from disk is compiled again; one that cannot be
 written is kept in memory.
 """
@@ -33,12 +33,6 @@ PLAIN_VARIABLE = 'TREE_SWAY_NO_NUMBA'
 
 OLDEST_COMPILER = (0, 59)
 """Versions of numba before this one do not come to an end of these kernels."""
-
-_IMPORT = re.compile(
-    r'^[ \t]*(?:from[ \t]+(\w+)\.([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n]*)'
-    r'|import[ \t]+(\w+)\.([\w.]+))',
-    re.MULTILINE,
-)
 
 
 @cache
@@ -87,7 +81,8 @@ class KernelCache:
         self._codec = import_module('numba.core.caching').CompileResultCacheImpl
         self._dumps = import_module('numba.core.serialize').dumps
         code = function.__code__
-        digest = source_digest(Path(code.co_filename))
+        own = _package(Path(code.co_filename))
+        digest = source_digest(ROOT / 'core') + source_digest(own) * (own != ROOT)
         self._name = f'{function.__module__.rpartition(".")[2]}.{function.__qualname__}'
         self._key = '\0'.join(
             [
@@ -148,52 +143,18 @@ class KernelCache:
 
 
 @cache
-def source_digest(path: Path) -> str:
-    """Digest of a source and what it imports of its package and ours; empty if unreadable."""
-    try:
-        found: dict[Path, bytes] = {path: path.read_bytes()}
-    except OSError:
-        return ''
-    waiting = [path]
-    while waiting:
-        for other in _imported(waiting.pop()):
-            if other not in found:
-                found[other] = other.read_bytes()
-                waiting.append(other)
-    digest = hashlib.blake2b(found.pop(path), digest_size=16)
-    for other in sorted(found):
-        digest.update('/'.join(_place(other)).encode() + b'\0' + found[other])
-    return digest.hexdigest()
+def source_digest(folder: Path) -> str:
+    """Digest of all modules and tables of a folder; empty without files, as in an archive."""
+    digest = hashlib.blake2b(digest_size=16)
+    paths = sorted(path for path in folder.rglob('*') if path.suffix in ('.py', '.csv'))
+    for path in paths:
+        digest.update(path.relative_to(folder).as_posix().encode() + b'\0' + path.read_bytes())
+    return digest.hexdigest() if paths else ''
 
 
-@cache
-def _imported(path: Path) -> tuple[Path, ...]:
-    """Files of this package, and of the one a file belongs to, that it imports."""
-    files: list[Path] = []
-    packages = {top.name: top for top in (ROOT, _package(path))}
-    for found in _IMPORT.findall(path.read_text(encoding='utf-8')):
-        package, module, names = found[0] or found[3], found[1] or found[4], found[2]
-        if package not in packages:
-            continue
-        base = packages[package].joinpath(*module.split('.'))
-        if base.with_suffix('.py').is_file():
-            files.append(base.with_suffix('.py'))
-        else:
-            inner = (base / f'{name}.py' for name in re.findall(r'\w+', names))
-            files += [file for file in inner if file.is_file()]
-    return tuple(files)
-
-
-@cache
 def _package(path: Path) -> Path:
     """Folder of the package that a file belongs to."""
     top = path.parent
     while (top.parent / '__init__.py').is_file():
         top = top.parent
     return top
-
-
-def _place(path: Path) -> tuple[str, ...]:
-    """Return where a file is, from its package on."""
-    top = _package(path)
-    return (top.name, *path.relative_to(top).parts)

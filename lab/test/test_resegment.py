@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree cut anew: same shape, same names, and same motion however finely it is cut."""
+"""A tree cut again: same shape, same names, and same motion however finely it is cut."""
 
 from __future__ import annotations
 
@@ -80,27 +80,29 @@ def test_what_is_kept(random_tree, seed, cut):
     tree = tree_from_segments(
         start, end, np.stack([diameter, 0.8 * diameter], axis=1), parent=parent
     )
-    anew = resegment(tree, cut)
-    assert (np.diff(anew.branch_first) == cut).all()
-    assert sorted(anew.branch_names) == sorted(tree.branch_names)
-    ours = [anew.branch_names.index(name) for name in tree.branch_names]
-    assert anew.start[anew.branch_first[ours]] == pytest.approx(tree.start[tree.branch_first[:-1]])
-    assert anew.end[anew.branch_first[1:][ours] - 1] == pytest.approx(
+    finer = resegment(tree, cut)
+    assert (np.diff(finer.branch_first) == cut).all()
+    assert sorted(finer.branch_names) == sorted(tree.branch_names)
+    ours = [finer.branch_names.index(name) for name in tree.branch_names]
+    assert finer.start[finer.branch_first[ours]] == pytest.approx(
+        tree.start[tree.branch_first[:-1]]
+    )
+    assert finer.end[finer.branch_first[1:][ours] - 1] == pytest.approx(
         tree.end[tree.branch_first[1:] - 1]
     )
     for old, new in enumerate(ours):
-        carriers = [each.branch_parent[b] for each, b in ((tree, old), (anew, new))]
+        carriers = [each.branch_parent[b] for each, b in ((tree, old), (finer, new))]
         names = [
             each.branch_names[c] if c >= 0 else ''
-            for each, c in zip((tree, anew), carriers, strict=True)
+            for each, c in zip((tree, finer), carriers, strict=True)
         ]
         assert names[0] == names[1]
         if cut >= tree.branch_first[old + 1] - tree.branch_first[old]:
             # Finer cuts keep every node, and so length and volume.
-            here, there = tree.segments_of(old), anew.segments_of(new)
-            assert anew.length[there].sum() == pytest.approx(tree.length[here].sum())
-            assert anew.volume[there].sum() == pytest.approx(tree.volume[here].sum())
-    touching = np.linalg.norm(anew.start[1:] - anew.end[anew.segment_parent[1:]], axis=1)
+            here, there = tree.segments_of(old), finer.segments_of(new)
+            assert finer.length[there].sum() == pytest.approx(tree.length[here].sum())
+            assert finer.volume[there].sum() == pytest.approx(tree.volume[here].sum())
+    touching = np.linalg.norm(finer.start[1:] - finer.end[finer.segment_parent[1:]], axis=1)
     if cut >= np.diff(tree.branch_first).max():
         assert touching.max() < 1e-12
 
@@ -122,16 +124,16 @@ def test_a_cut_of_the_same_number_gives_the_same_tree(stem):
 def test_the_longest_segments_are_split_first():
     nodes = np.array([[0.0, 0.0, z] for z in (0.0, 1.0, 3.0, 3.5)])
     tree = tree_from_segments(nodes[:-1], nodes[1:], [0.03, 0.02, 0.01])
-    anew = resegment(tree, 6)
-    assert anew.length == pytest.approx([0.5, 0.5, 2 / 3, 2 / 3, 2 / 3, 0.5])
+    again = resegment(tree, 6)
+    assert again.length == pytest.approx([0.5, 0.5, 2 / 3, 2 / 3, 2 / 3, 0.5])
     # Steps in thickness stay where they are.
-    assert anew.base_diameter == pytest.approx([0.03, 0.03, 0.02, 0.02, 0.02, 0.01])
+    assert again.base_diameter == pytest.approx([0.03, 0.03, 0.02, 0.02, 0.02, 0.01])
 
 
 def test_a_longest_length_is_kept_to(fork):
     tree = fork(2)
-    anew = resegment(tree, max_segment_length=0.1)
-    assert anew.length.max() <= 0.1 + 1e-9
+    again = resegment(tree, max_segment_length=0.1)
+    assert again.length.max() <= 0.1 + 1e-9
     # A branch as long as two segments to rounding gets two.
     assert (
         resegment(
@@ -144,14 +146,14 @@ def test_a_longest_length_is_kept_to(fork):
 def test_children_sit_on_the_segment_beside_them():
     tree = builtin_tree('broadleaf')
     for cut in (2, 5, 11):
-        anew = resegment(tree, cut)
-        first = anew.branch_first[1:-1]
-        seat = anew.segment_parent[first]
+        again = resegment(tree, cut)
+        first = again.branch_first[1:-1]
+        seat = again.segment_parent[first]
         # Their start lies within the seat's length, a kept node at either end of it included.
         along = np.einsum(
-            'ij,ij->i', anew.start[first] - anew.start[seat], anew.end[seat] - anew.start[seat]
+            'ij,ij->i', again.start[first] - again.start[seat], again.end[seat] - again.start[seat]
         )
-        share = along / anew.length[seat] ** 2
+        share = along / again.length[seat] ** 2
         assert share.min() > -0.35
         assert share.max() < 1.35
         if cut == 11:

@@ -93,7 +93,7 @@ READ = {each.name for each in (*TREE_FORMATS, *WIND_FORMATS)}
 NAMED = {
     'TreeQSM': 'treeqsm-text', 'SimpleForest': 'simpleforest', 'aRchi': 'archi', 'MTG': 'mtg',
     'SWC': 'swc', 'RayCloudTools': 'treefile', 'PyTLidar': 'treeqsm-text', 'TOA5': 'toa5',
-    'NMEA': 'nmea', 'METAR': 'metar', 'rosbag2': 'bag', 'TriSonica': 'sonic', 'Gill': 'sonic',
+    'NMEA': 'nmea', 'METAR': 'metar', 'rosbag2': 'bag', 'Gill': 'sonic',
 }  # fmt: skip
 """Formats that pages name, and the program's name of each."""
 NOT_HERE = re.compile(

@@ -3,7 +3,7 @@
 """
 The commands of ``bash`` blocks, run until what they promise is seen, and ended with Ctrl-C.
 
-What this machine has not is stood in for: a browser, an instrument on a
+What this machine does not have is replaced: a browser, an instrument on a
 serial port, a second site, a cluster. Commands of ROS's own tools are left to ``test/launch``.
 
 """
@@ -85,7 +85,7 @@ class Machine:
         """
         Press Ctrl-C everywhere; every command ends by it, and in peace.
 
-        One that has told its summary but is slow to leave the graph, as on a machine with other
+        One that has printed its summary but is slow to leave the graph, as on a machine with other
         work, is ended by its own watchdog, with 1 (`Ending`).
         """
         ended = []

@@ -106,7 +106,7 @@ def in_short(task: Task) -> Task:
 
 
 def free_port() -> str:
-    """Return a port of this machine that nobody has."""
+    """Return a free port of this machine."""
     with socket.create_server(('127.0.0.1', 0)) as free:
         return str(free.getsockname()[1])
 

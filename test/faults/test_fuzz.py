@@ -80,7 +80,7 @@ def stamps(rng, times):
 
 
 class Sender:
-    """Messages of all types that wind comes in, each one object that is written anew."""
+    """Messages of all types that wind comes in, each one object that is written repeatedly."""
 
     def __init__(self):
         from geometry_msgs import msg
@@ -114,7 +114,7 @@ def fuzz(wind, solver, n, seed):
     """
     Send n messages through the callbacks of both nodes; all frames are looked at.
 
-    What a callback raises is raised here: no guard stands around it.
+    What a callback raises is raised here: no guard is around it.
 
     """
     from tree_sway_ros.timing.pacer import Tick

@@ -61,7 +61,7 @@ def outages(chain, observer, tree, rounds):
     chain.start('anemometer', 'rate:=50.0')
 
     def is_whole(seen, heard):
-        """Whether frames and wind have come since, and a solver that began at rest feels it."""
+        """Whether frames and wind have come since, and moved a solver that began at rest."""
         if not (len(frames) > seen + 5 and len(filtered) > heard + 5):
             return False
         return frames[-1][_POSES:] != frames[-2][_POSES:]

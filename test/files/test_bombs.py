@@ -108,7 +108,7 @@ def element(kind: int, body: bytes) -> bytes:
 
 
 def matlab(path: Path, count: int) -> None:
-    """Write a cell array of so many empty arrays, compressed."""
+    """Write a cell array of n empty arrays, compressed."""
     empty = element(
         14, element(6, struct.pack('<II', 6, 0)) + element(5, bytes(8)) + element(1, b'')
         + element(9, b''),

@@ -44,7 +44,7 @@ def none_is_made(monkeypatch):
 
     def start():
         for name in ('_modal_arrays', '_table'):
-            monkeypatch.setattr(assembly, name, lambda *_: pytest.fail('made anew'))
+            monkeypatch.setattr(assembly, name, lambda *_: pytest.fail('made again'))
 
     return start
 
@@ -109,7 +109,7 @@ def one_array(path):
     ],
     ids=['empty', 'text', 'cut off', 'altered', 'pickle', 'one array'],
 )
-def test_a_damaged_set_up_is_made_anew(fork, kept, files, none_is_made, damage):
+def test_a_damaged_set_up_is_made_again(fork, kept, files, none_is_made, damage):
     expected = poses_of(SwaySimulator(fork(), cache=kept))
     (path,) = files()
     damage(path)

@@ -122,7 +122,7 @@ def prefix(tmp_path):
 
 @pytest.fixture
 def environment(prefix, ros_environment):
-    """Variables of a process that launches what stands in `prefix`."""
+    """Variables of a process that launches what is installed in `prefix`."""
     paths = [str(prefix), *os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)]
     return {
         **ros_environment,

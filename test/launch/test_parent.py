@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A launch file of somebody else includes ours twice, and sets values for every node."""
+"""Another launch file includes ours twice, and sets values for every node."""
 
 import json
 from pathlib import Path
@@ -45,7 +45,7 @@ def test_two_trees_stand_side_by_side_in_one_wind(launched, observer, tree_file,
     assert (at['oak'].x, at['oak'].y) == (5.0, 0.0)
     assert poses['elm'][-1].header.frame_id == winds['oak'][-1].header.frame_id == 'site'
     described = {name: json.loads(trees[name][-1].data) for name in trees}
-    assert described['elm']['hash'] != described['oak']['hash']  # each knows where it stands
+    assert described['elm']['hash'] != described['oak']['hash']  # each knows its place
 
     def felt(name):
         stamped = [(m.header.stamp.sec, m.header.stamp.nanosec, m.vector.x) for m in winds[name]]

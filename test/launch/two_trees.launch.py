@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A launch file of somebody else: two trees side by side, one mast, values set for every node."""
+"""Another launch file: two trees side by side, one mast, values set for every node."""
 
 import os
 

@@ -72,7 +72,7 @@ class Observer:
         return messages
 
     def publisher(self, topic, kind=None, name=None):
-        """Return a publisher on a topic of the table, once somebody listens to it."""
+        """Return a publisher on a topic of the table, once it has a subscriber."""
         from tree_sway_ros.process.topics import message_class, qos_profile
 
         made = self.node.create_publisher(

@@ -32,7 +32,7 @@ def started(observer, process, name=None):
     [[signal.SIGINT], [signal.SIGTERM], [signal.SIGINT] * 3],
     ids=['int', 'term', 'int3'],
 )
-def test_a_node_that_is_told_to_end_ends_well(run, observer, tree_file, signals):
+def test_a_node_that_is_asked_to_end_ends_well(run, observer, tree_file, signals):
     process = run('solver', f'tree:={tree_file}', 'rate:=40')  # a whole number for a double
     started(observer, process)
     for number in signals:

@@ -102,7 +102,7 @@ def test_arguments_that_are_not_given_override_nothing(launch_file):
     assert placed == {'pose': [3.0, 0.0, 0.0, 1.57]}
 
 
-def test_the_player_is_told_how_to_read_and_where_to_begin(launch_file):
+def test_the_player_learns_how_to_read_and_where_to_begin(launch_file):
     given = {'reader_options': 'topic=/mast/wind yaw=1.57'}
     given |= {'start': '30', 'playback_rate': '2', 'loop': 'False'}
     told = launch_file.overrides_of('player', GIVEN | given)

@@ -30,7 +30,7 @@ def has_predecessor(observer, messages):
 
 
 def stands(observer, messages, others):
-    """Nothing more comes while others go on."""
+    """Nothing more comes while others continue."""
     n, m = len(messages), len(others)
     observer.until(lambda: len(others) > m + 10, 'others')
     assert len(messages) <= n + 1

@@ -78,14 +78,14 @@ def test_every_model_streams_every_segment(compose, observer, tree_file, model):
     assert len(frames[-1].poses) == 7
 
 
-def test_a_tolerance_nobody_can_meet_is_told(compose, observer, statuses, tree_file):
+def test_a_tolerance_nobody_can_meet_is_reported(compose, observer, statuses, tree_file):
     compose(solver={'tree': tree_file, 'model': 'auto', 'tolerance': 1e-6})
     observer.until(lambda: statuses('solver: model') is not None, 'diagnostics')
     assert statuses('solver: model').level[0] == WARN
     assert 'no model is within the tolerance; allow' in statuses('solver: model').message
 
 
-def test_a_budget_is_told_and_kept_where_it_can_be(compose, observer, statuses, tree_file):
+def test_a_budget_is_reported_and_kept_where_it_can_be(compose, observer, statuses, tree_file):
     compose(solver={'tree': tree_file, 'model': 'auto', 'tolerance': 1e-6, 'budget': 0.5})
     observer.until(lambda: statuses('solver: model') is not None, 'diagnostics')
     status = statuses('solver: model')
@@ -121,7 +121,7 @@ def test_a_wind_outside_of_the_table_and_one_that_is_refused_are_counted(
     observer.until(lambda: said('solver: wind', 'not_finite') == 1, 'the refusal')
 
 
-def test_leaves_are_told_once_and_never_by_the_frame(compose, observer, tree_file):
+def test_leaves_are_reported_once_and_never_by_the_frame(compose, observer, tree_file):
     compose(solver={'tree': tree_file, 'leaves': 'on', 'profile': 'power'})
     described = observer.listen(TREE_DESCRIPTION)
     frames = observer.listen(SEGMENT_POSES)

@@ -52,7 +52,7 @@ def test_the_clock_goes_on_over_the_seam_of_a_loop(compose, observer, wind_file)
     observer.until(lambda: len(said) > 200, 'two rounds and a half')
     clock = [stamp_to_ns(tick.clock) for tick in ticks]
     stamps = [stamp_to_ns(m.header.stamp) for m in said]
-    assert (np.diff(clock) >= 0).all()  # it stands until the player begins
+    assert (np.diff(clock) >= 0).all()  # it does not advance until the player begins
     assert (np.diff(stamps) > 0).all()
     assert np.median(np.diff(stamps)) == pytest.approx(5e7, abs=2)
     assert stamps[0] >= 10**9
@@ -80,7 +80,7 @@ def poses_of(compose, observer, wind_file, tree_file, rate):
 def test_replays_are_the_same_bit_for_bit_whatever_the_machine_does_beside(
     compose, observer, wind_file, tree_file
 ):
-    """Samples that arrive within `wind_delay` are felt at their own times."""
+    """Samples that arrive within `wind_delay` act at their own times."""
     first, *others = [
         poses_of(compose, observer, wind_file, tree_file, r) for r in (1.0, 1.0, 4.0)
     ]
@@ -91,7 +91,9 @@ def test_replays_are_the_same_bit_for_bit_whatever_the_machine_does_beside(
         assert [stamp for stamp in both if found[stamp] != first[stamp]] == []
 
 
-def test_nothing_begins_before_somebody_listens_and_the_clock_stands(compose, observer, wind_file):
+def test_nothing_begins_before_a_subscriber_is_there_nor_does_the_clock(
+    compose, observer, wind_file
+):
     ticks = observer.listen(CLOCK)
     nodes = compose(player={'file': wind_file, 'publish_clock': True, 'rate': 20.0})
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

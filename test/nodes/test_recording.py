@@ -71,7 +71,7 @@ def test_a_recorded_state_can_be_drawn_again(
 
 
 def test_the_layouts_show_what_a_bag_holds(compose, observer, tree_file, tmp_path):
-    """Every topic that RViz and Foxglove are told to show is there, of a type that they show."""
+    """Every topic that RViz and Foxglove are to show is there, of a type that they show."""
     compose(anemometer={'rate': 40.0}, wind={}, solver={'tree': tree_file})
     counts = recorded(observer, tmp_path / 'bag', 'mcap', _USUAL + _MORE)
     layout = json.loads((CONFIG / 'tree_sway.foxglove.json').read_text())['configById']

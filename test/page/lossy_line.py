@@ -6,7 +6,7 @@ A server and a client of the stream in two networks, and between them a line of 
     python test/page/lossy_line.py --delay 0.04 --loss 0.01 --seconds 60
 
 Each side lives in a network namespace whose only way out is a TUN device; its packets come here,
-are lost by chance, and go on after a delay. So TCP meets what it meets on a long line.
+are lost by chance, or forwarded after a delay. So TCP meets what it meets on a long line.
 
 """
 

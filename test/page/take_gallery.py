@@ -5,7 +5,8 @@ Take the pictures of doc/gallery.md from the page, in a headless Chromium.
 
     python test/page/take_gallery.py doc/pictures/gallery --walnut walnut.mtg
 
-Trees that are no file are grown. Pictures in full quality are drawn as with a graphics unit.
+Trees that are no file are grown. Pictures in full quality are drawn as with a graphics unit. A
+film is taken along the page's time line, so that its pictures are as far apart as they are shown.
 
 """
 
@@ -46,7 +47,11 @@ class View:
     script: str = ''
     is_dark: bool = False
     is_phone: bool = False
+    is_film: bool = False
 
+
+FILM, EVERY, FILM_WIDTH = 5.0, 0.1, 640
+"""Length of a film and time between its pictures [s], and its width [px]."""
 
 VIEWS = (
     View('benjamina', 'benjamina'),
@@ -61,6 +66,7 @@ VIEWS = (
     View('spruce', 'spruce'),
     View('pine', 'pine'),
     View('willow', 'willow'),
+    View('willow_sways', 'willow', is_film=True),
     View('walnut', 'walnut'),
     View('walnut_software', 'walnut', is_full=False),
     View('walnut_near', 'walnut', script='treeSway.scene.camera.zoom(0.35)'),
@@ -129,11 +135,34 @@ async def look(url: str, view: View, path: Path) -> None:
         await browser.until(f'treeSway.scene._frame > {drawn} + 3')
         if not view.is_full:
             await asyncio.sleep(8.0)  # until the page has chosen what it draws
+        if view.is_film:
+            await film(browser, path.with_suffix('.webp'))
+            return
         image = Image.open(io.BytesIO(await browser.screenshot())).convert('RGB')
         if not view.is_phone:
             image = image.resize((WIDTH, WIDTH * height // width), Image.Resampling.LANCZOS)
         image.save(path, quality=82, optimize=True)
         print(path, path.stat().st_size, await browser.run('treeSway.fps'), browser.console)
+
+
+async def film(browser: Browser, path: Path) -> None:
+    """Look back over the last seconds, a picture at a time."""
+    oldest = 'treeSway.playout._frames[0].stamp'
+    await browser.until(f'treeSway.playout.newest > {oldest} + {1e3 * FILM}')
+    pictures = []
+    for number in range(round(FILM / EVERY)):
+        slide = f"s.value = {number * EVERY - FILM}; s.dispatchEvent(new Event('input'))"
+        await browser.run(f"{{const s = document.getElementById('time'); {slide};}}")
+        drawn = await browser.run('treeSway.scene._frame')
+        await browser.until(f'treeSway.scene._frame > {drawn} + 1')
+        image = Image.open(io.BytesIO(await browser.screenshot())).convert('RGB')
+        size = FILM_WIDTH, FILM_WIDTH * image.height // image.width
+        pictures.append(image.resize(size, Image.Resampling.LANCZOS))
+    first, *others = pictures
+    first.save(
+        path, save_all=True, append_images=others, duration=round(1e3 * EVERY), loop=0, quality=70
+    )
+    print(path, path.stat().st_size)
 
 
 if __name__ == '__main__':

@@ -3,7 +3,7 @@
 """
 The stream over lines and to clients that are not as good as this machine's own.
 
-What is timed to milliseconds wants a machine that does nothing else: ``pytest -m long -s`` tells.
+What is timed to milliseconds needs an idle machine; ``pytest -m long -s`` prints it.
 
 """
 

@@ -115,7 +115,7 @@ def test_the_tree_is_drawn_where_it_projects(visit: Visit) -> None:
     visit(script)
 
 
-def test_it_moves_in_wind_and_stands_still_when_paused(visit: Visit) -> None:
+def test_it_moves_in_wind_and_is_still_when_paused(visit: Visit) -> None:
     async def change(browser: Browser) -> float:
         before = picture(await browser.screenshot())[100:600, 380:900]
         drawn = await browser.run('treeSway.scene._frame')
@@ -153,7 +153,7 @@ def test_the_slider_moves_the_wind(live: Live, visit: Visit) -> None:
     visit(script)
 
 
-def test_a_lost_server_is_told_and_found_again(live: Live, visit: Visit) -> None:
+def test_a_lost_server_is_reported_and_found_again(live: Live, visit: Visit) -> None:
     async def script(browser: Browser) -> None:
         live.server.close()
         await browser.until("treeSway.state === 'lost'")
@@ -346,7 +346,7 @@ def test_it_speaks_languages(visit: Visit, language: str, title: str) -> None:
     visit(script)
 
 
-def test_text_stands_out_from_its_ground(visit: Visit) -> None:
+def test_text_contrasts_with_its_ground(visit: Visit) -> None:
     """By 4.5 to 1, as WCAG 2 asks."""
 
     async def script(browser: Browser) -> None:

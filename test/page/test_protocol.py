@@ -110,7 +110,7 @@ def test_frames_come_back(
     np.testing.assert_array_equal(back.coordinates, values)
 
 
-def test_what_is_cut_is_told() -> None:
+def test_what_is_cut_is_reported() -> None:
     steps, is_cut = quantised([0.5, -3.0], [1.0, 1.0])
     assert is_cut
     assert steps.tolist() == [16384, -32767]

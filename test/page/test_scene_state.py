@@ -118,7 +118,7 @@ def test_a_frame_of_any_tree_of_the_package_is_small(name: str) -> None:
 
 
 @pytest.mark.parametrize('model', ['branch', 60, 'auto', 'full'])
-def test_every_model_can_be_told(model: str) -> None:
+def test_every_model_can_be_described(model: str) -> None:
     source = open_scene(HERE.parent / 'files' / 'data' / 'seedling.yaml')
     simulator = source.simulator(model=model)
     state = SceneState(simulator)
@@ -148,7 +148,7 @@ def test_trees_of_one_kind_share_a_basis_wherever_they_are() -> None:
     assert json.dumps(state.coordinate_names).startswith('["t0/c0"')
 
 
-def test_a_simulator_that_stands_finds_its_own_basis_and_is_as_before() -> None:
+def test_a_simulator_at_rest_finds_its_own_basis_and_is_as_before() -> None:
     source = open_scene(HERE.parent / 'files' / 'data' / 'seedling.yaml')
     simulator = source.simulator(model=12)
     for _ in range(30):
@@ -159,7 +159,7 @@ def test_a_simulator_that_stands_finds_its_own_basis_and_is_as_before() -> None:
     assert own.description == SceneState(simulator).description
 
 
-def test_a_stand_is_told_on_a_basis_per_kind() -> None:
+def test_a_stand_is_reported_on_a_basis_per_kind() -> None:
     source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
     trees = [
         PlacedTree('one', source),

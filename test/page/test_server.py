@@ -373,7 +373,7 @@ def test_too_many_pages_are_refused() -> None:
 
 
 def test_publishing_does_not_wait_for_anybody(server: PageServer) -> None:
-    """Frames are handed over while the server's own thread is held up."""
+    """Frames are published while the server's own thread is blocked."""
     held, freed = threading.Event(), threading.Event()
     in_time = []
 

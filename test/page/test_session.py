@@ -100,7 +100,7 @@ def test_another_model_is_built_beside_and_taken_over(live: tuple[Session, Sink]
     until(lambda: decode_frame(sink.frames[-1]).identity == identity)
 
 
-def test_what_cannot_be_built_is_told_and_the_old_goes_on(live: tuple[Session, Sink]) -> None:
+def test_what_cannot_be_built_is_reported_and_the_old_goes_on(live: tuple[Session, Sink]) -> None:
     session, sink = live
     session.apply('tree', 'missing')
     until(lambda: sink.told)

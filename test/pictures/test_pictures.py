@@ -141,7 +141,7 @@ def test_a_moving_picture_with_leaves(tmp_path: Path) -> None:
     image = Image.open(path)
     first = np.asarray(image.convert('RGB')).astype(float)
     image.seek(1)
-    # The tree stands still; its leaves do not.
+    # The tree is at rest; its leaves are not.
     assert np.abs(np.asarray(image.convert('RGB')) - first).max() > 30
 
 

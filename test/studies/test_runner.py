@@ -51,7 +51,7 @@ def alone(tmp_path_factory):
 
 
 def watched(after, do):
-    """Return what stands in for the bar: it does something after a number of cases."""
+    """Return what replaces the bar: it does something after a number of cases."""
 
     def bar(items, _):
         for done, item in enumerate(items):

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args, get_type_hints, Protocol, TypeVar
+from typing import Any, get_args, get_type_hints, overload, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,11 @@ class RecordsOf(Protocol[_Record]):
 
     def __len__(self) -> int: ...
 
+    @overload
     def __getitem__(self, index: int, /) -> _Record: ...
+
+    @overload
+    def __getitem__(self, index: slice, /) -> RecordsOf[_Record]: ...
 
 
 def fields_of(record: type, **sizes: int) -> list[tuple[Any, ...]]:

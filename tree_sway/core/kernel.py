@@ -12,8 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast, TypeVar
 
-import numpy as np
-
 from tree_sway.kernel_cache import KernelCache, why_no_compiler
 
 _F = TypeVar('_F', bound=Callable[..., Any])
@@ -45,15 +43,6 @@ def fused(function: _F) -> _F:
     return _compiled(function, fastmath=_LOOSE, forceinline=True)
 
 
-def inlined(function: _F) -> _F:
-    """
-    Compile like `fused` and paste the body into each caller, so that a loop of calls vectorises.
-
-    For short functions of numbers in the innermost loop; callers compile longer.
-    """
-    return _compiled(function, fastmath=_LOOSE, inline='always')
-
-
 def _compiled(function: _F, **options: Any) -> _F:
     if WHY_PLAIN:
         function.py_func = function  # type: ignore[attr-defined]
@@ -82,23 +71,3 @@ def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any
     types = tuple(typeof(argument) for argument in arguments)
     function.compile(types)  # type: ignore[attr-defined]
     return cast(Callable[..., Any], find(types))
-
-
-def like(value: float, model: Any) -> Any:
-    """
-    Return a constant in the precision of a model number, to serve float32 and float64 alike.
-
-    Outside compiled code the constant is left as it is: Python numbers adapt by themselves.
-    """
-    return value
-
-
-if not WHY_PLAIN:
-    from numba.core import types
-    from numba.extending import overload
-
-    @overload(like, inline='always')
-    def _like(value, model):  # type: ignore[no-untyped-def]
-        if model == types.float32:
-            return lambda value, model: np.float32(value)
-        return lambda value, model: value

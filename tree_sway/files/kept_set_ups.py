@@ -4,9 +4,9 @@
 Set-ups of trees on disk, so that a solver that is started again sways sooner.
 
 They are kept beside the compiled kernels, in numpy's own format, which is read without pickles. A
-file is found by a digest of the tree, its species and settings, of the source of all that takes
-part, of the versions of numpy and scipy, and of the machine; what cannot be read is made again,
-and what cannot be written is left.
+file is found by a digest of the tree, its species and settings, of the source of the core, of the
+versions of numpy and scipy, and of the machine; what cannot be read is made again, and what cannot
+be written is left.
 """
 
 from __future__ import annotations
@@ -21,10 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.simulator import assembly
 from tree_sway.errors import TreeSwayError
 from tree_sway.files.whole_file import whole_file
-from tree_sway.kernel_cache import source_digest
+from tree_sway.kernel_cache import ROOT, source_digest
 from tree_sway.kernel_folder import kernel_folder
 
 MOST = 32
@@ -67,7 +66,7 @@ class KeptSetUps:
 def _key(digest: str) -> str:
     """Name of a set-up, which it bears inside as well."""
     parts = [
-        *(digest, source_digest(Path(assembly.__file__)), platform.node()),
+        *(digest, source_digest(ROOT / 'core'), platform.node()),
         *(version(name) for name in ('numpy', 'scipy')),
     ]
     return hashlib.blake2b('\0'.join(parts).encode(), digest_size=16).hexdigest()

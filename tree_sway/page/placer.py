@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats
 from tree_sway.core.branch.shapes import MAX_COORDINATES
 from tree_sway.core.motion.fill_records import (
+    assign_lanes,
     fill_places,
     head_records,
-    lanes,
     Places,
     segment_records,
 )
-from tree_sway.core.motion.placing import place_standing_at
+from tree_sway.core.motion.placing import GIVEN, place
 from tree_sway.core.motion.records import BRANCH, head_layout, SEGMENT
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array
@@ -69,8 +69,9 @@ class Placer:
             c, s = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
             keys = kind.matrix @ coordinates[first:last]
             branches, segments, heads, bases = kind.records
-            place_standing_at(
-                branches, segments, heads, bases, keys, x, y, z, c, s, scale, poses[row:end]
+            origin = np.array([x, y, z])
+            place(
+                *GIVEN, branches, segments, heads, bases, c, s, scale, keys, origin, poses[row:end]
             )
             row, first = end, last
         return poses
@@ -91,7 +92,7 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     base_turn, own_turn = (arrays[f'branch_{name}'].astype(np.int64) for name in _TURNS)
     matrix, turns = arrays['basis_matrix'].astype(np.float64), arrays['turn']
     slope, tip_slope = arrays['segment_slope'], arrays['segment_tip_slope']
-    block, _, n_records = lanes(first, parent)
+    block, _, n_records = assign_lanes(first, parent)
     sizes = len(parent), n_records, len(np.unique(block)) + 1
     memory = sum(
         count * layout.itemsize

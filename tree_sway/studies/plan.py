@@ -31,6 +31,9 @@ Plain = dict[str, Any]
 _ARRAYS = {'leaf_mass', 'leaf_area', 'profile'}
 """Settings that a study does not vary."""
 
+_ROOMS = 'core', 'files', 'studies'
+"""Rooms whose source and tables the numbers follow from."""
+
 
 @dataclass(frozen=True)
 class Case:
@@ -100,7 +103,7 @@ def read_study(path: str | Path) -> list[Case]:
             raise FormatError('a wind is a file or a speed', where=where, cure='give one of them')
     varied = _settings(study.get('settings', {}), path)
     common = {key: study[key] for key in ('seconds', 'rate') if key in study}
-    code = _code()
+    code = ''.join(source_digest(ROOT / room) for room in _ROOMS).encode()
     cases = []
     for tree, wind, settings in itertools.product(
         _trees(study['trees'], path.parent), _winds(study['winds'], path.parent), varied
@@ -111,14 +114,6 @@ def read_study(path: str | Path) -> list[Case]:
             digest.update(read_bytes(each))
         cases.append(Case(tree, wind, settings, **common, digest=digest.hexdigest()))
     return cases
-
-
-def _code() -> bytes:
-    """Digest of the source that numbers follow from; readers are imported by their names."""
-    digest = hashlib.blake2b(source_digest(ROOT / 'studies' / 'compute.py').encode())
-    for path in sorted((ROOT / 'files').rglob('*.py')):
-        digest.update(path.read_bytes())
-    return digest.digest()
 
 
 def _trees(entries: list[Any], folder: Path) -> list[Plain]:

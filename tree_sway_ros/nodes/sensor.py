@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The sensor node: a real anemometer that speaks NMEA 0183, or as Gill and TriSonica do."""
+"""The sensor node: a real anemometer that speaks NMEA 0183, or as Gill's do."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of benchmarks: told, kept, and set against what was kept before."""
+"""Figures of benchmarks: printed, saved, and compared with an earlier file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tree_sway.errors import FormatError
 ROWS = [Measured('solve', 2.0, 'ms'), Measured('place', 3.0, 'ms'), Measured('lost', 0.0, '-')]
 
 
-def test_figures_are_read_back_and_told_as_ratios(tmp_path):
+def test_figures_are_read_back_and_reported_as_ratios(tmp_path):
     kept = tmp_path / 'kept.json'
     kept.write_text(as_json([Measured('solve', 4.0, 'ms'), ROWS[2]]), encoding='utf-8')
     solve, place, lost = table(ROWS, read_baseline(kept)).splitlines()
@@ -74,7 +74,7 @@ def test_bad_arguments_are_refused(capsys, arguments, told):
     assert told in capsys.readouterr().err
 
 
-def test_figures_are_told_as_json_and_drawn(tmp_path, monkeypatch, capsys):
+def test_figures_are_reported_as_json_and_drawn(tmp_path, monkeypatch, capsys):
     pytest.importorskip('matplotlib')
     from tree_sway_lab.bench import command
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The tree in Newton: it stands in a calm under its weight, and leans with the wind."""
+"""The tree in Newton: it is at rest in a calm under its weight, and leans with the wind."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def leaning_stem():
 
 
 @pytest.mark.long
-def test_it_stands_in_a_calm_and_leans_with_the_wind():
+def test_it_is_at_rest_in_a_calm_and_leans_with_the_wind():
     pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
     pytest.importorskip('newton', reason='needs Newton (pip install newton)')
     from tree_sway_lab.compare.newton_tree import NewtonTree

@@ -37,7 +37,7 @@ def test_both_run_on_one_tree_and_agree():
     assert 'tip error over tip motion: full' in str(found)
 
 
-def test_with_weight_and_twist_it_sways_as_the_frame_and_stands_in_a_calm():
+def test_with_weight_and_twist_it_sways_as_the_frame_and_is_at_rest_in_a_calm():
     pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
     tree = forked_tree(0.65, 0.6, generations=3)
     model = MujocoTree(tree, WOOD, 0.05, match_beam=False, gravity=9.81)
@@ -51,7 +51,7 @@ def test_with_weight_and_twist_it_sways_as_the_frame_and_stands_in_a_calm():
     assert model.tips() == pytest.approx(rest, abs=1e-6)
 
 
-def test_its_warnings_are_told_and_leave_no_log_behind(tmp_path, monkeypatch, capsys):
+def test_its_warnings_are_reported_and_leave_no_log_behind(tmp_path, monkeypatch, capsys):
     mujoco = pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
     monkeypatch.chdir(tmp_path)
     mujoco_module()

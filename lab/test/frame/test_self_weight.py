@@ -17,7 +17,7 @@ def cone_weight(length, base, tip):
     return DENSITY * np.pi / 12 * length * (base * base + base * tip + tip * tip)
 
 
-def test_a_column_carries_what_stands_on_it():
+def test_a_column_carries_what_is_on_it():
     found = self_weight(
         np.array([0, 1]), np.zeros((2, 3)), np.tile(UP, (2, 1)), np.array([1.0, 2.0]),
         np.array([0.1, 0.1]), np.zeros(2), DENSITY,

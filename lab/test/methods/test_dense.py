@@ -23,7 +23,7 @@ def test_solve_agrees_with_numpy(run):
 
 
 @pytest.mark.parametrize('entry', [0.0, np.nan])
-def test_a_singular_matrix_is_told(entry):
+def test_a_singular_matrix_is_reported(entry):
     assert not solve(np.full((3, 3), entry), np.ones((3, 1)))
 
 

@@ -54,7 +54,7 @@ def test_a_run_that_explodes_stops_and_the_rest_is_not_a_number():
 
 
 @pytest.mark.parametrize('name', IMPLICIT)
-def test_iterations_are_counted_and_failures_told(name):
+def test_iterations_are_counted_and_failures_reported(name):
     chain, method = uniform_chain(2), method_named(name)
     loads = calm(method, 2, 5) + 0.5
     run = integrate(method, chain, loads, 0.01)

@@ -38,7 +38,7 @@ def test_rooms_and_arrows_are_those_of_the_source(tmp_path: Path) -> None:
     }
 
 
-def test_the_house_has_no_circle_and_the_core_stands_on_its_own() -> None:
+def test_the_house_has_no_circle_and_the_core_imports_no_other_room() -> None:
     rooms = room_imports()
     assert len(rooms) > 20
     heights = storeys(rooms)

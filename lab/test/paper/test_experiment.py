@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The paper's experiment: both forms agree, lengths are kept, the plant leans with the wind."""
+"""The paper's experiment: both forms agree, lengths are constant, plants lean with the wind."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The page: sections in order, each replaced alone, kept when a later one fails."""
+"""The page: sections in order, each replaced by itself, and still there when a later one fails."""
 
 from __future__ import annotations
 

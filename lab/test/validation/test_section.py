@@ -17,7 +17,7 @@ from tree_sway_lab.validation.section import Check, markdown_table, Section
         (Check('slope', -6.5, -6.2, -2.0), '| slope | -6.5 | -6.2 to -2 | **misses** |'),
     ],
 )
-def test_a_check_tells_figure_limit_and_whether_it_holds(check: Check, row: str) -> None:
+def test_a_check_reports_figure_limit_and_whether_it_holds(check: Check, row: str) -> None:
     assert check.row() == row
 
 

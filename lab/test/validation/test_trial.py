@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Trials on kinds of trees: the kinds, the winds, the three measures, truths kept on disk."""
+"""Trials on kinds of trees: the kinds, the winds, the three measures, truths cached on disk."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def test_the_profile_weighs_area_by_the_square_of_speed(fork):
         assert model.beam.integral(model.drag_area) == pytest.approx(weighted)
 
 
-def test_the_model_does_not_care_where_the_tree_stands(fork):
+def test_the_model_does_not_depend_on_the_place_of_the_tree(fork):
     tree = fork()
     away = np.array([100.0, -50.0, 7.0])
     moved = tree_from_segments(
@@ -132,7 +132,7 @@ def _limbs_of_twigs():
     return tree_from_segments(start, end, diameter, parent=parent, branch=branch)
 
 
-def test_a_branch_that_two_ways_do_not_tell_apart_is_modelled_once(fork):
+def test_a_branch_that_two_ways_do_not_distinguish_is_modelled_once(fork):
     beams = TreeBeams(fork(), 900.0)
     carried, alone = beams.models(carries=True), beams.models(carries=False)
     rich = beams.models(carries=True, enriched=frozenset([0]))

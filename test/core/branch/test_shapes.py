@@ -97,7 +97,7 @@ def test_a_uniform_stem_converges_to_the_beams_roots(stem):
         matrices = reduce_tree(tree, models, 16.0 / 0.02**2, 1.0, 0.0)
         found[len(enriched)] = natural_modes(tree, matrices).circular[::2]
     assert found[0][0] == pytest.approx(3.5160, rel=5e-3)
-    # Rayleigh and Ritz stand above the truth.
+    # Rayleigh and Ritz give more than the truth.
     assert (found[1] > roots * (1 - 1e-4)).all()
     assert found[1][:2] == pytest.approx(roots[:2], rel=1e-2)
     assert found[1][2] == pytest.approx(roots[2], rel=0.15)

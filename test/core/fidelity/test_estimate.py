@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of every number of coordinates, known before a step and held to what a step does."""
+"""Errors of every number of coordinates, known before a step, against what a step does."""
 
 from __future__ import annotations
 

@@ -134,7 +134,7 @@ def test_each_species_keeps_its_habit() -> None:
     # Ash has a long bole, and turns its twigs up.
     assert lowest_limb(trees['ash']) > 0.25
     assert twig['ash'] > 0.6
-    # Twigs of a spruce hang, those of a Sitka spruce stand level on level branches.
+    # Twigs of a spruce hang, those of a Sitka spruce are level, on level branches.
     assert twig['spruce'] < -0.5
     assert abs(twig['sitka']) < 0.35
     assert np.median(rise_of(trees['spruce'], 1, at_tip=False)) < tip['spruce'] - 0.3

@@ -35,7 +35,7 @@ def test_areas_add_up_with_exponent_two() -> None:
     assert (left[0] / 0.01) ** 2 == pytest.approx(1.0 + 15.0 / 8.0)
 
 
-def test_the_given_diameter_stands_where_it_was_measured() -> None:
+def test_the_given_diameter_is_where_it_was_measured() -> None:
     stem = node_diameters(fork(), 0.03, at_height=1.3, tip_diameter=0.004)[0]
     assert np.interp(1.3, [0, 1, 2, 3], stem) == pytest.approx(0.03, rel=1e-12)
 

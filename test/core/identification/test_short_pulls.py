@@ -16,7 +16,7 @@ DT, DAMPING = 0.05, 0.1
 
 
 def pulled(frequency, seed, wind=0.0):
-    """Tip held for 3 s, then released, over a sway in the wind of so much of the pull."""
+    """Tip held for 3 s, then released, over a sway in the wind that is a share of the pull."""
     rng = np.random.default_rng(seed)
     time = np.arange(0.0, 20.0, DT)
     w = 2.0 * math.pi * frequency

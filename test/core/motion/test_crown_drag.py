@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Wood keeps its drag, leaves alone streamline."""
+"""The drag of wood is constant, that of leaves falls with the wind."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_wood_clad_in_needles_is_part_of_the_crown():
     for speed in SPEEDS:
         both = 0.5 * AIR_DENSITY * (1.2 * (3.0 - 1.2) + 2.35 * max(speed, 4.0) ** -0.51 * 7.0)
         assert pressure(speed, *law) * (3.0 + added.sum()) == pytest.approx(both)
-    # Fewer needles than the wood they stand on hide no more than they are.
+    # Needles of less area than their wood hide no more than their own area.
     law, added = crown_drag(3.0, np.array([0.0, 5.0]), np.array([0.5, 0.7]), 1.2, (2.35, 0.51))
     assert added[0] == 0.0
     assert pressure(SHARED_AT, *law) == pytest.approx(0.5 * AIR_DENSITY * 1.2)

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Natural modes as oscillators: exact decay, the static rest of the modes left out, loads held."""
+"""Natural modes as oscillators: exact decay, static correction of the others, loads clamped."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Placing: rest is the input, lengths and joints are kept, the chord turns by the key."""
+"""Placing: rest is the input, lengths and joints do not change, the chord turns by the key."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.branch.shapes import across
-from tree_sway.core.motion.placing import place
 from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
@@ -35,15 +34,7 @@ class Puppet:
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
         bank, origin = self.bank, self.tree.start[0].copy()
-        place(
-            bank.branches,
-            bank.segments,
-            bank.heads,
-            bank.bases,
-            np.array(x, float),
-            origin,
-            out,
-        )
+        bank.place(np.array(x, float), origin, out)
         return out
 
     def nodes(self, x):
@@ -146,7 +137,7 @@ def test_poses_are_those_of_the_keys_alone_bit_for_bit(fork, enrich):
     assert (used.poses(keys) == new.poses(keys)).all()
 
 
-def test_the_root_stands_still(gappy_doll):
+def test_the_root_does_not_move(gappy_doll):
     moved = gappy_doll.poses(gappy_doll.random(1))
     assert moved[0, :3].tolist() == gappy_doll.tree.start[0].tolist()
 
@@ -188,7 +179,7 @@ def test_the_chord_goes_on_with_the_key_where_the_shapes_change_over(stem, taper
 
 @pytest.mark.parametrize('taper', [0.0, 0.5])
 def test_the_bent_branch_is_the_beams_curve(stem, taper):
-    """The static slope, drawn with lengths kept: segments' angles over the key's, if small."""
+    """The static slope, drawn with constant lengths: segments' angles over the key's, if small."""
     tree = stem(length=1.0, tip=0.02 * (1 - taper), cuts=40)
     doll = Puppet(tree, 'branch')
     small = 1e-3

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How branches move on each other and hand on loads: virtual work, balance, rigid motion."""
+"""How branches move on each other and transmit loads: virtual work, balance, rigid motion."""
 
 from __future__ import annotations
 
@@ -96,8 +96,8 @@ def test_a_branch_that_goes_with_the_wind_feels_none(stem):
     assert tree.work['force'][0] == pytest.approx(np.zeros(3), abs=1e-12)
 
 
-def test_a_turned_branch_faces_the_wind_as_it_stands(stem):
-    """Laid flat into the wind by its base, an upright stem feels nothing."""
+def test_a_turned_branch_faces_the_wind_as_it_is_turned(stem):
+    """Laid flat into the wind by its base, an upright stem has no load."""
     tree = Loaded(stem())
     tree.work['attitude'][0] = [np.cos(np.pi / 4), 0.0, np.sin(np.pi / 4), 0.0]
     tree.blow((6.0, 0.0, 0.0))
@@ -158,7 +158,7 @@ def test_moments_do_the_work_of_the_forces_however_far_a_tree_is_bent(fork, bend
     assert _Bent(fork(), bend * x, force).moment @ v == pytest.approx(power, rel=1e-10)
 
 
-def test_a_stem_feels_the_moment_of_a_limb_where_it_now_stands(sketch):
+def test_a_stem_has_the_moment_of_a_limb_at_its_present_place(sketch):
     """Its base has gone to one side, and its own load further, as it is turned."""
     drawn = sketch()
     drawn.add(None, 0, (0, 0, 1), 1.0, 0.02, 0.02, 8)

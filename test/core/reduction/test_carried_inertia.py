@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Inertia with a subtree that gives way: between stiff riders and the coupled tree's own pace."""
+"""Inertia with a subtree that gives way: between a stiff one and the coupled tree's frequency."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_it_brings_the_stem_nearer_to_the_coupled_trees_pace(sketch):
         drawn.add(0, 4, (side, 0.3, 0.5), 1.0, 0.010, 0.005, 4)
     tree = drawn.tree()
     matrices = reduced(tree)
-    # It stands for both axes.
+    # It is the same about both axes.
     truth = natural_modes(tree, matrices, 2).circular.mean()
     stiff = matrices.stiffness.diagonal()[:2].mean()
     rigid = np.sqrt(stiff / matrices.mass.diagonal()[:2].mean())

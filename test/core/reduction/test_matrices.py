@@ -23,7 +23,7 @@ from tree_sway.core.motion.fill_records import (
     places_of,
     segment_records,
 )
-from tree_sway.core.motion.placing import place
+from tree_sway.core.motion.placing import GIVEN, place
 from tree_sway.core.reduction.matrices import reduce_tree
 
 pytestmark = pytest.mark.compiled
@@ -49,7 +49,8 @@ class Reduced:
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
         bases = np.zeros((self.tree.n_branches, 8))
-        place(self.branches, self.segments, self.heads, bases, x, self.tree.start[0], out)
+        records = self.branches, self.segments, self.heads
+        place(*GIVEN, *records, bases, 1.0, 0.0, 1.0, x, self.tree.start[0], out)
         return out
 
     def points(self, x):
@@ -143,7 +144,7 @@ def test_mass_is_kinetic_energy_in_the_limit_of_fine_segments(fork, differences,
         matrix = reduced.reduction.mass.toarray()
         error.append(relative(matrix, mass_by_differences(reduced, differences)))
     assert error[1] < 0.02
-    # Straight segments stand for a curve: second order.
+    # Straight segments approximate a curve: second order.
     order = np.log2(error[0] / error[-1]) / (len(cuts) - 1)
     assert order == pytest.approx(2.0, abs=0.1)
 

@@ -109,7 +109,7 @@ def test_the_buckling_factor_counts_weight(stem):
     tree, wood = flagpole(stem, 0.5)
     one, coordinate = buckling_factor(reduced(tree, modulus=wood.modulus))
     three, _ = buckling_factor(reduced(tree, modulus=wood.modulus, enriched=(0,)))
-    # The cube of the length; Rayleigh stands above the truth, and less so the more shapes he has.
+    # The cube of the length; Rayleigh's quotient is above the truth, less with more shapes.
     assert three == pytest.approx(8.0, rel=1e-3)
     assert three < one < 1.03 * three
     assert coordinate in (0, 1)

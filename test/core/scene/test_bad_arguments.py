@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What every simulator refuses before a kernel runs, and what it goes on from."""
+"""What every simulator refuses before a kernel runs, and after what it continues."""
 
 from __future__ import annotations
 

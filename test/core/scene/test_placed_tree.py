@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Trees where they stand: turned and moved, with no other change; joined to one record."""
+"""Trees at their places: turned and moved, with no other change; joined to one record."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_a_tree_is_turned_about_its_root_and_moved(fork):
     assert (placed.segment_parent == tree.segment_parent).all()
 
 
-def test_the_wind_profile_counts_from_the_ground_it_stands_on(fork):
+def test_the_wind_profile_counts_from_the_ground_below_it(fork):
     forest = Settings(profile=WindProfile('power', ground=0.5))
     tree = PlacedTree('hill', fork(), z=20.0)
     assert tree.settings_where_it_stands(forest).profile == WindProfile('power', ground=20.5)

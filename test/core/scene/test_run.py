@@ -187,7 +187,7 @@ def test_a_sample_that_says_2038_holds_nothing():
 
 def largest_moves(seed, gate):
     """Largest move of the tip per frame [m] in and after a spike of a second, and the winds."""
-    sensor, faults = AnemometerModel(6.0, seed=seed), SensorFaults('spike', 15.0, 1.0)
+    sensor, faults = AnemometerModel(6.0, rate=20.0, seed=seed), SensorFaults('spike', 15.0, 1.0)
     simulator, tips, winds = SwaySimulator(TREE, model=12, damping_ratio=0.05), [], []
 
     def note(end, wind):
@@ -196,8 +196,8 @@ def largest_moves(seed, gate):
 
     made = Run(simulator, intake=WindIntake(gate=gate), stepped=note)
     made.advance(START)
-    for tick in range(round(20 * sensor.rate)):
-        at = tick / sensor.rate
+    for tick in range(round(20 * 20.0)):
+        at = tick / 20.0
         for sample in faults.sent(at, START + round(at * SECOND), sensor.sample(tick)):
             made.offer(sample.stamp, tuple(sample.vector))
         made.advance(START + round(at * SECOND), may_join=False)

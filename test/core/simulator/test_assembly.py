@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.kernel import like
 from tree_sway.core.motion.records import BRANCH, branch_layout, SEGMENT, segment_layout, WORK
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.simulator.assembly import assembled
@@ -136,10 +135,6 @@ def test_records_have_room_for_all_that_a_step_needs(fork):
     assert (bank.branches['n_coordinates'] <= bank.branches['load_mode'].shape[1]).all()
     first = bank.branches['coordinate']
     assert np.array_equal(first[1:], np.cumsum(bank.branches['n_coordinates'])[:-1])
-
-
-def test_constants_are_plain_numbers_outside_compiled_code():
-    assert like(0.5, np.float32(1.0)) == 0.5
 
 
 def test_records_of_plain_branches_have_room_for_no_more(fork):

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Every model meets the same gusts limb by limb, and keeps them in its state."""
+"""Every model gets the same gusts limb by limb, and has them in its state."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ def test_forces_on_tips_do_the_work_that_moments_do(fork):
     assert x.T @ tip_moments(joints, forces) == pytest.approx(work, rel=1e-12)
 
 
-def test_a_tree_that_stands_still_has_a_basis(fork):
+def test_a_tree_without_motion_has_a_basis(fork):
     basis = state_basis(SwaySimulator(fork(), model=0))
     assert (basis.rotations(basis.coordinates(np.zeros(len(basis.matrix)))) == 0.0).all()
 

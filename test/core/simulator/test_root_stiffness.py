@@ -53,7 +53,7 @@ def test_a_pole_on_a_spring_sways_as_the_closed_form(ratio, stem):
     assert pieces.linear_modes(1)[0][0] == pytest.approx(known, rel=0.01)
 
 
-def test_a_tree_of_its_own_roots_stands_like_that_in_every_model():
+def test_a_tree_of_its_own_roots_is_the_same_in_every_model():
     tree = grow('walnut', 12.0, rng=np.random.default_rng(0))
     mass = float(OAK.density * tree.volume[tree.segments_of(0)].sum())
     rooted = replace(OAK, root_stiffness=typical_root_stiffness(mass))

@@ -61,7 +61,7 @@ def test_leaves_weigh_catch_and_damp(fork):
     assert full.mass - bare.mass == pytest.approx(foliage.mass.sum())
 
 
-def test_untold_an_oak_is_bare_and_a_spruce_is_not(fork):
+def test_by_default_an_oak_is_bare_and_a_spruce_is_not(fork):
     spruce = species_named('spruce')
     assert in_season(fork(), OAK, Settings()) == Settings(in_leaf=False)
     leafy = in_season(fork(), spruce, Settings())
@@ -105,7 +105,7 @@ DOORS = {
 
 
 @pytest.mark.parametrize('door', DOORS)
-def test_an_evergreen_is_in_leaf_behind_every_door_unless_told_otherwise(door, fork):
+def test_an_evergreen_is_in_leaf_behind_every_door_unless_set_otherwise(door, fork):
     tree = replace(fork(), species='spruce')
     assert DOORS[door](tree).settings.in_leaf is True
     assert DOORS[door](tree, in_leaf=False).settings.in_leaf is False

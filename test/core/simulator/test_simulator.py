@@ -52,7 +52,7 @@ def test_the_same_wind_gives_the_same_bits(fork, model):
     assert one.tobytes() == other.tobytes()
 
 
-def test_without_wind_a_tree_stands_exactly_at_rest(fork, model):
+def test_without_wind_a_tree_is_exactly_at_rest(fork, model):
     sim = swaying(fork(), model)
     rest = sim.place().copy()
     frames = run(sim, np.zeros((50, 3)))
@@ -196,7 +196,7 @@ def test_the_step_is_of_second_order(fork, model):
     assert order < 2.35 or model == 4
 
 
-def test_place_writes_where_it_is_told(fork):
+def test_place_writes_where_it_is_reported(fork):
     sim = swaying(fork(), 'branch')
     sim.step([8.0, 0.0, 0.0], DT)
     out = np.zeros((sim.tree.n_segments, 7))
@@ -230,7 +230,7 @@ def plastic(tree):
 @pytest.mark.compiled
 @pytest.mark.parametrize('model', ['branch', 4])
 def test_memory_stays_flat_over_many_steps(fork, model):
-    """What compiled code takes, no tracer of Python's sees: the process's own size tells."""
+    """No tracer of Python sees what compiled code allocates; the size of the process does."""
     sim = swaying(fork(), model)
     wind, out = np.array([5.0, 1.0, 0.0]), np.zeros((sim.tree.n_segments, 7))
 

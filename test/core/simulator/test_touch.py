@@ -26,7 +26,7 @@ def tree():
 
 
 def place_of(poses, tree, segment, along=0.5):
-    """Where on a segment somebody pushes, (3,)."""
+    """Where on a segment the push acts, (3,)."""
     away = (along * tree.length[segment], 0.0, 0.0)
     return poses[segment, :3] + Rotation.from_quat(poses[segment, 3:]).apply(away)
 

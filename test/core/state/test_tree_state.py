@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""States that are kept and set: a simulator goes on as if nothing had been."""
+"""States that are saved and set: a simulator continues as if nothing had happened."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Gusts that travel: every place feels the anemometer's wind, later by the way over the speed."""
+"""Gusts that travel: every place gets the anemometer's wind, later by distance over speed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ DT = 1.0 / 60.0
 
 
 def felt(history, winds, dt=DT):
-    """Return what each place feels, (k, t, 3)."""
+    """Return the wind at each place, (k, t, 3)."""
     return np.array([history.push(wind, dt).copy() for wind in winds])
 
 
@@ -165,7 +165,7 @@ def test_days_of_wind_cost_no_precision():
 
 @pytest.mark.parametrize('rate', [20, 69, 200, 500, 1000, 4000])
 def test_the_history_is_a_minute_long_at_any_rate(rate):
-    """A tree 50 s downwind feels the gust when it comes, whatever the rate of the steps."""
+    """The gust reaches a tree 50 s downwind in time, at any rate of the steps."""
     dt = 1.0 / rate
     history = GustHistory([[400.0, 0.0, 0.0]], np.zeros(3), averaging_time=3600.0)
     gust = np.array([10.0, 0.0, 0.0])

@@ -140,7 +140,7 @@ def placed(document, arrays):
     return scale * arrays[primitive['attributes']['POSITION']] + middle, scale * changes
 
 
-def test_morph_targets_are_named_and_within_what_is_told(simulator, morphing):
+def test_morph_targets_are_named_and_within_what_is_reported(simulator, morphing):
     document, arrays = morphing
     (mesh,) = document['meshes']
     count = len(mesh['extras']['targetNames'])

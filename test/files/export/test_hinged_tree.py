@@ -94,7 +94,7 @@ def test_mujoco_sways_it_at_our_first_frequency(name):
     mujoco.mj_forward(model, data)
     assert model.nv == 2 * simulator.tree.n_segments
     assert mujoco.mj_getTotalmass(model) == pytest.approx(simulator.mass, rel=1e-6)
-    # It stands where it is, in the gravity of the file.
+    # It stays at rest, in the gravity of the file.
     assert model.opt.gravity[2] < -9.0
     assert np.abs(data.qacc).max() < 1e-6 * model.jnt_stiffness.max()
     places = data.xpos[[model.body(each).id for each in plain_names(simulator.tree)]]

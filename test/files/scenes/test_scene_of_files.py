@@ -87,7 +87,7 @@ def test_trees_of_one_file_stand_where_they_do_in_it():
         open_scene(path, tree=3)
     with pytest.raises(ParameterError, match=r'tree 1\.5 of 2; give 1 to 2'):
         open_scene(path, tree=1.5)
-    # Left where they are, they stand where the file has them.
+    # Not moved, they are at their places in the file.
     placed = open_scene(path, to_origin=False).tree
     assert placed.start[0].tolist() == [100.0, 200.0, 50.0]
     assert placed.start[forest.trees[0].tree.n_segments].tolist() == [110.0, 200.0, 50.0]

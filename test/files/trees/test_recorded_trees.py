@@ -29,7 +29,7 @@ def table(path, skip=1):
 
 
 def rows_of_ours():
-    """Columns of the tree of 121 branches: as in the file, a mean radius, and what goes on."""
+    """Columns of the tree of 121 branches: as in the file, a mean radius, and the continuation."""
     data = table(OURS)
     parent, branch = data[:, 1].astype(int), data[:, 2].astype(int)
     after = np.full(len(data), -1)

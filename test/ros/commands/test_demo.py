@@ -155,7 +155,7 @@ def test_the_solver_gets_the_tree_with_the_wood_that_is_said() -> None:
     assert demo._nodes(plain, 'goldcrest')['solver']['species'] == 'spruce'
 
 
-def test_the_player_is_told_how_to_read_a_bag_and_where_to_begin() -> None:
+def test_the_player_learns_how_to_read_a_bag_and_where_to_begin() -> None:
     parser = argparse.ArgumentParser()
     demo.add_arguments(parser)
     words = 'goldcrest --wind bag --wind-option topic=/mast/wind --wind-option yaw=1.57 --start 30'

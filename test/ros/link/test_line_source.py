@@ -68,7 +68,7 @@ def test_a_link_that_breaks_is_taken_up_again(hear, server):
     assert heard.source.links >= 2
 
 
-def test_a_link_that_falls_silent_is_made_anew(hear, server):
+def test_a_link_that_falls_silent_is_made_again(hear, server):
     heard = hear(Address('tcp', *server.getsockname()), silence=0.1)
     first, _ = server.accept()
     second, _ = server.accept()

@@ -58,7 +58,7 @@ def test_defaults_and_overrides(declare):
     assert node.get_parameter('every').value == 1
 
 
-def test_descriptors_tell_unit_and_range(declare):
+def test_descriptors_describe_unit_and_range(declare):
     node, _ = declare()
     rate, every = node.describe_parameter('rate'), node.describe_parameter('every')
     assert rate.description == 'Rate. [Hz]'
@@ -80,7 +80,7 @@ def test_a_bad_start_is_refused(declare, overrides, message):
         declare(**overrides)
 
 
-def test_a_live_change_is_taken_and_told(declare):
+def test_a_live_change_is_taken_and_reported(declare):
     told = []
     node, values = declare(told.append)
     assert change(node, 'delay', 1).successful
@@ -140,7 +140,7 @@ def test_an_unknown_name_is_a_warning_with_the_nearest(declare, capfd):
     assert not node.has_parameter('rats')
 
 
-def test_the_quality_of_service_of_a_topic_can_be_told(context):
+def test_the_quality_of_service_of_a_topic_can_be_described(context):
     overrides = {
         'qos_overrides./wind/filtered.publisher.depth': 3,
         'qos_overrides./wind.subscription.reliability': 'reliable',

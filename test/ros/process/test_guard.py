@@ -13,7 +13,7 @@ def fail_otherwise(request, response):
     raise KeyError('elsewhere')
 
 
-def test_what_is_raised_is_counted_and_told_once_from_each_place():
+def test_what_is_raised_is_counted_and_reported_once_from_each_place():
     said = []
     guard = CallbackGuard(said.append)
     callback = guard.wrapped(fail)

@@ -63,7 +63,7 @@ class FakeNode:
 
 @pytest.fixture(autouse=True)
 def handlers():
-    """Whoever was told to end stays deaf; the next test is not."""
+    """Restore the handlers: a process that was asked to end ignores signals."""
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     yield
     for number, handler in before.items():
@@ -114,7 +114,7 @@ def test_it_ends_when_the_node_is_done(rclpy, node):
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, None])
-def test_it_ends_well_when_told_to(rclpy, node, number):
+def test_it_ends_well_when_asked_to(rclpy, node, number):
     gone = raises(rclpy.shutdown_error())
     rclpy.on_spin = gone if number is None else lambda: signal.raise_signal(number)
     assert spin.run('fake_nodes', 'Node') == 0

@@ -129,7 +129,7 @@ def test_frames_that_are_skipped_are_a_warning_until_it_keeps_up():
     assert report._output(pace(30), 60.0, 150, False).level == OK
 
 
-def test_a_stream_that_stands_is_a_warning_unless_simulated_time_does():
+def test_a_stream_that_stops_is_a_warning_unless_simulated_time_does():
     report = SwayReport()
     standing = report._output(pace(0, silence=5.0), 60.0, 60, False)
     assert (standing.level, standing.message) == (WARN, 'no frame for 5.0 s')

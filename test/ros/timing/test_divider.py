@@ -6,7 +6,7 @@ from tree_sway_ros.timing.divider import Divider
 
 
 @pytest.mark.parametrize('every', [1, 2, 3, 7])
-def test_the_divider_lets_one_in_so_many_pass(every):
+def test_the_divider_lets_one_in_n_pass(every):
     divider = Divider()
     due = [divider.is_due(index, every) for index in range(100, 100 + 10 * every)]
     assert sum(due) in (10, 11)

@@ -145,7 +145,7 @@ def test_work_that_takes_too_long_skips_frames_without_a_backlog(ticks):
     assert pace.late_p50 < 0.01  # of the newest period: nothing queues up
 
 
-def test_one_tick_that_fails_is_told_and_the_next_comes(ticks):
+def test_one_tick_that_fails_is_reported_and_the_next_comes(ticks):
     failing = iter([True, False, True] + [False] * 100)
 
     def fail():

@@ -15,7 +15,7 @@ TIME = np.array([0.0, 0.1, 0.2, 0.4])
 
 
 def playback(time=TIME, publish=lambda row, stamp: None, **options):
-    """Make a playback that somebody hears, and that nobody asks how it ended."""
+    """Make a playback with a listener, of which the end is not asked."""
     heard = {'may_start': lambda: True, 'on_end': lambda: None, 'on_error': lambda error: None}
     return Playback(time, publish, **(heard | options))
 
@@ -68,7 +68,7 @@ def test_neither_samples_nor_the_clock_ever_go_back(time, rate, loop):
 
 
 def play(n, **options):
-    """Take the first n of what a thread publishes once time goes on."""
+    """Take the first n of what a thread publishes once time advances."""
     published, full = [], threading.Event()
 
     def publish(row, stamp):

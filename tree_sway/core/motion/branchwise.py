@@ -31,13 +31,11 @@ class Branchwise:
     """Oscillators on the loads of all branches: nothing is tabled, so no step is outside."""
 
     n_outside = 0
+    to_place = None
     work: Records
 
     def stepping(self, *_: Any) -> None:
         """Return no compiled call: a step takes the limbs' winds as well."""
-
-    def placing(self, *_: Any) -> None:
-        """Return no compiled call: rotations are found first."""
 
     def push(self, moments: Floats) -> int:
         """Refuse: branches that are solved each by itself carry no force to each other."""

@@ -31,7 +31,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import inlined
+from tree_sway.core.kernel import fused
 
 AIR_DENSITY = 1.225
 """Of dry air at 15 degrees C and sea level in [kg/m^3] (ISO 2533)."""
@@ -95,7 +95,7 @@ def pressure(speed: float, coefficient: float, exponent: float, steady: float = 
     return 0.5 * AIR_DENSITY * (coefficient * math.pow(streamlined, -exponent) + steady)
 
 
-@inlined
+@fused
 def drag(
     pxx: float, pyy: float, pzz: float, pxy: float, pxz: float, pyz: float,
     c: float, compliance: float, ux: float, uy: float, uz: float, spread: float,

@@ -65,8 +65,8 @@ class Places(NamedTuple):
 
 
 def segment_records(places: Places) -> Records:
-    """Fill what placing needs of each segment: `segment_layout` records, in blocks of `lanes`."""
-    block, lane, n_records = lanes(places.first, places.parent, places.n_coordinates)
+    """Fill what placing needs of each segment: records of `segment_layout`, in blocks."""
+    block, lane, n_records = assign_lanes(places.first, places.parent, places.n_coordinates)
     is_plain = places.turn.shape[1] == 2
     records = zeros_in_lines(n_records, segment_layout(2) if is_plain else segment_layout())
     records['rest'][:, 0] = 1.0
@@ -84,7 +84,9 @@ def segment_records(places: Places) -> Records:
 
 def fill_places(places: Places, records: Records) -> None:
     """Fill what placing needs of each branch, in records of `branch_layout`, (b,)."""
-    records['block'], records['lane'], _ = lanes(places.first, places.parent, places.n_coordinates)
+    records['block'], records['lane'], _ = assign_lanes(
+        places.first, places.parent, places.n_coordinates
+    )
     records['parent'], records['base_segment'] = places.parent, places.base_segment
     records['first'], records['end'] = places.first[:-1], places.first[1:]
     records['coordinate'], records['n_coordinates'] = places.coordinate, places.n_coordinates
@@ -114,7 +116,7 @@ def head_records(branches: Records, segments: Records) -> Records:
     """
     Lay out what placing needs to know of `BRANCH` records, whose coordinates are set.
 
-    Records of `head_layout`, one per block of `lanes` and one to work in.
+    Records of `head_layout`, one per block of `assign_lanes` and one to work in.
     """
     first, block = np.unique(branches['block'], return_inverse=True)
     lane, parent = branches['lane'], branches['parent']
@@ -152,7 +154,9 @@ def _joined(segments: Records) -> NDArray[np.bool_]:
     return (np.hypot(reach[1], reach[2]) <= _AS_ONE * reach[0]).all(axis=1)
 
 
-def lanes(first: Ints, branch_parent: Ints, fields: Ints | None = None) -> tuple[Ints, Ints, int]:
+def assign_lanes(
+    first: Ints, branch_parent: Ints, fields: Ints | None = None
+) -> tuple[Ints, Ints, int]:
     """
     Give each branch a lane of a block: parents first, long branches together, few lanes empty.
 

@@ -11,7 +11,7 @@ each scaled to a mean square of 1 over the sphere.
 from __future__ import annotations
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import inlined
+from tree_sway.core.kernel import fused
 
 COUNT = {1: 3, 3: 10, 5: 21}
 """How many functions there are up to each odd degree."""
@@ -25,7 +25,7 @@ _A5, _B5, _C5, _D5, _E5, _F5 = (
 )  # fmt: skip
 
 
-@inlined
+@fused
 def fill_harmonics(x: float, y: float, z: float, degree: int, out: Floats) -> None:
     """Write the functions (`COUNT`,) up to degree 1, 3 or 5 at a direction, a unit vector."""
     out[0], out[1], out[2] = 3.0**0.5 * y, 3.0**0.5 * z, 3.0**0.5 * x

@@ -20,10 +20,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import fused, inlined
-from tree_sway.core.motion.lanes import put_four, take_four
+from tree_sway.core.arrays import Floats, Singles
+from tree_sway.core.kernel import fused
 from tree_sway.core.motion.records import Branches, Head, Heads, LANES, Segment, Segments
+from tree_sway.core.motion.simd import add_shapes, put_four, take_four, TOGETHER
+from tree_sway.core.motion.wind_basis_force import instance_layout, Instances
 from tree_sway.core.rotation import (
     half_angle,
     half_angle_near,
@@ -41,45 +42,54 @@ _PER_BLEND = 1.0 / (_BLEND_TO - _BLEND_FROM)
 _STRETCH_TO = np.deg2rad(90.0) ** 2
 
 
+GIVEN = np.zeros(1, instance_layout(0, 1)), np.zeros((0, 0, TOGETHER), dtype=np.float32)
+"""An instance and shapes for `place` where key rotations are given."""
+
+
+@fused
+def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
+    """Write key rotations (N,) of the first instance, by shapes as of `shapes_together`."""
+    instance = instances[0]
+    eta, faded, shown = instance.eta, instance.faded, instance.wanted
+    for k in range(len(eta)):
+        shown[k] = (1.0 - faded[k]) * eta[k]
+    shown = shown[: len(eta) - instance.left_out]
+    for block in range(len(shapes)):
+        add_shapes(shapes, block, shown, x)
+
+
 @fused
 def place(
+    instances: Instances, shapes: Singles,
     branches: Branches, segments: Segments, heads: Heads, bases: Floats,
-    x: Floats, origin: Floats, out: Floats,
+    cosine: float, sine: float, scale: float, x: Floats, origin: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """
-    Place every segment.
+    Place every segment of a tree.
 
     Parameters
     ----------
+    instances, shapes
+        What key rotations are found from (`expand`), or `GIVEN`.
     branches, segments, heads
         Records of `BRANCH` (b,), `SEGMENT` and `head_layout`.
     bases
         Written: orientation of each base from rest, w x y z, then half the key rotation,
         stretched, for who sits on a plain branch, (b, 8).
+    cosine, sine
+        Of half the angle that the tree is turned by about the vertical.
+    scale
+        Its size over that of its records.
     x
-        Key rotations, (N,), in the order of the coordinates.
+        Key rotations, (N,), in the order of the coordinates; written unless they are given.
     origin
         Root node, (3,).
     out
         Pose block to write, (n, 7).
 
     """
-    place_standing_at(
-        branches, segments, heads, bases, x, origin[0], origin[1], origin[2], 1.0, 0.0, 1.0, out
-    )
-
-
-@fused
-def place_standing_at(
-    branches: Branches, segments: Segments, heads: Heads, bases: Floats, x: Floats,
-    east: float, north: float, up: float, cosine: float, sine: float, scale: float, out: Floats,
-) -> None:  # fmt: skip
-    """
-    Place every segment of a tree that is turned and scaled, with its root node at east, north, up.
-
-    ``cosine`` and ``sine`` are of half the angle that it is turned by about the vertical,
-    ``scale`` its size over that of its records; the rest is as for `place`.
-    """
+    expand(instances, shapes, x)
+    east, north, up = origin[0], origin[1], origin[2]
     last = len(heads) - 1
     scratch = heads[last]
     for block in range(last):
@@ -101,18 +111,11 @@ def place_standing_at(
             else:
                 if not farthest <= SERIES_LIMIT:
                     _bend_far(segment, scratch, head.n_rows)
-                elif head.n_rows > 2 and not is_near:
-                    _bend(segment, scratch, LANES, False)
-                elif head.n_rows > 2 and 2 * segment.n_lanes <= LANES:
-                    _bend(segment, scratch, LANES // 2, True)
                 elif head.n_rows > 2:
-                    _bend(segment, scratch, LANES, True)
+                    _bend(segment, scratch)
                 else:
                     _bend_in_plane(segment, scratch)
-                if head.is_joined:
-                    _join(segment, scratch, scale, True)
-                else:
-                    _join(segment, scratch, scale, False)
+                _join(segment, scratch, scale)
             _write_poses(head, scratch, rank, segment.n_lanes, out)
 
 
@@ -157,7 +160,7 @@ def _read_parents(
                 parent_key[c, j] = 0.5 * x[own + c]
 
 
-@inlined
+@fused
 def _turn_by(key: Floats, per: Floats, turned: Floats, n_rows: int, j: int) -> None:
     """Sum what the first rows of keys turn the lane j by."""
     hx, hy, hz = 0.0, 0.0, 0.0
@@ -167,7 +170,7 @@ def _turn_by(key: Floats, per: Floats, turned: Floats, n_rows: int, j: int) -> N
     turned[0, j], turned[1, j], turned[2, j] = hx, hy, hz
 
 
-@inlined
+@fused
 def _is_beyond(turned: Floats, key: Floats, j: int) -> int:
     """Return 1 where the lane j is turned or bent further than the short series holds."""
     hx, hy, hz, x, y = turned[0, j], turned[1, j], turned[2, j], key[0, j], key[1, j]
@@ -316,16 +319,12 @@ def _write_poses(head: Head, scratch: Head, rank: int, n_lanes: int, out: Floats
             out[first[j] + rank, row] = pose[row, j]
 
 
-@inlined
-def _half_vector(
-    segment: Segment, scratch: Head, j: int, is_near: bool
-) -> tuple[float, float, float]:
+@fused
+def _half_vector(segment: Segment, scratch: Head, j: int) -> tuple[float, float, float]:
     """Half the rotation vector of a segment of the lane j, by all its coordinates."""
     turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
-    hx, hy, hz = 0.0, 0.0, 0.0
-    if not is_near:
-        far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
-        hx, hy, hz = far * half_turn[0, j], far * half_turn[1, j], far * half_turn[2, j]
+    far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
+    hx, hy, hz = far * half_turn[0, j], far * half_turn[1, j], far * half_turn[2, j]
     # All rows that there is room for: a count known when compiled lets the lanes be a vector.
     for c in range(turn.shape[0]):
         key = half_key[c, j]
@@ -333,7 +332,7 @@ def _half_vector(
     return hx, hy, hz
 
 
-@inlined
+@fused
 def _turn(
     segment: Segment, scratch: Head, j: int, qw: float, qx: float, qy: float, qz: float
 ) -> None:
@@ -344,7 +343,7 @@ def _turn(
     )
 
 
-@inlined
+@fused
 def _reach_ahead(pose: Floats, to: Floats, length: float, j: int) -> None:
     """Find where the x axis of the pose of the lane j reaches."""
     x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
@@ -354,7 +353,7 @@ def _reach_ahead(pose: Floats, to: Floats, length: float, j: int) -> None:
     to[2, j] = pose[2, j] + twice * (x * z - w * y)
 
 
-@inlined
+@fused
 def _reach(pose: Floats, to: Floats, scale: float, own: Floats, j: int) -> None:
     """Find where a point of a segment's own frame is at the pose of the lane j."""
     x, y, z = rotated(
@@ -365,25 +364,16 @@ def _reach(pose: Floats, to: Floats, scale: float, own: Floats, j: int) -> None:
     to[2, j] = pose[2, j] + scale * z
 
 
-@inlined
-def _join_lane(segment: Segment, scratch: Head, scale: float, is_joined: bool, j: int) -> None:
-    """Put the turned segment of the lane j behind that before it, and find where the next is."""
+@fused
+def _join(segment: Segment, scratch: Head, scale: float) -> None:
+    """Put sixteen turned segments behind those before them, and find where the next ones are."""
     pose, following, reach = scratch.pose, scratch.next, segment.reach
-    pose[0, j], pose[1, j], pose[2, j] = following[0, j], following[1, j], following[2, j]
-    if is_joined:
-        _reach_ahead(pose, following, scale * reach[0, j], j)
-    else:
+    for j in range(LANES):
+        pose[0, j], pose[1, j], pose[2, j] = following[0, j], following[1, j], following[2, j]
         _reach(pose, following, scale, reach, j)
 
 
 @fused
-def _join(segment: Segment, scratch: Head, scale: float, is_joined: bool) -> None:
-    """Put sixteen turned segments behind those before them, and find where the next ones are."""
-    for j in range(LANES):
-        _join_lane(segment, scratch, scale, is_joined, j)
-
-
-@inlined
 def _swing(segment: Segment, scratch: Head, j: int, c: float, s: float) -> None:
     """Turn the segment of the lane j about the one axis of its branch."""
     base, swing = scratch.base, scratch.swing
@@ -396,12 +386,14 @@ def _swing(segment: Segment, scratch: Head, j: int, c: float, s: float) -> None:
 
 @fused
 def _bend_and_join(segment: Segment, scratch: Head, scale: float) -> None:
-    """Turn and join sixteen segments, each of a branch that bends a little about one axis."""
+    """Turn and join sixteen straight segments of branches that bend a little about one axis."""
+    pose, following, reach = scratch.pose, scratch.next, segment.reach
     for j in range(LANES):
         slope = segment.slope[j]
         c, s = half_angle_near(slope * slope * scratch.square[j])
         _swing(segment, scratch, j, c, s * slope)
-        _join_lane(segment, scratch, scale, True, j)
+        pose[0, j], pose[1, j], pose[2, j] = following[0, j], following[1, j], following[2, j]
+        _reach_ahead(pose, following, scale * reach[0, j], j)
 
 
 @fused
@@ -415,15 +407,12 @@ def _bend_in_plane(segment: Segment, scratch: Head) -> None:
 
 
 @fused
-def _bend(segment: Segment, scratch: Head, n_lanes: int, is_near: bool) -> None:
-    """Turn segments of branches with further coordinates, in the first lanes."""
+def _bend(segment: Segment, scratch: Head) -> None:
+    """Turn sixteen segments of branches with further coordinates."""
     base = scratch.base
-    for j in range(n_lanes):
-        hx, hy, hz = _half_vector(segment, scratch, j, is_near)
-        if is_near:
-            c, s = half_angle_near(hx * hx + hy * hy + hz * hz)
-        else:
-            c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
+    for j in range(LANES):
+        hx, hy, hz = _half_vector(segment, scratch, j)
+        c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
         bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
         qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)
         _turn(segment, scratch, j, qw, qx, qy, qz)
@@ -435,7 +424,7 @@ def _bend_far(segment: Segment, scratch: Head, n_rows: int) -> None:
     base, half_turn = scratch.base, scratch.half_turn
     for j in range(segment.n_lanes):
         if n_rows > 2:
-            hx, hy, hz = _half_vector(segment, scratch, j, False)
+            hx, hy, hz = _half_vector(segment, scratch, j)
         else:
             slope = segment.slope[j]
             slope += scratch.blend[j] * (segment.tip_slope[j] - slope)

@@ -138,7 +138,6 @@ class Load:
     """
 
     n_rows: int  # the most coordinates that one of them has
-    delay: Annotated[Ints, LANES]  # which delay of `crown_wind` it has
     # As in `BRANCH`:
     speed: Annotated[Floats, LANES]
     area: Annotated[Floats, LANES]

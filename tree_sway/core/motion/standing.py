@@ -17,14 +17,14 @@ from typing import Annotated
 
 import numpy as np
 
-from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf
-from tree_sway.core.kernel import fused, inlined
+from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf, Singles
+from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import pressure
-from tree_sway.core.motion.lanes import settle, write_past_caches
-from tree_sway.core.motion.placing import place_standing_at
+from tree_sway.core.motion.placing import place
 from tree_sway.core.motion.records import Branches, Heads, Segments
-from tree_sway.core.motion.wind_basis import expand, Instances, step_instance
-from tree_sway.core.motion.wind_basis_force import Paces, Tables
+from tree_sway.core.motion.simd import settle, write_past_caches
+from tree_sway.core.motion.wind_basis import step_instance
+from tree_sway.core.motion.wind_basis_force import Instances, Paces, Tables
 
 
 class Standing:
@@ -47,7 +47,7 @@ STANDING = np.dtype(fields_of(Standing))
 _CACHED = 1 << 21
 """Numbers in a pose block up to which it is written to the caches: 16 MB, half of a large one."""
 
-_pressure = inlined(pressure)
+_pressure = fused(pressure)
 
 
 @fused
@@ -107,7 +107,7 @@ def step_standing(
 
 @fused
 def place_standing(
-    standing: Stand, instances: Instances, which: Ints, shapes: Floats,
+    standing: Stand, instances: Instances, which: Ints, shapes: Singles,
     branches: Branches, segments: Segments, heads: Heads, bases: Floats, x: Floats, poses: Floats,
     out: Floats,
 ) -> None:  # fmt: skip
@@ -124,7 +124,7 @@ def place_standing(
     which
         Trees and their first rows in the pose block, (w, 2).
     shapes
-        Of the kind, as of `wind_basis.expand`.
+        Of the kind, as of `placing.expand`.
     branches, segments, heads, bases
         Of the kind, as of `placing.place`.
     x, poses
@@ -137,10 +137,9 @@ def place_standing(
     for row in range(len(which)):
         t, first = which[row, 0], which[row, 1]
         here = standing[t]
-        expand(instances[t], shapes, x)
-        place_standing_at(
-            branches, segments, heads, bases, x, here.at[0], here.at[1], here.at[2],
-            here.cosine, here.sine, here.scale, poses,
+        place(
+            instances[t : t + 1], shapes, branches, segments, heads, bases,
+            here.cosine, here.sine, here.scale, x, here.at[:], poses,
         )  # fmt: skip
         into = whole[7 * first : 7 * first + len(block)]
         if len(whole) > _CACHED:

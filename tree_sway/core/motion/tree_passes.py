@@ -14,7 +14,7 @@ do work at, however far the tree is bent; so no drag ever feeds motion.
 from __future__ import annotations
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import fused, kernel
+from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import drag
 from tree_sway.core.motion.records import Branches, LANES, Load, Loads, Works
 from tree_sway.core.rotation import product, quaternion, rotated, turned
@@ -88,17 +88,6 @@ def set_air(work: Works, loads: Loads, wx: float, wy: float, wz: float) -> None:
         )  # fmt: skip
         for k in range(6):
             here.velocity[k, j] = work[b].velocity[k]
-
-
-@kernel
-def set_gusts(loads: Loads, apart: Floats) -> None:
-    """Give every branch the wind of its delay: by how much it differs from the tree's (d, 3)."""
-    for block in range(len(loads)):
-        here = loads[block]
-        for j in range(LANES):
-            own = here.delay[j]
-            for k in range(3):
-                here.gust[k, j] = apart[own, k]
 
 
 @fused

@@ -15,20 +15,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property, partial
 import math
-from typing import Annotated
 
 import numpy as np
 
-from tree_sway.core.arrays import fields_of, Floats, Records, RecordsOf, Singles
-from tree_sway.core.kernel import entry_of, fused, inlined
+from tree_sway.core.arrays import Floats, Records, Singles
+from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.branchwise import Tunable
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT
-from tree_sway.core.motion.lanes import add_shapes, shapes_together, TOGETHER
 from tree_sway.core.motion.modal import add_force, ModalBank
-from tree_sway.core.motion.placing import place
-from tree_sway.core.motion.records import Branches, Heads, Segments
+from tree_sway.core.motion.placing import expand
+from tree_sway.core.motion.simd import shapes_together, TOGETHER
 from tree_sway.core.motion.wind_basis_force import (
+    Instance,
+    instance_layout,
+    Instances,
     Pace,
     pace_layout,
     Paces,
@@ -39,36 +40,7 @@ from tree_sway.core.motion.wind_basis_force import (
 )
 from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
-
-class Instance:
-    """State of one tree on a table, and scratch."""
-
-    outside: int  # whether the last wind was outside of the table
-    eta: Annotated[Floats, 'modes']
-    rate: Annotated[Floats, 'modes']
-    force: Annotated[Floats, 'modes']
-    wind: Annotated[Floats, 3]  # [m/s]
-    pressure: float  # drag per area and speed squared [kg/m^3]
-    middle: Annotated[Floats, 'modes']
-    middle_rate: Annotated[Floats, 'modes']
-    wanted: Annotated[Floats, 'modes']
-    diagonal: Annotated[Floats, 'modes']
-    scratch: Annotated[Singles, 4, 'modes']
-    values: Annotated[Floats, 'harmonics']
-    left_out: int  # coordinates, the last ones, that are not shown and not felt
-    faded: Annotated[Floats, 'modes']  # share of each that is not shown
-
-
-Instances = RecordsOf[Instance]
-
-
-def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
-    """Lay out `Instance`."""
-    m = table_layout(n_modes, n_harmonics)['stiffness'].shape[0]
-    return np.dtype(fields_of(Instance, modes=m, harmonics=n_harmonics))
-
-
-_pressure = inlined(pressure)
+_pressure = fused(pressure)
 
 CARRIED = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside')
 """Fields of an instance that a state holds."""
@@ -161,19 +133,14 @@ class WindBasisBank:
         arrays = self.record, self.pace, self.instance, np.array([max_wind, *law]), wind
         return partial(entry_of(step_in_wind, *arrays, 0.0, 0.0, 0.0), *arrays)
 
-    def placing(
-        self, segments: Records, heads: Records, bases: Floats
-    ) -> Callable[[Floats, Floats], None]:
-        """Return the placing of the state, a compiled call of a root node and a pose block."""
-        arrays = (
-            self.instance, self.laid_shapes, self._filled_x, self.branches, segments, heads, bases,
-        )  # fmt: skip
-        return partial(entry_of(place_one, *arrays, np.zeros(3), np.zeros((1, 7))), *arrays)
+    @property
+    def to_place(self) -> tuple[Records, Singles, Floats]:
+        """Return what `place` finds the key rotations from: instance, shapes and room for them."""
+        return self.instance, self.laid_shapes, self._filled_x
 
     @cached_property
     def _expand(self) -> Callable[[], None]:
-        arrays = self.instance, self.laid_shapes, self._filled_x
-        return partial(entry_of(expand_one, *arrays), *arrays)
+        return partial(entry_of(expand, *self.to_place), *self.to_place)
 
     @property
     def tunable(self) -> Tunable:
@@ -232,34 +199,6 @@ def step_branches(instance: np.void, modal: ModalBank) -> int:
     modal.take(eta, rate, force)
     wx, wy, wz = instance['wind'].tolist()
     return modal.advance(wx, wy, wz, float(instance['pressure']))
-
-
-@fused
-def expand(instance: Instance, shapes: Floats, x: Floats) -> None:
-    """Key rotations (N,) of an instance, by shapes as of `shapes_together`."""
-    eta, faded, shown = instance.eta, instance.faded, instance.wanted
-    for k in range(len(eta)):
-        shown[k] = (1.0 - faded[k]) * eta[k]
-    shown = shown[: len(eta) - instance.left_out]
-    for block in range(len(shapes)):
-        add_shapes(shapes, block, shown, x)
-
-
-@fused
-def place_one(
-    instances: Instances, shapes: Floats, x: Floats,
-    branches: Branches, segments: Segments, heads: Heads, bases: Floats,
-    origin: Floats, out: Floats,
-) -> None:  # fmt: skip
-    """Do what `expand` does for the first instance, then what `place` does."""
-    expand(instances[0], shapes, x)
-    place(branches, segments, heads, bases, x, origin, out)
-
-
-@fused
-def expand_one(instances: Instances, shapes: Floats, x: Floats) -> None:
-    """Do what `expand` does, for the first instance."""
-    expand(instances[0], shapes, x)
 
 
 @fused

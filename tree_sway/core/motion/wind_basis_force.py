@@ -11,7 +11,7 @@ from typing import Annotated
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, RecordsOf, Singles
-from tree_sway.core.kernel import fused, inlined
+from tree_sway.core.kernel import fused
 from tree_sway.core.motion.harmonics import fill_harmonics
 
 N_AZIMUTHS, N_LEVELS = 24, 6
@@ -57,8 +57,28 @@ class Pace:
     half: Annotated[Floats, 6, 'modes']  # of half a step under a constant load
 
 
+class Instance:
+    """State of one tree on a table, and scratch."""
+
+    outside: int  # whether the last wind was outside of the table
+    eta: Annotated[Floats, 'modes']
+    rate: Annotated[Floats, 'modes']
+    force: Annotated[Floats, 'modes']
+    wind: Annotated[Floats, 3]  # [m/s]
+    pressure: float  # drag per area and speed squared [kg/m^3]
+    middle: Annotated[Floats, 'modes']
+    middle_rate: Annotated[Floats, 'modes']
+    wanted: Annotated[Floats, 'modes']
+    diagonal: Annotated[Floats, 'modes']
+    scratch: Annotated[Singles, 4, 'modes']
+    values: Annotated[Floats, 'harmonics']
+    left_out: int  # coordinates, the last ones, that are not shown and not felt
+    faded: Annotated[Floats, 'modes']  # share of each that is not shown
+
+
 Tables = RecordsOf[Table]
 Paces = RecordsOf[Pace]
+Instances = RecordsOf[Instance]
 
 
 @cache
@@ -78,7 +98,14 @@ def pace_layout(n_modes: int) -> np.dtype[np.void]:
     return np.dtype(fields_of(Pace, modes=table_layout(n_modes, 0)['stiffness'].shape[0]))
 
 
-@inlined
+@cache
+def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
+    """Lay out `Instance`."""
+    m = table_layout(n_modes, n_harmonics)['stiffness'].shape[0]
+    return np.dtype(fields_of(Instance, modes=m, harmonics=n_harmonics))
+
+
+@fused
 def table_corners(
     table: Table, x: float, y: float, eta: Floats
 ) -> tuple[int, int, int, float, float]:

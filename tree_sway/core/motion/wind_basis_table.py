@@ -29,7 +29,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway.core.motion.modal import ModalBank
@@ -225,12 +224,9 @@ def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
 
 def harmonics_at(directions: Floats, degree: int) -> Floats:
     """Harmonics of unit vectors (k, 3), (k, h)."""
-    out = np.zeros((len(directions), COUNT[degree]))
-    _fill(directions, degree, out)
-    return out
+    out = np.zeros((COUNT[degree], len(directions)))
+    _fill_harmonics(*directions.T, degree, out)
+    return out.T
 
 
-@fused
-def _fill(directions: Floats, degree: int, out: Floats) -> None:
-    for i in range(len(directions)):
-        fill_harmonics(directions[i, 0], directions[i, 1], directions[i, 2], degree, out[i])
+_fill_harmonics = fill_harmonics.py_func  # type: ignore[attr-defined]  # whole arrays at once

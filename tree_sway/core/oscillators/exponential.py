@@ -12,51 +12,46 @@ floating-point technique for extending the available precision).
 
 from __future__ import annotations
 
-import math
+from math import factorial
 
-from tree_sway.core.kernel import kernel
+import numpy as np
+from numpy.typing import NDArray
 
-Six = tuple[float, float, float, float, float, float]
+Floats = NDArray[np.float64]
 
 _SMALL = 1.5  # largest |mu| left to the Taylor series: 27 terms reach 1e-17
 _TERMS = 27
+_PHI2 = [1.0 / factorial(n + 2) for n in range(17, -1, -1)]
 
 
-@kernel
-def phi1(z: float) -> float:
+def phi1(z: Floats) -> Floats:
     """(e^z - 1) / z, for z <= 0."""
-    return math.expm1(z) / z if z != 0.0 else 1.0
+    return np.where(z == 0.0, 1.0, np.expm1(z) / np.where(z == 0.0, 1.0, z))
 
 
-@kernel
-def phi2(z: float) -> float:
+def phi2(z: Floats) -> Floats:
     """(e^z - 1 - z) / z^2, for z <= 0; a series where the difference would cancel."""
-    if z < -1.0:
-        return (phi1(z) - 1.0) / z
-    term = total = 0.5
-    for n in range(3, 20):
-        term *= z / n
-        total += term
-    return total
+    far = np.minimum(z, -1.0)
+    return np.where(z < -1.0, (phi1(far) - 1.0) / far, np.polyval(_PHI2, np.maximum(z, -1.0)))
 
 
-@kernel
-def two_product(a: float, b: float) -> tuple[float, float]:
-    """Product of two floats and its rounding error (Dekker 1971)."""
+def two_product(a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Products of floats and their rounding errors (Dekker 1971)."""
+    (a1, a2), (b1, b2) = _halves(a), _halves(b)
     high = a * b
-    t = 134217729.0 * a
-    a1 = t - (t - a)
-    t = 134217729.0 * b
-    b1 = t - (t - b)
-    a2, b2 = a - a1, b - b1
     low = a2 * b2 - (((high - a1 * b1) - a2 * b1) - a1 * b2)
-    return high, low if math.isfinite(low) else 0.0
+    return high, np.where(np.isfinite(low), low, 0.0)
 
 
-@kernel
+def _halves(a: Floats) -> tuple[Floats, Floats]:
+    t = 134217729.0 * a
+    high = t - (t - a)
+    return high, a - high
+
+
 def scaled_discriminant(
-    i: float, c: float, k: float, h: float, alpha: float, kappa: float
-) -> tuple[float, float, float]:
+    i: Floats, c: Floats, k: Floats, h: float, alpha: Floats, kappa: Floats
+) -> tuple[Floats, Floats, Floats]:
     """
     Return delta = alpha^2 - kappa and, if negative, its root's phase as a sum of two floats.
 
@@ -67,30 +62,30 @@ def scaled_discriminant(
     high = ch - kh
     v = high - ch  # Knuth's two-sum: the rounding error of the difference
     low = (ch - (high - v)) + (-kh - v) + (cl - kl)
-    p = high + low
-    scale = 0.5 * h / i
-    if not (abs(p) > 1e-250 and abs(p) < 1e250 and scale < 1e100):
-        delta = alpha * alpha - kappa if alpha < 1e150 else alpha * (alpha - kappa / alpha)
-        return delta, math.sqrt(max(-delta, 0.0)), 0.0
-    delta = p * scale * scale
-    if p > 0.0:
-        return delta, 0.0, 0.0
-    root = math.sqrt(-p)
+    p, scale = high + low, 0.5 * h / i
+    root = np.sqrt(np.maximum(-p, 0.0))
     rh, rl = two_product(root, root)
     root_low = (((-high - rh) - rl) - low) / (2.0 * root)
-    mh, ml = two_product(h, root)
-    ml += h * root_low
+    mh, ml = two_product(np.full_like(root, h), root)
+    ml = ml + h * root_low
     phase = mh / (2.0 * i)
     qh, ql = two_product(phase, 2.0 * i)
-    return delta, phase, ((mh - qh) - ql + ml) / (2.0 * i)
+    phase_low = ((mh - qh) - ql + ml) / (2.0 * i)
+    exact = (np.abs(p) > 1e-250) & (np.abs(p) < 1e250) & (scale < 1e100)
+    rough = np.where(alpha < 1e150, alpha * alpha - kappa, alpha * (alpha - kappa / alpha))
+    turns = exact & (p <= 0.0)
+    return (
+        np.where(exact, p * scale * scale, rough),
+        np.where(turns, phase, np.where(exact, 0.0, np.sqrt(np.maximum(-rough, 0.0)))),
+        np.where(turns, phase_low, 0.0),
+    )
 
 
-@kernel
 def exponential_differences(
-    alpha: float, kappa: float, delta: float, phase: float, phase_low: float
-) -> Six:
+    alpha: Floats, kappa: Floats, delta: Floats, phase: Floats, phase_low: Floats
+) -> Floats:
     """
-    Everything that one step of an oscillator needs, for unit step and unit inertia.
+    Everything that one step of oscillators needs, for unit step and unit inertia, (6, n).
 
     Returns
     -------
@@ -99,55 +94,53 @@ def exponential_differences(
         e[0, 0, mu1, mu2], and the difference of the last two.
 
     """
-    sigma = math.sqrt(delta) if delta > 0.0 else 0.0
-    if alpha + max(sigma, phase) <= _SMALL:
-        return _by_series(alpha, kappa)
-    if delta <= 0.0:
-        return _by_phase(alpha, kappa, phase, phase_low)
-    mu1 = -kappa / (alpha + sigma)
-    mu2 = -(alpha + sigma)
-    slow = math.exp(mu1)
-    s = slow * (-math.expm1(-2.0 * sigma) / (2.0 * sigma))
+    sigma, out = np.sqrt(np.maximum(delta, 0.0)), np.empty((6, len(alpha)))
+    small = alpha + np.maximum(sigma, phase) <= _SMALL
+    turns = ~small & (delta <= 0.0)
+    decays = ~small & ~turns
+    out[:, small] = _by_series(alpha[small], kappa[small])
+    out[:, turns] = _by_phase(alpha[turns], kappa[turns], phase[turns], phase_low[turns])
+    out[:, decays] = _by_decay(alpha[decays], kappa[decays], sigma[decays])
+    return out
+
+
+def _by_decay(alpha: Floats, kappa: Floats, sigma: Floats) -> Floats:
+    """Real pair: differences of phi functions, or closed forms where it is close."""
+    mu1, mu2 = -kappa / (alpha + sigma), -(alpha + sigma)
+    slow, close = np.exp(mu1), 3.0 * sigma < alpha  # then kappa is large
+    s = slow * (-np.expm1(-2.0 * sigma) / (2.0 * sigma))
     g = slow - mu1 * s
-    if 3.0 * sigma < alpha:  # a close pair: kappa is large
-        d = slow + mu2 * s
-        p = (1.0 - g) / kappa
-        q = (1.0 - s - 2.0 * alpha * p) / kappa
-        return g, d, s, p, q, (s + 2.0 * alpha * p - g) / kappa
-    d = (mu1 * slow - mu2 * math.exp(mu2)) / (2.0 * sigma)
-    p = (phi1(mu1) - phi1(mu2)) / (2.0 * sigma)
-    q = (phi2(mu1) - phi2(mu2)) / (2.0 * sigma)
-    if mu1 < -1.0:
-        return g, d, s, p, q, (s + 2.0 * alpha * p - g) / kappa
-    return g, d, s, p, q, p - q
+    d = np.where(close, slow + mu2 * s, (mu1 * slow - mu2 * np.exp(mu2)) / (2.0 * sigma))
+    p = np.where(close, (1.0 - g) / kappa, (phi1(mu1) - phi1(mu2)) / (2.0 * sigma))
+    closed = (1.0 - s - 2.0 * alpha * p) / kappa
+    q = np.where(close, closed, (phi2(mu1) - phi2(mu2)) / (2.0 * sigma))
+    by_sums = (s + 2.0 * alpha * p - g) / kappa
+    return np.stack([g, d, s, p, q, np.where(close | (mu1 < -1.0), by_sums, p - q)])
 
 
-@kernel
-def _by_phase(alpha: float, kappa: float, phase: float, low: float) -> Six:
+def _by_phase(alpha: Floats, kappa: Floats, phase: Floats, low: Floats) -> Floats:
     """Complex pair (or a double one): decaying turns."""
-    decay = math.exp(-alpha)
-    sine = math.sin(phase) + low * math.cos(phase)
-    cosine = math.cos(phase) - low * math.sin(phase)
-    half = math.sin(0.5 * phase) + 0.5 * low * math.cos(0.5 * phase)
-    s = decay * (sine / phase if phase > 0.0 else 1.0)
+    decay = np.exp(-alpha)
+    sine = np.sin(phase) + low * np.cos(phase)
+    cosine = np.cos(phase) - low * np.sin(phase)
+    half = np.sin(0.5 * phase) + 0.5 * low * np.cos(0.5 * phase)
+    s = decay * np.where(phase > 0.0, sine / np.where(phase > 0.0, phase, 1.0), 1.0)
     g = decay * cosine + alpha * s
-    p = (2.0 * decay * half * half - math.expm1(-alpha) - alpha * s) / kappa
+    p = (2.0 * decay * half * half - np.expm1(-alpha) - alpha * s) / kappa
     q = (1.0 - s - 2.0 * alpha * p) / kappa
-    return g, decay * cosine - alpha * s, s, p, q, (s + 2.0 * alpha * p - g) / kappa
+    by_sums = (s + 2.0 * alpha * p - g) / kappa
+    return np.stack([g, decay * cosine - alpha * s, s, p, q, by_sums])
 
 
-@kernel
-def _by_series(alpha: float, kappa: float) -> Six:
+def _by_series(alpha: Floats, kappa: Floats) -> Floats:
     """Small pair: sums of the complete homogeneous polynomials over factorials."""
-    before, now = 0.0, 1.0
-    s = p = q = difference = 0.0
-    weight = 1.0  # 1 / (n + 1)!
+    before, now, weight = np.zeros_like(alpha), np.ones_like(alpha), 1.0  # 1 / (n + 1)!
+    sums = np.zeros((4, len(alpha)))
     for n in range(_TERMS):
-        s += weight * now
-        p += weight * now / (n + 2)
-        q += weight * now / ((n + 2) * (n + 3))
-        difference += weight * now / (n + 3)
+        shares = 1.0, 1.0 / (n + 2), 1.0 / ((n + 2) * (n + 3)), 1.0 / (n + 3)
+        sums += np.multiply.outer(shares, weight * now)
         before, now = now, -2.0 * alpha * now - kappa * before
         weight /= n + 2
+    s, p, q, difference = sums
     g = 1.0 - kappa * p
-    return g, g - 2.0 * alpha * s, s, p, q, difference
+    return np.stack([g, g - 2.0 * alpha * s, s, p, q, difference])

@@ -18,13 +18,10 @@ without cancellation.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.checks import one_of_each, refuse_time_step
-from tree_sway.core.kernel import kernel
 from tree_sway.core.oscillators.exponential import (
     exponential_differences,
     phi1,
@@ -81,63 +78,48 @@ def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt:
     return out
 
 
-@kernel
 def fill_propagator(
     inertia: Floats, damping: Floats, stiffness: Floats, dt: float, out: Floats
 ) -> int:
     """
     Refill coefficients (n, 8) in place, for a step [s] that changes; computed in float64.
 
-    Arguments are those of `propagator`, not checked; nothing is allocated. Returned is the index
-    of the first oscillator with nothing but zeros (its row is set to stand still), or -1.
+    Arguments are those of `propagator`, not checked. Returned is the index of the first oscillator
+    with nothing but zeros (its row is set to stand still), or -1.
     """
-    refused = -1
-    for row in range(len(inertia)):
-        i, c, k = inertia[row], damping[row], stiffness[row]
-        if i > 0.0 and c * dt < 1e150 * i and max(k * dt, dt, 1.0) * max(dt, 1.0) / i < 1e300:
-            _fill_second_order(i, c, k, dt, out[row])
-        elif c > 0.0 and max(k, 1.0) * max(dt, 1.0) / c < 1e300:
-            _fill_first_order(c, k, dt, out[row])
-        else:
-            out[row, :] = 0.0
-            if k > 0.0:
-                out[row, 3] = 1.0 / k
-                out[row, 6] = -1.0 / (k * dt)
-                out[row, 7] = 1.0 / (k * dt)
-            else:
-                out[row, 0] = 1.0
-                refused = row if refused < 0 else refused
-    return refused
+    i, c, k, most = inertia, damping, stiffness, max(dt, 1.0)
+    with np.errstate(all='ignore'):
+        moves = (i > 0.0) & (c * dt < 1e150 * i)
+        moves &= np.maximum(k * dt, most) * most / i < 1e300
+        flows = ~moves & (c > 0.0) & (np.maximum(k, 1.0) * most / c < 1e300)
+        is_static = ~moves & ~flows & (k > 0.0)
+        refused = np.flatnonzero(~(moves | flows | is_static))
+        out[:] = 0.0
+        out[moves] = _second_order(i[moves], c[moves], k[moves], dt).T
+        out[flows] = _first_order(c[flows], k[flows], dt).T
+        out[is_static, 3] = 1.0 / k[is_static]
+        out[is_static, 7] = 1.0 / (k[is_static] * dt)
+        out[is_static, 6] = -out[is_static, 7]
+    out[refused, 0] = 1.0
+    return int(refused[0]) if len(refused) else -1
 
 
-@kernel
-def _fill_second_order(i: float, c: float, k: float, h: float, row: Floats) -> None:
-    """Oscillator with inertia: divided differences to moment coefficients."""
-    alpha = 0.5 * c * h / i
-    kappa = k * h * h / i
-    delta, phase, phase_low = scaled_discriminant(i, c, k, h, alpha, kappa)
-    g, d, s, p, q, p_minus_q = exponential_differences(alpha, kappa, delta, phase, phase_low)
-    row[0] = g
-    row[1] = h * s
-    row[2] = h * h / i * p_minus_q
-    row[3] = h * h / i * q
-    row[4] = -kappa * s / h
-    row[5] = d
-    row[6] = h / i * (s - p)
-    row[7] = h / i * p
+def _second_order(i: Floats, c: Floats, k: Floats, h: float) -> Floats:
+    """Oscillators with inertia, (8, n): divided differences to moment coefficients."""
+    alpha, kappa = 0.5 * c * h / i, k * h * h / i
+    phases = scaled_discriminant(i, c, k, h, alpha, kappa)
+    g, d, s, p, q, p_minus_q = exponential_differences(alpha, kappa, *phases)
+    return np.stack(
+        [g, h * s, h * h / i * p_minus_q, h * h / i * q,
+         -kappa * s / h, d, h / i * (s - p), h / i * p]
+    )  # fmt: skip
 
 
-@kernel
-def _fill_first_order(c: float, k: float, h: float, row: Floats) -> None:
-    """No inertia: k2 x' + k1 x = M, so that the velocity is what the moments leave it."""
-    z = -k / c * h
-    f1, f2 = phi1(z), phi2(z)
-    decay = math.exp(z)
-    row[0] = decay
-    row[1] = 0.0
-    row[2] = h / c * (f1 - f2)
-    row[3] = h / c * f2
-    row[4] = -k / c * decay
-    row[5] = 0.0
-    row[6] = z * (f1 - f2) / c
-    row[7] = f1 / c
+def _first_order(c: Floats, k: Floats, h: float) -> Floats:
+    """No inertia, (8, n): k2 x' + k1 x = M, so that the velocity is what the moments leave it."""
+    z, none = -k / c * h, np.zeros_like(c)
+    f1, f2, decay = phi1(z), phi2(z), np.exp(z)
+    return np.stack(
+        [decay, none, h / c * (f1 - f2), h / c * f2,
+         -k / c * decay, none, z * (f1 - f2) / c, f1 / c]
+    )  # fmt: skip

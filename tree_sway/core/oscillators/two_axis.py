@@ -34,7 +34,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import fused, inlined, like
+from tree_sway.core.kernel import fused
 
 Floats = NDArray[np.float64]
 
@@ -45,34 +45,34 @@ MOMENT_MARGIN = 1.5  # the whole moment is held at this many times s_max k1
 GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out
 
 
-@inlined
+@fused
 def within_guard(x: float, y: float) -> tuple[float, float, float]:
     """Return x, y and t, pulled back to the guard's circle where they lie beyond it."""
     t = x * x + y * y
-    limit = like(T_MAX, x)
+    limit = T_MAX
     if t > limit:
         shrink = math.sqrt(limit / t)
         return x * shrink, y * shrink, limit
     return x, y, t
 
 
-@inlined
+@fused
 def _series(t: float) -> tuple[float, float, float, float]:
     """Return s, c of the module's text, tails s', c' too: s = -1/6 + t s', c = -1/2 + t c'."""
-    s = like(1.5032424712277569e-10, t)
-    s = s * t - like(2.5002780465942419e-8, t)
-    s = s * t + like(2.7556346133638428e-6, t)
-    s = s * t - like(1.9841263105038876e-4, t)
-    s = s * t + like(8.3333333258591991e-3, t)
-    c = like(1.9343564401159469e-9, t)
-    c = c * t - like(2.7483756547269252e-7, t)
-    c = c * t + like(2.4800137070434030e-5, t)
-    c = c * t - like(1.3888878852585004e-3, t)
-    c = c * t + like(4.1666666555315840e-2, t)
-    return s * t - like(1.0 / 6.0, t), c * t - like(0.5, t), s, c
+    s = 1.5032424712277569e-10
+    s = s * t - 2.5002780465942419e-8
+    s = s * t + 2.7556346133638428e-6
+    s = s * t - 1.9841263105038876e-4
+    s = s * t + 8.3333333258591991e-3
+    c = 1.9343564401159469e-9
+    c = c * t - 2.7483756547269252e-7
+    c = c * t + 2.4800137070434030e-5
+    c = c * t - 1.3888878852585004e-3
+    c = c * t + 4.1666666555315840e-2
+    return s * t - 1.0 / 6.0, c * t - 0.5, s, c
 
 
-@inlined
+@fused
 def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[float, float]:
     """
     Generalised force [N m] on the two axes at any deflection; (w1, w2) at zero.
@@ -87,14 +87,14 @@ def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[flo
     """
     x, y, t = within_guard(x, y)
     s, c, _, _ = _series(t)
-    one = like(1.0, x)
+    one = 1.0
     sinc = one + t * s
     inverse = one / sinc
     along = (x * w1 + y * w2) * (s + c + t * s * c) * inverse - wb * sinc
     return w1 * inverse + x * along, w2 * inverse + y * along
 
 
-@inlined
+@fused
 def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     """
     Acceleration [rad/s^2] that the sphere itself asks for: great circles at constant speed.
@@ -104,7 +104,7 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     """
     x, y, t = within_guard(x, y)
     s, c, s1, c1 = _series(t)
-    one, two, three = like(1.0, x), like(2.0, x), like(3.0, x)
+    one, two, three = 1.0, 2.0, 3.0
     inverse = one / (one + t * s)
     b = (s - c) * inverse
     e = (three * s1 - c1 + s * c + s * (s + c + t * s * c)) * inverse
@@ -113,7 +113,7 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     return radial * x - turn * vy, radial * y + turn * vx
 
 
-@inlined
+@fused
 def limit_load(wb: float, w1: float, w2: float, limit: float) -> tuple[float, float, float, int]:
     """
     Hold the length of a load at a limit in [N m]; the last value is whether it was held.
@@ -123,14 +123,14 @@ def limit_load(wb: float, w1: float, w2: float, limit: float) -> tuple[float, fl
     square = wb * wb + w1 * w1 + w2 * w2
     if square <= limit * limit:
         return wb, w1, w2, 0
-    if not square < like(math.inf, square):
-        none = like(0.0, square)
+    if not square < math.inf:
+        none = 0.0
         return none, none, none, 1
     scale = limit / math.sqrt(square)
     return wb * scale, w1 * scale, w2 * scale, 1
 
 
-@inlined
+@fused
 def moment(
     x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
     gyro_inertia: float, limit: float,
@@ -141,11 +141,11 @@ def moment(
     mx += gyro_inertia * ax
     my += gyro_inertia * ay
     square = mx * mx + my * my
-    scale = limit / math.sqrt(square) if square > limit * limit else like(1.0, x)
+    scale = limit / math.sqrt(square) if square > limit * limit else 1.0
     return mx * scale, my * scale
 
 
-@inlined
+@fused
 def step_branch(
     x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
     c0: float, c1: float, c2: float, c3: float, c4: float, c5: float, c6: float, c7: float,

@@ -26,12 +26,8 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.records import zeros_in_lines
 from tree_sway.core.motion.standing import place_standing, STANDING, step_standing
-from tree_sway.core.motion.wind_basis import (
-    fill_pace,
-    instance_layout,
-    WindBasisBank,
-)
-from tree_sway.core.motion.wind_basis_force import pace_layout
+from tree_sway.core.motion.wind_basis import fill_pace, WindBasisBank
+from tree_sway.core.motion.wind_basis_force import instance_layout, pace_layout
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.standing_rows import own_steps, standing_rows

@@ -11,10 +11,10 @@ from typing import Protocol, TYPE_CHECKING
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
 from tree_sway.core.motion.drag import DragLaw
-from tree_sway.core.motion.placing import place
+from tree_sway.core.motion.placing import GIVEN, place
 
 if TYPE_CHECKING:
     from tree_sway.core.motion.branchwise import Tunable
@@ -56,10 +56,9 @@ class Oscillators(Protocol):
     def step_outside(self) -> int:
         """Make the step that such a call could not make; returns as `advance`."""
 
-    def placing(
-        self, segments: Records, heads: Records, bases: Floats
-    ) -> Callable[[Floats, Floats], None] | None:
-        """Return the placing of the state as one compiled call, if there is one."""
+    @property
+    def to_place(self) -> tuple[Records, Singles, Floats] | None:
+        """Return what `place` finds key rotations from, where it does."""
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of what is carried from one step to the next."""
@@ -115,15 +114,20 @@ class Bank:
         """
         if self.plain:
             return self._plain_placing.place
-        arrays = (self.branches, self.segments, self.heads, self.bases)
+        found_from = self.oscillators.to_place or GIVEN
+        return self._placing(found_from[0], GIVEN[1])
+
+    def _placing(self, instance: Records, shapes: Singles) -> Callable[..., None]:
+        arrays = instance, shapes, self.branches, self.segments, self.heads, self.bases
+        first = *arrays, 1.0, 0.0, 1.0
         given = np.zeros(1), np.zeros(3), np.zeros((1, 7))
-        return partial(entry_of(place, *arrays, *given), *arrays)
+        return partial(entry_of(place, *first, *given), *first)
 
     @cached_property
     def place_now(self) -> Callable[[Floats, Floats], None]:
         """Place every segment as the oscillators are, from a root node (3,) on, as `place`."""
         oscillators = self.oscillators
-        in_one_call = oscillators.placing(self.segments, self.heads, self.bases)
-        if in_one_call is not None:
-            return in_one_call
+        if oscillators.to_place is not None:
+            instance, shapes, x = oscillators.to_place
+            return partial(self._placing(instance, shapes), x)
         return lambda origin, out: self.place(oscillators.rotations(), origin, out)

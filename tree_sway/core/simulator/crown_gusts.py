@@ -9,18 +9,13 @@ winds alone and takes the mean of the limbs' winds, weighted by their loads.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.kernel import entry_of, kernel, WHY_PLAIN
 from tree_sway.core.motion.plain.numpy_passes import into_lanes
-from tree_sway.core.motion.tree_passes import set_gusts
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind, push_wind
+from tree_sway.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind
 
 
 def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
@@ -43,12 +38,6 @@ class CrownGusts:
         pieces = reductions.reduced(settings.model).branch
         self._delays = delays = whole._replace(of_branch=whole.of_branch[pieces])
         self.wind, self._loads = CrownWind(delays.spread, settings.crown_coherence), loads
-        self._compiled: Callable[[float, float, float, float], None] | None = None
-        if loads is not None:
-            into_lanes(delays.of_branch, loads['delay'])
-            if not WHY_PLAIN:
-                parts = loads, self.wind.record
-                self._compiled = partial(entry_of(_hand_out, *parts, 0.0, 0.0, 0.0, 0.0), *parts)
 
     def felt(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
@@ -56,19 +45,9 @@ class CrownGusts:
 
         That is what was given, or the mean of the limbs' where the model knows even winds alone.
         """
-        if self._compiled is not None:
-            self._compiled(x, y, z, dt)
-            return x, y, z
         apart = self.wind.push(x, y, z, dt)
         if self._loads is not None:
             into_lanes(apart[self._delays.of_branch], self._loads['gust'])
             return x, y, z
         ax, ay, az = (self._delays.share @ apart).tolist()
         return x + ax, y + ay, z + az
-
-
-@kernel
-def _hand_out(loads: Records, crowns: Records, x: float, y: float, z: float, dt: float) -> None:
-    """Push the wind and give every branch that of its delay."""
-    push_wind(crowns, x, y, z, dt)
-    set_gusts(loads, crowns[0]['apart'])

@@ -27,7 +27,7 @@ WIND_FORMATS = (
     FileFormat(
         'sonic',
         (),
-        contains(r'^(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,|S2? +[\d.]+,? +D +\d)'),
+        contains(r'^(\x02[A-Z],|[A-Z],[+-]?\d+(\.\d+)?,[+-]?\d+\.\d+,)'),
         read_sonic_wind,
     ),
     FileFormat(

@@ -35,7 +35,7 @@ def test_a_good_guess_is_worth_iterations():
 
 
 @pytest.mark.parametrize('name', ['implicit_midpoint', 'tr_bdf2', 'bdf2'])
-def test_what_cannot_be_solved_is_told_and_leaves_the_state(name):
+def test_what_cannot_be_solved_is_reported_and_leaves_the_state(name):
     method = method_named(name)
     state = method.start(CHAIN, np.full(3, 0.1), np.zeros(3), LOAD, 0.01)
     before, options = state.copy(), method.options(CHAIN, 0.01)

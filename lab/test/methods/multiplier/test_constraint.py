@@ -128,7 +128,7 @@ def test_index_3_solution_satisfies_its_equations():
         'radau_ggl',
     ],
 )
-def test_a_step_that_fails_is_told_and_leaves_the_state(name):
+def test_a_step_that_fails_is_reported_and_leaves_the_state(name):
     method = method_named(name)
     state = method.start(CHAIN, THETA, OMEGA, LOAD, 0.01)
     before = state.copy()

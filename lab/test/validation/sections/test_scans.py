@@ -42,7 +42,7 @@ def test_a_scan_that_buckles_is_compared_without_its_weight(name: str) -> None:
     assert found.model == pytest.approx(found.frame, rel=LIMIT)
 
 
-def test_the_section_has_a_check_per_file_that_stands(tmp_path: Path) -> None:
+def test_the_section_has_a_check_per_tree_that_can_stand(tmp_path: Path) -> None:
     (tmp_path / 'trees').mkdir()
     shutil.copy(OURS, tmp_path / 'trees')
     (tmp_path / 'trees' / 'tree.LICENSE').write_text('own')

@@ -108,7 +108,7 @@ def test_a_state_of_one_is_taken_by_the_other(tree, model):
 
 
 def test_a_number_of_coordinates_sways_alike_without_a_compiler(tree):
-    """On its table, and where there is none on the loads of all branches."""
+    """On its table, and without one on the loads of all branches."""
     sim, twin = pair(tree, 20)
     rest = sim.place()[:, :3].copy()
     rng = np.random.default_rng(3)

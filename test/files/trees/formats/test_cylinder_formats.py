@@ -39,7 +39,7 @@ def test_the_same_tree_from_each(name):
 
 
 @pytest.mark.parametrize('name', CYLINDER_FILES)
-def test_where_it_stands_is_reported_or_kept(name):
+def test_its_place_is_reported_or_kept(name):
     moved = read_tree(DATA / name, **AS_SCANNED)
     assert 'moved by -100, -200, -50 m, the base to the origin' in moved.notes
     kept = read_tree(DATA / name, to_origin=False, **AS_SCANNED)

@@ -36,7 +36,7 @@ def test_wood_replaces_the_tables_values():
     assert (species.damping_bare, species.damping_in_leaf) == (0.05, 0.05)
 
 
-def test_a_tree_tells_its_own_shear_and_roots():
+def test_a_tree_gives_its_own_shear_and_roots():
     told = parse_yaml_tree(STEM + 'wood: {shear_ratio: 0.05, root_stiffness: 2.5e6}\n').species
     assert (told.shear_ratio, told.root_stiffness) == (0.05, 2.5e6)
     assert parse_yaml_tree(STEM).species.root_stiffness == math.inf

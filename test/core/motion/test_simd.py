@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.kernel import fused
-from tree_sway.core.motion.lanes import (
+from tree_sway.core.motion.simd import (
     add_shapes,
     put_four,
     settle,
