@@ -51,7 +51,7 @@ def alone(tmp_path_factory):
 
 
 def watched(after, do):
-    """Return what replaces the bar: it does something after a number of cases."""
+    """Return a bar that does something after a number of cases."""
 
     def bar(items, _):
         for done, item in enumerate(items):
@@ -71,7 +71,8 @@ def test_two_processes_give_the_same_numbers_bit_for_bit(alone, tmp_path):
 
 
 def test_what_is_finished_is_not_computed_again(alone, tmp_path):
-    run_study(cases(2), tmp_path, workers=1)
+    for case in cases(2):
+        compute_to_file(case, tmp_path)
     stamps = {case.name: result_path(tmp_path, case).stat().st_mtime_ns for case in cases(2)}
     assert run_study(cases(), tmp_path, workers=2) == alone
     assert all(

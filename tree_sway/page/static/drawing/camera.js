@@ -33,7 +33,7 @@ export class Camera {
       const lower = this.aspect < 1 ? 0.15 * tall : 0;
       this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2 - lower];
       const seen = tall * Math.cos(this.elevation) + wide * Math.sin(this.elevation);
-      const half = Math.max((this.aspect < 1 ? 1.15 : 1) * seen, wide / this.aspect, 0.7 * this._size) / 2;
+      const half = (this.aspect < 1 ? 0.65 : 0.5) * Math.max(seen, wide / this.aspect, 0.7 * this._size);
       this.distance = half / Math.tan(FIELD / 2) + (wide > 3 * tall ? 0.1 : 0.4) * wide;
     };
     this._home();
