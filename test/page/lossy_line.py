@@ -14,15 +14,9 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import fcntl
-import heapq
 import json
-import os
 from pathlib import Path
-import random
-import select
 import socket
-import struct
 import subprocess
 import sys
 import threading
@@ -30,16 +24,14 @@ import time
 from typing import Any
 
 import numpy as np
+from tree_sway_lab.bench.long_line import carry, HERE, join_line, THERE
 
 ROOT = Path(__file__).resolve().parents[2]
 VECTORS = Path(__file__).parent / 'vectors'
 TOKEN = 'a-long-line'
-HERE, THERE = '10.93.0.1', '10.93.0.2'
 PORT = 8765
 PLAYOUT = 0.2
 RATE, SOLVED = 30.0, 60.0
-_SET_TUN, _TUN_WITHOUT_HEAD = 0x400454CA, 0x1001
-_LARGEST = 2048
 
 
 def main() -> None:
@@ -94,43 +86,6 @@ def run_line(delay: float, loss: float, seconds: float) -> dict[str, float]:
 def _carry(*given: Any) -> None:
     with contextlib.suppress(ConnectionError):  # of a side that has done its part
         carry(*given)
-
-
-def carry(ends: list[socket.socket], delay: float, loss: float, ended: threading.Event) -> None:
-    """Hand packets from one end to the other, late, or not at all."""
-    chance, number = random.Random(1), 0
-    waiting: list[tuple[float, int, int, bytes]] = []
-    while not ended.is_set():
-        left = max(0.0, waiting[0][0] - time.monotonic()) if waiting else 0.05
-        for end in select.select(ends, [], [], min(left, 0.05))[0]:
-            packet = end.recv(_LARGEST)
-            if packet and chance.random() >= loss:
-                number += 1
-                to = 1 - ends.index(end)
-                heapq.heappush(waiting, (time.monotonic() + delay, number, to, packet))
-        while waiting and waiting[0][0] <= time.monotonic():
-            _, _, to, packet = heapq.heappop(waiting)
-            ends[to].send(packet)
-
-
-def join_line(descriptor: int, address: str) -> None:
-    """Make this process's network one device whose packets go over a socket."""
-    tun = os.open('/dev/net/tun', os.O_RDWR)
-    fcntl.ioctl(tun, _SET_TUN, struct.pack('16sH', b'line', _TUN_WITHOUT_HEAD))
-    for told in (f'addr add {address}/24 dev line', 'link set line mtu 1400 up', 'link set lo up'):
-        subprocess.run(['ip', *told.split()], check=True)
-    end = socket.socket(fileno=descriptor)
-
-    def out() -> None:
-        while packet := os.read(tun, _LARGEST):
-            end.send(packet)
-
-    def back() -> None:
-        while packet := end.recv(_LARGEST):
-            os.write(tun, packet)
-
-    for pump in (out, back):
-        threading.Thread(target=pump, daemon=True).start()
 
 
 def serve(seconds: float) -> None:

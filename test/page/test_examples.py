@@ -98,10 +98,11 @@ def three() -> None:
         pytest.skip('npm cannot bring three.js here')
 
 
-@pytest.mark.parametrize('kind', ['poses', 'gltf'])
+@pytest.mark.parametrize(('kind', 'count'), [('poses', 1), ('gltf', 1), ('gltf', 36)])
 @pytest.mark.usefixtures('three')
 def test_three_draws_a_tree_that_sways(
     kind: str,
+    count: int,
     page: PageServer,
     files: str,
     browser_class: Any,
@@ -111,9 +112,11 @@ def test_three_draws_a_tree_that_sways(
         command = ['convert', 'goldcrest', '--sway', 'morph']
         assert main([*command, '-o', str(target), '--force']) == 0
 
+    more = f'&count={count}' if count > 1 else ''
+
     async def look() -> None:
         async with browser_class() as browser:
-            await browser.open(f'{files}/examples/web/{kind}.html?page={page.url}', 640, 480)
+            await browser.open(f'{files}/examples/web/{kind}.html?page={page.url}{more}', 640, 480)
             await browser.until('window.example && example.stream.playout.received > 10')
             before = await browser.run('example.tip()')
             await browser.until(
@@ -122,8 +125,9 @@ def test_three_draws_a_tree_that_sways(
             assert await browser.run("document.getElementById('state').textContent") == 'open'
             assert browser.console == []
             drawn = await browser.run('example.stage.renderer.info.render.triangles')
-            assert drawn > 1000
+            assert drawn > 1000 * count
             (ROOT / 'build').mkdir(exist_ok=True)
-            (ROOT / 'build' / f'{kind}.png').write_bytes(await browser.screenshot())
+            picture = ROOT / 'build' / f'{kind}{count}.png'
+            picture.write_bytes(await browser.screenshot())
 
     asyncio.run(look())

@@ -16,7 +16,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.page.protocol import PAUSED, RESTARTED
 
-DELAY = 0.17
+DELAY = 0.15
 """Playout delay [s]."""
 
 _WINDOW = 30.0

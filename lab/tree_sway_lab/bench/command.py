@@ -30,7 +30,7 @@ from tree_sway_lab.bench.sizes import time_sizes
 from tree_sway_lab.bench.stand import time_stand
 from tree_sway_lab.bench.step import StepTiming, time_steps
 from tree_sway_lab.bench.stream import time_stream
-from tree_sway_lab.bench.vane_to_leaf import time_vane_to_leaf
+from tree_sway_lab.bench.vane_to_leaf import time_long_line, time_vane_to_leaf
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -151,13 +151,11 @@ def _stream(arguments: argparse.Namespace) -> list[Measured]:
 
 def _latency(arguments: argparse.Namespace) -> list[Measured]:
     given = _given(tree=arguments.tree, seconds=arguments.seconds)
-    return [*time_latency(**given), *time_vane_to_leaf(**given)]
+    return [*time_latency(**given), *time_vane_to_leaf(**given), *time_long_line(**given)]
 
 
 def _page(arguments: argparse.Namespace) -> list[Measured]:
-    return time_page(
-        **_given(tree=arguments.tree, size=arguments.size, seconds=arguments.seconds)
-    )
+    return time_page(**_given(tree=arguments.tree, size=arguments.size, seconds=arguments.seconds))
 
 
 def _engines(arguments: argparse.Namespace) -> list[Measured]:

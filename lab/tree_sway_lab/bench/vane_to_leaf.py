@@ -12,14 +12,21 @@ on one clock.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 import contextlib
+from functools import partial
 from itertools import pairwise
+import json
 import os
+import secrets
+import select
 import socket
 import subprocess
 import sys
+import tempfile
+import threading
 import time
+from typing import IO
 
 import numpy as np
 
@@ -28,12 +35,17 @@ from tree_sway.core.arrays import Floats
 from tree_sway.errors import TransportError
 from tree_sway.page.client import StreamClient
 from tree_sway.page.protocol import Frame
+from tree_sway_lab.bench.long_line import carry, HERE, join_line, THERE
 from tree_sway_lab.bench.measured import Measured
 from tree_sway_lab.bench.stream import isolated
 
 _RATE, _PER_MARK = 19.3, 10
 _LOW, _HIGH, _SHOWN = 5.0, 8.0, 0.1
-_START = 120.0
+LOSSES = (0.0, 0.01, 0.03)
+"""Shares of packets that are lost, either way."""
+
+WAYS = ('by state', 'by wind')
+_START, _PORT = 120.0, 8765
 _FRAMES = 60.0
 
 
@@ -48,6 +60,11 @@ class Seen:
         playout = self.client.playout
         due = 1e-9 * frame.stamp + playout.clock.value + playout.delay
         self._rows.append((arrival, max(arrival, due), float(frame.wind[0])))
+
+    @property
+    def rows(self) -> list[tuple[float, float, float]]:
+        """Arrival and showing [s] and wind [m/s] of each frame."""
+        return list(self._rows)
 
     def late(self, marks: list[tuple[float, float]]) -> Floats:
         """Return times from marks (time [s], wind [m/s]) as `lateness`."""
@@ -97,15 +114,15 @@ def time_vane_to_leaf(tree: str = 'benjamina', seconds: float = 20.0) -> list[Me
         'solver': [f'tree:={tree}', f'rate:={_FRAMES}', f'state_rate:={_FRAMES}'],
         'viewer': [f'port:={port}'],
     }
-    seen = {
-        way: Seen(f'http://127.0.0.1:{port}/', by_wind=way == 'by wind')
-        for way in ('by state', 'by wind')
-    }
+    url = f'http://127.0.0.1:{port}/'
+    seen = {way: Seen(url, by_wind=way == 'by wind') for way in WAYS}
     with (
         waiting('wind, solver and viewer in processes of their own'),
         _started(given, environment),
+        contextlib.ExitStack() as stack,
     ):
-        marks = _blow(seen, seconds)
+        clients = [stack.enter_context(each.client) for each in seen.values()]
+        marks = _blow(lambda: all(each.playout.received for each in clients), seconds)
     rows = []
     for way, each in seen.items():
         late = 1e3 * each.late(marks)
@@ -115,12 +132,94 @@ def time_vane_to_leaf(tree: str = 'benjamina', seconds: float = 20.0) -> list[Me
             )
         for what, times in zip(('', ', shown'), late.T, strict=True):
             rows += [
-                Measured(f'vane to leaf {way}{what}, p{share}', float(value), 'ms')
-                for share, value in zip(
-                    (50, 95, 99), np.percentile(times, (50, 95, 99)), strict=True
-                )
+                Measured(f'vane to leaf {way}{what}, p{share}', value, 'ms')
+                for share, value in _shares(times)
             ]
     return rows
+
+
+def time_long_line(tree: str = 'benjamina', seconds: float = 20.0) -> list[Measured]:
+    """
+    Do the same over a line of 80 ms there and back that loses packets, for each of `LOSSES`.
+
+    At arrival and as shown, by state and by wind alone. Needs root; else it returns nothing.
+    """
+    if os.geteuid() != 0:
+        return []
+    environment = isolated(os.getpid() + 3)
+    os.environ.update(environment)
+    ends = [socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET) for _ in range(2)]
+    join_line(ends[0][1].detach(), HERE)
+    outer, inner = [end for end, _ in ends], ends[1][1]
+    token = secrets.token_hex(16)
+    given = {
+        'wind': ['max_rate:=1000.0'],
+        'solver': [f'tree:={tree}', f'rate:={_FRAMES}', f'state_rate:={_FRAMES}'],
+        'viewer': [f'port:={_PORT}', f'address:={HERE}'],
+    }
+    program = f'from {__name__} import follow; follow({inner.fileno()}, {_url(token)!r})'
+    command = ['unshare', '-rn', sys.executable, '-c', program]
+    phases = []
+    with tempfile.NamedTemporaryFile('w') as secret:
+        secret.write(token)
+        secret.flush()
+        given['viewer'].append(f'token_file:={secret.name}')
+        with (
+            waiting('wind, solver and viewer, and clients at the end of a long line'),
+            _started(given, environment),
+            subprocess.Popen(
+                command, pass_fds=[inner.fileno()], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+            ) as child,
+        ):
+            assert child.stdout is not None
+            ready: Callable[[], bool] = partial(_has_said, child.stdout)
+            for loss in LOSSES:
+                ended = threading.Event()
+                line = threading.Thread(target=carry, args=(outer, 0.04, loss, ended), daemon=True)
+                line.start()
+                phases.append(_blow(ready, seconds))
+                ready = _always
+                ended.set()
+                line.join()
+            said, _ = child.communicate(b'')
+    rows = json.loads(said.splitlines()[-1])
+    return [
+        Measured(f'vane to leaf {way}, 80 ms, {100 * loss:g} % lost{what}, p{share}', value, 'ms')
+        for loss, marks in zip(LOSSES, phases, strict=True)
+        for way, seen in rows.items()
+        for what, times in zip(
+            ('', ', shown'), 1e3 * lateness(marks, np.array(seen)).T, strict=True
+        )
+        for share, value in _shares(times)
+    ]
+
+
+def follow(descriptor: int, url: str) -> None:
+    """Follow a page from the far end of a line until the input ends; prints the rows as JSON."""
+    join_line(descriptor, THERE)
+    seen = {way: Seen(url, by_wind=way == 'by wind') for way in WAYS}
+    with contextlib.ExitStack() as stack:
+        for each in seen.values():
+            stack.enter_context(each.client).wait(_START)
+        print('ready', flush=True)
+        sys.stdin.read()
+    print(json.dumps({way: each.rows for way, each in seen.items()}), flush=True)
+
+
+def _url(token: str) -> str:
+    return f'http://{HERE}:{_PORT}/?token={token}'
+
+
+def _has_said(pipe: IO[bytes]) -> bool:
+    return bool(select.select([pipe], [], [], 0.0)[0])
+
+
+def _always() -> bool:
+    return True
+
+
+def _shares(times: Floats) -> list[tuple[int, float]]:
+    return [(share, float(np.percentile(times, share))) for share in (50, 95, 99)]
 
 
 @contextlib.contextmanager
@@ -141,8 +240,8 @@ def _started(given: dict[str, list[str]], environment: dict[str, str]) -> Iterat
             child.wait()
 
 
-def _blow(seen: dict[str, Seen], seconds: float) -> list[tuple[float, float]]:
-    """Publish samples until the clients have followed for a time [s]; returns the marks."""
+def _blow(is_ready: Callable[[], bool], seconds: float) -> list[tuple[float, float]]:
+    """Publish samples until ready clients have followed for a time [s]; returns the marks."""
     from geometry_msgs.msg import Vector3Stamped
     import rclpy
     from rclpy.executors import SingleThreadedExecutor
@@ -174,14 +273,12 @@ def _blow(seen: dict[str, Seen], seconds: float) -> list[tuple[float, float]]:
             while time.monotonic() < until:
                 executor.spin_once(timeout_sec=0.1)
 
-        with contextlib.ExitStack() as stack:
-            clients = [stack.enter_context(each.client) for each in seen.values()]
-            deadline = time.monotonic() + _START
-            while time.monotonic() < deadline and not all(c.playout.received for c in clients):
-                spin(time.monotonic() + 0.2)
-            spin(time.monotonic() + 3.0)  # what is compiled at first use is
-            marks.clear()
-            spin(time.monotonic() + seconds)
+        deadline = time.monotonic() + _START
+        while time.monotonic() < deadline and not is_ready():
+            spin(time.monotonic() + 0.2)
+        spin(time.monotonic() + 3.0)  # what is compiled at first use is
+        marks.clear()
+        spin(time.monotonic() + seconds)
     finally:
         rclpy.try_shutdown()
     return marks

@@ -8,7 +8,7 @@
 import { PAUSED, RESTARTED } from "./protocol.js";
 
 /** Playout delay [ms]. */
-export const DELAY = 170;
+export const DELAY = 150;
 const WINDOW = 30000;
 const LONGEST_GAP = 500;
 const BLEND = 400;
