@@ -31,7 +31,7 @@ LEFT_OUT = 0.004
 SPEEDS = (3.0, 9.0, 15.0, 22.0)
 """Mean winds in [m/s] of the runs that the basis is made from."""
 
-TRIAL_SPEED = 18.0
+TRIAL_SPEED = 20.0
 """Mean wind in [m/s] of the run, not seen before, that its error is found in."""
 
 _DT, _STEPS, _EVERY, _RUN_IN = 1.0 / 60.0, 960, 4, 60
