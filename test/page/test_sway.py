@@ -36,7 +36,7 @@ def gusty(steps: int = STEPS) -> Any:
     """Gusts that turn once around, rise and fall, and go beyond the table for a while."""
     time = DT * np.arange(steps)
     speed = 7.0 + 5.0 * np.sin(1.3 * time) + 3.0 * np.sin(5.1 * time)
-    speed[800:860] = 60.0
+    speed[800:860] = 80.0
     turn = 0.35 * time + 0.3 * np.sin(3.0 * time)
     up = 0.3 * np.sin(2.2 * time) + 0.7 * (np.abs(time - 5.0) < 0.5)
     return speed[:, None] * np.stack([np.cos(turn), np.sin(turn), up], axis=1)

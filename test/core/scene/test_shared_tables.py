@@ -152,14 +152,14 @@ def test_every_tree_has_its_own_model(kinds):
 @pytest.mark.compiled  # without the compiler trees share no table
 def test_a_wind_beyond_the_table_is_held_and_counted(kinds):
     stand = swaying([PlacedTree(f't{i}', kinds['fork'], x=i) for i in range(3)], **EVEN)
-    assert stand.step((60.0, 0.0, 0.0), DT) == LOAD_CLAMPED
+    assert stand.step((75.0, 0.0, 0.0), DT) == LOAD_CLAMPED
     assert stand.counts.clamped == 3
     assert stand.step((1.0, 0.0, 9.0), DT) == 0
     assert stand.step((0.0, 0.0, 9.0), DT) == 0
     assert stand.step((2.0, 0.0, 0.0), DT) == 0
     assert stand.counts.clamped == 3
     for _ in range(600):
-        stand.step((60.0, 20.0, 5.0), DT)
+        stand.step((75.0, 20.0, 5.0), DT)
     assert np.isfinite(stand.place()).all()
 
 

@@ -24,10 +24,7 @@ from tree_sway.core.motion.modal import wind_moments
 from tree_sway.core.motion.plain.numpy_passes import NumpyPasses
 from tree_sway.core.motion.records import WORK
 
-STORM = 40.0
-"""Wind in [m/s] up to which a tree's answers are known."""
-
-_SPEEDS = (10.0, 20.0, STORM)
+_SPEEDS = (10.0, 20.0, 40.0)
 _AZIMUTHS = np.arange(8) * np.pi / 4.0
 _TURNS, _FARTHEST = 6, 1.0
 

@@ -14,7 +14,7 @@ from tree_sway.core.arrays import fields_of, Floats, RecordsOf, Singles
 from tree_sway.core.kernel import fused
 from tree_sway.core.motion.harmonics import fill_harmonics
 
-N_AZIMUTHS, N_LEVELS = 24, 6
+N_AZIMUTHS, N_LEVELS = 24, 7
 """Azimuths of the wind and levels of the lean in the table."""
 
 STEEP = math.sin(math.radians(45.0))

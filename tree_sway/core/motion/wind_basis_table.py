@@ -32,14 +32,14 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway.core.motion.modal import ModalBank
-from tree_sway.core.motion.static_answers import STORM, WindMoments
+from tree_sway.core.motion.static_answers import WindMoments
 from tree_sway.core.motion.wind_basis_force import N_AZIMUTHS, N_LEVELS, table_layout
 
-SPEEDS = (0.0, 4.0, 8.0, 13.0, 20.0, STORM)
+SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
 """Winds in [m/s] that the tree is held in at the levels of the table."""
 
 BEYOND = 1.1
-"""Dynamic pressure up to which the table goes on, over that of `STORM`."""
+"""Dynamic pressure up to which the table goes on, over that of the last of `SPEEDS`."""
 
 _ELEVATIONS = np.deg2rad([-90.0, -60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0, 90.0])
 _ELEVATION_SPREAD = 0.25

@@ -32,6 +32,9 @@ nothing.
 
 _DENSE_UP_TO = 400
 
+_ENOUGH = 1e-6
+"""Relative error at which Lanczos iteration ends: that of a ratio is far less."""
+
 _NEW = 1e-9
 """Share of the squared motion of the tips that an added shape must bring."""
 
@@ -216,7 +219,7 @@ def _largest(matrix: Any, against: Any, factors: Factors, count: int) -> tuple[F
     n = matrix.shape[0]
     inverse = sparse_linalg.LinearOperator((n, n), matvec=factors.solve, dtype=np.float64)
     values, vectors = sparse_linalg.eigsh(
-        matrix, k=count, M=against, Minv=inverse, which='LA', v0=np.ones(n)
+        matrix, k=count, M=against, Minv=inverse, which='LA', v0=np.ones(n), tol=_ENOUGH
     )
     return values, vectors
 

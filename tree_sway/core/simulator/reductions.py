@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 CUT_FOR = 15.0
 """Wind in [m/s] whose turns branches are cut for."""
 
-_ONE_ADDED = 3
+_ONE_ADDED = 6
 """One of this number of coordinates of a table makes up for what the modes cannot do."""
 
 _FEW_MODES = 6

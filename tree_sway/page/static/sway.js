@@ -24,7 +24,7 @@ import { Touch } from "./touch.js";
 export const STEP = 1 / 60;
 
 const AZIMUTHS = 24;
-const LEVELS = 6;
+const LEVELS = 7;
 /** Sine of the elevation from which on a wind goes over to one straight up or down. */
 const STEEP = Math.sin(Math.PI / 4);
 const MOST_COORDINATES = 1000;
