@@ -117,6 +117,15 @@ def test_the_clock_goes_in_steps_that_nodes_follow(compose, observer, wind_file,
     assert least <= round(1e9 * LONGEST_CLOCK_STEP)
 
 
+def test_it_reports_how_far_it_is(compose, observer, statuses, wind_file):
+    observer.listen(WIND)
+    nodes = compose(player={'file': wind_file})
+    name = 'player: playback'
+    observer.until(lambda: statuses(name) is not None, 'diagnostics')
+    assert {pair.key for pair in statuses(name).values} >= {'position [s]', 'samples'}
+    assert nodes['player'].get_clock() is not None
+
+
 def test_a_bag_of_the_graph_itself_plays_back(compose, observer, tmp_path, monkeypatch):
     """Which holds the wind twice, as measured and as filtered."""
     from tree_sway_ros.nodes import player

@@ -30,7 +30,7 @@ class PlayerNode(TreeSwayNode):
         for note in self._record.notes:
             self.get_logger().info(note)
         has_clock = self.values['publish_clock']
-        self._clock: Any = self.publisher(CLOCK) if has_clock else None
+        self._ticks: Any = self.publisher(CLOCK) if has_clock else None
         epoch = self._record.epoch
         if has_clock and not is_ros_time(epoch, self._record.time):
             self.get_logger().warning(
@@ -57,7 +57,7 @@ class PlayerNode(TreeSwayNode):
 
     def _publish(self, row: int, stamp: int) -> None:
         if row < 0:
-            self._clock.publish(clock_message(stamp))
+            self._ticks.publish(clock_message(stamp))
         else:
             self._wind.publish(self._writer.message(stamp, self._record.velocity[row]))
 
