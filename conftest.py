@@ -23,7 +23,7 @@ from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
 from tree_sway.core.simulator.simulator import SwaySimulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
 from tree_sway.errors import MissingDependencyError  # noqa: E402
-from tree_sway.files.kept_set_ups import KeptSetUps  # noqa: E402
+from tree_sway.files.set_up_files import SetUpFiles  # noqa: E402
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)
@@ -67,7 +67,7 @@ def set_ups_are_made_once(tmp_path_factory):
     base = tmp_path_factory.getbasetemp()
     folder = (base.parent if 'PYTEST_XDIST_WORKER' in os.environ else base) / 'set_ups'
     folder.mkdir(exist_ok=True)
-    make, cache = SwaySimulator.__init__, KeptSetUps(folder)
+    make, cache = SwaySimulator.__init__, SetUpFiles(folder)
 
     @functools.wraps(make)
     def make_from_cache(self, *arguments, **options):

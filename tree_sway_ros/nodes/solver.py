@@ -24,7 +24,7 @@ from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
-from tree_sway.files.kept_set_ups import KeptSetUps
+from tree_sway.files.set_up_files import SetUpFiles
 from tree_sway.files.trees.source import open_scene
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
@@ -90,7 +90,7 @@ class SolverNode(TreeSwayNode):
             profile=WindProfile(self.values['profile'], self.values['anemometer_height']),
         )
         self.simulator: Simulator = source.simulator(
-            settings, cache=KeptSetUps(), **self.values('tolerance')
+            settings, cache=SetUpFiles(), **self.values('tolerance')
         )
         if self.values['stiffness_factor'] != 1.0:
             self.simulator.tune(**self.values('stiffness_factor'))

@@ -10,15 +10,15 @@ import pytest
 
 from tree_sway.core.simulator import assembly
 from tree_sway.core.simulator.simulator import SwaySimulator
-from tree_sway.files import kept_set_ups
-from tree_sway.files.kept_set_ups import KeptSetUps
+from tree_sway.files import set_up_files
+from tree_sway.files.set_up_files import SetUpFiles
 
 WIND = (6.0, 3.0, 0.5)
 
 
 @pytest.fixture
 def kept(tmp_path):
-    return KeptSetUps(tmp_path)
+    return SetUpFiles(tmp_path)
 
 
 @pytest.fixture
@@ -80,7 +80,7 @@ def test_another_tree_or_setting_has_another_set_up(fork, stem, kept, files):
 
 def test_a_set_up_of_other_source_is_not_taken(fork, kept, files, monkeypatch):
     SwaySimulator(fork(), cache=kept)
-    monkeypatch.setattr(kept_set_ups, 'source_digest', lambda _path: 'of an edited file')
+    monkeypatch.setattr(set_up_files, 'source_digest', lambda _path: 'of an edited file')
     SwaySimulator(fork(), cache=kept)
     assert len(files()) == 2
 
@@ -128,12 +128,12 @@ def test_a_set_up_under_the_name_of_another_is_not_taken(fork, stem, kept, files
 
 
 def test_what_cannot_be_written_is_left(fork, tmp_path):
-    nowhere = KeptSetUps(tmp_path / 'is not there')
+    nowhere = SetUpFiles(tmp_path / 'is not there')
     assert poses_of(SwaySimulator(fork(), cache=nowhere)) == poses_of(SwaySimulator(fork()))
 
 
 def test_the_oldest_go_first(kept, files, monkeypatch):
-    monkeypatch.setattr(kept_set_ups, 'MOST', 2)
+    monkeypatch.setattr(set_up_files, 'MOST', 2)
     for age, digest in enumerate(('one', 'two', 'three')):
         kept.write(digest, {'number': np.array(age)})
         for path in files():

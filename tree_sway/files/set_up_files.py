@@ -32,7 +32,7 @@ MOST = 32
 _SUFFIX = '.set_up.npz'
 
 
-class KeptSetUps:
+class SetUpFiles:
     """What `SwaySimulator` and others take as ``cache``; in the folder of the kernels if None."""
 
     def __init__(self, folder: Path | None = None) -> None:
