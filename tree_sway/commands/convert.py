@@ -55,9 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
     output = output_path(arguments)
     suffix = Path(output).suffix.lower()
     if arguments.sway is not None and suffix != '.glb':
-        raise ParameterError(
-            f"'{output}' cannot sway", where='--sway', cure='write a .glb file'
-        )
+        raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
     scene = opened_scene(arguments)
     for note in scene.notes:
         print(f'note: {note}', file=sys.stderr)

@@ -17,9 +17,7 @@ from tree_sway.page.wind_source import blow, WindSource
 _STEPS_PER_SECOND = 60.0
 
 
-def swaying(
-    simulator: Simulator, wind: WindSource, rate: float, seconds: float
-) -> Iterator[None]:
+def swaying(simulator: Simulator, wind: WindSource, rate: float, seconds: float) -> Iterator[None]:
     """
     Sway a scene, at least 60 steps per second, and yield after each frame.
 

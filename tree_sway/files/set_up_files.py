@@ -3,7 +3,7 @@
 """
 Set-ups of trees on disk, so that a solver that is started again sways sooner.
 
-They are kept beside the compiled kernels, in numpy's own format, which is read without pickles. A
+They lie beside the compiled kernels, in numpy's own format, which is read without pickles. A
 file is found by a digest of the tree, its species and settings, of the source of the core, of the
 versions of numpy and scipy, and of the machine; what cannot be read is made again, and what cannot
 be written is left.
@@ -27,7 +27,7 @@ from tree_sway.kernel_cache import ROOT, source_digest
 from tree_sway.kernel_folder import kernel_folder
 
 MOST = 32
-"""Number of set-ups that are kept; the oldest go first."""
+"""Number of set-ups on disk; the oldest are removed first."""
 
 _SUFFIX = '.set_up.npz'
 
@@ -44,22 +44,22 @@ class SetUpFiles:
             return None
         key = _key(digest)
         try:
-            with np.load(self._folder / f'{key}{_SUFFIX}') as kept:
-                arrays = dict(kept)
+            with np.load(self._folder / f'{key}{_SUFFIX}') as file:
+                arrays = dict(file)
             return arrays if str(arrays.pop('key')) == key else None
         except Exception:  # whatever numpy makes of a damaged file
             return None
 
     def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
-        """Keep arrays, all of them or nothing, in place of the oldest that are kept."""
+        """Write arrays, all of them or nothing, in place of the oldest set-ups."""
         if self._folder is None:
             return
         key = _key(digest)
         with suppress(OSError, TreeSwayError):
             with whole_file(self._folder / f'{key}{_SUFFIX}') as partial:
                 np.savez(partial, key=np.array(key), **arrays)
-            kept = sorted(self._folder.glob(f'*{_SUFFIX}'), key=lambda path: path.stat().st_mtime)
-            for path in kept[:-MOST]:
+            found = sorted(self._folder.glob(f'*{_SUFFIX}'), key=lambda path: path.stat().st_mtime)
+            for path in found[:-MOST]:
                 path.unlink()
 
 

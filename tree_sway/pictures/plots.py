@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 STUDY_COLUMNS = ('wind_mean [m/s]', 'tip_largest [m]', 'base_moment_largest [N m]')
 """Columns of a study that are drawn, the others over the first."""
 
+
 def plot_wind_and_tip(
     time: ArrayLike, wind: ArrayLike, tip: ArrayLike, path: str | Path, *, title: str = ''
 ) -> Path:

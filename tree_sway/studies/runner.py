@@ -128,9 +128,7 @@ def batches(cases: list[Case], workers: int) -> list[list[Case]]:
     return [part for parts in found.values() for part in parts]
 
 
-def _outcomes(
-    cases: list[Case], folder: Path, workers: int
-) -> Iterator[TreeSwayError | None]:
+def _outcomes(cases: list[Case], folder: Path, workers: int) -> Iterator[TreeSwayError | None]:
     """Outcome of each case as it is finished: None, or what is wrong with it."""
     distributed = import_module('distributed')
     import_module('cryptography')  # of the keys that keep other users of this machine out

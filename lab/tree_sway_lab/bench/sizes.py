@@ -146,12 +146,19 @@ def gusts_and_turns(speed: float, seconds: float = _SECONDS, seed: int = 5) -> F
 def _run(simulator: SwaySimulator, winds: Floats) -> None:
     bank = simulator.bank.oscillators
     assert isinstance(bank, WindBasisBank)
-    _many(bank.record, bank.pace, bank.instance, winds)
+    _many(bank.record, bank.time_step, bank.instance, winds)
 
 
 @fused
-def _many(tables: Any, paces: Any, instances: Any, winds: Floats) -> None:
+def _many(tables: Any, time_steps: Any, instances: Any, winds: Floats) -> None:
     for k in range(len(winds)):
         step_instance(
-            tables[0], paces[0], instances[0], False, winds[k, 0], winds[k, 1], winds[k, 2], 0.7
+            tables[0],
+            time_steps[0],
+            instances[0],
+            False,
+            winds[k, 0],
+            winds[k, 1],
+            winds[k, 2],
+            0.7,
         )

@@ -77,7 +77,7 @@ def test_still_air_takes_energy_and_never_gives(stem, dt):
     assert np.diff(energy).max() < 0.02 * energy[0]
 
 
-def test_a_load_beyond_what_is_followed_is_held_and_counted(fork):
+def test_a_load_beyond_what_is_followed_is_clamped_and_counted(fork):
     bank = oscillators(fork(), model='branch')
     assert bank.advance(5.0, 0.0, 0.0, DRAG) == 0
     # However heavy the air, at first a branch does no more than go along with it.

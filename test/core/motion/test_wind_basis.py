@@ -158,7 +158,7 @@ def test_a_step_works_on_as_much_whatever_the_size():
     sizes = set()
     for tree in (crooked(1, n_branches=20), builtin_tree('broadleaf')):
         bank = SwaySimulator(tree, model=60).bank.oscillators
-        sizes.add((bank.record.nbytes, bank.pace.nbytes, bank.instance.nbytes))
+        sizes.add((bank.record.nbytes, bank.time_step.nbytes, bank.instance.nbytes))
     assert len(sizes) == 1
 
 

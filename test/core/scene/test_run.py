@@ -125,7 +125,7 @@ def test_no_wind_is_calm():
     assert made.wind_state == 'none'
 
 
-def test_the_wind_is_held_then_dies():
+def test_the_wind_is_clamped_then_dies():
     simulator = Recorder()
     made = running(simulator, timeout=0.5, decay=0.2)
     play(made, [1] * 60)
@@ -215,7 +215,7 @@ def test_a_spike_of_a_second_jerks_no_tree(seed):
     assert np.linalg.norm(np.diff(winds[300:], axis=0), axis=1).max() * 60.0 < 45.0
 
 
-def test_a_dropout_is_held_then_fades_and_the_wind_comes_back_without_a_step():
+def test_a_dropout_is_clamped_then_fades_and_the_wind_comes_back_without_a_step():
     simulator = Recorder()
     made = running(simulator)
     for tick in range(1, 60 * 30):

@@ -150,7 +150,7 @@ def test_every_tree_has_its_own_model(kinds):
 
 
 @pytest.mark.compiled  # without the compiler trees share no table
-def test_a_wind_beyond_the_table_is_held_and_counted(kinds):
+def test_a_wind_beyond_the_table_is_clamped_and_counted(kinds):
     stand = swaying([PlacedTree(f't{i}', kinds['fork'], x=i) for i in range(3)], **EVEN)
     assert stand.step((75.0, 0.0, 0.0), DT) == LOAD_CLAMPED
     assert stand.counts.clamped == 3

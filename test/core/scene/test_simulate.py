@@ -140,7 +140,7 @@ def test_faults_of_a_record_are_left_out(stem, bad):
     np.testing.assert_allclose(winds_of(stem, time, wind, 10.0), np.tile([5.0, 0, 0], (199, 1)))
 
 
-def test_a_gap_of_a_record_is_held_then_fades(stem):
+def test_a_gap_of_a_record_is_clamped_then_fades(stem):
     time = np.concatenate([np.arange(0.0, 5.0, 0.05), np.arange(25.0, 30.0, 0.05)])
     means = winds_of(stem, time, np.tile([8.0, 0.0, 0.0], (len(time), 1)), 10.0)[:, 0]
     np.testing.assert_allclose(means[:68], 8.0)

@@ -4,14 +4,14 @@
 Natural modes of the coupled tree as oscillators, on the loads of all branches.
 
 The model `full` steps all modes, a number of coordinates that many. The load is that of the state
-half a step on, and is held over the step.
+half a step on, and is constant over the step.
 
 **Implicit where it must be.** What a load does in a step is felt by the load itself: twigs in a
 storm point along the wind within a fraction of it. So the load is found again until it is that of
 the state it leads to; in light wind, where the last step's is near enough, once. What still turns
-further than a step can follow is held, and counted.
+further than a step can follow is clamped, and counted.
 
-Symbols: Phi mode shapes (N, m), held and passed by mode, (m, N), eta modal coordinates, Q moments
+Symbols: Phi mode shapes (N, m), stored by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
 """
 
@@ -92,7 +92,7 @@ class ModalBank(Branchwise):
         """Return the records of `load_fields`."""
         return self._loads
 
-    def set_pace(self, dt: float) -> None:
+    def set_time_step(self, dt: float) -> None:
         """Refill how the modes go on in a time step [s]."""
         one = np.ones(len(self.stiffness))
         self._fastest[0] = MOST_TURN / dt
@@ -101,7 +101,7 @@ class ModalBank(Branchwise):
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
-        self.set_pace(dt)
+        self.set_time_step(dt)
         block, lane = np.divmod(np.arange(len(self.branches)), LANES)
         velocity = self.half[:, 6] + self.half[:, 7]
         compliance = np.einsum('bm,m->b', self._participation, velocity)  # not by threads
@@ -111,7 +111,7 @@ class ModalBank(Branchwise):
         """
         Advance one step under a mean wind [m/s], with `drag.pressure` in [kg/m^3].
 
-        Returns how many loads were held at their limit, -1 if the motion is not finite.
+        Returns how many loads were clamped to their limit, -1 if the motion is not finite.
         """
         if not len(self.stiffness):
             return 0
@@ -187,11 +187,11 @@ class ModalBank(Branchwise):
 
 
 def add_force(state: Sequence[Floats], whole: Floats, force: Floats) -> None:
-    """Add what a force held over a step, (m,), does to displacement, rate and force, (3, m)."""
-    eta, rate, held = state
+    """Add what a constant force, (m,), does in a step to displacement, rate, force, (3, m)."""
+    eta, rate, total = state
     eta += (whole[2] + whole[3]) * force
     rate += (whole[6] + whole[7]) * force
-    held += force
+    total += force
 
 
 def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[str, Floats]:

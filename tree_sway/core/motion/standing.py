@@ -24,16 +24,16 @@ from tree_sway.core.motion.placing import place
 from tree_sway.core.motion.records import Branches, Heads, Segments
 from tree_sway.core.motion.simd import settle, write_past_caches
 from tree_sway.core.motion.wind_basis import step_instance
-from tree_sway.core.motion.wind_basis_force import Instances, Paces, Tables
+from tree_sway.core.motion.wind_basis_force import Instances, Tables, TimeSteps
 
 
 class Standing:
     """How a tree of a stand is placed."""
 
     kind: int  # its row among the tables
-    pace: int  # its row among the paces
+    time_step: int  # its row among the time_steps
     is_still: int  # whether it is not solved
-    is_held: int  # whether its last wind was held at the limit of its table
+    is_clamped: int  # whether its last wind was clamped to the limit of its table
     scale: float  # its height over that of its kind
     speed: float  # wind at its height over that at its kind's
     cosine: float  # of half the angle that it is turned by
@@ -53,7 +53,7 @@ _pressure = fused(pressure)
 @fused
 def step_standing(
     tables: Tables,
-    paces: Paces,
+    time_steps: TimeSteps,
     standing: Stand,
     instances: Instances,
     drag_laws: Floats,
@@ -62,17 +62,17 @@ def step_standing(
     """
     Step every tree that is not still, each with its mean wind over the step in [m/s], (t, 3).
 
-    Records are of `table_layout` (k,), `pace_layout` (p,), `STANDING` and `instance_layout` (t,);
-    C and N of each kind (k, 2).
+    Records are of `table_layout` (k,), `time_step_layout` (p,), `STANDING` and
+    `instance_layout` (t,); C and N of each kind (k, 2).
 
     Returns
     -------
     tuple
-        Trees whose wind was held at the limit of their table, and trees whose motion was not
+        Trees whose wind was clamped to the limit of their table, and trees whose motion was not
         finite and that go on from rest.
 
     """
-    held, restarted = 0, 0
+    clamped, restarted = 0, 0
     for t in range(len(standing)):
         here = standing[t]
         if here.is_still:
@@ -84,16 +84,16 @@ def step_standing(
         y = here.speed * (c * winds[t, 1] - s * winds[t, 0])
         z = here.speed * winds[t, 2]
         speed = math.sqrt(x * x + y * y + z * z)
-        is_held = False
+        is_clamped = False
         law = drag_laws[here.kind]
         load = _pressure(speed, law[0], law[1], law[2])
         if load * speed * speed > table.most_pressure:
-            is_held = True
+            is_clamped = True
             share = math.sqrt(table.most_pressure / load) / speed
             x, y, z = share * x, share * y, share * z
-        here.is_held = is_held
-        held += is_held
-        step_instance(table, paces[here.pace], instance, True, x, y, z, load)
+        here.is_clamped = is_clamped
+        clamped += is_clamped
+        step_instance(table, time_steps[here.time_step], instance, True, x, y, z, load)
         total = 0.0
         for i in range(len(instance.eta)):
             total += 0.0 * instance.eta[i] + 0.0 * instance.rate[i]
@@ -102,7 +102,7 @@ def step_standing(
             for i in range(len(instance.eta)):
                 instance.eta[i] = instance.rate[i] = instance.force[i] = 0.0
                 instance.middle[i] = instance.middle_rate[i] = 0.0
-    return held, restarted
+    return clamped, restarted
 
 
 @fused

@@ -5,8 +5,8 @@ The model `branch`, the paper's: every branch an oscillator of its own, on two a
 
 A branch meets its own wind with its own inertia, as if its base were at rest.
 
-The load is found once per step, at the state half a step on (exponential midpoint rule), and held
-over the step; what depends on the branch's own angle is corrected once within the step
+The load is found once per step, at the state half a step on (exponential midpoint rule), and
+constant over the step; what depends on the branch's own angle is corrected once within the step
 (`two_axis.step_branch`).
 """
 
@@ -76,19 +76,19 @@ class UncoupledBank(Branchwise):
         fill_propagator(self.inertia, self.damping, self.stiffness, dt, whole)
         fill_propagator(self.inertia, self.damping, self.stiffness, 0.5 * dt, half)
         fill_guards(self.inertia, self.stiffness, dt, LOAD_MAX, guard)
-        held = half[:, [0, 1, 2, 4, 5, 6]]
-        held[:, [2, 5]] += half[:, [3, 7]]
+        constant = half[:, [0, 1, 2, 4, 5, 6]]
+        constant[:, [2, 5]] += half[:, [3, 7]]
         block, lane = np.divmod(np.arange(n), LANES)
         flow = np.square(self.branches['damping_mode'][:, :2]).sum(axis=(1, 2)) / 2.0
-        for name, rows in (('whole', whole), ('half', held), ('guard', guard)):
+        for name, rows in (('whole', whole), ('half', constant), ('guard', guard)):
             self._banks[name][block, :, lane] = rows
-        self._banks['compliance'][block, lane] = flow * held[:, 5]
+        self._banks['compliance'][block, lane] = flow * constant[:, 5]
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
         Advance one step under a mean wind [m/s], with `drag.pressure` in [kg/m^3].
 
-        Returns how many loads were held at their limit, -1 if the motion is not finite.
+        Returns how many loads were clamped to their limit, -1 if the motion is not finite.
         """
         return int(self._compiled(wx, wy, wz, per_speed_squared))
 
@@ -142,9 +142,9 @@ def _advance(
     set_air(work, banks, wx, wy, wz)
     wind_forces(banks, per_speed_squared)
     own_loads(banks)
-    held, total = 0, 0.0
+    clamped, total = 0, 0.0
     for block in range(len(banks)):
-        held += _step(banks[block])
+        clamped += _step(banks[block])
     for b in range(n):
         here, j = banks[b // LANES], b % LANES
         for k in range(3):
@@ -152,7 +152,7 @@ def _advance(
         for k in range(2):
             x[2 * b + k], v[2 * b + k] = here.now_x[k, j], here.now_v[k, j]
             total += 0.0 * x[2 * b + k] + 0.0 * v[2 * b + k]
-    return held if total == 0.0 else -1
+    return clamped if total == 0.0 else -1
 
 
 @fused
@@ -172,14 +172,14 @@ def _to_middle(bank: Oscillators) -> None:
 
 @fused
 def _step(bank: Oscillators) -> int:
-    """Step sixteen branches; return how many loads were held."""
+    """Step sixteen branches; return how many loads were clamped."""
     x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard
-    held = 0
+    clamped = 0
     for j in range(LANES):
         x[0, j], x[1, j], v[0, j], v[1, j], over = step_branch(
             x[0, j], x[1, j], v[0, j], v[1, j], load[0, j], load[1, j], load[2, j],
             c[0, j], c[1, j], c[2, j], c[3, j], c[4, j], c[5, j], c[6, j], c[7, j],
             g[0, j], g[1, j], g[2, j],
         )  # fmt: skip
-        held += over
-    return held
+        clamped += over
+    return clamped

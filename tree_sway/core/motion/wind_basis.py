@@ -6,8 +6,8 @@ Model `wind_basis`: a tree as a few oscillators, driven by a table of all even w
 What a step costs does not depend on the tree's size. The coordinates are natural modes and what
 these lack of the tree's answers to wind (`reduction.basis`); each has its inertia, so that nothing
 follows a wind at once. The load is that of the state half a step on. It comes from a table
-(`wind_basis_table`) and not from the branches. A wind or a lean beyond the table is held
-at its limit, and counted as ``outside``.
+(`wind_basis_table`) and not from the branches. A wind or a lean beyond the table is
+clamped to its limit, and counted as ``outside``.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ from tree_sway.core.motion.wind_basis_force import (
     Instance,
     instance_layout,
     Instances,
-    Pace,
-    pace_layout,
-    Paces,
     Table,
     table_layout,
     Tables,
+    time_step_layout,
+    TimeStep,
+    TimeSteps,
     wind_force,
 )
 from tree_sway.core.motion.wind_basis_table import WindBasisTable
@@ -65,7 +65,7 @@ class WindBasisBank:
         self._filled_x = self.room_for_rotations()
         self._x = self._filled_x[: len(modal.shapes)]
         self.n_outside = 0
-        """Steps whose wind was held at the limit of the table."""
+        """Steps whose wind was clamped to the limit of the table."""
 
     def lay_out(self, n_modes: int) -> None:
         """Lay the table out for a number of coordinates, that of the largest tree of a stand."""
@@ -77,7 +77,7 @@ class WindBasisBank:
         for name in table_record.dtype.names or ():
             values = table_record[name]
             self.record[name][tuple(map(slice, values.shape))] = values
-        self.pace = np.zeros(1, dtype=pace_layout(n_modes))
+        self.time_step = np.zeros(1, dtype=time_step_layout(n_modes))
         self.instance = np.zeros(1, dtype=instance_layout(n_modes, count))
         filled = np.zeros((self.record['stiffness'].shape[1] - made, len(self.modal.shapes)))
         self.laid_shapes = shapes_together(np.vstack([self.all_shapes, filled]))
@@ -99,14 +99,14 @@ class WindBasisBank:
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
         self.modal.set_step(dt)
-        fill_pace(self.pace[0], self.modal)
+        fill_time_step(self.time_step[0], self.modal)
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `ModalBank.advance`."""
         return self.step_outside() if self._step(wx, wy, wz, per_speed_squared) else 0
 
     def step_outside(self) -> int:
-        """Count a step that was held at the limit of the table; -1 if the motion is not finite."""
+        """Count a step beyond the table, clamped to its limit; -1 if the motion is not finite."""
         self.n_outside += 1
         return 1 if np.isfinite(self.instance['eta']).all() else -1
 
@@ -114,23 +114,23 @@ class WindBasisBank:
         """Add what moments on the key rotations [N m] did over a step; how many were clamped."""
         m = self.modal.shapes.shape[1]
         force, clamped = self.modal.felt(moments)
-        instance, pace = self.instance[0], self.pace[0]
+        instance, time_step = self.instance[0], self.time_step[0]
         # The step was implicit in the damping of each coordinate.
-        force = force / (1.0 - instance['diagonal'][:m] * pace['half'][5, :m])
+        force = force / (1.0 - instance['diagonal'][:m] * time_step['half'][5, :m])
         state = [instance[name][:m] for name in ('eta', 'rate', 'force')]
-        add_force(state, pace['whole'][:, :m], force)
+        add_force(state, time_step['whole'][:, :m], force)
         return clamped
 
     @cached_property
     def _step(self) -> Callable[..., int]:
-        arrays = self.record, self.pace, self.instance
+        arrays = self.record, self.time_step, self.instance
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     def stepping(
         self, wind: Floats, max_wind: float, law: DragLaw
     ) -> Callable[[float, float, float], int]:
         """Return a step as one compiled call: `step_in_wind` of a wind's components in [m/s]."""
-        arrays = self.record, self.pace, self.instance, np.array([max_wind, *law]), wind
+        arrays = self.record, self.time_step, self.instance, np.array([max_wind, *law]), wind
         return partial(entry_of(step_in_wind, *arrays, 0.0, 0.0, 0.0), *arrays)
 
     @property
@@ -180,13 +180,13 @@ class WindBasisBank:
         self.modal.reset()
 
 
-def fill_pace(pace: np.void, modal: ModalBank) -> None:
-    """Take the coefficients of a time step over into a record of `pace_layout`."""
+def fill_time_step(time_step: np.void, modal: ModalBank) -> None:
+    """Take the coefficients of a time step over into a record of `time_step_layout`."""
     m = modal.shapes.shape[1]
-    pace['whole'], pace['half'] = 0.0, 0.0
-    pace['whole'][:, :m] = modal.whole.T
+    time_step['whole'], time_step['half'] = 0.0, 0.0
+    time_step['whole'][:, :m] = modal.whole.T
     half = modal.half
-    pace['half'][:, :m] = np.stack(
+    time_step['half'][:, :m] = np.stack(
         [half[:, 0], half[:, 1], half[:, 2] + half[:, 3],
          half[:, 4], half[:, 5], half[:, 6] + half[:, 7]]
     )  # fmt: skip
@@ -203,7 +203,7 @@ def step_branches(instance: np.void, modal: ModalBank) -> int:
 
 @fused
 def step_instance(
-    table: Table, pace: Pace, instance: Instance, is_held: bool,
+    table: Table, time_step: TimeStep, instance: Instance, is_clamped: bool,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     """
@@ -211,9 +211,9 @@ def step_instance(
 
     Parameters
     ----------
-    table, pace, instance
-        Records of `table_layout`, `pace_layout` and `instance_layout`.
-    is_held
+    table, time_step, instance
+        Records of `table_layout`, `time_step_layout` and `instance_layout`.
+    is_clamped
         Whether the table is followed beyond what it was made for.
     wx, wy, wz
         Mean wind over the step in [m/s].
@@ -223,7 +223,7 @@ def step_instance(
     Returns
     -------
     int
-        1 where the wind or the lean was beyond the table, and was held at its limit.
+        1 where the wind or the lean was beyond the table, and was clamped to its limit.
 
     """
     speed = math.sqrt(wx * wx + wy * wy + wz * wz)
@@ -231,10 +231,10 @@ def step_instance(
     if speed > 0.0:
         x, y, z = wx / speed, wy / speed, wz / speed
     push = per_speed_squared * speed * speed
-    instance.outside = 0 if is_held or push <= table.most_pressure else 1
+    instance.outside = 0 if is_clamped or push <= table.most_pressure else 1
     push = min(push, table.most_pressure)
     eta, rate, force, half, whole = (
-        instance.eta, instance.rate, instance.force, pace.half, pace.whole,
+        instance.eta, instance.rate, instance.force, time_step.half, time_step.whole,
     )  # fmt: skip
     middle, middle_rate, wanted = instance.middle, instance.middle_rate, instance.wanted
     before = 0.0
@@ -266,22 +266,24 @@ def step_instance(
         share = math.sqrt(most / energy)
         for i in range(len(eta)):
             eta[i], rate[i] = share * eta[i], share * rate[i]
-        instance.outside = 0 if is_held else 1
+        instance.outside = 0 if is_clamped else 1
     outside: int = instance.outside
     return outside
 
 
 @fused
 def _advance(
-    tables: Tables, paces: Paces, instances: Instances,
+    tables: Tables, time_steps: TimeSteps, instances: Instances,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
-    return step_instance(tables[0], paces[0], instances[0], False, wx, wy, wz, per_speed_squared)
+    return step_instance(
+        tables[0], time_steps[0], instances[0], False, wx, wy, wz, per_speed_squared
+    )
 
 
 @fused
 def step_in_wind(
-    tables: Tables, paces: Paces, instances: Instances, limits: Floats, kept: Floats,
+    tables: Tables, time_steps: TimeSteps, instances: Instances, limits: Floats, kept: Floats,
     x: float, y: float, z: float,
 ) -> int:  # fmt: skip
     """
@@ -289,7 +291,7 @@ def step_in_wind(
 
     Parameters
     ----------
-    tables, paces, instances
+    tables, time_steps, instances
         As of `step_instance`.
     limits
         Speed above which a wind is refused in [m/s], then C, N and C0 of a `DragLaw`, (4,).
@@ -301,7 +303,7 @@ def step_in_wind(
     Returns
     -------
     int
-        1 if the wind was refused, and 2 more where it was held at the limit of the table.
+        1 if the wind was refused, and 2 more where it was clamped to the limit of the table.
 
     """
     refused = 1
@@ -309,4 +311,6 @@ def step_in_wind(
         refused, kept[0], kept[1], kept[2] = 0, x, y, z
     x, y, z = kept[0], kept[1], kept[2]
     load = _pressure(math.sqrt(x * x + y * y + z * z), limits[1], limits[2], limits[3])
-    return refused + 2 * step_instance(tables[0], paces[0], instances[0], False, x, y, z, load)
+    return refused + 2 * step_instance(
+        tables[0], time_steps[0], instances[0], False, x, y, z, load
+    )

@@ -50,7 +50,7 @@ class Table:
     steep_damping: Annotated[Singles, 2, 'modes', 'modes']
 
 
-class Pace:
+class TimeStep:
     """How the coordinates of a table go on in a time step."""
 
     whole: Annotated[Floats, 8, 'modes']  # columns of the propagator of a step
@@ -77,7 +77,7 @@ class Instance:
 
 
 Tables = RecordsOf[Table]
-Paces = RecordsOf[Pace]
+TimeSteps = RecordsOf[TimeStep]
 Instances = RecordsOf[Instance]
 
 
@@ -93,9 +93,9 @@ def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
 
 
 @cache
-def pace_layout(n_modes: int) -> np.dtype[np.void]:
-    """Lay out `Pace`."""
-    return np.dtype(fields_of(Pace, modes=table_layout(n_modes, 0)['stiffness'].shape[0]))
+def time_step_layout(n_modes: int) -> np.dtype[np.void]:
+    """Lay out `TimeStep`."""
+    return np.dtype(fields_of(TimeStep, modes=table_layout(n_modes, 0)['stiffness'].shape[0]))
 
 
 @cache
@@ -173,7 +173,7 @@ def wind_force(
     level, slant, pole = 1.0 - steep, min(max(z, -STEEP), STEEP), 1 if z > 0.0 else 0
     e, f = level * (1.0 - share), level * share
     a, b, c, d = e * (1.0 - up), e * up, f * (1.0 - up), f * up
-    turned, damped, off, paced = scratch[0], scratch[1], scratch[2], scratch[3]
+    turned, damped, off, rates = scratch[0], scratch[1], scratch[2], scratch[3]
     moving = push / per_speed_squared if per_speed_squared > 0.0 else 0.0
     for i in range(m):
         off[i] = eta[i] - (1.0 - share) * (
@@ -181,7 +181,7 @@ def wind_force(
         ) - share * (
             (1.0 - up) * table.standing[second, j, i] + up * table.standing[second, j + 1, i]
         )  # fmt: skip
-        paced[i] = rate[i]
+        rates[i] = rate[i]
         moving += table.motion[i] * rate[i] * rate[i]
         force[i] = (
             a * table.load[first, j, i] + b * table.load[first, j + 1, i]
@@ -195,9 +195,9 @@ def wind_force(
     a4, b4, c4, d4 = np.float32(a), np.float32(b), np.float32(c), np.float32(d)
     e4, f4 = np.float32(e * slant), np.float32(f * slant)
     for k in range(n_felt):
-        moved, pace, slow = off[k], paced[k], np.float32(eta[k])
+        moved, moving_at, slow = off[k], rates[k], np.float32(eta[k])
         am, bm, cm, dm = a4 * moved, b4 * moved, c4 * moved, d4 * moved
-        av, bv, cv, dv = a4 * pace, b4 * pace, c4 * pace, d4 * pace
+        av, bv, cv, dv = a4 * moving_at, b4 * moving_at, c4 * moving_at, d4 * moving_at
         em, fm = e4 * slow, f4 * slow
         for i in range(m):
             turned[i] += (
@@ -217,10 +217,10 @@ def wind_force(
     if steep > 0.0:
         s4 = np.float32(steep)
         for k in range(n_felt):
-            moved, pace = s4 * np.float32(eta[k]), s4 * paced[k]
+            moved, moving_at = s4 * np.float32(eta[k]), s4 * rates[k]
             for i in range(m):
                 turned[i] += moved * table.steep_turning[pole, k, i]
-                damped[i] += pace * table.steep_damping[pole, k, i]
+                damped[i] += moving_at * table.steep_damping[pole, k, i]
             diagonal[k] += drag * steep * table.steep_damping[pole, k, k]
     for i in range(m):
         force[i] = push * (force[i] + turned[i]) + drag * damped[i]

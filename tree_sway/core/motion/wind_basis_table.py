@@ -10,7 +10,7 @@ real-time animation of trees*, Computer Graphics Forum 28(2), 533-540). Here it 
 harmonics Y.
 
 To it comes what the tree's own motion changes. In steady winds of an azimuth, calm to storm, a
-tree is held in poses e, each further over than the one before; its lean, a mean of its
+tree is at rest in poses e, each further over than the one before; its lean, a mean of its
 coordinates, says between which two of them it is. The table has the load there, its slope by the
 coordinates (the load turns and leans with the tree) and by their rates (aerodynamic damping):
 
@@ -36,7 +36,7 @@ from tree_sway.core.motion.static_answers import WindMoments
 from tree_sway.core.motion.wind_basis_force import N_AZIMUTHS, N_LEVELS, table_layout
 
 SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
-"""Winds in [m/s] that the tree is held in at the levels of the table."""
+"""Steady winds in [m/s] at the levels of the table."""
 
 BEYOND = 1.1
 """Dynamic pressure up to which the table goes on, over that of the last of `SPEEDS`."""
@@ -159,7 +159,7 @@ class WindBasisTable:
         self, at: Floats, push: float, further: float, ahead: Floats, turning: Floats
     ) -> Floats:
         """
-        Find the coordinates (m,) of a tree that is held by a further dynamic pressure.
+        Find the coordinates (m,) of a tree at rest under a further dynamic pressure.
 
         From where a pressure ``push`` [kg/m/s^2] holds it on, by Broyden's method (Broyden 1965,
         Mathematics of Computation 19, 577-593) with the slopes there, as far as that leads.

@@ -19,8 +19,8 @@ cos = 1 + t c: A = s + c + t s c, B = (s - c) / sinc, E = (A + 2 B) / t.
 
 **Series.** s and c are polynomials in t (Chebyshev fits, degree 4 after their first term), right
 to 3e-9 up to the guard; no root, sine or cosine is taken.
-**Guard.** For these terms (x, y) is held within sinc >= 0.3 (2.36 rad): beyond it they are the
-circle's. The load is held at |W| <= s_max k1 (counted by the caller), the whole moment at 1.5
+**Guard.** For these terms (x, y) is clamped to sinc >= 0.3 (2.36 rad): beyond it they are the
+circle's. The load is clamped to |W| <= s_max k1 (counted by the caller), the whole moment at 1.5
 s_max k1, and the gyroscopic term is left out where w h >= 0.5, where a step sees no ellipse. A
 bounded moment on an exact, stable propagator is a bounded motion, for any wind and any step. s_max
 = 3 / (w h)^2 between 0.8 and 10: up to there one corrector contracts, and a steady load bends the
@@ -41,7 +41,7 @@ Floats = NDArray[np.float64]
 T_MAX = 5.5528  # square of the angle [rad^2] at which sinc = 0.3
 LOAD_MAX = 3.0  # load over stiffness that is followed at w h = 1, |W| / k1 [rad]
 LOAD_FINE, LOAD_COARSE = 10.0, 0.8  # bounds on it at fine and at coarse steps
-MOMENT_MARGIN = 1.5  # the whole moment is held at this many times s_max k1
+MOMENT_MARGIN = 1.5  # the whole moment is clamped to this number of times s_max k1
 GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out
 
 
@@ -116,9 +116,9 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
 @fused
 def limit_load(wb: float, w1: float, w2: float, limit: float) -> tuple[float, float, float, int]:
     """
-    Hold the length of a load at a limit in [N m]; the last value is whether it was held.
+    Hold the length of a load at a limit in [N m]; the last value is whether it was clamped.
 
-    What is not a number, or so large that its square is not, counts as held and pulls nowhere.
+    What is not a number, or so large that its square is not, counts as clamped and pulls nowhere.
     """
     square = wb * wb + w1 * w1 + w2 * w2
     if square <= limit * limit:
@@ -135,7 +135,7 @@ def moment(
     x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
     gyro_inertia: float, limit: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return true force and gyroscopic term together in [N m], held at a limit."""
+    """Return true force and gyroscopic term together in [N m], clamped to a limit."""
     mx, my = true_force(x, y, wb, w1, w2)
     ax, ay = gyroscopic(x, y, vx, vy)
     mx += gyro_inertia * ax
@@ -167,11 +167,11 @@ def step_branch(
 
     Returns
     -------
-    x, y, vx, vy, held
-        State at the end of the step, and 1 where the load was held.
+    x, y, vx, vy, clamped
+        State at the end of the step, and 1 where the load was clamped.
 
     """
-    wb, w1, w2, held = limit_load(wb, w1, w2, load_limit)
+    wb, w1, w2, clamped = limit_load(wb, w1, w2, load_limit)
     mx, my = moment(x, y, vx, vy, wb, w1, w2, gyro_inertia, moment_limit)
     px, py = c0 * x + c1 * vx + c2 * mx, c0 * y + c1 * vy + c2 * my
     ux, uy = c4 * x + c5 * vx + c6 * mx, c4 * y + c5 * vy + c6 * my
@@ -179,7 +179,7 @@ def step_branch(
         px + c3 * mx, py + c3 * my, ux + c7 * mx, uy + c7 * my, wb, w1, w2,
         gyro_inertia, moment_limit,
     )  # fmt: skip
-    return px + c3 * mx, py + c3 * my, ux + c7 * mx, uy + c7 * my, held
+    return px + c3 * mx, py + c3 * my, ux + c7 * mx, uy + c7 * my, clamped
 
 
 @fused

@@ -120,8 +120,8 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
 
 def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int) -> Modes:
     """Keep a number of the modes by which turbulence moves the tips most, the slowest first."""
-    kept = np.sort(np.argsort(-_driven(modes, loads, moved), kind='stable')[:count])
-    return Modes(modes.circular[kept], np.ascontiguousarray(modes.shapes[:, kept]))
+    chosen = np.sort(np.argsort(-_driven(modes, loads, moved), kind='stable')[:count])
+    return Modes(modes.circular[chosen], np.ascontiguousarray(modes.shapes[:, chosen]))
 
 
 def by_importance(modes: Modes, loads: Floats, moved: Floats) -> Modes:

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.motion.exported_table import table_of
 from tree_sway.core.motion.standing import step_standing
-from tree_sway.core.motion.wind_basis_force import instance_layout, pace_layout
+from tree_sway.core.motion.wind_basis_force import instance_layout, time_step_layout
 from tree_sway.core.oscillators.propagator import propagator
 from tree_sway.core.scene.standing_rows import own_steps, standing_rows
 from tree_sway.core.wind.gust_travel import GustHistory
@@ -74,8 +74,8 @@ class ReceivedScene:
         self._laws = np.array([kind.drag_law for kind in kinds])
         self._kind_of = np.asarray(kind_of)
         found, step = own_steps(self._kind_of, places[:, 4], dt)
-        self._paces = np.zeros(len(found), dtype=pace_layout(m))
-        for own, (number, own_dt) in zip(self._paces, found, strict=True):
+        self._time_steps = np.zeros(len(found), dtype=time_step_layout(m))
+        for own, (number, own_dt) in zip(self._time_steps, found, strict=True):
             arrays, size = kinds[number].arrays, self._sizes[number]
             for name, span in (('whole', own_dt), ('half', 0.5 * own_dt)):
                 rows = propagator(1.0, arrays['own_damping'], arrays['stiffness'], span).T
@@ -85,7 +85,7 @@ class ReceivedScene:
                     )
                 own[name][:, :size] = rows
         self._standing = standing_rows(self._kind_of, places, speeds)
-        self._standing['pace'] = step
+        self._standing['time_step'] = step
         self._gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
         self._states = [kind.arrays['state'].astype(np.float64) for kind in kinds]
         self._corrections = [kind.arrays['correction'].astype(np.float64) for kind in kinds]
@@ -95,7 +95,7 @@ class ReceivedScene:
     def step(self, wind: ArrayLike) -> int:
         """Advance by a step of mean wind (3,) in [m/s]; count trees beyond their tables' edge."""
         felt = self._gusts.push(wind, self._dt)
-        arrays = self.tables, self._paces, self._standing, self.instances, self._laws
+        arrays = self.tables, self._time_steps, self._standing, self.instances, self._laws
         return step_standing(*arrays, felt)[0]
 
     def coordinates(self, tree: int) -> Floats:

@@ -26,8 +26,8 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.records import zeros_in_lines
 from tree_sway.core.motion.standing import place_standing, STANDING, step_standing
-from tree_sway.core.motion.wind_basis import fill_pace, WindBasisBank
-from tree_sway.core.motion.wind_basis_force import instance_layout, pace_layout
+from tree_sway.core.motion.wind_basis import fill_time_step, WindBasisBank
+from tree_sway.core.motion.wind_basis_force import instance_layout, time_step_layout
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.standing_rows import own_steps, standing_rows
@@ -205,7 +205,7 @@ class SceneSimulator:
         clamped = restarted = 0
         if self._models:
             clamped, restarted = step_standing(
-                self._tables, self._paces, self._standing, self._instances, self._laws, felt
+                self._tables, self._time_steps, self._standing, self._instances, self._laws, felt
             )
         for number, simulator in self.own.items():
             status |= simulator.step(felt[number].tolist(), dt)
@@ -261,7 +261,7 @@ class SceneSimulator:
             bank.lay_out(n_modes)
         layout = instance_layout(n_modes, COUNT[self.settings.degree])
         self._instances = np.zeros(len(self.names) if banks else 0, dtype=layout)
-        self._paces = np.zeros(0, dtype=pace_layout(n_modes))
+        self._time_steps = np.zeros(0, dtype=time_step_layout(n_modes))
         self._tables = np.concatenate([bank.record for bank in banks]) if banks else _NO_TABLES
         self._laws = np.array([model.drag_law for model in self._models])
         self._scratch = []
@@ -352,12 +352,12 @@ class SceneSimulator:
         """Fill the coefficients of every kind and scale that there is, to a hundredth."""
         rows = np.flatnonzero(self._is_shared)
         found, number = own_steps(self._standing['kind'][rows], self._standing['scale'][rows], dt)
-        self._paces = np.zeros(len(found), dtype=self._paces.dtype)
-        for pace, (kind, own_dt) in zip(self._paces, found, strict=True):
+        self._time_steps = np.zeros(len(found), dtype=self._time_steps.dtype)
+        for time_step, (kind, own_dt) in zip(self._time_steps, found, strict=True):
             modal = self._banks[kind].modal
-            modal.set_pace(own_dt)
-            fill_pace(pace, modal)
-        self._standing['pace'][rows] = number
+            modal.set_time_step(own_dt)
+            fill_time_step(time_step, modal)
+        self._standing['time_step'][rows] = number
         self._dt = dt
 
 

@@ -89,9 +89,9 @@ def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Float
         projections.append(tips / size)
     moved = np.hstack(projections)
     squares, mixes = np.linalg.eigh(moved.T @ moved)
-    kept = np.flatnonzero(squares > 1e-14 * squares[-1])[::-1]
-    mixes = mixes[:, kept] / np.sqrt(np.maximum(squares[kept], np.finfo(np.float64).tiny))
-    mixes *= np.sign(mixes[np.abs(mixes).argmax(axis=0), np.arange(len(kept))])
+    chosen = np.flatnonzero(squares > 1e-14 * squares[-1])[::-1]
+    mixes = mixes[:, chosen] / np.sqrt(np.maximum(squares[chosen], np.finfo(np.float64).tiny))
+    mixes *= np.sign(mixes[np.abs(mixes).argmax(axis=0), np.arange(len(chosen))])
     tips = (moved @ mixes).reshape(len(joints), 3, -1)
     return np.hstack(shapes) @ mixes, tip_moments(joints, tips).T
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What is kept of a tree that was set up, so that it sways sooner the next time."""
+"""The cache of a tree that was set up, so that it sways sooner the next time."""
 
 from __future__ import annotations
 

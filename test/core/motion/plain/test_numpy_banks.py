@@ -74,15 +74,15 @@ def test_a_tree_of_many_twigs_agrees(model):
 
 def test_they_agree_where_loads_are_held(tree):
     sim, twin = pair(tree, 'branch')
-    held = 0
+    clamped = 0
     for k in range(20):
         wind = [145.0, 30.0 * np.sin(k), 5.0]
         status = sim.step(wind, 1 / 60)
         assert twin.step(wind, 1 / 60) == status
-        held += status == LOAD_CLAMPED
+        clamped += status == LOAD_CLAMPED
     # Beyond a radian the kernel's polynomials are right to 3e-9 of a sine, not to rounding.
     assert np.abs(sim.place() - twin.place()).max() < 1e-6
-    assert held > 0
+    assert clamped > 0
     assert sim.counts == twin.counts
 
 

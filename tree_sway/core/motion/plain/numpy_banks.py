@@ -64,15 +64,15 @@ class NumpyUncoupledBank(UncoupledBank):
         return self._step(x, v, load)
 
     def _step(self, x: Floats, v: Floats, load: Floats) -> int:
-        """Step every oscillator, predictor and corrector; returns how many loads were held."""
+        """Step every oscillator, predictor and corrector; returns how many loads were clamped."""
         gyro, load_limit, moment_limit = self._guard.T
         with np.errstate(all='ignore'):
             size = np.sqrt(np.einsum('bk,bk->b', load, load))
-            held = ~(size <= load_limit)
+            clamped = ~(size <= load_limit)
             load = load.copy()
-            load[held] *= np.where(np.isfinite(size[held]), load_limit[held] / size[held], 0.0)[
-                :, None
-            ]
+            load[clamped] *= np.where(
+                np.isfinite(size[clamped]), load_limit[clamped] / size[clamped], 0.0
+            )[:, None]
         load[~np.isfinite(load).all(axis=1)] = 0.0
         c = self._whole[:, :, None]
         now = two_axis_moment(x, v, load, gyro, moment_limit)
@@ -84,7 +84,7 @@ class NumpyUncoupledBank(UncoupledBank):
         x[:], v[:] = ahead_x + c[:, 3] * then, ahead_v + c[:, 7] * then
         if not (np.isfinite(x).all() and np.isfinite(v).all()):
             return -1
-        return int(held.sum())
+        return int(clamped.sum())
 
 
 class NumpyModalBank(ModalBank):

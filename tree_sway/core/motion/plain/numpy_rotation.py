@@ -63,7 +63,7 @@ def within_guard(e: Floats) -> Floats:
 
 def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: ArrayLike) -> Floats:
     """
-    Moment of a force on the two axes of each branch, with the gyroscopic term, held at a limit.
+    Moment of a force on the two axes of each branch, with the gyroscopic term, clamped to a limit.
 
     The formulas of `oscillators.two_axis`, with sines and cosines.
 
