@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.motion.harmonics import COUNT
+from tree_sway.core.motion.records import table_layout
 from tree_sway.core.motion.wind_basis import WindBasisBank
-from tree_sway.core.motion.wind_basis_force import table_layout
 
 LEFT_OUT = 1e-2
 """

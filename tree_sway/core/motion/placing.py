@@ -22,9 +22,17 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Singles
 from tree_sway.core.kernel import fused
-from tree_sway.core.motion.records import Branches, Head, Heads, LANES, Segment, Segments
+from tree_sway.core.motion.records import (
+    Branches,
+    Head,
+    Heads,
+    instance_layout,
+    Instances,
+    LANES,
+    Segment,
+    Segments,
+)
 from tree_sway.core.motion.simd import add_shapes, put_four, take_four, TOGETHER
-from tree_sway.core.motion.wind_basis_force import instance_layout, Instances
 from tree_sway.core.rotation import (
     half_angle,
     half_angle_near,

@@ -21,10 +21,9 @@ from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf, Singles
 from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.motion.placing import place
-from tree_sway.core.motion.records import Branches, Heads, Segments
+from tree_sway.core.motion.records import Branches, Heads, Instances, Segments, Tables, TimeSteps
 from tree_sway.core.motion.simd import settle, write_past_caches
 from tree_sway.core.motion.wind_basis import step_instance
-from tree_sway.core.motion.wind_basis_force import Instances, Tables, TimeSteps
 
 
 class Standing:

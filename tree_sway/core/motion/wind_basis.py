@@ -25,8 +25,7 @@ from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.modal import add_force, ModalBank
 from tree_sway.core.motion.placing import expand
-from tree_sway.core.motion.simd import shapes_together, TOGETHER
-from tree_sway.core.motion.wind_basis_force import (
+from tree_sway.core.motion.records import (
     Instance,
     instance_layout,
     Instances,
@@ -36,8 +35,9 @@ from tree_sway.core.motion.wind_basis_force import (
     time_step_layout,
     TimeStep,
     TimeSteps,
-    wind_force,
 )
+from tree_sway.core.motion.simd import shapes_together, TOGETHER
+from tree_sway.core.motion.wind_basis_force import wind_force
 from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
 _pressure = fused(pressure)

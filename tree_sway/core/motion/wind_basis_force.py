@@ -4,105 +4,17 @@
 
 from __future__ import annotations
 
-from functools import cache
 import math
-from typing import Annotated
 
 import numpy as np
 
-from tree_sway.core.arrays import fields_of, Floats, RecordsOf, Singles
+from tree_sway.core.arrays import Floats, Singles
 from tree_sway.core.kernel import fused
 from tree_sway.core.motion.harmonics import fill_harmonics
-
-N_AZIMUTHS, N_LEVELS = 24, 7
-"""Azimuths of the wind and levels of the lean in the table."""
+from tree_sway.core.motion.records import N_AZIMUTHS, N_LEVELS, Table
 
 STEEP = math.sin(math.radians(45.0))
 """Sine of the elevation from which on a wind goes over to one straight up or down."""
-
-_MODES_TOGETHER = 8
-_LEAST_MODES = 24
-
-
-class Table:
-    """
-    Table of one tree, by azimuth, level of the lean, and coordinate.
-
-    What a step reads whole is in single precision.
-    """
-
-    n_modes: int
-    degree: int
-    levels: Annotated[Floats, N_AZIMUTHS, N_LEVELS]  # leans of a tree in steady winds, rising
-    most_pressure: float  # up to which the table holds [kg/m/s^2]
-    most_energy: float  # of strain and motion, twice, up to which a wind takes it [J]
-    stiffness: Annotated[Floats, 'modes']
-    motion: Annotated[Floats, 'modes']  # mean square of what the wind meets moves at
-    harmonics: Annotated[Floats, 'harmonics', 'modes']
-    standing: Annotated[Floats, N_AZIMUTHS, N_LEVELS, 'modes']  # coordinates in steady winds
-    amount: Annotated[Floats, N_AZIMUTHS, 'modes']  # weights of the coordinates in the lean
-    load: Annotated[Floats, N_AZIMUTHS, N_LEVELS, 'modes']
-    # By the coordinate that moves, then the one that is loaded:
-    lean: Annotated[Singles, N_AZIMUTHS, 'modes', 'modes']
-    turning: Annotated[Singles, N_AZIMUTHS, N_LEVELS, 'modes', 'modes']
-    damping: Annotated[Singles, N_AZIMUTHS, N_LEVELS, 'modes', 'modes']
-    steep_turning: Annotated[Singles, 2, 'modes', 'modes']  # in winds straight down and up
-    steep_damping: Annotated[Singles, 2, 'modes', 'modes']
-
-
-class TimeStep:
-    """How the coordinates of a table go on in a time step."""
-
-    whole: Annotated[Floats, 8, 'modes']  # columns of the propagator of a step
-    half: Annotated[Floats, 6, 'modes']  # of half a step under a constant load
-
-
-class Instance:
-    """State of one tree on a table, and scratch."""
-
-    outside: int  # whether the last wind was outside of the table
-    eta: Annotated[Floats, 'modes']
-    rate: Annotated[Floats, 'modes']
-    force: Annotated[Floats, 'modes']
-    wind: Annotated[Floats, 3]  # [m/s]
-    pressure: float  # drag per area and speed squared [kg/m^3]
-    middle: Annotated[Floats, 'modes']
-    middle_rate: Annotated[Floats, 'modes']
-    wanted: Annotated[Floats, 'modes']
-    diagonal: Annotated[Floats, 'modes']
-    scratch: Annotated[Singles, 4, 'modes']
-    values: Annotated[Floats, 'harmonics']
-    left_out: int  # coordinates, the last ones, that are not shown and not felt
-    faded: Annotated[Floats, 'modes']  # share of each that is not shown
-
-
-Tables = RecordsOf[Table]
-TimeSteps = RecordsOf[TimeStep]
-Instances = RecordsOf[Instance]
-
-
-@cache
-def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
-    """
-    Lay out `Table`; coordinates are filled up to a multiple of eight, at least 24.
-
-    One layout serves most trees, so that the kernel is compiled once.
-    """
-    m = max(_LEAST_MODES, -(-n_modes // _MODES_TOGETHER) * _MODES_TOGETHER)
-    return np.dtype(fields_of(Table, modes=m, harmonics=n_harmonics))
-
-
-@cache
-def time_step_layout(n_modes: int) -> np.dtype[np.void]:
-    """Lay out `TimeStep`."""
-    return np.dtype(fields_of(TimeStep, modes=table_layout(n_modes, 0)['stiffness'].shape[0]))
-
-
-@cache
-def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
-    """Lay out `Instance`."""
-    m = table_layout(n_modes, n_harmonics)['stiffness'].shape[0]
-    return np.dtype(fields_of(Instance, modes=m, harmonics=n_harmonics))
 
 
 @fused

@@ -32,8 +32,8 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway.core.motion.modal import ModalBank
+from tree_sway.core.motion.records import N_AZIMUTHS, N_LEVELS, table_layout
 from tree_sway.core.motion.static_answers import WindMoments
-from tree_sway.core.motion.wind_basis_force import N_AZIMUTHS, N_LEVELS, table_layout
 
 SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
 """Steady winds in [m/s] at the levels of the table."""

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.motion.exported_table import table_of
+from tree_sway.core.motion.records import instance_layout, time_step_layout
 from tree_sway.core.motion.standing import step_standing
-from tree_sway.core.motion.wind_basis_force import instance_layout, time_step_layout
 from tree_sway.core.oscillators.propagator import propagator
 from tree_sway.core.scene.standing_rows import own_steps, standing_rows
 from tree_sway.core.wind.gust_travel import GustHistory

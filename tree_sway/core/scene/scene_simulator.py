@@ -24,10 +24,9 @@ from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import array_to_fill, refuse_time_step, three_numbers
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.harmonics import COUNT
-from tree_sway.core.motion.records import zeros_in_lines
+from tree_sway.core.motion.records import instance_layout, time_step_layout, zeros_in_lines
 from tree_sway.core.motion.standing import place_standing, STANDING, step_standing
 from tree_sway.core.motion.wind_basis import fill_time_step, WindBasisBank
-from tree_sway.core.motion.wind_basis_force import instance_layout, time_step_layout
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.standing_rows import own_steps, standing_rows
