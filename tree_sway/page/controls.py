@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from tree_sway.core.checks import within
-from tree_sway.core.simulator.touch import STIFFEST
+from tree_sway.core.simulator.settings import STIFFEST
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.parameters.parameter import Parameter
 

@@ -89,7 +89,7 @@ def test_every_model_moves_by_the_same_and_the_foot_holds_the_force(tree, model)
 
 @pytest.mark.compiled  # without the compiler there is no table
 def test_a_pull_moves_a_tree_further_than_any_wind_may():
-    tree, segment, force = kind_called('leaning'), 7, np.array([4000.0, 1200.0, 0.0])
+    tree, segment, force = kind_called('leaning'), 7, np.array([8000.0, 2400.0, 0.0])
     table, truth = (make_simulator(tree, WOOD, model=each) for each in (60, 'full'))
     for _ in range(round(5.0 / DT)):
         for sim in (table, truth):

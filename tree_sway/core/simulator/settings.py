@@ -25,6 +25,9 @@ MODELS = ('auto', 'branch', 'full')
 MOST = 1000
 """Coordinates that may be asked for."""
 
+STIFFEST = 1e7
+"""Stiffness in [N/m] up to which a spring may pull at a segment."""
+
 ENRICHED = ('none', 'stem', 'needed', 'carriers', 'all')
 """Which branches may get further shapes."""
 

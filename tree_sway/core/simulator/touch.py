@@ -19,15 +19,13 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_read, within
 from tree_sway.core.simulator.bank import Bank
+from tree_sway.core.simulator.settings import STIFFEST
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
 LONGEST_PUSH = 3600.0
 """Longest time in [s] that a push may be asked to last."""
-
-STIFFEST = 1e7
-"""Stiffness in [N/m] up to which a spring may pull."""
 
 MOST_PUSHES = 64
 """Segments of a tree that are pushed at once, at most."""
