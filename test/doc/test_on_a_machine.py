@@ -46,8 +46,12 @@ PROMISED = {
     'record': r'[1-9]\d* of /segment_poses',
     'relay': r'relaying the wind of',
     'study': r'\d+ cases in',
+    'calibrate': r'modulus .* GPa',
+    'render': r'\d+ pictures',
 }
 """What each command says once it does what it is for."""
+RECORDS = ROOT / 'examples' / 'data'
+"""A scanned tree, and what a phone in it has measured."""
 NEEDS_A_TREE = ('listen', 'record')
 """Commands that hear a tree which somebody else runs."""
 
@@ -166,13 +170,25 @@ def test_its_commands_do_what_they_promise(
     if 'serial:' in text:
         pytest.importorskip('serial', reason='pyserial is not installed')
         stand_ins['serial:/dev/ttyUSB0'] = 'serial:' + request.getfixturevalue('instrument')
-    if 'tcp/' in text:
+    if 'there:8765' in text:
         with socket.create_server(('127.0.0.1', 0)) as free:
             port = free.getsockname()[1]
+        token = machine.folder / 'token'
+        token.touch(0o600)
+        token.write_text('of-two-sites-on-one-machine', encoding='utf-8')
         stand_ins |= {
-            'tcp/0.0.0.0:7447': f'tcp/127.0.0.1:{port}',
-            'tcp/there:7447': f'tcp/127.0.0.1:{port}',
+            '--address 0.0.0.0': f'--port {port}',
+            ' --certificate site.pem --private-key site.key': '',
+            'https://there:8765/': f'http://127.0.0.1:{port}/',
         }
+    if 'oak.yaml' in text:
+        made = 'tree-sway grow --species oak --height 12 --seed 2 -o oak.yaml'
+        if 'phyphox' in page.read_text(encoding='utf-8'):
+            made = f'tree-sway convert {RECORDS / "forest_tree.treeqsm.txt"} -o oak.yaml'
+            stand_ins['http://192.168.0.42:8080 --seconds 2'] = str(RECORDS / 'pull.phyphox.csv')
+        subprocess.run(
+            ['bash', '-c', SHELL + made], cwd=machine.folder, env=machine.environment, check=True
+        )
     if 'avenue.yaml' in text:
         (stand,) = (each for _, each in blocks(page, 'python') if 'avenue.yaml").write' in each)
         written = [sys.executable, '-c', stand]
