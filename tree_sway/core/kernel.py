@@ -43,6 +43,26 @@ def fused(function: _F) -> _F:
     return _compiled(function, fastmath=_LOOSE, forceinline=True)
 
 
+def inlined(function: _F) -> _F:
+    """Compile like `fused`, as lines of each caller, so that a loop of calls becomes vectors."""
+    return _compiled(function, fastmath=_LOOSE, inline='always')
+
+
+def part(function: _F) -> _F:
+    """
+    Let kernels call a function, which is compiled like `fused` as a part of each.
+
+    From elsewhere it is the plain function: what Python may call takes a third longer to compile.
+    """
+    function.py_func = function  # type: ignore[attr-defined]
+    if not WHY_PLAIN:
+        from numba.extending import register_jitable
+
+        options = {'error_model': 'numpy', 'nogil': True, 'no_cfunc_wrapper': True}
+        register_jitable(fastmath=_LOOSE, forceinline=True, **options)(function)
+    return function
+
+
 def _compiled(function: _F, **options: Any) -> _F:
     if WHY_PLAIN:
         function.py_func = function  # type: ignore[attr-defined]

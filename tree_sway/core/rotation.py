@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from tree_sway.core.kernel import fused
+from tree_sway.core.kernel import part
 
 SERIES_LIMIT = 2.25
 """Square of half an angle in [rad^2] up to which `half_angle_series` holds: 1.5 rad."""
@@ -26,7 +26,7 @@ _S0, _S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8 = (
 )
 
 
-@fused
+@part
 def half_angle_series(t: float) -> tuple[float, float]:
     """Return what `half_angle` does, by series alone, for t up to `SERIES_LIMIT`."""
     cosine = _C8 * t + _C7
@@ -41,7 +41,7 @@ def half_angle_series(t: float) -> tuple[float, float]:
     return cosine, sinc
 
 
-@fused
+@part
 def half_angle_near(t: float) -> tuple[float, float]:
     """Return what `half_angle` does, for t up to `NEAR_LIMIT` (error below 3e-14)."""
     cosine, sinc = _C4 * t + _C3, _S4 * t + _S3
@@ -51,7 +51,7 @@ def half_angle_near(t: float) -> tuple[float, float]:
     return cosine, sinc
 
 
-@fused
+@part
 def half_angle(t: float) -> tuple[float, float]:
     """
     Cosine of ``sqrt(t)`` and sine over it, t the square of half the angle in [rad^2].
@@ -64,7 +64,7 @@ def half_angle(t: float) -> tuple[float, float]:
     return half_angle_series(t)
 
 
-@fused
+@part
 def quaternion(rx: float, ry: float, rz: float) -> tuple[float, float, float, float]:
     """Return the unit quaternion of a rotation vector in [rad]."""
     hx, hy, hz = 0.5 * rx, 0.5 * ry, 0.5 * rz
@@ -72,7 +72,7 @@ def quaternion(rx: float, ry: float, rz: float) -> tuple[float, float, float, fl
     return c, s * hx, s * hy, s * hz
 
 
-@fused
+@part
 def product(
     aw: float, ax: float, ay: float, az: float, bw: float, bx: float, by: float, bz: float
 ) -> tuple[float, float, float, float]:
@@ -85,7 +85,7 @@ def product(
     )
 
 
-@fused
+@part
 def rotated(
     w: float, x: float, y: float, z: float, vx: float, vy: float, vz: float
 ) -> tuple[float, float, float]:
@@ -100,7 +100,7 @@ def rotated(
     )
 
 
-@fused
+@part
 def turned(
     rx: float, ry: float, rz: float, vx: float, vy: float, vz: float
 ) -> tuple[float, float, float]:

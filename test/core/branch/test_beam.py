@@ -94,8 +94,8 @@ def test_tip_and_frequency_are_those_of_the_euler_bernoulli_beam(stem, taper):
     chord_rotation = base * length**3 / rigidity * static_tip(taper)
     assert load / stiffness == pytest.approx(chord_rotation, rel=2e-3)
     inertia = model.beam.integral(model.mass * shape.deflection**2) * model.inertia_share
-    pace = np.sqrt(rigidity / (density * np.pi / 4 * base**2 * length**4))
-    assert np.sqrt(stiffness / inertia) == pytest.approx(pace * first_frequency(taper), rel=2e-3)
+    scale = np.sqrt(rigidity / (density * np.pi / 4 * base**2 * length**4))
+    assert np.sqrt(stiffness / inertia) == pytest.approx(scale * first_frequency(taper), rel=2e-3)
 
 
 def test_the_share_of_inertia_is_what_is_known_of_it(stem):

@@ -16,12 +16,12 @@ RATE = 20.0
 
 
 def release(
-    frequency=0.7, damping=0.05, *, duration=40.0, held=5.0, noise=0.002, seed=0, second=0.15
+    frequency=0.7, damping=0.05, *, duration=40.0, pulled=5.0, noise=0.002, seed=0, second=0.15
 ):
-    """Held aside, let go: the sway and a quicker mode, on a rest that is not zero."""
+    """Return time and motion after a pull: the sway and a quicker mode about a rest."""
     rng = np.random.default_rng(seed)
     time = np.arange(0.0, duration, 1.0 / RATE)
-    since = np.clip(time - held, 0.0, None)
+    since = np.clip(time - pulled, 0.0, None)
     motion = np.full_like(time, 0.3)
     for share, w in ((1.0, 2 * np.pi * frequency), (second, 2 * np.pi * 3.1 * frequency)):
         wd = w * np.sqrt(1.0 - damping**2)
@@ -128,7 +128,7 @@ def test_what_cannot_be_read(record, message):
 
 
 def test_too_short_a_release():
-    time, motion = release(damping=0.02, held=0.0, duration=2.4 / 0.7, second=0.0)
+    time, motion = release(damping=0.02, pulled=0.0, duration=2.4 / 0.7, second=0.0)
     with pytest.raises(FormatError, match='cycles'):
         estimate_sway(time, motion)
 
@@ -188,13 +188,13 @@ def test_a_time_that_counts_from_another_zero_is_a_gap():
         estimate_sway(time, motion)
 
 
-@pytest.mark.parametrize('held', [0.0, 3.0, 5.0])
+@pytest.mark.parametrize('pulled', [0.0, 3.0, 5.0])
 @pytest.mark.parametrize('frequency', [0.3, 0.5, 0.8])
 @pytest.mark.parametrize('seed', [0, 1])
-def test_a_short_pull_in_summer(frequency, held, seed):
+def test_a_short_pull_in_summer(frequency, pulled, seed):
     """Twenty seconds in all, a tenth of critical damping in leaf."""
     found = estimate_sway(
-        *release(frequency, 0.1, duration=20.0, held=held, noise=0.005, seed=seed)
+        *release(frequency, 0.1, duration=20.0, pulled=pulled, noise=0.005, seed=seed)
     )
     assert found.frequency == pytest.approx(frequency, rel=0.02)
     assert found.damping_ratio == pytest.approx(0.1, rel=0.1)
@@ -204,7 +204,7 @@ def test_a_short_pull_in_summer(frequency, held, seed):
 @pytest.mark.parametrize('noise', [0.005, 0.03])
 def test_a_pull_too_short_for_its_tree_says_why(noise, seed):
     """Of a sway with too few cycles no other mode, and no noise, is taken in its place."""
-    time, motion = release(0.2, 0.1, duration=20.0, held=5.0, noise=noise, seed=seed)
+    time, motion = release(0.2, 0.1, duration=20.0, pulled=5.0, noise=noise, seed=seed)
     with pytest.raises(
         FormatError, match=r'cycles of 0\.[12]\d+ Hz after .*; record 3 cycles after'
     ):
@@ -214,7 +214,7 @@ def test_a_pull_too_short_for_its_tree_says_why(noise, seed):
 @pytest.mark.parametrize('seed', [3, 4, 6])
 def test_a_pull_lost_in_the_wind_says_why(seed):
     """In leaf, a tenth of the pull in other motion: no other mode is taken for the sway."""
-    time, motion = release(0.5, 0.1, duration=20.0, held=3.0, noise=0.005, seed=seed)
+    time, motion = release(0.5, 0.1, duration=20.0, pulled=3.0, noise=0.005, seed=seed)
     _, wind = in_wind(0.5, 0.1, duration=60.0, seed=seed)
     with pytest.raises(FormatError, match=r'beside the swing; pull farther or on a calmer day'):
         estimate_sway(time, motion + 0.1 * wind[: len(motion)])

@@ -9,13 +9,20 @@ import pytest
 from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 from tree_sway.core.branch.beam import cross_matrix
+from tree_sway.core.kernel import fused
+from tree_sway.core.motion import tree_passes
 from tree_sway.core.motion.fill_records import load_records
-from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, set_air, wind_forces
 from tree_sway.core.rotation import turned
 from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
+
+# Parts of kernels, each made one for itself.
+bent_loads, outward_pass, set_air, wind_forces = (
+    fused(getattr(tree_passes, name))
+    for name in ('bent_loads', 'outward_pass', 'set_air', 'wind_forces')
+)
 
 pytestmark = pytest.mark.compiled
 

@@ -82,8 +82,8 @@ def test_a_load_beyond_what_is_followed_is_clamped_and_counted(fork):
     assert bank.advance(5.0, 0.0, 0.0, DRAG) == 0
     # However heavy the air, at first a branch does no more than go along with it.
     assert bank.advance(5.0, 0.0, 0.0, 1e12) == 0
-    held = [bank.advance(5.0, 0.0, 0.0, 1e12) for _ in range(500)]
-    assert max(held) > 0
+    clamped = [bank.advance(5.0, 0.0, 0.0, 1e12) for _ in range(500)]
+    assert max(clamped) > 0
     # The most that a bounded moment can do, turned over at every swing; the margin is that of the
     # whole moment.
     z = WOOD.damping_bare

@@ -11,7 +11,10 @@ import pytest
 from tree_sway_lab.bench.sizes import against, gusts_and_turns
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.motion.drag import pressure
+from tree_sway.core.motion.drag import DragLaw, pressure
+from tree_sway.core.motion.records import N_AZIMUTHS
+from tree_sway.core.motion.static_answers import WindMoments
+from tree_sway.core.motion.wind_basis_table import direction, SPEEDS
 from tree_sway.core.simulator.simulator import SwaySimulator, WIND_REFUSED
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.errors import ParameterError
@@ -123,7 +126,7 @@ def moves(sim, winds):
 
 
 @pytest.mark.compiled  # without the compiler there is no table
-@pytest.mark.parametrize(('seed', 'most'), [(1, 1.6), (4, 1.0)])
+@pytest.mark.parametrize(('seed', 'most'), [(1, 1.3), (4, 1.0)])
 def test_a_storm_beyond_the_table_is_clamped_and_flings_no_tip(seed, most):
     """In a frame a tip moves at most `most` times as far as with all coordinates."""
     sim, other = (SwaySimulator(crooked(seed), model=m) for m in (60, 'full'))
@@ -134,6 +137,43 @@ def test_a_storm_beyond_the_table_is_clamped_and_flings_no_tip(seed, most):
     for _ in range(3000):
         sim.step((0.0, 0.0, 0.0), DT)
     assert np.abs(sim.rotations()).max() < 0.01
+
+
+@pytest.mark.compiled  # without the compiler there is no table
+@pytest.mark.xfail(strict=True, reason='the table moves it by 0.66 m, all coordinates by 0.58')
+def test_a_storm_moves_no_segment_further_than_all_coordinates_do():
+    assert moves(SwaySimulator(crooked(1), model=60), 1.8 * gusty(35.0)) < 0.6
+
+
+@pytest.mark.compiled  # without the compiler there is no table
+@pytest.mark.parametrize('seed', [7, 11, 41, 42, 43, 44])
+def test_a_gale_moves_a_tree_as_all_coordinates_do(seed):
+    one, other = (SwaySimulator(crooked(seed), model=m) for m in (60, 'full'))
+    assert moves(one, gusty(16.0)) < 1.3 * moves(other, gusty(16.0))
+
+
+@pytest.mark.compiled  # without the compiler there is no table
+@pytest.mark.parametrize('seed', [1, 2, 4, 7, 11])
+def test_steady_storms_find_a_tree_at_rest_from_every_azimuth(seed):
+    """Where a branch flips over, too: the pose beside it is no rest, and its slopes fling it."""
+    bank = SwaySimulator(crooked(seed), model=60).bank.oscillators
+    table, law = bank.record[0], DragLaw(*SwaySimulator(crooked(seed), model=3).drag_law)
+    moments = WindMoments(bank.branches)
+    still = np.zeros(len(bank.modal.shapes))
+    for azimuth in range(0, N_AZIMUTHS, 2):
+        ahead = direction(2.0 * np.pi * azimuth / N_AZIMUTHS, 0.0)
+        for speed, at in zip(SPEEDS[1:], table['standing'][azimuth, 1:], strict=True):
+            load = (
+                pressure(speed, *law)
+                * speed**2
+                * (
+                    moments(bank.modal.shapes @ at[: bank.modal.shapes.shape[1]], still, ahead)
+                    @ bank.modal.shapes
+                )
+            )
+            root = np.sqrt(table['stiffness'][: len(load)])
+            missing = root * at[: len(load)] - load / root
+            assert np.linalg.norm(missing) < 0.05 * np.linalg.norm(load / root)
 
 
 def test_the_base_moment_is_that_of_all_coordinates():

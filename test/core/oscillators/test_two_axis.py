@@ -125,8 +125,8 @@ def bank(n, seed, dt=1 / 60):
 def test_bank_agrees_with_its_twin():
     state, force, rows, guard = bank(200, 1)
     expected = [twin(state[:, i], force[:, i], rows[i], guard[i]) for i in range(200)]
-    held = step_bank(state, force, rows, guard)
-    assert held == np.count_nonzero(np.linalg.norm(force, axis=0) > guard[:, 1]) == 0
+    clamped = step_bank(state, force, rows, guard)
+    assert clamped == np.count_nonzero(np.linalg.norm(force, axis=0) > guard[:, 1]) == 0
     assert state.T == pytest.approx(np.array(expected), abs=1e-8)
 
 
@@ -151,8 +151,8 @@ def test_mirrored_and_turned_loads_give_mirrored_and_turned_motion():
 
 @pytest.mark.parametrize('scale', [1.0, 1e4, 1e200])
 def test_loads_beyond_the_limit_are_held_and_counted(scale):
-    wb, w1, w2, held = two_axis.limit_load(1.0 * scale, -4.0 * scale, 8.0 * scale, 3.0)
-    assert held == 1
+    wb, w1, w2, clamped = two_axis.limit_load(1.0 * scale, -4.0 * scale, 8.0 * scale, 3.0)
+    assert clamped == 1
     if scale < 1e150:
         assert (wb, w1, w2) == pytest.approx((1 / 3, -4 / 3, 8 / 3))
     else:

@@ -224,7 +224,7 @@ def test_a_dropout_is_clamped_then_fades_and_the_wind_comes_back_without_a_step(
             made.offer(now, (8.0, 0.0, 0.0))
         made.advance(now)
     winds = np.array([wind for wind, _ in simulator.steps])
-    assert winds[350] == pytest.approx(8.0)  # held
+    assert winds[350] == pytest.approx(8.0)  # the last wind
     assert 0.0 < winds[1190] < 0.2  # after 13 s of tau 3 s
     assert winds[-1] == pytest.approx(8.0)
     assert np.abs(np.diff(winds[10:])).max() < 0.5

@@ -32,7 +32,7 @@ def resident():
     """Memory of this process in [kB]."""
     status = Path('/proc/self/status')
     if not status.exists():
-        pytest.skip('memory is told by /proc alone')
+        pytest.skip('memory is reported by /proc alone')
     return next(int(line.split()[1]) for line in status.read_text().split('\n') if 'VmRSS' in line)
 
 

@@ -70,10 +70,10 @@ def test_a_tree_of_its_own_roots_is_the_same_in_every_model():
         for wood in (OAK, rooted)
     ]  # fmt: skip
     assert soft / rigid == pytest.approx(frame[1] / frame[0], rel=0.005)
-    told = TreeReductions(
+    given_stiffness = TreeReductions(
         tree, rooted, replace(USUAL, root_stiffness=math.inf)
     ).natural_frequencies(1)[0]
-    assert told == pytest.approx(rigid)
+    assert given_stiffness == pytest.approx(rigid)
 
 
 @pytest.mark.parametrize('stiffness', [0.0, -1.0, math.nan])

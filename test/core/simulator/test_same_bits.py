@@ -37,6 +37,7 @@ def digests(threads, **environment):
     return done.stdout
 
 
+@pytest.mark.long
 def test_two_processes_give_the_same_bits_on_any_number_of_threads():
     first = digests(2)
     assert first.count('\n') == 2

@@ -47,16 +47,20 @@ def swaying(tree, model, **changes):
 def test_a_wind_that_cannot_be_is_refused_and_the_last_one_held(fork, bad, axis):
     winds = gusts(40)
     for model in ('branch', 4):
-        held, struck = swaying(fork(), model), swaying(fork(), model)
+        undisturbed, struck = swaying(fork(), model), swaying(fork(), model)
         for k, wind in enumerate(winds):
             blow = np.array(wind)
             if k == 20:
                 wind = winds[19]
                 blow[axis] = bad
-            assert held.step(wind, DT) == OK
+            assert undisturbed.step(wind, DT) == OK
             assert struck.step(blow, DT) == (WIND_REFUSED if k == 20 else OK)
-            assert struck.place().tobytes() == held.place().tobytes()
-        assert (struck.counts.refused, struck.counts.steps, held.counts.refused) == (1, 40, 0)
+            assert struck.place().tobytes() == undisturbed.place().tobytes()
+        assert (struck.counts.refused, struck.counts.steps, undisturbed.counts.refused) == (
+            1,
+            40,
+            0,
+        )
 
 
 def test_bad_wind_from_the_start_is_no_wind(fork, model):

@@ -46,8 +46,8 @@ def test_strength_used_is_stress_over_that_of_rupture(stem):
     assert used.wood[1] == pytest.approx(used.wood[0] / WOOD_BAND[1])
     assert used.wood[1] < used.wood[0] < used.wood[2]
     moment = np.linalg.norm(record.base_moment, axis=1).max()
-    held = ROOT_MOMENT * oak.density * tree.volume.sum()
-    assert used.roots[0] == pytest.approx(moment / held)
+    capacity = ROOT_MOMENT * oak.density * tree.volume.sum()
+    assert used.roots[0] == pytest.approx(moment / capacity)
     assert used.branch in str(used)
     assert 'roots' in str(used)
 

@@ -297,8 +297,8 @@ class TestDropouts:
         average = WindAverage()
         constant = np.array([6.0, 0.0, 0.0])
         ends, means = run(average, 30.0, source=lambda t: constant, hears=lambda t: t <= 1.0)
-        held = ends <= 3.0
-        np.testing.assert_allclose(means[held][:, 0], 6.0, rtol=1e-12)
+        early = ends <= 3.0
+        np.testing.assert_allclose(means[early][:, 0], 6.0, rtol=1e-12)
         tail = ends > 3.1
         start = ends[tail] - FRAME
         exact = (

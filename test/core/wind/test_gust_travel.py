@@ -120,7 +120,7 @@ def test_as_the_wind_turns_time_goes_on_for_every_place(seed, turn, place):
 
 def test_no_wind_is_lost_or_felt_twice():
     # As delays change the wind is stretched, but a place's run of wind ends where the anemometer's
-    # did so long ago.
+    # did so before.
     rng = np.random.default_rng(4)
     winds, steps = gusts(2000), rng.uniform(0.2, 3.0, 2000) * DT
     history = GustHistory([[30.0, 0.0, 0.0], [90.0, 10.0, 0.0]], np.zeros(3), averaging_time=10.0)

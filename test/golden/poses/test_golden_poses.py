@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 FOLDER = Path(__file__).resolve().parent
+WITHIN = 1e-7
+"""[m] Another processor's BLAS has moved a pose of goldcrest by 9e-9 m after 10 s."""
 MAKER = importlib.util.spec_from_file_location('make_golden', FOLDER / 'make_golden.py')
 
 
@@ -33,4 +35,4 @@ def test_ten_seconds_of_wind_end_where_they_did(maker, tree_name, model):
     golden = np.load(FOLDER / 'golden.npz')[f'{tree_name}_{model}']
     _, found = maker.run(tree_name, model, seconds=10)
     assert len(found) == 1
-    assert np.abs(found[0] - golden[0]).max() < 1e-9
+    assert np.abs(found[0] - golden[0]).max() < WITHIN

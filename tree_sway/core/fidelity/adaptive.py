@@ -31,7 +31,6 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import three_numbers
 from tree_sway.core.fidelity.estimate import dialled, ErrorEstimator, Estimate
-from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings, settings_with, USUAL
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.state.tree_state import TreeState
@@ -41,6 +40,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import ClimateTracker, WindClimate
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.set_up_files import SET_UPS, SetUpFiles
 
 if TYPE_CHECKING:
     from tree_sway.core.simulator.touch import Spring
@@ -95,7 +95,7 @@ class AdaptiveSimulator(SwaySimulator):
         *,
         tolerance: float = 0.005,
         budget: float = 0.0,
-        cache: SetUpCache | None = None,
+        cache: SetUpFiles | None = SET_UPS,
     ) -> None:
         """Make the tree on all coordinates, and judge how many the expected wind asks for."""
         chosen = replace(settings_with(settings, {}), model=USUAL)

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A broadleaf that stands alone: a trunk lost in its limbs, and a crown of its species' form.
+A broadleaf in the open: a trunk lost in its limbs, and a crown of its species' form.
 
 Limbs and their branches grow towards the outline of the crown and stop short of it; that alone
 shapes it.

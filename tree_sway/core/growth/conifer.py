@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A conifer that stands alone: one straight stem, branches in whorls, a crown of its species' form.
+A conifer in the open: one straight stem, branches in whorls, a crown of its species' form.
 
 Branches near the ground are the oldest and longest; those near the top are short and point
 upwards. Twigs are left and right of each branch. The stem tapers as ``(1 - z / H)^0.7``, between

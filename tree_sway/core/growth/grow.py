@@ -75,21 +75,16 @@ def grow(
     kind = wood.habit
     low, high = _HEIGHTS[kind]
     if not low <= height <= high:
-        raise ParameterError(
-            f"height {height:g} m is out of range for the habit '{kind}'",
-            where='height',
-            cure=f'give {low:g} to {high:g} m',
-        )
+        what = f"height {height:g} m is out of range for the habit '{kind}'"
+        raise ParameterError(what, where='height', cure=f'give {low:g} to {high:g} m')
     if diameter is None:
         diameter = height / _slenderness(kind, species, height)
     thinnest, thickest = stem_range(wood, height)
     if not thinnest <= diameter <= thickest:
         why = 'would bend over under its own weight' if diameter < thinnest else 'is no stem'
-        raise ParameterError(
-            f'diameter {diameter:.4g} m at a height of {height:g} m {why}',
-            where='diameter',
-            cure=f'give {thinnest:.3g} to {thickest:.3g} m',
-        )
+        what = f'diameter {diameter:.4g} m at a height of {height:g} m {why}'
+        cure = f'give {thinnest:.3g} to {thickest:.3g} m'
+        raise ParameterError(what, where='diameter', cure=cure)
     if kind == 'pot':
         generator = grow_goldcrest if species == 'goldcrest' else grow_benjamina
     else:

@@ -88,10 +88,9 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
     first = peak + round(0.5 * cycle)
     available = (len(motion) - first) / cycle
     if available < _MIN_CYCLES:
-        raise FormatError(
-            f'{max(available, 0.0):.1f} cycles of {rough:.3g} Hz after the largest swing',
-            cure='record 3 cycles after the release, better 10, or name the band of the sway',
-        )
+        what = f'{max(available, 0.0):.1f} cycles of {rough:.3g} Hz after the largest swing'
+        cure = 'record 3 cycles after the release, better 10, or name the band of the sway'
+        raise FormatError(what, cure=cure)
     # A window that ends where 5 % are left; how long that is takes a first look to know.
     cycles = min(8.0, available)
     for _ in range(3):
@@ -162,10 +161,8 @@ def _pencil(motion: Floats, dt: float, rough: float) -> _Fit:
     swings = poles.imag > np.pi * rough
     near &= energy > _FAINT * energy[swings].max(initial=0.0)
     if not near.any():
-        raise FormatError(
-            f'no motion that decays near {rough:.3g} Hz',
-            cure='check that it is a pull-and-release record, or name the band the sway is in',
-        )
+        cure = 'check that it is a pull-and-release record, or name the band the sway is in'
+        raise FormatError(f'no motion that decays near {rough:.3g} Hz', cure=cure)
     best = int(np.argmax(np.where(near, energy, -1.0)))
     explained = 1.0 - float((rest**2).sum() / (centred**2).sum())
     error = _standard_error(powers[:, best], amplitudes[best], dt, rest)

@@ -107,17 +107,12 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
         raise FormatError(f'{len(t)} samples', cure=f'record {_MIN_SAMPLES} at the very least')
     # Far enough from overflow that sums of squares are too.
     for bad in np.flatnonzero(~(np.abs(np.column_stack([t, x])) < _LARGEST).all(axis=1))[:1]:
-        raise FormatError(
-            'not a finite number, or one that nothing measures',
-            where=f'sample {bad}',
-            cure='remove that sample',
-        )
+        what = 'not a finite number, or one that nothing measures'
+        raise FormatError(what, where=f'sample {bad}', cure='remove that sample')
     for bad in np.flatnonzero(np.diff(t) <= 0.0)[:1]:
-        raise FormatError(
-            f'time {t[bad + 1]:g} s after {t[bad]:g} s',
-            where=f'sample {bad + 1}',
-            cure='put the samples in the order of time, each time once',
-        )
+        what = f'time {t[bad + 1]:g} s after {t[bad]:g} s'
+        cure = 'put the samples in the order of time, each time once'
+        raise FormatError(what, where=f'sample {bad + 1}', cure=cure)
     if not (np.ptp(x, axis=0) > 1e-12 * np.abs(x).max(axis=0)).any():
         raise FormatError('nothing moves', cure='check the sensor and the column')
     return t, x
@@ -128,10 +123,8 @@ def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:
     steps = np.diff(time)
     dt = float(np.median(steps))
     if time[-1] - time[0] > 4.0 * len(time) * dt:
-        raise FormatError(
-            f'gaps of up to {steps.max():.3g} s between samples {dt:.3g} s apart',
-            cure='give one record without the gaps',
-        )
+        what = f'gaps of up to {steps.max():.3g} s between samples {dt:.3g} s apart'
+        raise FormatError(what, cure='give one record without the gaps')
     grid = np.arange(time[0], time[-1] + 0.5 * dt, dt)
     even = np.stack([np.interp(grid, time, x) for x in motion.T], axis=1)
     return signal.detrend(even, axis=0), dt, float(steps.max())
@@ -161,8 +154,6 @@ def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
 def _decay_near(motion: Floats, dt: float, gap: float, rough: float) -> FreeDecay:
     """Fit the decay near a peak [Hz] where samples and gaps [s] let it be seen."""
     if gap * rough > 0.25:
-        raise FormatError(
-            f'{gap:.3g} s between samples, for a sway of {rough:.3g} Hz',
-            cure='record at least four samples per cycle, without gaps',
-        )
+        what = f'{gap:.3g} s between samples, for a sway of {rough:.3g} Hz'
+        raise FormatError(what, cure='record at least four samples per cycle, without gaps')
     return free_decay(motion, dt, rough)

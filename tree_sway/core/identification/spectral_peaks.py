@@ -35,10 +35,8 @@ def spectral_peaks(
     low, high = band or (0.0, np.inf)
     low, high = max(low, 0.8 / duration), min(high, 0.9 * float(frequency[-1]))
     if low >= high:
-        raise FormatError(
-            f'{duration:.3g} s sampled up to {frequency[-1]:.3g} Hz hold nothing in the band',
-            cure='record longer, sample faster, or name another band',
-        )
+        what = f'{duration:.3g} s sampled up to {frequency[-1]:.3g} Hz hold nothing in the band'
+        raise FormatError(what, cure='record longer, sample faster, or name another band')
     grid = np.geomspace(low, high, 2 + int(np.log(high / low) / (0.25 * WIDTH)))
     total = np.concatenate([[0.0], np.cumsum(power)])
     left = np.searchsorted(frequency, grid - WIDTH * grid)

@@ -31,7 +31,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import fused
+from tree_sway.core.kernel import part
 
 AIR_DENSITY = 1.225
 """Of dry air at 15 degrees C and sea level in [kg/m^3] (ISO 2533)."""
@@ -87,6 +87,7 @@ def crown_drag(
     return DragLaw(leafy, exponent, steady), added
 
 
+@part
 def pressure(speed: float, coefficient: float, exponent: float, steady: float = 0.0) -> float:
     """Drag per area and speed squared, ``1/2 rho (C U^-N + C0)``, in [kg/m^3], U in [m/s]."""
     if exponent == 0.0:
@@ -95,7 +96,7 @@ def pressure(speed: float, coefficient: float, exponent: float, steady: float = 
     return 0.5 * AIR_DENSITY * (coefficient * math.pow(streamlined, -exponent) + steady)
 
 
-@fused
+@part
 def drag(
     pxx: float, pyy: float, pzz: float, pxy: float, pxz: float, pyz: float,
     c: float, compliance: float, ux: float, uy: float, uz: float, spread: float,

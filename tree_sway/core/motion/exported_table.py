@@ -33,7 +33,8 @@ the table has exactly.
 SLOPES = ('turning', 'damping', 'lean', 'steep_turning', 'steep_damping')
 """Fields of a table that are exported as factors."""
 
-PLAIN = ('stiffness', 'levels', 'motion', 'harmonics', 'standing', 'amount', 'load')
+PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'standing', 'amount', 'load',
+         'cross_damping')  # fmt: skip
 """Fields that are exported as they are, in single precision."""
 
 NUMBERS = ('degree', 'most_pressure', 'most_energy')

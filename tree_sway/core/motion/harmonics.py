@@ -11,21 +11,19 @@ each scaled to a mean square of 1 over the sphere.
 from __future__ import annotations
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import fused
+from tree_sway.core.kernel import part
 
 COUNT = {1: 3, 3: 10, 5: 21}
 """How many functions there are up to each odd degree."""
 
-_A3, _B3, _C3, _D3 = (
-    (35.0 / 8.0) ** 0.5, 105.0**0.5, (21.0 / 8.0) ** 0.5, 7.0**0.5 / 2.0,
-)  # fmt: skip
+_A3, _B3, _C3, _D3 = (35.0 / 8.0) ** 0.5, 105.0**0.5, (21.0 / 8.0) ** 0.5, 7.0**0.5 / 2.0
 _A5, _B5, _C5, _D5, _E5, _F5 = (
     3.0 * (77.0 / 128.0) ** 0.5, 3.0 * (385.0 / 16.0) ** 0.5 / 2.0, (385.0 / 128.0) ** 0.5,
     (1155.0 / 16.0) ** 0.5, (165.0 / 64.0) ** 0.5, 11.0**0.5 / 8.0,
 )  # fmt: skip
 
 
-@fused
+@part
 def fill_harmonics(x: float, y: float, z: float, degree: int, out: Floats) -> None:
     """Write the functions (`COUNT`,) up to degree 1, 3 or 5 at a direction, a unit vector."""
     out[0], out[1], out[2] = 3.0**0.5 * y, 3.0**0.5 * z, 3.0**0.5 * x

@@ -65,7 +65,7 @@ class LoadSlopes:
         """
         Differentiate modal loads by the amounts of the shapes, and by their rates, both (m, m).
 
-        By the shape that moves, then the one that is loaded; the tree stands still at x, (N,).
+        By the shape that moves, then the one that is loaded; the tree is still at x, (N,).
         """
         self._moments(x, np.zeros(len(x)), wind)
         branches, work, count = self._branches, self._work, len(self._branches)

@@ -25,7 +25,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.branch.beam import cross_matrix
-from tree_sway.core.kernel import entry_of, fused
+from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.records import Branches, LANES, Loads, WORK, Works
@@ -237,7 +237,7 @@ def _expand(shapes: Floats, modal: Floats, state: Floats) -> None:
             x[i] += shapes[k, i] * eta[k]
 
 
-@fused
+@part
 def _to_middle(modal: Floats, state: Floats, shapes: Floats, half: Floats) -> None:
     """Key rotations and rates half a step on, under the last step's load."""
     eta, rate, force = modal[0], modal[1], modal[2]
@@ -324,7 +324,7 @@ def _advance(
     return over
 
 
-@fused
+@part
 def _hold(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastest: float) -> None:
     """Let no branch turn further or faster than a step can follow."""
     eta, rate, x, v = modal[0], modal[1], state[1], state[2]
@@ -344,7 +344,7 @@ def _hold(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastes
             rate[k] += momentum[k, i] * v[i]
 
 
-@fused
+@part
 def _try_next(tried: Floats, trial: int) -> None:
     """
     Find the change of the moments after which nothing should be missing, in [rad].
@@ -378,7 +378,7 @@ def _try_next(tried: Floats, trial: int) -> None:
         change[i] *= min(1.0, MOST_TURN / most)
 
 
-@fused
+@part
 def _take_off(brought: Floats, made: Floats, other: Floats, by: Floats) -> None:
     """Take off what is along another unit vector, and the change that would bring it."""
     share = 0.0

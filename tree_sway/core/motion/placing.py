@@ -21,7 +21,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Singles
-from tree_sway.core.kernel import fused
+from tree_sway.core.kernel import fused, inlined, part
 from tree_sway.core.motion.records import (
     Branches,
     Head,
@@ -97,12 +97,11 @@ def place(
 
     """
     expand(instances, shapes, x)
-    east, north, up = origin[0], origin[1], origin[2]
     last = len(heads) - 1
     scratch = heads[last]
     for block in range(last):
         head = heads[block]
-        _read_parents(branches, head, scratch, bases, x, east, north, up, cosine, sine, out)
+        _read_parents(branches, head, scratch, bases, x, origin, cosine, sine, out)
         is_near = _turn_on_parents(head, scratch)
         if is_near:
             farthest = _turn_bases(head, scratch, scale, True)
@@ -127,10 +126,10 @@ def place(
             _write_poses(head, scratch, rank, segment.n_lanes, out)
 
 
-@fused
+@part
 def _read_parents(
-    branches: Branches, head: Head, scratch: Head, bases: Floats, x: Floats,
-    east: float, north: float, up: float, cosine: float, sine: float, out: Floats,
+    branches: Branches, head: Head, scratch: Head, bases: Floats, x: Floats, origin: Floats,
+    cosine: float, sine: float, out: Floats,
 ) -> None:  # fmt: skip
     """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
     key, parent_key = scratch.key, scratch.parent_key
@@ -140,7 +139,7 @@ def _read_parents(
     if head.parent[0] < 0:  # the stem, alone
         parent_key[:], base[:], carrier[:] = 0.0, 0.0, 0.0
         base[0, 0], base[1, 0], base[2, 0], base[3, 0] = cosine, 0.0, 0.0, sine
-        carrier[0, 0], carrier[1, 0], carrier[2, 0] = east, north, up
+        carrier[0, 0], carrier[1, 0], carrier[2, 0] = origin[0], origin[1], origin[2]
         carrier[5, 0], carrier[6, 0] = sine, cosine
         key[:] = 0.0
         key[0, 0], key[1, 0] = x[head.coordinate[0]], x[head.coordinate[0] + 1]
@@ -168,7 +167,7 @@ def _read_parents(
                 parent_key[c, j] = 0.5 * x[own + c]
 
 
-@fused
+@inlined
 def _turn_by(key: Floats, per: Floats, turned: Floats, n_rows: int, j: int) -> None:
     """Sum what the first rows of keys turn the lane j by."""
     hx, hy, hz = 0.0, 0.0, 0.0
@@ -178,15 +177,14 @@ def _turn_by(key: Floats, per: Floats, turned: Floats, n_rows: int, j: int) -> N
     turned[0, j], turned[1, j], turned[2, j] = hx, hy, hz
 
 
-@fused
+@inlined
 def _is_beyond(turned: Floats, key: Floats, j: int) -> int:
     """Return 1 where the lane j is turned or bent further than the short series holds."""
     hx, hy, hz, x, y = turned[0, j], turned[1, j], turned[2, j], key[0, j], key[1, j]
-    is_turned = hx * hx + hy * hy + hz * hz > NEAR_LIMIT
-    return 1 if is_turned or x * x + y * y > _BLEND_FROM else 0
+    return 1 if hx * hx + hy * hy + hz * hz > NEAR_LIMIT or x * x + y * y > _BLEND_FROM else 0
 
 
-@fused
+@part
 def _turn_on_parents(head: Head, scratch: Head) -> bool:
     """
     Find how sixteen branches are turned from the bases of their parents, by half the vector.
@@ -216,7 +214,7 @@ def _turn_on_parents(head: Head, scratch: Head) -> bool:
     return False
 
 
-@fused
+@part
 def _turn_bases(head: Head, scratch: Head, scale: float, is_near: bool) -> float:
     """
     Turn the bases of sixteen branches, place them, and set how their first shape bends.
@@ -279,7 +277,7 @@ def _turn_bases(head: Head, scratch: Head, scale: float, is_near: bool) -> float
     return farthest
 
 
-@fused
+@part
 def _write_bases(head: Head, scratch: Head, bases: Floats) -> None:
     """Leave their turned bases to the children."""
     branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
@@ -292,7 +290,7 @@ def _write_bases(head: Head, scratch: Head, bases: Floats) -> None:
             bases[branch[j], row] = base[row, j]
 
 
-@fused
+@part
 def _set_further_keys(branches: Branches, head: Head, scratch: Head, x: Floats) -> float:
     """Set the further coordinates; return as `_turn_bases`, of the branches that have them."""
     farthest, half_key = 0.0, scratch.half_key
@@ -313,7 +311,7 @@ def _set_further_keys(branches: Branches, head: Head, scratch: Head, x: Floats) 
     return farthest
 
 
-@fused
+@part
 def _write_poses(head: Head, scratch: Head, rank: int, n_lanes: int, out: Floats) -> None:
     """Write the poses of sixteen segments, each behind the one before it on its branch."""
     pose, first = scratch.pose, head.first
@@ -327,7 +325,7 @@ def _write_poses(head: Head, scratch: Head, rank: int, n_lanes: int, out: Floats
             out[first[j] + rank, row] = pose[row, j]
 
 
-@fused
+@part
 def _half_vector(segment: Segment, scratch: Head, j: int) -> tuple[float, float, float]:
     """Half the rotation vector of a segment of the lane j, by all its coordinates."""
     turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
@@ -340,7 +338,7 @@ def _half_vector(segment: Segment, scratch: Head, j: int) -> tuple[float, float,
     return hx, hy, hz
 
 
-@fused
+@part
 def _turn(
     segment: Segment, scratch: Head, j: int, qw: float, qx: float, qy: float, qz: float
 ) -> None:
@@ -351,7 +349,7 @@ def _turn(
     )
 
 
-@fused
+@part
 def _reach_ahead(pose: Floats, to: Floats, length: float, j: int) -> None:
     """Find where the x axis of the pose of the lane j reaches."""
     x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
@@ -361,7 +359,7 @@ def _reach_ahead(pose: Floats, to: Floats, length: float, j: int) -> None:
     to[2, j] = pose[2, j] + twice * (x * z - w * y)
 
 
-@fused
+@part
 def _reach(pose: Floats, to: Floats, scale: float, own: Floats, j: int) -> None:
     """Find where a point of a segment's own frame is at the pose of the lane j."""
     x, y, z = rotated(
@@ -372,7 +370,7 @@ def _reach(pose: Floats, to: Floats, scale: float, own: Floats, j: int) -> None:
     to[2, j] = pose[2, j] + scale * z
 
 
-@fused
+@part
 def _join(segment: Segment, scratch: Head, scale: float) -> None:
     """Put sixteen turned segments behind those before them, and find where the next ones are."""
     pose, following, reach = scratch.pose, scratch.next, segment.reach
@@ -381,7 +379,7 @@ def _join(segment: Segment, scratch: Head, scale: float) -> None:
         _reach(pose, following, scale, reach, j)
 
 
-@fused
+@part
 def _swing(segment: Segment, scratch: Head, j: int, c: float, s: float) -> None:
     """Turn the segment of the lane j about the one axis of its branch."""
     base, swing = scratch.base, scratch.swing
@@ -392,7 +390,7 @@ def _swing(segment: Segment, scratch: Head, j: int, c: float, s: float) -> None:
     )  # fmt: skip
 
 
-@fused
+@part
 def _bend_and_join(segment: Segment, scratch: Head, scale: float) -> None:
     """Turn and join sixteen straight segments of branches that bend a little about one axis."""
     pose, following, reach = scratch.pose, scratch.next, segment.reach
@@ -404,7 +402,7 @@ def _bend_and_join(segment: Segment, scratch: Head, scale: float) -> None:
         _reach_ahead(pose, following, scale * reach[0, j], j)
 
 
-@fused
+@part
 def _bend_in_plane(segment: Segment, scratch: Head) -> None:
     """Turn sixteen segments, each of a branch that bends about one axis."""
     slope = segment.slope
@@ -414,7 +412,7 @@ def _bend_in_plane(segment: Segment, scratch: Head) -> None:
         _swing(segment, scratch, j, c, s * first)
 
 
-@fused
+@part
 def _bend(segment: Segment, scratch: Head) -> None:
     """Turn sixteen segments of branches with further coordinates."""
     base = scratch.base
@@ -426,7 +424,7 @@ def _bend(segment: Segment, scratch: Head) -> None:
         _turn(segment, scratch, j, qw, qx, qy, qz)
 
 
-@fused
+@part
 def _bend_far(segment: Segment, scratch: Head, n_rows: int) -> None:
     """Turn sixteen segments, some of a branch that bends beyond the series."""
     base, half_turn = scratch.base, scratch.half_turn

@@ -197,11 +197,14 @@ class Table:
     most_pressure: float  # up to which the table holds [kg/m/s^2]
     most_energy: float  # of strain and motion, twice, up to which a wind takes it [J]
     stiffness: Annotated[Floats, 'modes']
+    limit: Annotated[Floats, 'modes']  # largest load of a steady wind, per dynamic pressure
     motion: Annotated[Floats, 'modes']  # mean square of what the wind meets moves at
     harmonics: Annotated[Floats, 'harmonics', 'modes']
     standing: Annotated[Floats, N_AZIMUTHS, N_LEVELS, 'modes']  # coordinates in steady winds
     amount: Annotated[Floats, N_AZIMUTHS, 'modes']  # weights of the coordinates in the lean
     load: Annotated[Floats, N_AZIMUTHS, N_LEVELS, 'modes']
+    # Sums of the damping of each coordinate by the rates of all others, whatever the signs:
+    cross_damping: Annotated[Floats, N_AZIMUTHS, N_LEVELS, 'modes']
     # By the coordinate that moves, then the one that is loaded:
     lean: Annotated[Singles, N_AZIMUTHS, 'modes', 'modes']
     turning: Annotated[Singles, N_AZIMUTHS, N_LEVELS, 'modes', 'modes']

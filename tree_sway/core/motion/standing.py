@@ -3,7 +3,7 @@
 """
 Kernels of a stand: many trees on few tables, solved in one call and placed kind by kind.
 
-A tree of a stand is its kind turned about the vertical, scaled, and moved to where it stands. A
+A tree of a stand is its kind turned about the vertical, scaled, and moved to its place. A
 tree scaled by k bends by the same angles in the same wind, and swings k times slower: its inertia
 goes with the fifth power of its size, its stiffness and the wind's moment with the third. So it is
 its kind, stepped by 1/k of the time. (Gravity and the profile of the wind are those of the kind,
@@ -46,8 +46,6 @@ STANDING = np.dtype(fields_of(Standing))
 _CACHED = 1 << 21
 """Numbers in a pose block up to which it is written to the caches: 16 MB, half of a large one."""
 
-_pressure = fused(pressure)
-
 
 @fused
 def step_standing(
@@ -85,7 +83,7 @@ def step_standing(
         speed = math.sqrt(x * x + y * y + z * z)
         is_clamped = False
         law = drag_laws[here.kind]
-        load = _pressure(speed, law[0], law[1], law[2])
+        load = pressure(speed, law[0], law[1], law[2])
         if load * speed * speed > table.most_pressure:
             is_clamped = True
             share = math.sqrt(table.most_pressure / load) / speed

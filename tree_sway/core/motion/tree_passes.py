@@ -14,13 +14,13 @@ do work at, however far the tree is bent; so no drag ever feeds motion.
 from __future__ import annotations
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.kernel import fused
+from tree_sway.core.kernel import part
 from tree_sway.core.motion.drag import drag
 from tree_sway.core.motion.records import Branches, LANES, Load, Loads, Works
 from tree_sway.core.rotation import product, quaternion, rotated, turned
 
 
-@fused
+@part
 def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
     """
     Hand rotation [rad] and velocity [rad/s], (N,), of every parent to the bases of its children.
@@ -76,7 +76,7 @@ def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
         new[0], new[1], new[2], new[3] = product(old[0], old[1], old[2], old[3], qw, qx, qy, qz)
 
 
-@fused
+@part
 def set_air(work: Works, loads: Loads, wx: float, wy: float, wz: float) -> None:
     """Give every branch the wind [m/s] that blows at it, as its turned base sees it."""
     for b in range(len(work)):
@@ -90,7 +90,7 @@ def set_air(work: Works, loads: Loads, wx: float, wy: float, wz: float) -> None:
             here.velocity[k, j] = work[b].velocity[k]
 
 
-@fused
+@part
 def wind_forces(loads: Loads, per_speed_squared: float) -> None:
     """
     Find the wind's force on every branch.
@@ -106,60 +106,55 @@ def wind_forces(loads: Loads, per_speed_squared: float) -> None:
 
     """
     for block in range(len(loads)):
-        _drag_forces(loads[block], per_speed_squared)
-
-
-@fused
-def _drag_forces(loads: Load, per_speed_squared: float) -> None:
-    """Find the force on sixteen branches, drag in the frame of each as it is turned."""
-    speed, air, turn, slip, couple = (
-        loads.velocity, loads.air, loads.turned, loads.drag_impulse, loads.coupling,
-    )  # fmt: skip
-    flow, lean, p, x, v = (
-        loads.damping_mode, loads.load_rotation, loads.projector, loads.x, loads.v,
-    )  # fmt: skip
-    force, own_force, free = loads.force, loads.own_force, loads.moment
-    for j in range(LANES):
-        for k in range(3):
-            turn[k, j] = lean[0, k, j] * x[0, j] + lean[1, k, j] * x[1, j]
-            free[k, j] = flow[0, k, j] * v[0, j] + flow[1, k, j] * v[1, j]
-    for c in range(2, loads.n_rows):
-        for k in range(3):
-            for j in range(LANES):
-                turn[k, j] += lean[c, k, j] * x[c, j]
-                free[k, j] += flow[c, k, j] * v[c, j]
-    for j in range(LANES):
-        tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
-        ux, uy, uz = air[0, j] - speed[0, j], air[1, j] - speed[1, j], air[2, j] - speed[2, j]
-        ux, uy, uz = turned(-tx, -ty, -tz, ux, uy, uz)
-        wx, wy, wz = turned(-tx, -ty, -tz, speed[3, j], speed[4, j], speed[5, j])
-        beta = loads.compliance[j]
-        ux += (
-            beta * slip[0, j]
-            - free[0, j]
-            - (couple[0, 0, j] * wx + couple[1, 0, j] * wy + couple[2, 0, j] * wz)
-        )
-        uy += (
-            beta * slip[1, j]
-            - free[1, j]
-            - (couple[0, 1, j] * wx + couple[1, 1, j] * wy + couple[2, 1, j] * wz)
-        )
-        uz += (
-            beta * slip[2, j]
-            - free[2, j]
-            - (couple[0, 2, j] * wx + couple[1, 2, j] * wy + couple[2, 2, j] * wz)
-        )
-        fx, fy, fz, f = drag(
-            p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
-            per_speed_squared * loads.area[j], beta, ux, uy, uz,
-            loads.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j]),
+        here = loads[block]
+        speed, air, turn, slip, couple = (
+            here.velocity, here.air, here.turned, here.drag_impulse, here.coupling,
         )  # fmt: skip
-        slip[0, j], slip[1, j], slip[2, j] = f * ux, f * uy, f * uz
-        own_force[0, j], own_force[1, j], own_force[2, j] = fx, fy, fz
-        force[0, j], force[1, j], force[2, j] = turned(tx, ty, tz, fx, fy, fz)
+        flow, lean, p, x, v = (
+            here.damping_mode, here.load_rotation, here.projector, here.x, here.v,
+        )  # fmt: skip
+        force, own_force, free = here.force, here.own_force, here.moment
+        for j in range(LANES):
+            for k in range(3):
+                turn[k, j] = lean[0, k, j] * x[0, j] + lean[1, k, j] * x[1, j]
+                free[k, j] = flow[0, k, j] * v[0, j] + flow[1, k, j] * v[1, j]
+        for c in range(2, here.n_rows):
+            for k in range(3):
+                for j in range(LANES):
+                    turn[k, j] += lean[c, k, j] * x[c, j]
+                    free[k, j] += flow[c, k, j] * v[c, j]
+        for j in range(LANES):
+            tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
+            ux, uy, uz = air[0, j] - speed[0, j], air[1, j] - speed[1, j], air[2, j] - speed[2, j]
+            ux, uy, uz = turned(-tx, -ty, -tz, ux, uy, uz)
+            wx, wy, wz = turned(-tx, -ty, -tz, speed[3, j], speed[4, j], speed[5, j])
+            beta = here.compliance[j]
+            ux += (
+                beta * slip[0, j]
+                - free[0, j]
+                - (couple[0, 0, j] * wx + couple[1, 0, j] * wy + couple[2, 0, j] * wz)
+            )
+            uy += (
+                beta * slip[1, j]
+                - free[1, j]
+                - (couple[0, 1, j] * wx + couple[1, 1, j] * wy + couple[2, 1, j] * wz)
+            )
+            uz += (
+                beta * slip[2, j]
+                - free[2, j]
+                - (couple[0, 2, j] * wx + couple[1, 2, j] * wy + couple[2, 2, j] * wz)
+            )
+            fx, fy, fz, f = drag(
+                p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
+                per_speed_squared * here.area[j], beta, ux, uy, uz,
+                here.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j]),
+            )  # fmt: skip
+            slip[0, j], slip[1, j], slip[2, j] = f * ux, f * uy, f * uz
+            own_force[0, j], own_force[1, j], own_force[2, j] = fx, fy, fz
+            force[0, j], force[1, j], force[2, j] = turned(tx, ty, tz, fx, fy, fz)
 
 
-@fused
+@part
 def own_loads(loads: Loads) -> None:
     """
     Turn the wind's own forces on branches into loads on their key rotations.
@@ -168,21 +163,16 @@ def own_loads(loads: Loads) -> None:
     `wind_forces`.
     """
     for block in range(len(loads)):
-        _own_loads(loads[block])
+        here = loads[block]
+        force, push, along, load = here.force, here.load_mode, here.along, here.load
+        for j in range(LANES):
+            fx, fy, fz = force[0, j], force[1, j], force[2, j]
+            load[0, j] = along[0, j] * fx + along[1, j] * fy + along[2, j] * fz
+            load[1, j] = push[0, 0, j] * fx + push[0, 1, j] * fy + push[0, 2, j] * fz
+            load[2, j] = push[1, 0, j] * fx + push[1, 1, j] * fy + push[1, 2, j] * fz
 
 
-@fused
-def _own_loads(loads: Load) -> None:
-    """Turn the wind's own forces on sixteen branches into loads on their coordinates."""
-    force, push, along, load = loads.force, loads.load_mode, loads.along, loads.load
-    for j in range(LANES):
-        fx, fy, fz = force[0, j], force[1, j], force[2, j]
-        load[0, j] = along[0, j] * fx + along[1, j] * fy + along[2, j] * fz
-        load[1, j] = push[0, 0, j] * fx + push[0, 1, j] * fy + push[0, 2, j] * fz
-        load[2, j] = push[1, 0, j] * fx + push[1, 1, j] * fy + push[1, 2, j] * fz
-
-
-@fused
+@part
 def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) -> None:
     """
     Turn forces into moments on the coordinates of a tree as it is bent and turned.
@@ -240,7 +230,7 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
             )  # fmt: skip
 
 
-@fused
+@part
 def _turned_loads(loads: Load) -> None:
     """Turn the wind's forces on sixteen branches into loads and moments about their bases."""
     force, push, load, couple = loads.own_force, loads.load_mode, loads.load, loads.coupling

@@ -18,7 +18,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.kernel import entry_of, fused
+from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.records import (
@@ -155,7 +155,7 @@ def _advance(
     return clamped if total == 0.0 else -1
 
 
-@fused
+@part
 def _to_middle(bank: Oscillators) -> None:
     """State of sixteen branches half a step on, under the last step's load."""
     x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
@@ -170,7 +170,7 @@ def _to_middle(bank: Oscillators) -> None:
         middle_v[1, j] = h[3, j] * x[1, j] + h[4, j] * v[1, j] + h[5, j] * my
 
 
-@fused
+@part
 def _step(bank: Oscillators) -> int:
     """Step sixteen branches; return how many loads were clamped."""
     x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard

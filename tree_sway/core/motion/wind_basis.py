@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records, Singles
-from tree_sway.core.kernel import entry_of, fused
+from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.motion.branchwise import Tunable
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT
@@ -39,8 +39,6 @@ from tree_sway.core.motion.records import (
 from tree_sway.core.motion.simd import shapes_together, TOGETHER
 from tree_sway.core.motion.wind_basis_force import wind_force
 from tree_sway.core.motion.wind_basis_table import WindBasisTable
-
-_pressure = fused(pressure)
 
 CARRIED = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside')
 """Fields of an instance that a state holds."""
@@ -99,7 +97,7 @@ class WindBasisBank:
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
         self.modal.set_step(dt)
-        fill_time_step(self.time_step[0], self.modal)
+        fill_time_step(self.time_step[0], self.modal.whole, self.modal.half)
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `ModalBank.advance`."""
@@ -180,16 +178,13 @@ class WindBasisBank:
         self.modal.reset()
 
 
-def fill_time_step(time_step: np.void, modal: ModalBank) -> None:
-    """Take the coefficients of a time step over into a record of `time_step_layout`."""
-    m = modal.shapes.shape[1]
+def fill_time_step(time_step: np.void, whole: Floats, half: Floats) -> None:
+    """Take coefficients of a step and of half of it, (m, 8), over into a `time_step_layout`."""
+    m = len(whole)
     time_step['whole'], time_step['half'] = 0.0, 0.0
-    time_step['whole'][:, :m] = modal.whole.T
-    half = modal.half
-    time_step['half'][:, :m] = np.stack(
-        [half[:, 0], half[:, 1], half[:, 2] + half[:, 3],
-         half[:, 4], half[:, 5], half[:, 6] + half[:, 7]]
-    )  # fmt: skip
+    time_step['whole'][:, :m] = whole.T
+    time_step['half'][:, :m] = half.T[[0, 1, 2, 4, 5, 6]]
+    time_step['half'][[2, 5], :m] += half.T[[3, 7]]
 
 
 def step_branches(instance: np.void, modal: ModalBank) -> int:
@@ -201,7 +196,7 @@ def step_branches(instance: np.void, modal: ModalBank) -> int:
     return modal.advance(wx, wy, wz, float(instance['pressure']))
 
 
-@fused
+@part
 def step_instance(
     table: Table, time_step: TimeStep, instance: Instance, is_clamped: bool,
     wx: float, wy: float, wz: float, per_speed_squared: float,
@@ -233,9 +228,8 @@ def step_instance(
     push = per_speed_squared * speed * speed
     instance.outside = 0 if is_clamped or push <= table.most_pressure else 1
     push = min(push, table.most_pressure)
-    eta, rate, force, half, whole = (
-        instance.eta, instance.rate, instance.force, time_step.half, time_step.whole,
-    )  # fmt: skip
+    eta, rate, force = instance.eta, instance.rate, instance.force
+    half, whole = time_step.half, time_step.whole
     middle, middle_rate, wanted = instance.middle, instance.middle_rate, instance.wanted
     before = 0.0
     for i in range(len(eta)):
@@ -252,7 +246,7 @@ def step_instance(
     instance.pressure = per_speed_squared
     energy = 0.0
     for i in range(len(eta)):
-        # Implicit in the mode's own damping: stable for any wind and step.
+        # Implicit in all damping, as if the others moved with it: stable for any wind and step.
         own = diagonal[i] * half[5, i]
         f = (wanted[i] - own * force[i]) / (1.0 - own)
         q, v = eta[i], rate[i]
@@ -310,7 +304,7 @@ def step_in_wind(
     if math.sqrt(x * x + y * y + z * z) <= limits[0]:
         refused, kept[0], kept[1], kept[2] = 0, x, y, z
     x, y, z = kept[0], kept[1], kept[2]
-    load = _pressure(math.sqrt(x * x + y * y + z * z), limits[1], limits[2], limits[3])
+    load = pressure(math.sqrt(x * x + y * y + z * z), limits[1], limits[2], limits[3])
     return refused + 2 * step_instance(
         tables[0], time_steps[0], instances[0], False, x, y, z, load
     )

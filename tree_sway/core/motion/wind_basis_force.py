@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Singles
-from tree_sway.core.kernel import fused
+from tree_sway.core.kernel import part
 from tree_sway.core.motion.harmonics import fill_harmonics
 from tree_sway.core.motion.records import N_AZIMUTHS, N_LEVELS, Table
 
@@ -17,7 +17,7 @@ STEEP = math.sin(math.radians(45.0))
 """Sine of the elevation from which on a wind goes over to one straight up or down."""
 
 
-@fused
+@part
 def table_corners(
     table: Table, x: float, y: float, eta: Floats
 ) -> tuple[int, int, int, float, float]:
@@ -51,7 +51,7 @@ def table_corners(
     return first, second, j, share, up
 
 
-@fused
+@part
 def wind_force(
     table: Table, x: float, y: float, z: float, push: float, per_speed_squared: float,
     eta: Floats, rate: Floats, values: Floats, scratch: Singles, force: Floats, diagonal: Floats,
@@ -73,7 +73,8 @@ def wind_force(
     values, scratch
         Harmonics, (h,), and room to work in, single precision (4, m), both written.
     force, diagonal
-        Modal forces and the diagonal of their slope by the rates, (m,), both written.
+        Modal forces, and the slope by its rate that each is found with, (m,), both written: its
+        own, and that by the others as if they moved with it.
     n_felt
         Coordinates whose motion turns and damps all; each of the others damps itself alone.
 
@@ -135,6 +136,13 @@ def wind_force(
                 damped[i] += moving_at * table.steep_damping[pole, k, i]
             diagonal[k] += drag * steep * table.steep_damping[pole, k, k]
     for i in range(m):
-        force[i] = push * (force[i] + turned[i]) + drag * damped[i]
+        # Slopes hold near a pose. However far it is from there, a wind loads a tree no more.
+        load = min(max(force[i] + turned[i], -table.limit[i]), table.limit[i])
+        force[i] = push * load + drag * damped[i]
     for i in range(n_felt, m):
         force[i] += diagonal[i] * rate[i]
+    for i in range(m):
+        diagonal[i] -= drag * (
+            a * table.cross_damping[first, j, i] + b * table.cross_damping[first, j + 1, i]
+            + c * table.cross_damping[second, j, i] + d * table.cross_damping[second, j + 1, i]
+        )  # fmt: skip

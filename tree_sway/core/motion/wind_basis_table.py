@@ -45,7 +45,7 @@ _ELEVATIONS = np.deg2rad([-90.0, -60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45
 _ELEVATION_SPREAD = 0.25
 _SLOPE_AT = 0.35
 _MOST_ENERGY = 3.0
-_RAISES, _TURNS, _FARTHEST, _AT_REST = 4, 10, 0.3, 0.01
+_STEPS, _FARTHEST, _AT_REST, _NEAR_REST = 20, 0.3, 0.01, 0.05
 
 _LARGE = 2000
 """Branches of a tree above which fewer azimuths suffice."""
@@ -89,9 +89,10 @@ class WindBasisTable:
         self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw, degree: int
     ) -> None:
         """Find the loads of the tree in all winds."""
-        self._shapes, self._loads = bank.shapes, wind_moments
+        self._shapes, self._moments = bank.shapes, wind_moments
         self._slopes = wind_moments.slopes(bank.shapes)
         n, m = bank.shapes.shape
+        self._root = np.sqrt(bank.stiffness)
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m, COUNT[degree]))
         table = self.record[0]
@@ -110,9 +111,6 @@ class WindBasisTable:
         energy = table['standing'][:, -1] ** 2 @ table['stiffness']
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
 
-    def _moments(self, x: Floats, v: Floats, wind: Floats) -> Floats:
-        return self._loads(x, v, wind)
-
     def _fit_harmonics(self, table: np.void, degree: int) -> None:
         """Fit the load at rest in winds of all azimuths, level ones to count for most."""
         elevation, azimuth = np.meshgrid(
@@ -123,6 +121,7 @@ class WindBasisTable:
         weight *= np.sqrt(np.maximum(np.cos(elevation.ravel()), 1.0 / N_AZIMUTHS))
         loads = [self._moments(self._still, self._still, d) @ self._shapes for d in directions]
         values = harmonics_at(directions, degree) * weight[:, None]
+        table['limit'][: table['n_modes']] = np.abs(loads).max(axis=0)
         fitted = np.linalg.lstsq(values, np.array(loads) * weight[:, None], rcond=None)[0]
         table['harmonics'][:, : table['n_modes']] = fitted
 
@@ -130,66 +129,65 @@ class WindBasisTable:
         """Find the loads of the tree, and their slopes, where winds of each speed hold it."""
         shapes, m = self._shapes, int(table['n_modes'])
         stiffness = table['stiffness'][:m]
-        shape = len(self._asked), N_LEVELS
-        standing, load = np.zeros((2, *shape, m))
+        standing, load = np.zeros((2, len(self._asked), N_LEVELS, m))
         amount = np.zeros((len(self._asked), m))
-        turning, damping = np.zeros((2, *shape, m, m))
+        turning, damping = np.zeros((2, *standing.shape, m))
         for k, azimuth in enumerate(self._asked):
             ahead = direction(azimuth, 0.0)
             upright = self._moments(self._still, self._still, ahead) @ shapes
             amount[k] = upright / max(float(upright @ (upright / stiffness)), 1e-300)
             at = np.zeros(m)
             for j, push in enumerate(pressures):
-                if j > 0:
-                    at = self._held(at, pressures[j - 1], push, ahead, turning[k, j - 1])
+                at = self._held(at, push, ahead, turning[k, j - 1]) if j > 0 else at
                 x = shapes @ at
                 standing[k, j] = at
-                load[k, j] = self._moments(x, self._still, ahead) @ shapes - upright
+                load[k, j] = self._moments(x, self._still, ahead) @ shapes
                 turning[k, j], damping[k, j] = self._slopes(x, ahead)
-        found = {'standing': standing, 'amount': amount, 'load': load}
-        for name, values in found.items():
+        np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
+        load -= load[:, :1]
+        for name, values in (('standing', standing), ('amount', amount), ('load', load)):
             table[name][..., :m] = _between(values)
         table['turning'][..., :m, :m] = _between(turning)
         table['damping'][..., :m, :m] = _between(damping)
+        table['cross_damping'] = np.abs(table['damping']).sum(axis=2)
+        table['cross_damping'] -= np.abs(np.einsum('ajii->aji', table['damping']))
         levels = np.einsum('ajm,am->aj', table['standing'], table['amount'])
         least = 1e-6 * np.abs(levels).max() * np.arange(N_LEVELS)
         table['levels'] = np.maximum.accumulate(levels, axis=1) + least
 
-    def _held(
-        self, at: Floats, push: float, further: float, ahead: Floats, turning: Floats
-    ) -> Floats:
+    def _held(self, at: Floats, push: float, ahead: Floats, turning: Floats) -> Floats:
         """
-        Find the coordinates (m,) of a tree at rest under a further dynamic pressure.
+        Find the coordinates (m,) of a tree at rest under a dynamic pressure [kg/m/s^2].
 
-        From where a pressure ``push`` [kg/m/s^2] holds it on, by Broyden's method (Broyden 1965,
-        Mathematics of Computation 19, 577-593) with the slopes there, as far as that leads.
+        From where it was at rest, by Broyden's method (Broyden 1965, Mathematics of Computation
+        19, 577-593) with the slopes there, or new ones where these lead no further. Where a branch
+        flips, no path of rests leads on: slopes keep to the way that a tree without inertia goes
+        (Kelley & Keyes 1998, SIAM Journal on Numerical Analysis 35, 508-523). Where that ends far
+        from any rest the table has the pose of the weaker wind again.
         """
-        root = np.sqrt(self.record[0]['stiffness'][: len(at)])
-
-        def left(at: Floats, push: float) -> tuple[Floats, float]:
+        start, nearest, least, before, step, rest = at, at, np.inf, np.inf, at, at
+        inverse: Floats = np.eye(len(at))
+        for turn in range(_STEPS):
             load = push * (self._moments(self._shapes @ at, self._still, ahead) @ self._shapes)
-            rest, whole = root * at - load / root, float(np.linalg.norm(load / root))
-            return rest, float(np.linalg.norm(rest)) / max(whole, 1e-300)
-
-        inverse = np.linalg.inv(np.eye(len(at)) - push * (turning / root / root[:, None]).T)
-        for pushed in np.geomspace(max(push, further / 16.0), further, _RAISES + 1)[1:].tolist():
-            here, (rest, size) = at, left(at, pushed)
-            for _ in range(_TURNS):
-                step = -inverse @ rest
-                turn = float(np.abs(self._shapes @ (step / root)).max())
-                step *= min(1.0, _FARTHEST / max(turn, 1e-12))
-                then, less = left(here + step / root, pushed)
-                if not less < 2.0 * size:
-                    break
-                change = inverse @ (then - rest)
-                inverse += np.outer(step - change, step @ inverse) / float(step @ change)
-                here, rest, size = here + step / root, then, less
-                if size < _AT_REST:
-                    break
-            if not size < 4.0 * _AT_REST:
+            load, missed = load / self._root, rest
+            rest = self._root * at - load
+            size = float(np.linalg.norm(rest)) / max(float(np.linalg.norm(load)), 1e-300)
+            nearest, least = (at, size) if size < least else (nearest, least)
+            if size < _AT_REST:
                 break
-            at = here
-        return at
+            if size < before < np.inf:
+                change = inverse @ (rest - missed)
+                inverse += np.outer(step - change, step @ inverse) / float(step @ change)
+            else:
+                changes = self._slopes(self._shapes @ at, ahead)[0] if turn else turning
+                slope = np.eye(len(at)) - push * (changes / self._root / self._root[:, None]).T
+                lowest = float(np.linalg.eigvalsh(0.5 * (slope + slope.T))[0])
+                inverse[:] = np.linalg.inv(slope + max(0.0, 0.1 - 1.5 * lowest) * np.eye(len(at)))
+            before, step = size, -inverse @ rest
+            far = float(np.abs(self._shapes @ (step / self._root)).max())
+            step *= min(1.0, _FARTHEST / max(far, 1e-12))
+            at = at + step / self._root
+        return nearest if least < _NEAR_REST else start
 
     def _fill_aslant(self, table: np.void) -> None:
         """Fill what winds aslant change in the slopes of an upright tree, and steep winds."""
@@ -197,8 +195,8 @@ class WindBasisTable:
         rising = [self._slopes(self._still, direction(a, _SLOPE_AT))[0] for a in azimuths]
         # A falling wind is the opposite of one that rises from the other side.
         falling = -np.roll(rising, len(azimuths) // 2, axis=0)
-        lean = (np.array(rising) - falling) / (2.0 * np.sin(_SLOPE_AT))
-        table['lean'][:, :m, :m] = _between(lean)
+        risen = np.array(rising) - falling
+        table['lean'][:, :m, :m] = _between(risen / (2.0 * np.sin(_SLOPE_AT)))
         turning, damping = self._slopes(self._still, direction(0.0, np.pi / 2.0))
         table['steep_turning'][:, :m, :m] = -turning, turning
         table['steep_damping'][:, :m, :m] = damping
@@ -208,18 +206,14 @@ def _between(asked: Floats) -> Floats:
     """Values at `N_AZIMUTHS`, first axis, of a smooth function known at every other one."""
     waves = np.fft.rfft(asked, axis=0)
     waves[-1] *= 0.5
-    found: Floats = np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(asked))
-    return found
+    return np.asarray(np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(asked)))
 
 
 def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
     """Return unit vectors, (..., 3)."""
     azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
-    level = np.cos(elevation)
-    out: Floats = np.stack(
-        [level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)], axis=-1
-    )
-    return out
+    x, y = np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth)
+    return np.asarray(np.stack([x, y, np.sin(elevation)], axis=-1))
 
 
 def harmonics_at(directions: Floats, degree: int) -> Floats:

@@ -34,7 +34,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.kernel import fused
+from tree_sway.core.kernel import fused, part
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ MOMENT_MARGIN = 1.5  # the whole moment is clamped to this number of times s_max
 GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out
 
 
-@fused
+@part
 def within_guard(x: float, y: float) -> tuple[float, float, float]:
     """Return x, y and t, pulled back to the guard's circle where they lie beyond it."""
     t = x * x + y * y
@@ -56,7 +56,7 @@ def within_guard(x: float, y: float) -> tuple[float, float, float]:
     return x, y, t
 
 
-@fused
+@part
 def _series(t: float) -> tuple[float, float, float, float]:
     """Return s, c of the module's text, tails s', c' too: s = -1/6 + t s', c = -1/2 + t c'."""
     s = 1.5032424712277569e-10
@@ -72,7 +72,7 @@ def _series(t: float) -> tuple[float, float, float, float]:
     return s * t - 1.0 / 6.0, c * t - 0.5, s, c
 
 
-@fused
+@part
 def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[float, float]:
     """
     Generalised force [N m] on the two axes at any deflection; (w1, w2) at zero.
@@ -94,7 +94,7 @@ def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[flo
     return w1 * inverse + x * along, w2 * inverse + y * along
 
 
-@fused
+@part
 def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     """
     Acceleration [rad/s^2] that the sphere itself asks for: great circles at constant speed.
@@ -113,7 +113,7 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     return radial * x - turn * vy, radial * y + turn * vx
 
 
-@fused
+@part
 def limit_load(wb: float, w1: float, w2: float, limit: float) -> tuple[float, float, float, int]:
     """
     Hold the length of a load at a limit in [N m]; the last value is whether it was clamped.
@@ -130,7 +130,7 @@ def limit_load(wb: float, w1: float, w2: float, limit: float) -> tuple[float, fl
     return wb * scale, w1 * scale, w2 * scale, 1
 
 
-@fused
+@part
 def moment(
     x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
     gyro_inertia: float, limit: float,
@@ -145,7 +145,7 @@ def moment(
     return mx * scale, my * scale
 
 
-@fused
+@part
 def step_branch(
     x: float, y: float, vx: float, vy: float, wb: float, w1: float, w2: float,
     c0: float, c1: float, c2: float, c3: float, c4: float, c5: float, c6: float, c7: float,

@@ -6,12 +6,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
+from tree_sway.set_up_files import SET_UPS, SetUpFiles
 
 
 def make_simulator(
@@ -21,7 +21,7 @@ def make_simulator(
     *,
     tolerance: float = 0.005,
     budget: float = 0.0,
-    cache: SetUpCache | None = None,
+    cache: SetUpFiles | None = SET_UPS,
     **changes: Any,
 ) -> SwaySimulator:
     """
@@ -37,7 +37,7 @@ def make_simulator(
         Largest cost of a frame in [us] that ``auto`` may allow itself, which comes before the
         tolerance; 0 for none.
     cache
-        Where set-ups are written and found again; nowhere if None.
+        Where set-ups are written and found again, on disk if left out; nowhere if None.
     **changes
         Fields of the settings.
 

@@ -39,11 +39,9 @@ class PlacedTrees:
             raise TreeError('no trees', where=self.name, cure='give at least one')
         for number, each in enumerate(self.trees):
             if not isinstance(each, PlacedTree):
-                raise ParameterError(
-                    f'a {type(each).__name__}, where a PlacedTree is asked for',
-                    where=f'trees[{number}]',
-                    cure='give PlacedTree(name, tree, x, y) each',
-                )
+                what = f'a {type(each).__name__}, where a PlacedTree is asked for'
+                cure = 'give PlacedTree(name, tree, x, y) each'
+                raise ParameterError(what, where=f'trees[{number}]', cure=cure)
         name, count = Counter(each.name for each in self.trees).most_common(1)[0]
         if count > 1:
             raise ParameterError(
@@ -61,11 +59,9 @@ class PlacedTrees:
             return self.trees[0].placed()
         n_segments = sum(each.tree.n_segments for each in self.trees)
         if n_segments > MOST_SEGMENTS:
-            raise ParameterError(
-                f'{n_segments} segments in one record',
-                where=self.name,
-                cure=f'at most {MOST_SEGMENTS}: place or draw a part of the trees',
-            )
+            what = f'{n_segments} segments in one record'
+            cure = f'at most {MOST_SEGMENTS}: place or draw a part of the trees'
+            raise ParameterError(what, where=self.name, cure=cure)
         return joined([each.placed() for each in self.trees], self.name)
 
     @property

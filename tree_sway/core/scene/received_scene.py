@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+import math
 from typing import Any
 
 import numpy as np
@@ -19,9 +20,13 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.motion.exported_table import table_of
 from tree_sway.core.motion.records import instance_layout, time_step_layout
 from tree_sway.core.motion.standing import step_standing
+from tree_sway.core.motion.wind_basis import fill_time_step
 from tree_sway.core.oscillators.propagator import propagator
 from tree_sway.core.scene.standing_rows import own_steps, standing_rows
 from tree_sway.core.wind.gust_travel import GustHistory
+
+_SLOWEST = 0.3
+"""Share of the way of the slowest that a rate is taken to go within a time step, at least."""
 
 
 @dataclass(frozen=True)
@@ -76,17 +81,12 @@ class ReceivedScene:
         found, step = own_steps(self._kind_of, places[:, 4], dt)
         self._time_steps = np.zeros(len(found), dtype=time_step_layout(m))
         for own, (number, own_dt) in zip(self._time_steps, found, strict=True):
-            arrays, size = kinds[number].arrays, self._sizes[number]
-            for name, span in (('whole', own_dt), ('half', 0.5 * own_dt)):
-                rows = propagator(1.0, arrays['own_damping'], arrays['stiffness'], span).T
-                if name == 'half':
-                    rows = np.stack(
-                        [rows[0], rows[1], rows[2] + rows[3], rows[4], rows[5], rows[6] + rows[7]]
-                    )
-                own[name][:, :size] = rows
+            arrays = kinds[number].arrays
+            law = 1.0, arrays['own_damping'], arrays['stiffness']
+            fill_time_step(own, propagator(*law, own_dt), propagator(*law, 0.5 * own_dt))
         self._standing = standing_rows(self._kind_of, places, speeds)
         self._standing['time_step'] = step
-        self._gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
+        self.gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
         self._states = [kind.arrays['state'].astype(np.float64) for kind in kinds]
         self._corrections = [kind.arrays['correction'].astype(np.float64) for kind in kinds]
         described = np.array([len(kind.arrays['correction']) for kind in kinds])
@@ -94,7 +94,7 @@ class ReceivedScene:
 
     def step(self, wind: ArrayLike) -> int:
         """Advance by a step of mean wind (3,) in [m/s]; count trees beyond their tables' edge."""
-        felt = self._gusts.push(wind, self._dt)
+        felt = self.gusts.push(wind, self._dt)
         arrays = self.tables, self._time_steps, self._standing, self.instances, self._laws
         return step_standing(*arrays, felt)[0]
 
@@ -104,23 +104,31 @@ class ReceivedScene:
         found: Floats = self.instances['eta'][tree, :size]
         return found
 
-    def state(self, name: str = 'eta') -> Floats:
-        """Coordinates by which all trees are described, or their ``rate``, (M,)."""
+    def state(self) -> Floats:
+        """Coordinates by which all trees are described, (M,)."""
         states = []
-        for own, kind in zip(self.instances[name], self._kind_of.tolist(), strict=True):
+        for own, kind in zip(self.instances['eta'], self._kind_of.tolist(), strict=True):
             states.append(own[: self._sizes[kind]] @ self._states[kind])
         return np.concatenate(states)
 
-    def correct(self, values: Floats, first: int = 0, name: str = 'eta') -> None:
-        """Bring described coordinates, or their ``rate``, from the first on to values (c,)."""
+    def correct(self, values: Floats, first: int = 0, steps: float = math.inf) -> None:
+        """
+        Bring described coordinates from the first on to values (c,).
+
+        Rates change by what would have brought them there within a number of time steps.
+        """
         change = np.zeros(self._first[-1])
         part = slice(first, first + len(values))
-        change[part] = values - self.state(name)[part]
+        change[part] = values - self.state()[part]
         for tree, kind in enumerate(self._kind_of.tolist()):
-            own = change[self._first[tree] : self._first[tree + 1]]
-            self.instances[name][tree, : self._sizes[kind]] += own @ self._corrections[kind]
+            own = change[self._first[tree] : self._first[tree + 1]] @ self._corrections[kind]
+            instance, size = self.instances[tree], self._sizes[kind]
+            whole = self._time_steps['whole'][self._standing['time_step'][tree], :, :size]
+            instance['eta'][:size] += own
+            way = np.maximum(whole[1], _SLOWEST * whole[1].max())
+            instance['rate'][:size] += own * whole[5] / (way * steps)
 
     def reset(self) -> None:
         """Go back to rest, without wind."""
         self.instances[:] = np.zeros((), dtype=self.instances.dtype)
-        self._gusts.reset()
+        self.gusts.reset()

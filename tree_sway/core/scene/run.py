@@ -23,6 +23,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.demand import adaptive_among
@@ -30,6 +31,7 @@ from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.gate import GateCounts
 from tree_sway.core.wind.intake import GoodWind, WindIntake
+from tree_sway.errors import ParameterError
 
 LONGEST_JUMP = 500_000_000
 """Most time that one `Run.advance` solves [ns]; what was before it is skipped."""
@@ -41,6 +43,7 @@ _BLOCK = 10_000_000_000_000
 """Times are counted in seconds from a multiple of this [ns]: few digits, the same in every run."""
 
 _QUEUE = 4096
+_PULL_LASTS = 0.5
 _WARM_FRAMES = 20
 _NEWEST = 0.02  # weight of the newest step in the running mean of its cost
 
@@ -132,6 +135,35 @@ class Run:
     def request(self, action: Callable[[], object]) -> None:
         """Have something done before the next step, in its thread."""
         self._requests.append(action)
+
+    def pull(
+        self, segment: int, to: ArrayLike, stiffness: float, refused: Callable[[str], object]
+    ) -> None:
+        """
+        Pull at a segment by a spring before the next step, for half a second unless said again.
+
+        Parameters
+        ----------
+        segment
+            Its row in the pose block.
+        to
+            The place that it is pulled to in [m], (3,).
+        stiffness
+            Stiffness of the spring in [N/m]; 0 lets go.
+        refused
+            Called with the reason if it cannot be, from the thread of the steps.
+
+        """
+        from tree_sway.core.simulator.touch import Spring
+
+        def push() -> None:
+            force = Spring(to, stiffness) if stiffness else (0.0, 0.0, 0.0)
+            try:
+                self.simulator.push(segment, force, _PULL_LASTS if stiffness else 1e-9, along=0.0)
+            except ParameterError as error:
+                refused(str(error))
+
+        self.request(push)
 
     def restart(self, time: int) -> None:
         """Begin at a time [ns]: forget the wind and the motion."""

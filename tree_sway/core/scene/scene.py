@@ -21,11 +21,11 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import Kind
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
-from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.tree.plausibility import oddities, refuse_implausible
 from tree_sway.core.tree.species import Species
 from tree_sway.errors import inside
+from tree_sway.set_up_files import SET_UPS, SetUpFiles
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +121,7 @@ class Scene(PlacedTrees):
         settings: Settings | None = None,
         *,
         tolerance: float = 0.005,
-        cache: SetUpCache | None = None,
+        cache: SetUpFiles | None = SET_UPS,
         progress: Callable[[int], object] = lambda done: None,
         **changes: Any,
     ) -> Simulator:

@@ -12,16 +12,17 @@ tree is, so that no wind need be turned into its frame.
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
 import math
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.checks import array_to_fill, refuse_time_step, three_numbers
+from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.records import instance_layout, time_step_layout, zeros_in_lines
@@ -31,7 +32,6 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.standing_rows import own_steps, standing_rows
 from tree_sway.core.simulator.live_tuning import Tuning
-from tree_sway.core.simulator.set_up_cache import SetUpCache
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import (
     Counts,
@@ -46,6 +46,10 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import inside, nearest, ParameterError
+from tree_sway.set_up_files import SET_UPS, SetUpFiles
+
+if TYPE_CHECKING:
+    from tree_sway.core.simulator.touch import Spring
 
 _NO_TABLES: Records = np.zeros(0, dtype=STANDING)
 _CROWN = 0.7
@@ -77,7 +81,7 @@ class SceneSimulator:
         settings: Settings,
         *,
         tolerance: float = 0.005,
-        cache: SetUpCache | None = None,
+        cache: SetUpFiles | None = SET_UPS,
         progress: Callable[[int], object] = lambda done: None,
     ) -> None:
         """Make a table for every kind that needs one, and a simulator for every other tree."""
@@ -122,6 +126,7 @@ class SceneSimulator:
             self._standing['at'], scene.anemometer, convection_ratio=scene.convection_ratio
         )
         self._counts = Counts()
+        self._pushed: dict[int, SwaySimulator] = {}
         self._wind, self._dt = np.zeros(3), math.nan
 
     @property
@@ -158,11 +163,8 @@ class SceneSimulator:
     def segments_of(self, name: str) -> slice:
         """Return the rows of a tree in the pose block; a `ParameterError` for another name."""
         if name not in self.names:
-            raise ParameterError(
-                f"no tree is called '{name}'",
-                where=self.scene.name,
-                cure=f'{nearest(name, self.names)} use one of: {", ".join(self.names[:20])}',
-            )
+            cure = f'{nearest(name, self.names)} use one of: {", ".join(self.names[:20])}'
+            raise ParameterError(f"no tree is called '{name}'", where=self.scene.name, cure=cure)
         number = self.names.index(name)
         return slice(int(self._ends[number]), int(self._ends[number + 1]))
 
@@ -208,10 +210,62 @@ class SceneSimulator:
             )
         for number, simulator in self.own.items():
             status |= simulator.step(felt[number].tolist(), dt)
+        for number, one in list(self._pushed.items()):
+            own = self._standing['time_step'][number]
+            _oscillators(one).time_step = self._time_steps[own : own + 1]
+            clamped += one.touched(dt) > 0
+            if not one.is_pushed:
+                del self._pushed[number]
         self._counts.steps += 1
         self._counts.clamped += clamped
         self._counts.restarted += restarted
         return status | (LOAD_CLAMPED if clamped else OK) | (RESTARTED if restarted else OK)
+
+    def push(
+        self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
+    ) -> None:
+        """Push or pull at a segment by its row in the pose block, as `SwaySimulator.push`."""
+        from tree_sway.core.simulator.touch import MOST_PUSHES, row_of
+
+        try:
+            row = row_of(segment, int(self._ends[-1]))
+            number = int(self._ends.searchsorted(row, 'right')) - 1
+            if len(self._pushed.keys() | {number}) > MOST_PUSHES:
+                raise ParameterError(f'more than {MOST_PUSHES} trees at once', where='push')
+            one = self.own.get(number) or self._pushed.get(number)
+            if one is None:
+                one = self._pushed[number] = self._one_of_kind(number)
+            own = force if number in self.own else self._in_kind(number, force)
+            one.push(row - int(self._ends[number]), own, seconds, along=along)
+        except ParameterError:
+            self._counts.refused_pushes += 1
+            raise
+
+    def _one_of_kind(self, number: int) -> SwaySimulator:
+        """Return a simulator of a tree's kind on the tree's own state, to push at."""
+        model = self._models[self._standing['kind'][number]]
+        one, bank = copy(model), copy(_oscillators(model))
+        bank.__dict__.pop('_expand', None)
+        bank.instance = self._instances[number : number + 1]
+        one.bank = replace(model.bank, oscillators=bank)
+        return one
+
+    def _in_kind(self, number: int, force: ArrayLike | Spring) -> ArrayLike | Spring:
+        """
+        Return a force or a spring on a tree as it is on one of its kind.
+
+        A tree scaled by k is moved k times as far by the same angles, against k^3 times the
+        stiffness: a force counts 1 / k^2, a spring's stiffness 1 / k.
+        """
+        from tree_sway.core.simulator.touch import Spring
+
+        one, k = self.scene.trees[number], float(self._standing['scale'][number])
+        c, s = math.cos(one.yaw), math.sin(one.yaw)
+        back = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        if not isinstance(force, Spring):
+            return back @ array_to_read('push', force, (3,)) / k**2
+        away = array_to_read('push', force.to, (3,)) - self._standing['at'][number]
+        return Spring(back @ away / k + one.tree.start[0], force.stiffness / k)
 
     def check_tuning(self, **changes: float) -> Tuning:
         """Refuse what any tree could not take, as `SwaySimulator.check_tuning`."""
@@ -334,6 +388,7 @@ class SceneSimulator:
         for simulator in self.own.values():
             simulator.reset()
         self.gusts.reset()
+        self._pushed.clear()
         self._wind[:] = 0.0
 
     def _speeds(self) -> Floats:
@@ -355,7 +410,7 @@ class SceneSimulator:
         for time_step, (kind, own_dt) in zip(self._time_steps, found, strict=True):
             modal = self._banks[kind].modal
             modal.set_time_step(own_dt)
-            fill_time_step(time_step, modal)
+            fill_time_step(time_step, modal.whole, modal.half)
         self._standing['time_step'][rows] = number
         self._dt = dt
 

@@ -33,11 +33,8 @@ def dealt(scene: Scene, shard: int = 0, shards: int = 1) -> Scene:
         )
     n = len(scene.trees)
     if shards > n:
-        raise ParameterError(
-            f'{shards} shards of {n} trees',
-            where='shards',
-            cure='ask for fewer, or give the file of a forest or a stand',
-        )
+        cure = 'ask for fewer, or give the file of a forest or a stand'
+        raise ParameterError(f'{shards} shards of {n} trees', where='shards', cure=cure)
     trees = [scene.trees[row] for row in np.array_split(np.arange(n), shards)[shard].tolist()]
     one = scene.trees[0]
     where = scene.anemometer or (one.x, one.y, one.z)

@@ -26,7 +26,7 @@ from tree_sway.errors import ParameterError
 if TYPE_CHECKING:
     from tree_sway.core.motion.modal import ModalBank
     from tree_sway.core.motion.wind_basis_table import WindBasisTable
-    from tree_sway.core.simulator.set_up_cache import SetUpCache
+    from tree_sway.set_up_files import SetUpFiles
 
 EVENLY_DAMPED = 40
 """
@@ -37,7 +37,7 @@ the wood that go with its stiffness.
 
 
 def assembled(
-    reductions: TreeReductions, model: int | str | None = None, cache: SetUpCache | None = None
+    reductions: TreeReductions, model: int | str | None = None, cache: SetUpFiles | None = None
 ) -> Bank:
     """
     Build the oscillators of a model: a number of coordinates, ``branch`` or ``full``.
@@ -65,7 +65,7 @@ def assembled(
         return _bank_of_modes(reductions, model, cache)
 
 
-def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpCache | None) -> Bank:
+def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFiles | None) -> Bank:
     """Take a set-up from the cache, or make one; the same bits either way."""
     digest, found = '', None
     if cache is not None:

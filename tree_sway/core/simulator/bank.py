@@ -14,7 +14,6 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
 from tree_sway.core.motion.drag import DragLaw
-from tree_sway.core.motion.placing import GIVEN, place
 
 if TYPE_CHECKING:
     from tree_sway.core.motion.branchwise import Tunable
@@ -114,10 +113,13 @@ class Bank:
         """
         if self.plain:
             return self._plain_placing.place
-        found_from = self.oscillators.to_place or GIVEN
-        return self._placing(found_from[0], GIVEN[1])
+        from tree_sway.core.motion.placing import GIVEN
+
+        return self._placing((self.oscillators.to_place or GIVEN)[0], GIVEN[1])
 
     def _placing(self, instance: Records, shapes: Singles) -> Callable[..., None]:
+        from tree_sway.core.motion.placing import place
+
         arrays = instance, shapes, self.branches, self.segments, self.heads, self.bases
         first = *arrays, 1.0, 0.0, 1.0
         given = np.zeros(1), np.zeros(3), np.zeros((1, 7))

@@ -51,7 +51,7 @@ class Settings:
     Parameters
     ----------
     model
-        How many coordinates the tree has in the wind, or all if there are fewer; 0 stands still.
+        How many coordinates the tree has in the wind, or all if there are fewer; 0 does not move.
         Or ``branch``, the paper's, each branch by itself; ``full``, all coordinates and the load
         of every branch; or ``auto``, which takes as many coordinates as the scene needs.
     degree

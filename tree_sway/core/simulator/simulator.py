@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
-from tree_sway.core.kernel import entry_of, fused
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.bank import Bank
@@ -27,11 +26,11 @@ from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import ParameterError, StateError
+from tree_sway.set_up_files import SET_UPS, SetUpFiles
 
 if TYPE_CHECKING:
     from tree_sway.core.simulator.crown_gusts import CrownGusts
     from tree_sway.core.simulator.live_tuning import LiveTuning, Tuning
-    from tree_sway.core.simulator.set_up_cache import SetUpCache
     from tree_sway.core.simulator.touch import Spring, Touch
     from tree_sway.core.wind.gust_travel import GustHistory
 
@@ -69,7 +68,7 @@ class SwaySimulator:
     settings
         How it is modelled, on any model but ``auto``; `make_simulator` makes that too.
     cache
-        Where set-ups are written and found again; nowhere if None.
+        Where set-ups are written and found again, on disk if left out; nowhere if None.
     plain
         Whether it runs in numpy, as it does where numba is missing.
     **changes
@@ -102,7 +101,7 @@ class SwaySimulator:
         species: Species | None = None,
         settings: Settings | None = None,
         *,
-        cache: SetUpCache | None = None,
+        cache: SetUpFiles | None = SET_UPS,
         plain: bool = False,
         **changes: Any,
     ) -> None:
@@ -114,7 +113,6 @@ class SwaySimulator:
         self.counts = Counts()
         self.bank: Bank = assembled(self.reductions, cache=cache)
         self.drag_law = self.reductions.drag_law
-        self._pressure = entry_of(_pressure, 0.0, 0.0, 0.0, 0.0)
         self._advance = self.bank.oscillators.advance
         self._in_one_call: Callable[[float, float, float], int] | None = None
         self._max_wind = self.settings.max_wind
@@ -262,7 +260,7 @@ class SwaySimulator:
                 return OK
             counts.refused += outcome & 1
             clamped = self.bank.oscillators.step_outside() if outcome & 2 else 0
-            return (WIND_REFUSED if outcome & 1 else OK) | self._count(clamped) | self._touched(dt)
+            return (WIND_REFUSED if outcome & 1 else OK) | self._count(clamped) | self.touched(dt)
         status = OK
         if is_wind(x, y, z, self._max_wind):
             self._wind[:] = x, y, z
@@ -270,10 +268,10 @@ class SwaySimulator:
             status = WIND_REFUSED
             counts.refused += 1
         wx, wy, wz = self._wind.tolist()
-        load = self._pressure(math.hypot(wx, wy, wz), *self.drag_law)
+        load = pressure(math.hypot(wx, wy, wz), *self.drag_law)
         if self._gusts is not None:
             wx, wy, wz = self._gusts.felt(wx, wy, wz, dt)
-        return status | self._count(self._advance(wx, wy, wz, load)) | self._touched(dt)
+        return status | self._count(self._advance(wx, wy, wz, load)) | self.touched(dt)
 
     def push(
         self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
@@ -318,8 +316,13 @@ class SwaySimulator:
         """Force [N] and moment about the root node [N m] of the last step's pushes, (6,)."""
         return np.zeros(6) if self._touch is None else self._touch.load.copy()
 
-    def _touched(self, dt: float) -> int:
-        """Let the pushes act over the step that was made; returns what `step` says of it."""
+    @property
+    def is_pushed(self) -> bool:
+        """Whether a push acts or has just ended."""
+        return self._touch is not None
+
+    def touched(self, dt: float) -> int:
+        """Let the pushes act over the step [s] that was made; returns what `step` says of it."""
         touch = self._touch
         if touch is None:
             return OK
@@ -441,6 +444,3 @@ class SwaySimulator:
         if self._in_one_call is None and self._gusts is None:
             stepping = self.bank.oscillators.stepping
             self._in_one_call = stepping(self._wind, self._max_wind, self.drag_law)
-
-
-_pressure = fused(pressure)

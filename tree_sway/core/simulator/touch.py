@@ -40,6 +40,14 @@ _LITTLE = 1e-3
 """Force in [N] by which a step's compliance is found."""
 
 
+def row_of(segment: int, count: int) -> int:
+    """Return a segment, if it is a whole number below a count; else a `ParameterError`."""
+    if not (isinstance(segment, int | np.integer) and 0 <= segment < count):
+        cure = f'name one of 0 .. {count - 1}'
+        raise ParameterError(f'no segment {segment}', where='push', cure=cure)
+    return int(segment)
+
+
 class Spring(NamedTuple):
     """
     A spring from a segment to a place ``to`` [m], (3,), of a stiffness [N/m].
@@ -110,15 +118,13 @@ class Touch:
         if isinstance(force, Spring):
             force, stiffness = force
             within('push: stiffness', stiffness, 0.0, STIFFEST, 'N/m', above=True)
-        if not (isinstance(segment, int | np.integer) and 0 <= segment < self._tree.n_segments):
-            cure = f'name one of 0 .. {self._tree.n_segments - 1}'
-            raise ParameterError(f'no segment {segment}', where='push', cure=cure)
+        row = row_of(segment, self._tree.n_segments)
         given = array_to_read('push', force, (3,)).copy()
         if not np.isfinite(given).all():
             raise ParameterError(f'a force of {force!r}', where='push', cure='give x, y, z in N')
         left = within('push: seconds', seconds, 0.0, LONGEST_PUSH, 's', above=True)
         away = within('push: along', along, 0.0, 1.0) * float(self._tree.length[segment])
-        push = Push(int(segment), away, given, left, np.zeros((3, self._n_rotations)))
+        push = Push(row, away, given, left, np.zeros((3, self._n_rotations)))
         push.stiffness = stiffness
         before = self._pushes.get(push.segment)
         if before is None and len(self._pushes) >= MOST_PUSHES:

@@ -142,17 +142,12 @@ def _check_geometry(
     check_numbers(np.hstack([starts, ends, diameters]), labels)
     length = np.linalg.norm(ends - starts, axis=1)
     for index in np.flatnonzero(length < 1e-9)[:1]:
-        raise TreeError(
-            f'zero length (start and end are both {starts[index].tolist()})',
-            where=labels[index],
-            cure='remove the segment or move its end',
-        )
+        what = f'zero length (start and end are both {starts[index].tolist()})'
+        raise TreeError(what, where=labels[index], cure='remove the segment or move its end')
     for index in np.flatnonzero((diameters <= 0.0).any(axis=1))[:1]:
-        raise TreeError(
-            f'diameter {diameters[index].tolist()} m is not positive',
-            where=labels[index],
-            cure='give a diameter above 0; a pointed tip may be .0001',
-        )
+        what = f'diameter {diameters[index].tolist()} m is not positive'
+        cure = 'give a diameter above 0; a pointed tip may be .0001'
+        raise TreeError(what, where=labels[index], cure=cure)
 
 
 def check_numbers(rows: Floats, labels: Sequence[str]) -> None:
@@ -209,11 +204,9 @@ def _chains(keys: Ints, parents: Ints, depth_order: Ints, labels: Sequence[str])
     has_predecessor = keys[by_key[1:]] == keys[by_key[:-1]]
     broken = by_key[1:][has_predecessor & (parents[by_key[1:]] != by_key[:-1])]
     for segment in depth_order[np.isin(depth_order, broken)][:1]:
-        raise TreeError(
-            f'branch {keys[segment]} is not one chain: the segment before is not its parent',
-            where=labels[segment],
-            cure='give the side shoot a branch of its own',
-        )
+        what = f'branch {keys[segment]} is not one chain: the segment before is not its parent'
+        cure = 'give the side shoot a branch of its own'
+        raise TreeError(what, where=labels[segment], cure=cure)
     return np.split(by_key, np.flatnonzero(~has_predecessor) + 1)
 
 

@@ -43,19 +43,15 @@ def tree_and_species(
     if not isinstance(tree, Tree):
         if isinstance(tree, GrownTree):
             return tree_and_species(tree.tree, tree.species if species is None else species)
-        raise ParameterError(
-            f'a {type(tree).__name__}, where a tree is asked for',
-            where='tree',
-            cure='give what open_tree, grow or tree_from_segments returns',
-        )
+        what = f'a {type(tree).__name__}, where a tree is asked for'
+        cure = 'give what open_tree, grow or tree_from_segments returns'
+        raise ParameterError(what, where='tree', cure=cure)
     if species is None:
         return tree, species_named(tree.species)
     if not isinstance(species, Species):
-        raise ParameterError(
-            f'a {type(species).__name__}, where a Species is asked for',
-            where='species',
-            cure="leave it out or give species_named('oak'); settings go in as settings=...",
-        )
+        what = f'a {type(species).__name__}, where a Species is asked for'
+        cure = "leave it out or give species_named('oak'); settings go in as settings=..."
+        raise ParameterError(what, where='species', cure=cure)
     return tree, species
 
 

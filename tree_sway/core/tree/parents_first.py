@@ -36,18 +36,14 @@ def checked_order(parents: ArrayLike, labels: Sequence[str]) -> Ints:
     """
     above, n = np.asarray(parents, dtype=np.int64), len(labels)
     for index in np.flatnonzero((above < -1) | (above >= n))[:1]:
-        raise TreeError(
-            f'orphan: its parent {above[index]} does not exist',
-            where=labels[index],
-            cure=f'name a parent from 0 to {n - 1}, or -1 for the root',
-        )
+        what = f'orphan: its parent {above[index]} does not exist'
+        cure = f'name a parent from 0 to {n - 1}, or -1 for the root'
+        raise TreeError(what, where=labels[index], cure=cure)
     order = np.array(parents_first(above.tolist()), dtype=np.int64)
     for lost in np.setdiff1d(np.arange(n), order)[:1]:
-        raise TreeError(
-            'cyclic: following its parents never reaches a root',
-            where=labels[lost],
-            cure='break the cycle; the root has no parent, or -1',
-        )
+        what = 'cyclic: following its parents never reaches a root'
+        cure = 'break the cycle; the root has no parent, or -1'
+        raise TreeError(what, where=labels[lost], cure=cure)
     return order
 
 

@@ -35,6 +35,10 @@ LARGEST_STRETCH = 0.5
 """Most that the delay of a tree changes per second, in [s/s]."""
 
 
+SPACING = 0.05
+"""Time in [s] over which `GustHistory.recent` takes means."""
+
+
 class GustHistory:
     """
     The wind of the last minute, and what of it each place feels now.
@@ -117,6 +121,41 @@ class GustHistory:
             self._wanted -= self._wanted.min()
         feel(self._run, self._at, self._wanted, self.delay, self._memory, x, y, z, dt, self._felt)
         return self._felt
+
+    @property
+    def time(self) -> float:
+        """Time of the history at the end of the last step in [s]."""
+        return float(self._run[self._at[0], 0])
+
+    def recent(self, until: float) -> dict[str, list[float]]:
+        """
+        Return what another goes on from at a `time` a step or two ago; from any thread.
+
+        ``mean`` is the mean wind with its span, ``delay`` that of each place, ``wind`` the means
+        over each `SPACING` of the last minute, x, y, z and then those of the next.
+        """
+        while True:
+            at, run = self._at.copy(), self._run.copy()
+            if (at == self._at).all():
+                break
+        rows = run[np.arange(at[0] - max(at[1], 1) + 1, at[0] + 1) % len(run)]
+        count = min(self._memory, until - float(rows[0, 0])) // SPACING
+        times = until + SPACING * np.arange(-count, 1.0)
+        runs = [np.interp(times, rows[:, 0], rows[:, k]) for k in (1, 2, 3)]
+        wind = np.diff(runs).T.ravel() / SPACING
+        found = {'mean': self._mean, 'delay': self.delay, 'wind': wind}
+        return {name: each.round(4).tolist() for name, each in found.items()}
+
+    def go_on(self, mean: ArrayLike, delay: ArrayLike, wind: ArrayLike) -> None:
+        """Go on from the `recent` of another history of these places."""
+        rows = np.array(wind, dtype=np.float64).reshape(-1, 3)
+        means, delays = np.array(mean, dtype=np.float64), np.array(delay, dtype=np.float64)
+        if not all(np.isfinite(each).all() for each in (rows, means, delays)):
+            raise ParameterError('a history that is not finite', where='gusts')
+        self.reset()
+        for x, y, z in rows.tolist():
+            remember(self._run, self._at, self._finest, x, y, z, SPACING)
+        self._mean[:], self.delay[:] = means, delays
 
     def reset(self) -> None:
         """Forget the wind."""

@@ -14,20 +14,25 @@ from __future__ import annotations
 from collections.abc import Mapping
 from contextlib import suppress
 import hashlib
-from importlib.metadata import version
+import io
 from pathlib import Path
 import platform
 from typing import Any
 
 import numpy as np
+import scipy
 
-from tree_sway.errors import TreeSwayError
-from tree_sway.files.whole_file import whole_file
 from tree_sway.kernel_cache import ROOT, source_digest
-from tree_sway.kernel_folder import kernel_folder
+from tree_sway.kernel_folder import kernel_folder, write_own
 
 MOST = 32
 """Number of set-ups on disk; the oldest are removed first."""
+
+MOST_BYTES = 1 << 29
+"""Bytes of all set-ups on disk together, some forty large trees."""
+
+LARGEST = 1 << 27
+"""Bytes of a set-up above which it is not written: all modes of a large tree are more."""
 
 _SUFFIX = '.set_up.npz'
 
@@ -36,15 +41,15 @@ class SetUpFiles:
     """What `SwaySimulator` and others take as ``cache``; in the folder of the kernels if None."""
 
     def __init__(self, folder: Path | None = None) -> None:
-        self._folder = folder or kernel_folder()
+        self._folder = folder
 
     def read(self, digest: str) -> dict[str, Any] | None:
         """Arrays by name, as they were written under this digest; None if there are none."""
-        if self._folder is None:
+        if (folder := self._folder or kernel_folder()) is None:
             return None
         key = _key(digest)
         try:
-            with np.load(self._folder / f'{key}{_SUFFIX}') as file:
+            with np.load(folder / f'{key}{_SUFFIX}') as file:
                 arrays = dict(file)
             return arrays if str(arrays.pop('key')) == key else None
         except Exception:  # whatever numpy makes of a damaged file
@@ -52,21 +57,27 @@ class SetUpFiles:
 
     def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
         """Write arrays, all of them or nothing, in place of the oldest set-ups."""
-        if self._folder is None:
+        size = sum(each.nbytes for each in arrays.values())
+        if (folder := self._folder or kernel_folder()) is None or size > LARGEST:
             return
-        key = _key(digest)
-        with suppress(OSError, TreeSwayError):
-            with whole_file(self._folder / f'{key}{_SUFFIX}') as partial:
-                np.savez(partial, key=np.array(key), **arrays)
-            found = sorted(self._folder.glob(f'*{_SUFFIX}'), key=lambda path: path.stat().st_mtime)
-            for path in found[:-MOST]:
-                path.unlink()
+        key, content = _key(digest), io.BytesIO()
+        np.savez(content, key=np.array(key), **arrays)
+        with suppress(OSError):
+            write_own(folder / f'{key}{_SUFFIX}', content.getvalue())
+            found = [(each, each.stat()) for each in folder.glob(f'*{_SUFFIX}')]
+            found.sort(key=lambda one: -one[1].st_mtime)
+            sizes = np.cumsum([state.st_size for _, state in found])
+            for number, (path, _) in enumerate(found):
+                if number >= MOST or sizes[number] > MOST_BYTES:
+                    path.unlink()
+
+
+SET_UPS = SetUpFiles()
+"""Where set-ups are written and found again unless another place is named."""
 
 
 def _key(digest: str) -> str:
     """Name of a set-up, which it bears inside as well."""
-    parts = [
-        *(digest, source_digest(ROOT / 'core'), platform.node()),
-        *(version(name) for name in ('numpy', 'scipy')),
-    ]
+    versions = np.__version__, scipy.__version__
+    parts = digest, source_digest(ROOT / 'core'), platform.node(), *versions
     return hashlib.blake2b('\0'.join(parts).encode(), digest_size=16).hexdigest()

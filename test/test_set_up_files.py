@@ -8,10 +8,10 @@ import re
 import numpy as np
 import pytest
 
+from tree_sway import set_up_files
 from tree_sway.core.simulator import assembly
 from tree_sway.core.simulator.simulator import SwaySimulator
-from tree_sway.files import set_up_files
-from tree_sway.files.set_up_files import SetUpFiles
+from tree_sway.set_up_files import SetUpFiles
 
 WIND = (6.0, 3.0, 0.5)
 
@@ -132,8 +132,17 @@ def test_what_cannot_be_written_is_left(fork, tmp_path):
     assert poses_of(SwaySimulator(fork(), cache=nowhere)) == poses_of(SwaySimulator(fork()))
 
 
-def test_the_oldest_go_first(kept, files, monkeypatch):
-    monkeypatch.setattr(set_up_files, 'MOST', 2)
+def test_what_is_too_large_is_not_written(fork, kept, files, monkeypatch):
+    monkeypatch.setattr(set_up_files, 'LARGEST', 1 << 16)
+    SwaySimulator(fork(), cache=kept)
+    assert not files()
+    kept.write('small', {'number': np.zeros(8)})
+    assert len(files()) == 1
+
+
+@pytest.mark.parametrize(('bound', 'value'), [('MOST', 2), ('MOST_BYTES', 1300)])
+def test_the_oldest_go_first(kept, files, monkeypatch, bound, value):
+    monkeypatch.setattr(set_up_files, bound, value)
     for age, digest in enumerate(('one', 'two', 'three')):
         kept.write(digest, {'number': np.array(age)})
         for path in files():
