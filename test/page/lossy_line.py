@@ -68,7 +68,7 @@ def run_line(delay: float, loss: float, seconds: float) -> dict[str, float]:
     carrier = threading.Thread(target=_carry, args=(outer, delay, loss, ended), daemon=True)
     carrier.start()
     try:
-        told, _ = sides[1].communicate(timeout=seconds + 60.0)
+        output, _ = sides[1].communicate(timeout=seconds + 60.0)
     finally:
         ended.set()
         carrier.join()
@@ -79,7 +79,7 @@ def run_line(delay: float, loss: float, seconds: float) -> dict[str, float]:
             side.stdout.close()
         for end in outer:
             end.close()
-    found: dict[str, float] = json.loads(told)
+    found: dict[str, float] = json.loads(output)
     return found
 
 

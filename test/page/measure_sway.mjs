@@ -4,7 +4,7 @@
 // `node test/page/measure_sway.mjs`. Prints the least of many batches, as other programs run beside.
 import { Stand, Table } from "../../tree_sway/page/static/sway.js";
 
-const [A, N] = [24, 6];
+const [A, N] = [24, 7];
 let seed = 1;
 const random = () => ((seed = (seed * 16807) % 2147483647) / 2147483647 - 0.5);
 const singles = (count, scale = 1, shift = 0) => Float32Array.from({ length: count }, () => shift + scale * random());
@@ -15,6 +15,7 @@ export function madeUp(m) {
   const add = (name, shape, values) => (arrays[name] = { shape, values });
   const plain = (name, ...shape) => add(name, shape, singles(shape.reduce((a, b) => a * b), 1e-3));
   add("stiffness", [m], Float32Array.from({ length: m }, (_, i) => (6.28 * (0.4 + 0.2 * i)) ** 2));
+  add("limit", [m], new Float32Array(m).fill(1));
   add("own_damping", [m], Float32Array.from({ length: m }, (_, i) => 0.5 + 0.1 * i));
   add("motion", [m], singles(m, 0, 1e-3));
   add("levels", [A, N], Float32Array.from({ length: A * N }, (_, i) => (i % N) * 0.1));
@@ -22,6 +23,7 @@ export function madeUp(m) {
   plain("standing", A, N, m);
   plain("amount", A, m);
   plain("load", A, N, m);
+  plain("cross_damping", A, N, m);
   plain("state", m, 20);
   plain("correction", 20, m);
   for (const [name, rows] of [["turning", A * N], ["damping", A * N], ["lean", A], ["steep_turning", 2], ["steep_damping", 2]]) {

@@ -15,11 +15,11 @@ const description = decodeDescription(read("description.bin"));
 const stand = new Stand(decodeTables(read("tables.bin")), description);
 const placer = new Placer(description);
 const coordinates = new Float32Array(description.nCoordinates);
-const { push, wind, steps, held } = JSON.parse(new TextDecoder().decode(read("push.json")));
+const { push, wind, steps, steps_pushed } = JSON.parse(new TextDecoder().decode(read("push.json")));
 const places = [];
 for (let step = 0; step < steps; step++) {
-  if (step < held) stand.push(push);
-  if (step === held) stand.push({ segment: push.segment, to: [0, 0, 0], stiffness: 0 });
+  if (step < steps_pushed) stand.push(push);
+  if (step === steps_pushed) stand.push({ segment: push.segment, to: [0, 0, 0], stiffness: 0 });
   stand.step(...wind);
   const from = STRIDE * push.segment;
   places.push(Array.from(placer.place(stand.write(coordinates)).subarray(from, from + 3)));

@@ -134,7 +134,7 @@ async def look(url: str, view: View, path: Path) -> None:
         drawn = await browser.run('treeSway.scene._frame')
         await browser.until(f'treeSway.scene._frame > {drawn} + 3')
         if not view.is_full:
-            await asyncio.sleep(8.0)  # until the page has chosen what it draws
+            await settled(browser)
         if view.is_film:
             await film(browser, path.with_suffix('.webp'))
             return
@@ -143,6 +143,16 @@ async def look(url: str, view: View, path: Path) -> None:
             image = image.resize((WIDTH, WIDTH * height // width), Image.Resampling.LANCZOS)
         image.save(path, quality=82, optimize=True)
         print(path, path.stat().st_size, await browser.run('treeSway.fps'), browser.console)
+
+
+async def settled(browser: Browser) -> None:
+    """Wait until the page has chosen what it draws: the same for some of its looks at the time."""
+    quality = 'JSON.stringify([treeSway.scene.quality.fineness, treeSway.scene.quality.density])'
+    before = None
+    while (now := await browser.run(quality)) != before:
+        before = now
+        begun = await browser.run('treeSway.scene.quality._from')
+        await browser.until(f'treeSway.scene.quality._from > {begun} + 3000')
 
 
 async def film(browser: Browser, path: Path) -> None:

@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Iterator
+from dataclasses import replace
 import json
 from pathlib import Path
 import shutil
@@ -17,6 +19,7 @@ import pytest
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytest.importorskip('numba', reason='numba is not installed')
 
+from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.simulator.settings import Settings  # noqa: E402
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.errors import TransportError  # noqa: E402
@@ -135,6 +138,81 @@ def test_two_pages_that_lose_frames_meet_at_each_state(run: Run, tmp_path: Path)
     assert found['before'] <= 0.05
 
 
+class Stand:
+    """A stand in gusts: frames for a page from the start, and for one that comes late."""
+
+    JOINED, STEPS = 3000, 4200
+
+    def __init__(self) -> None:
+        one = open_scene('goldcrest').trees[0]
+        trees = [replace(one, name=f't{k}', x=35.0 * k) for k in range(3)]
+        simulator: Any = Scene(trees).simulator(Settings(model=20))
+        self.state = SceneState(simulator, is_running=False)
+        simulator.reset()
+        older, late = (_Client(None, None) for _ in range(2))  # type: ignore[arg-type]
+        rng = np.random.default_rng(6)
+        wind = simulate_turbulence(7.0, duration=self.STEPS * STEP, rate=20.0, rng=rng)
+        self.frames, self.joining, self.gusts = [], [], ''
+        for step in range(self.STEPS):
+            if step == self.JOINED:
+                self.gusts = json.dumps(self.state.gusts())
+            simulator.step(wind[step // 3], STEP)
+            frame = self.state.frame(round(1e9 * STEP * step))
+            self.frames.append(older.thinned(frame, STEP * step))
+            if step >= self.JOINED:
+                self.joining.append(late.thinned(frame, STEP * step))
+        self.delay = float(simulator.gusts.delay.max())
+
+
+@pytest.fixture(scope='module')
+def stand() -> Stand:
+    return Stand()
+
+
+def test_who_comes_late_to_a_stand_feels_the_gusts_of_before(stand: Stand) -> None:
+    assert stand.delay > 5.0
+    assert len(stand.gusts) < 50_000
+    description = decode_description(stand.state.description)
+    tables = decode_tables(stand.state.tables() or b'')
+    older, late, bare = (ByWind(description, tables.scene(description, STEP)) for _ in range(3))
+    late.go_on(json.loads(stand.gusts))
+    apart = without = motion = 0.0
+    for number, data in enumerate(stand.frames):
+        there = older.take(decode_frame(data))
+        if number >= stand.JOINED:
+            frame = decode_frame(stand.joining[number - stand.JOINED])
+            found, other = late.take(frame), bare.take(frame)
+            assert there is not None
+            assert found is not None
+            assert other is not None
+            apart = max(apart, float(np.abs(found - there).max()))
+            without = max(without, float(np.abs(other - there).max()))
+            motion = max(motion, float(np.abs(there).max()))
+    print(f'{apart / motion:.4f} of the motion apart, {without / motion:.4f} without the gusts')
+    assert apart < 0.01 * motion < 0.1 * motion < without
+
+
+def test_a_page_that_comes_late_does_so_too(stand: Stand, tmp_path: Path) -> None:
+    node = shutil.which('node')
+    if node is None:
+        pytest.skip('node is not installed here')
+    (tmp_path / 'description.bin').write_bytes(stand.state.description)
+    (tmp_path / 'tables.bin').write_bytes(stand.state.tables() or b'')
+    frames, joining = (
+        [base64.b64encode(each).decode() for each in which]
+        for which in (stand.frames, stand.joining)
+    )
+    given = {'frames': frames, 'joining': joining, 'joined': stand.JOINED}
+    text = json.dumps({**given, 'gusts': json.loads(stand.gusts)})
+    (tmp_path / 'frames.json').write_text(text, encoding='utf-8')
+    command = [node, str(HERE / 'late_page.mjs'), str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    print(found)
+    assert found['apart'] < 0.01 < 0.1 < found['without']
+
+
 @pytest.fixture
 def server(run: Run) -> Iterator[PageServer]:
     with PageServer(PageSettings(port=0)) as made:
@@ -154,6 +232,25 @@ def test_a_client_by_wind_solves_what_a_server_describes(run: Run, server: PageS
         assert client.solver is not None
         assert client.solver.corrections >= 1
         assert client.poses() is not None
+
+
+def test_a_client_is_sent_the_gusts_as_it_joins(stand: Stand, server: PageServer) -> None:
+    heard = json.loads(stand.gusts)
+    server.describe(stand.state.description, stand.state.tables, lambda: heard)
+    with StreamClient(server.url, rate=1000.0, by_wind=True) as client:
+        for _ in range(1500):
+            server.publish(stand.joining[0])
+            try:
+                client.wait(0.02)
+            except TransportError:  # not yet: the next frame is published
+                continue
+            break
+        assert client.solver is not None
+        gusts = client.solver._scene.gusts
+        found = gusts.recent(gusts.time)
+        assert np.abs(np.subtract(found['delay'], heard['delay'])).max() < 0.1
+        assert len(found['wind']) == len(heard['wind'])
+        assert client.unreadable == 0
 
 
 def test_a_scene_without_tables_comes_state_by_state(run: Run, server: PageServer) -> None:

@@ -189,16 +189,17 @@ def arrivals() -> list[dict[str, object]]:
     return sorted(frames, key=lambda each: each['at'])  # type: ignore[arg-type,return-value]
 
 
-def test_javascript_plays_out_the_same() -> None:
+@pytest.mark.parametrize('delay', [0.17, None])
+def test_javascript_plays_out_the_same(delay: float | None) -> None:
     node = shutil.which('node')
     if node is None:
         pytest.skip('node is not installed here')
-    told = arrivals()
+    arrived = arrivals()
     program = f"""
       import {{ Playout }} from "{(STATIC / 'playout.js').as_uri()}";
       let text = "";
       for await (const chunk of process.stdin) text += chunk;
-      const playout = new Playout(170), out = [];
+      const playout = new Playout({'170' if delay else ''}), out = [];
       for (const f of JSON.parse(text)) {{
         const at = 1000 * f.at;
         playout.push({{ stamp: 1000 * f.stamp, flags: f.flags, wind: [f.values[0], 1, 2],
@@ -210,12 +211,12 @@ def test_javascript_plays_out_the_same() -> None:
       console.log(JSON.stringify({{ out, late: playout.late, received: playout.received }}));
     """
     done = subprocess.run(
-        [node, '--input-type=module', '-e', program], input=json.dumps(told), text=True,
+        [node, '--input-type=module', '-e', program], input=json.dumps(arrived), text=True,
         capture_output=True, check=True, timeout=60,
     )  # fmt: skip
     theirs = json.loads(done.stdout)
-    playout, ours = Playout(0.17), []
-    for each in told:
+    playout, ours = Playout(delay), []
+    for each in arrived:
         values = np.array(each['values'])
         wind = np.array([values[0], 1.0, 2.0])
         at = float(each['at'])  # type: ignore[arg-type]
@@ -230,6 +231,42 @@ def test_javascript_plays_out_the_same() -> None:
     np.testing.assert_allclose(ours, theirs['out'], atol=2e-5)
     assert (playout.late, playout.received) == (theirs['late'], theirs['received'])
     assert playout.late > 0
+
+
+@pytest.mark.parametrize(
+    ('late', 'each', 'shortest', 'longest'),
+    [
+        (0.004, 1, 0.017, 0.025),
+        (0.03, 1, 0.04, 0.06),
+        (0.1, 90, 0.06, 0.15),
+        (0.3, 90, 0.12, 0.15),
+    ],
+)
+def test_the_delay_is_what_the_line_asks_for(
+    late: float, each: int, shortest: float, longest: float
+) -> None:
+    """Frames of 60 Hz that are late by up to some [s], all of them or one of some."""
+    playout, rng, shown = Playout(), np.random.default_rng(3), []
+    stamps = np.arange(3600) / 60.0
+    lates = rng.uniform(0.0, np.where(np.arange(3600) % each == 0, late, 0.002))
+    # What is late holds up what comes after it, as on TCP.
+    on_the_way = list(zip(np.maximum.accumulate(stamps + lates), stamps, strict=True))
+    for now in np.arange(1.0, 60.0, 1.0 / 60.0):
+        while on_the_way and on_the_way[0][0] <= now:
+            arrival, stamp = on_the_way.pop(0)
+            playout.push(Moment(stamp, np.array([stamp]), np.zeros(3)), arrival)
+        moment = playout.sample(now)
+        assert moment is not None
+        shown.append(moment.stamp)
+        if now < 30.0:
+            playout.late = 0
+    assert shortest < playout.delay <= longest
+    pace = 60.0 * np.diff(shown[1800:])
+    uneven = float(np.mean(np.abs(pace - 1.0) > 0.3))
+    print(f'{1e3 * playout.delay:.0f} ms, {playout.late} late, {uneven:.4f} of pictures uneven')
+    # What comes later than the longest delay is missed, whatever is done.
+    assert late > 0.15 or playout.late < 0.003 * 1800
+    assert uneven < (0.01 if late < 0.15 else 0.05)
 
 
 def test_the_offset_is_the_least_of_the_last_half_minute() -> None:

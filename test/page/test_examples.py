@@ -62,9 +62,9 @@ def page(files: str) -> Iterator[PageServer]:
 
 def test_python_follows_a_tree(page: PageServer) -> None:
     command = [sys.executable, str(ROOT / 'examples/python/follow.py'), page.url]
-    told = [*command, '--seconds', str(DEADLINE)]
+    following = [*command, '--seconds', str(DEADLINE)]
     tips: set[str] = set()
-    with subprocess.Popen(told, stdout=subprocess.PIPE, text=True, cwd=ROOT) as running:
+    with subprocess.Popen(following, stdout=subprocess.PIPE, text=True, cwd=ROOT) as running:
         assert running.stdout is not None
         for line in running.stdout:
             wind, tip = re.fullmatch(
@@ -98,7 +98,10 @@ def three() -> None:
         pytest.skip('npm cannot bring three.js here')
 
 
-@pytest.mark.parametrize(('kind', 'count'), [('poses', 1), ('gltf', 1), ('gltf', 36)])
+@pytest.mark.parametrize(
+    ('kind', 'count'),
+    [('poses', 1), ('gltf', 1), pytest.param('gltf', 36, marks=pytest.mark.long)],
+)
 @pytest.mark.usefixtures('three')
 def test_three_draws_a_tree_that_sways(
     kind: str,

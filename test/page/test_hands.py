@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Coroutine, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 import shutil
 import subprocess
@@ -18,6 +20,7 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytest.importorskip('numba', reason='numba is not installed')
 
 from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.simulator.settings import Settings  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.page.controls import ControlPanel  # noqa: E402
@@ -28,6 +31,7 @@ from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
 Browser = Any
 LIVE = "window.treeSway && treeSway.state === 'live' && treeSway.fps > 0"
 PULL = 'treeSway.hands.drag.pull'
+ATTEMPTS, LARGEST_GAP = 4, 0.06
 MOVED = (
     '((s) => Math.hypot(...treeSway.scene.position(s).map((x, c) => x -'
     ' treeSway.scene.restPosition(s)[c])))({})'
@@ -40,16 +44,32 @@ def simulator() -> Any:
     return open_scene('goldcrest').simulator(Settings(), model=20)
 
 
-@pytest.fixture(scope='module')
-def live(simulator: Any) -> Iterator[tuple[str, Session]]:
+@contextmanager
+def served(simulator: Any) -> Iterator[str]:
     """Address of a page in calm air where branches may be pulled."""
     session = Session(lambda _: simulator, Choices('goldcrest'), SimulatedWind(0.0))
     panel = ControlPanel((), session.apply, session.pull)
     with PageServer(PageSettings(port=0), panel, session.status) as server:
         session.serve(server)
-        yield server.url, session
+        yield server.url
         session.stop()
     assert session.failure is None
+
+
+@pytest.fixture(scope='module')
+def live(simulator: Any) -> Iterator[str]:
+    """Address of a page of the tree."""
+    with served(simulator) as url:
+        yield url
+
+
+@pytest.fixture(scope='module')
+def stand() -> Iterator[str]:
+    """Address of a page of two such trees, of which the second is watched: it stands higher."""
+    one = open_scene('goldcrest').trees[0]
+    two = replace(one, name='higher', x=3.0, y=1.0, z=0.2, yaw=0.7)
+    with served(Scene([one, two]).simulator(Settings(model=20))) as url:
+        yield url
 
 
 @pytest.fixture(scope='module')
@@ -98,8 +118,10 @@ async def click(browser: Browser, name: str) -> None:
 async def grab(browser: Browser) -> tuple[float, float]:
     """Press on the stem at some height; where."""
     await browser.until("!document.getElementById('pull').hidden")
-    await click(browser, 'pull')
-    await browser.until("document.getElementById('pull').getAttribute('aria-pressed') === 'true'")
+    is_on = "document.getElementById('pull').getAttribute('aria-pressed') === 'true'"
+    if not await browser.run(is_on):
+        await click(browser, 'pull')
+    await browser.until(is_on)
     x, y = await browser.run(
         'treeSway.scene.camera.project(treeSway.scene.position(9)).map((each, c) =>'
         ' each * [innerWidth, innerHeight][c])'
@@ -109,31 +131,43 @@ async def grab(browser: Browser) -> tuple[float, float]:
     return x, y
 
 
-@pytest.mark.parametrize('kind', ['live', 'file'])
+async def pull_and_let_go(browser: Browser) -> str:
+    """Return the record of the free decay, as the page saves it."""
+    azimuth = await browser.run('treeSway.scene.camera.azimuth')
+    x, y = await grab(browser)
+    await mouse(browser, 'Moved', x + 120, y + 10)
+    moved = MOVED.format(f'{PULL}.segment')
+    await browser.until(f'{PULL}.force > 0.01 && {moved} > 0.02')
+    label = "document.getElementById('pull-force')"
+    await browser.until(f'!{label}.hidden && / N$/.test({label}.textContent)')
+    shown = float((await browser.run(f'{label}.textContent')).split()[0])
+    # It swings on the spring, too: let go where it is far over.
+    await browser.until(f'{moved} > 0.02')
+    await mouse(browser, 'Released', x + 120, y + 10)
+    assert shown > 0.01
+    assert await browser.run('treeSway.scene.camera.azimuth') == azimuth
+    await browser.until(f"{PULL}.seconds > 6 && !document.getElementById('pull-save').hidden")
+    assert await browser.run(f'{label}.hidden')
+    return str(await browser.run(f'{PULL}.csv()'))
+
+
+@pytest.mark.parametrize('kind', ['live', 'stand', 'file'])
 def test_a_branch_that_is_dragged_follows_and_swings_when_let_go(
-    kind: str, live: tuple[str, Session], file: str, browser_class: Any, tmp_path: Path
+    kind: str, request: pytest.FixtureRequest, browser_class: Any, tmp_path: Path
 ) -> None:
     async def script(browser: Browser) -> None:
         if kind == 'file':
             await browser.run("treeSway.stream.set('mean_speed', 0)")
             await browser.run("document.getElementById('control-reset').click()")
-        azimuth = await browser.run('treeSway.scene.camera.azimuth')
-        x, y = await grab(browser)
-        await mouse(browser, 'Moved', x + 120, y + 10)
-        moved = MOVED.format(f'{PULL}.segment')
-        await browser.until(f'{PULL}.force > 0.01 && {moved} > 0.02')
-        label = "document.getElementById('pull-force')"
-        await browser.until(f'!{label}.hidden && / N$/.test({label}.textContent)')
-        shown = float((await browser.run(f'{label}.textContent')).split()[0])
-        await mouse(browser, 'Released', x + 120, y + 10)
-        assert shown > 0.01
-        assert await browser.run('treeSway.scene.camera.azimuth') == azimuth
-        await browser.until(f"{PULL}.seconds > 6 && !document.getElementById('pull-save').hidden")
-        assert await browser.run(f'{label}.hidden')
-        rows = await browser.run(f'{PULL}.csv()')
+        # A machine with other work loses frames: calibrate asks for a record without gaps.
+        for _ in range(ATTEMPTS):
+            rows = await pull_and_let_go(browser)
+            times = [float(row.split(',')[0]) for row in rows.splitlines()[1:]]
+            if np.diff(times).max() < LARGEST_GAP:
+                break
         (tmp_path / 'pull_test.csv').write_text(rows, encoding='utf-8')
 
-    visit(browser_class, live[0] if kind == 'live' else file, script)
+    visit(browser_class, request.getfixturevalue(kind), script)
     record = np.loadtxt(tmp_path / 'pull_test.csv', delimiter=',', skiprows=1)
     swing = np.linalg.norm(record[:, 1:], axis=1)
     assert swing[record[:, 0] < 1.0].max() > 0.01
@@ -164,6 +198,42 @@ def test_who_may_not_set_controls_may_not_pull(simulator: Any, browser_class: An
         visit(browser_class, server.url, script)
         assert server.n_refused == 1
         session.stop()
+
+
+def test_another_tree_of_a_stand_is_pulled_where_it_is_grabbed(
+    stand: str, browser_class: Any
+) -> None:
+    async def script(browser: Browser) -> None:
+        assert await browser.run('treeSway.scene.detail.watched') == 1
+        await browser.until("!document.getElementById('pull').hidden")
+        await click(browser, 'pull')
+        await browser.until(
+            "document.getElementById('pull').getAttribute('aria-pressed') === 'true'"
+        )
+        x, y = await browser.run(
+            '(({scene}) => { scene.detail.watched = 0; const at = scene.position(9);'
+            ' scene.detail.watched = 1; return scene.camera.project(at).map((each, c) =>'
+            ' each * [innerWidth, innerHeight][c]); })(treeSway)'
+        )
+        await mouse(browser, 'Pressed', x, y)
+        await browser.until(f'{PULL}?.isHeld')
+        assert await browser.run('treeSway.scene.detail.watched') == 0
+        await mouse(browser, 'Moved', x + 120, y + 10)
+        await browser.until(f'{PULL}.force > 0.01 && {MOVED.format(f"{PULL}.segment")} > 0.02')
+        await mouse(browser, 'Released', x + 120, y + 10)
+
+    visit(browser_class, stand, script)
+
+
+def test_a_pull_that_cannot_be_is_refused_and_said(live: str, browser_class: Any) -> None:
+    async def script(browser: Browser) -> None:
+        await browser.run('treeSway.stream.pull({segment: 1e6, to: [1, 0, 1], stiffness: 5})')
+        await browser.until("document.getElementById('toast').hidden === false")
+        assert 'no segment 1000000' in await browser.run(
+            "document.getElementById('toast').innerText"
+        )
+
+    visit(browser_class, live, script)
 
 
 def test_the_wind_is_heard_once_it_is_asked_for(file: str, browser_class: Any) -> None:
@@ -214,6 +284,10 @@ def emulator(tmp_path_factory: pytest.TempPathFactory) -> str:
         f'{script};\nwindow.device = new IWER.XRDevice(IWER.metaQuest3);'
         'device.installRuntime({forceInstall: true}); device.ipd = 0.063;'
         'device.stereoEnabled = true;'
+        # The emulator takes an offset for its matrix.
+        '{const own = XRReferenceSpace.prototype.getOffsetReferenceSpace;'
+        ' XRReferenceSpace.prototype.getOffsetReferenceSpace = function (offset) {'
+        ' return own.call(this, Object.assign(offset.matrix, {matrix: offset.matrix})); };}'
     )
 
 
@@ -222,8 +296,9 @@ def test_a_headset_shows_the_tree_and_pulls_a_branch(
 ) -> None:
     aim = (
         # From the rig's frame to the scene and back: a ray through the place of a segment.
-        '(() => {const h = treeSway.hands.headset, [c, s] = h.rig.forward;'
-        ' const p = treeSway.scene.position(9).map((x, i) => x - h.rig.origin[i]);'
+        '(() => {const h = treeSway.hands.headset;'
+        ' const [c, s] = [Math.cos(h.heading), Math.sin(h.heading)];'
+        ' const p = treeSway.scene.position(9).map((x, i) => x - h.origin[i]);'
         ' const goal = [s * p[0] - c * p[1], p[2], -(c * p[0] + s * p[1])];'
         ' const hand = device.controllers.right; hand.position.set(0.2, 1, 0);'
         ' const d = [goal[0] - 0.2, goal[1] - 1, goal[2]]; const n = Math.hypot(...d);'
@@ -243,7 +318,7 @@ def test_a_headset_shows_the_tree_and_pulls_a_branch(
         assert right == left + size[0] > left  # two eyes side by side
         apart = f'Math.hypot(...{views}[0].camera.eye.map((x, c) => x - {views}[1].camera.eye[c]))'
         assert await browser.run(apart) == pytest.approx(0.063, abs=1e-3)
-        origin = await browser.run('treeSway.hands.headset.rig.origin')
+        origin = await browser.run('treeSway.hands.headset.origin')
         await browser.run(aim)
         frames = await browser.run('treeSway.hands.headset.frames')
         await browser.until(f'treeSway.hands.headset.frames > {frames} + 3')
@@ -263,8 +338,7 @@ def test_a_headset_shows_the_tree_and_pulls_a_branch(
         await browser.until(f'treeSway.hands.headset.frames > {frames} + 3')
         await browser.run("device.controllers.right.updateButtonValue('trigger', 0)")
         await browser.until(
-            'Math.hypot(...treeSway.hands.headset.rig.origin.map((x, c) => x -'
-            f' {origin}[c])) > 0.3'
+            f'Math.hypot(...treeSway.hands.headset.origin.map((x, c) => x - {origin}[c])) > 0.3'
         )
         await browser.run('device.activeSession.end()')
         await browser.until('treeSway.hands.headset.session === null')

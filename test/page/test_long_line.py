@@ -113,9 +113,9 @@ def test_sixty_four_clients_are_served_in_time(server: PageServer) -> None:
     command = [sys.executable, str(HERE / 'test_long_line.py'), server.url, '64', str(SECONDS)]
     clients = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     before, began = resource.getrusage(resource.RUSAGE_SELF), time.monotonic()
-    told, _ = clients.communicate(timeout=60)
+    output, _ = clients.communicate(timeout=60)
     after, spent = resource.getrusage(resource.RUSAGE_SELF), time.monotonic() - began
-    each = [np.array(one) for one in json.loads(told)]
+    each = [np.array(one) for one in json.loads(output)]
     seen, counts = np.concatenate(each), [len(one) for one in each]
     used = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / spent
     p99 = 1e3 * float(np.quantile(seen, 0.99))

@@ -118,9 +118,9 @@ def test_a_table_of_wind_blows_and_another_file_is_refused(
         await browser.until('Math.abs(treeSway.playout.wind[0] - 10) < 1e-6')
         await drop(browser, 'tree.csv', 'x,y,z\n0,0,1\n')
         await browser.until(TOAST)
-        told = await browser.run(TOAST)
-        assert 'tree.csv is no table of wind' in told
-        assert 'Drop another file' in told
+        text = await browser.run(TOAST)
+        assert 'tree.csv is no table of wind' in text
+        assert 'Drop another file' in text
         assert await browser.run('treeSway.playout.wind[0] > 9')
         await drop(browser, 'short.csv', 'time,u,v\n0,1,1\n0,1,nan\n')
         await browser.until(f"({TOAST}).includes('short.csv has fewer than two rows')")
@@ -141,9 +141,9 @@ def test_a_damaged_file_says_so(
 ) -> None:
     async def script(browser: Browser) -> None:
         await browser.until(NOTICE)
-        told = await browser.run(NOTICE)
-        assert 'file is damaged' in told
-        assert 'again' in told
+        text = await browser.run(NOTICE)
+        assert 'file is damaged' in text
+        assert 'again' in text
 
     visit(changed(file, part, change), script)
 

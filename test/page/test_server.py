@@ -339,6 +339,7 @@ def test_hostile_input_costs_no_memory_and_a_viewer_no_frame(
                 await viewer.say(credit=1)
                 assert await viewer.binary() == f'F{number}'.encode()
                 number += 1
+                await asyncio.wait({attacked}, timeout=1.0 / 60.0)  # as a page draws
             await attacked
             assert number > before
             until(lambda: server.n_clients == 1)
@@ -374,15 +375,15 @@ def test_too_many_pages_are_refused() -> None:
 
 def test_publishing_does_not_wait_for_anybody(server: PageServer) -> None:
     """Frames are published while the server's own thread is blocked."""
-    held, freed = threading.Event(), threading.Event()
+    occupied, freed = threading.Event(), threading.Event()
     in_time = []
 
     def hold() -> None:
-        held.set()
+        occupied.set()
         in_time.append(freed.wait(DEADLINE))
 
     server._loop.call_soon_threadsafe(hold)
-    assert held.wait(DEADLINE)
+    assert occupied.wait(DEADLINE)
     for _ in range(1000):
         server.publish(bytes(96))
     freed.set()

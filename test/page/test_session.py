@@ -32,16 +32,16 @@ class Sink:
     def __init__(self) -> None:
         self.descriptions: list[bytes] = []
         self.frames: list[bytes] = []
-        self.told: list[Any] = []
+        self.messages: list[Any] = []
 
-    def describe(self, description: bytes, tables: Any = None) -> None:
+    def describe(self, description: bytes, *_: Any) -> None:
         self.descriptions.append(description)
 
     def publish(self, frame: bytes) -> None:
         self.frames.append(frame)
 
     def announce(self, content: Any, values: Any = None) -> None:
-        self.told.append(content)
+        self.messages.append(content)
 
 
 def build(choices: Choices) -> Any:
@@ -103,8 +103,8 @@ def test_another_model_is_built_beside_and_taken_over(live: tuple[Session, Sink]
 def test_what_cannot_be_built_is_reported_and_the_old_goes_on(live: tuple[Session, Sink]) -> None:
     session, sink = live
     session.apply('tree', 'missing')
-    until(lambda: sink.told)
-    assert "no tree 'missing'" in sink.told[0]['refused']['reason']
+    until(lambda: sink.messages)
+    assert "no tree 'missing'" in sink.messages[0]['refused']['reason']
     n = len(sink.frames)
     until(lambda: len(sink.frames) > n + 5)
     assert session.choices.tree == str(SEEDLING)
@@ -122,8 +122,10 @@ def test_a_fault_while_building_is_reported_and_the_next_wish_is_built(
 
     session._build = fail
     session.apply('tree', 'oak')
-    until(lambda: sink.told)
-    assert 'oak cannot be built (ZeroDivisionError: a fault' in sink.told[0]['refused']['reason']
+    until(lambda: sink.messages)
+    assert (
+        'oak cannot be built (ZeroDivisionError: a fault' in sink.messages[0]['refused']['reason']
+    )
     assert 'ZeroDivisionError' in caplog.text
     until(lambda: not session.status()['building'])
     session._build = build

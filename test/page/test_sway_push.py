@@ -38,7 +38,7 @@ def pushed_in_javascript(simulator: Simulator, folder: Path, push: dict[str, Any
     scene = SceneState(simulator, is_running=False)
     (folder / 'description.bin').write_bytes(scene.description)
     (folder / 'tables.bin').write_bytes(scene.tables() or b'')
-    given = {'push': push, 'wind': WIND, 'steps': STEPS, 'held': PUSHED}
+    given = {'push': push, 'wind': WIND, 'steps': STEPS, 'steps_pushed': PUSHED}
     (folder / 'push.json').write_text(json.dumps(given), encoding='utf-8')
     command = [node, str(HERE / 'sway_push.mjs'), str(folder)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)

@@ -52,24 +52,17 @@ def read_token(path: str | Path) -> str:
         with open(path, encoding='ascii') as file:
             text = file.read(_LARGEST_TOKEN + 1) if stat.S_ISREG(mode) else ''
     except (OSError, ValueError) as error:
-        raise ParameterError(
-            f'the token cannot be read ({type(error).__name__})',
-            where=str(path),
-            cure='name a text file with the token on its first line',
-        ) from None
+        what = f'the token cannot be read ({type(error).__name__})'
+        cure = 'name a text file with the token on its first line'
+        raise ParameterError(what, where=str(path), cure=cure) from None
     if mode & stat.S_IRWXO:
-        raise ParameterError(
-            'every user of this machine may read the token',
-            where=str(path),
-            cure=f'chmod o-rwx {path}',
-        )
+        what = 'every user of this machine may read the token'
+        raise ParameterError(what, where=str(path), cure=f'chmod o-rwx {path}')
     token = text.strip()
     if not _SHORTEST_TOKEN <= len(token) <= _LARGEST_TOKEN or not token.isprintable():
-        raise ParameterError(
-            f'no token of {_SHORTEST_TOKEN} to {_LARGEST_TOKEN} letters',
-            where=str(path),
-            cure='write one, as python3 -c "import secrets; print(secrets.token_urlsafe())" does',
-        )
+        what = f'no token of {_SHORTEST_TOKEN} to {_LARGEST_TOKEN} letters'
+        cure = 'write one, as python3 -c "import secrets; print(secrets.token_urlsafe())" does'
+        raise ParameterError(what, where=str(path), cure=cure)
     return token
 
 
@@ -84,11 +77,9 @@ def require_token(address: str, token: str) -> None:
 
     """
     if not is_loopback(address) and len(token) < _SHORTEST_TOKEN:
-        raise ParameterError(
-            f'address {address} without a token of at least {_SHORTEST_TOKEN} characters',
-            where='page',
-            cure='name a token_file, or keep the address 127.0.0.1',
-        )
+        what = f'address {address} without a token of at least {_SHORTEST_TOKEN} characters'
+        cure = 'name a token_file, or keep the address 127.0.0.1'
+        raise ParameterError(what, where='page', cure=cure)
 
 
 def given_token(headers: Mapping[str, str], query: Mapping[str, str]) -> str:

@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+import math
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 
@@ -33,9 +35,14 @@ class ByWind:
         """Wait for the first state."""
         self._description, self._scene = description, scene
         self._last: Frame | None = None
-        self._spacing = STEP
+        self._spacing, self._heard = STEP, 0
         self.corrections = 0
         """States that the scene was brought to."""
+
+    def go_on(self, gusts: Mapping[str, Any]) -> None:
+        """Feel the wind that was on its way before the first frame, as of `SceneState.gusts`."""
+        self._heard = gusts['sequence']
+        self._scene.gusts.go_on(gusts['mean'], gusts['delay'], gusts['wind'])
 
     def take(self, frame: Frame) -> Floats | None:
         """Go on to a frame; coordinates of its time, (M,), None before the first state."""
@@ -45,17 +52,16 @@ class ByWind:
             if not is_whole:
                 return None
             scene.correct(values)
+            missed = (frame.sequence - self._heard) % 2**32
+            for _ in range(missed if missed <= _MOST_STEPS else 0):
+                scene.gusts.push(frame.wind, STEP)
         elif frame.flags & RESTARTED:
             scene.reset()
         elif not frame.flags & PAUSED:
             self._step(last, frame)
         if last is not None and len(values):
-            if self.corrections == 0 and is_whole and frame.stamp > last.stamp:
-                rate = (values - self._description.coordinates(last)) / (
-                    1e-9 * (frame.stamp - last.stamp)
-                )
-                scene.correct(rate, 0, 'rate')
-            scene.correct(values, frame.first)
+            span = 1e-9 * (frame.stamp - last.stamp) if is_whole and self.corrections == 0 else 0.0
+            scene.correct(values, frame.first, span / STEP if span > 0.0 else math.inf)
             self.corrections += 1
         self._last = frame
         return scene.state()

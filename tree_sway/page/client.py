@@ -26,7 +26,7 @@ from tree_sway.errors import FormatError, ParameterError, TransportError
 from tree_sway.page.by_wind import ByWind, STEP
 from tree_sway.page.controls import Value
 from tree_sway.page.placer import Placer
-from tree_sway.page.playout import DELAY, Moment, Playout
+from tree_sway.page.playout import Moment, Playout
 from tree_sway.page.protocol import (
     decode_description,
     decode_frame,
@@ -61,7 +61,7 @@ class StreamClient:
     rate
         Frames per second to ask for [Hz].
     delay
-        Playout delay [s].
+        Playout delay [s]; as the line asks for, up to 0.15 s, if None.
     by_wind
         Whether to ask for the wind alone, 28 bytes per frame, and solve the scene here (`ByWind`);
         ask for 60 frames per second then.
@@ -88,7 +88,7 @@ class StreamClient:
         url: str,
         *,
         rate: float = 30.0,
-        delay: float = DELAY,
+        delay: float | None = None,
         by_wind: bool = False,
         wind_only: bool = False,
         on_frame: Callable[[Frame, float], None] | None = None,
@@ -153,11 +153,9 @@ class StreamClient:
         """
         with self._more:
             if not self._more.wait_for(lambda: self.received >= frames, seconds):
-                raise TransportError(
-                    f'{self.received} frames within {seconds:g} s ({self.problem})',
-                    where=self.url,
-                    cure='start tree-sway show, or look at the address',
-                )
+                what = f'{self.received} frames within {seconds:g} s ({self.problem})'
+                cure = 'start tree-sway show, or look at the address'
+                raise TransportError(what, where=self.url, cure=cure)
 
     def set(self, name: str, value: Value) -> None:  # noqa: A003
         """Change a control of the server; a refusal comes as `problem`."""
@@ -264,6 +262,8 @@ class StreamClient:
             raise FormatError(f'{text[:40]!r} where an object belongs')
         if 'pong' in message:
             self.round_trip = time.monotonic() - float(message['pong'])
+        if 'gusts' in message and self.solver is not None:
+            self.solver.go_on(message['gusts'])
         if 'refused' in message:
             self.problem = str(message['refused']['reason'])
         self.status = dict(message.get('status', self.status))

@@ -57,11 +57,9 @@ def page_of_state(scene: SceneState, script: str = '') -> str:
     """Return the same of a scene that is described, with a module of the page that runs last."""
     tables = scene.tables()
     if tables is None:
-        raise ParameterError(
-            f"model '{scene.simulator.model}' has no table to solve it by",
-            where='--model',
-            cure='give a number of coordinates, such as 60',
-        )
+        what = f"model '{scene.simulator.model}' has no table to solve it by"
+        cure = 'give a number of coordinates, such as 60'
+        raise ParameterError(what, where='--model', cure=cure)
     planes = [_in_planes(message) for message in (scene.description, tables)]
     packed = _packed(struct.pack('<I', len(planes[0])) + b''.join(planes))
     folder = Path(str(resources.files('tree_sway.page') / 'static'))

@@ -99,11 +99,9 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
         for count, layout in zip(sizes, (BRANCH, SEGMENT, head_layout()), strict=True)
     )
     if memory > MOST_MEMORY:
-        raise FormatError(
-            f'a kind of {memory // 2**20} MiB when laid out',
-            where='tree description',
-            cure=f'describe a tree of fewer branches: up to {MOST_MEMORY // 2**20} MiB',
-        )
+        what = f'a kind of {memory // 2**20} MiB when laid out'
+        cure = f'describe a tree of fewer branches: up to {MOST_MEMORY // 2**20} MiB'
+        raise FormatError(what, where='tree description', cure=cure)
     frame = arrays['branch_frame'].astype(np.float64)
     branch = np.repeat(np.arange(len(parent)), np.diff(first))
     rank = np.arange(len(branch)) - first[branch]

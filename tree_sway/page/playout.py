@@ -9,6 +9,7 @@ Shown a little late, on a curve through the states (Catmull & Rom 1974), never e
 from __future__ import annotations
 
 from collections import deque
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,13 @@ from tree_sway.core.arrays import Floats
 from tree_sway.page.protocol import PAUSED, RESTARTED
 
 DELAY = 0.15
-"""Playout delay [s]."""
+"""Longest playout delay, and that of the beginning [s]."""
+
+_CALMS, _DOWN, _UP = 12.0, 0.05, 0.2
+"""
+Time in which it is forgotten how late states were [s]; shares of the time by which the delay goes.
+
+"""
 
 _WINDOW = 30.0
 _OTHER_CLOCK = 5.0
@@ -86,12 +93,14 @@ class Playout:
     Parameters
     ----------
     delay
-        Time from a state's stamp to when it is shown, the quickest travel not counted [s].
+        Time from a state's stamp to when it is shown, the quickest travel not counted [s]; if
+        None, as long as states were late within some seconds, and one more state.
 
     """
 
-    def __init__(self, delay: float = DELAY) -> None:
-        self.delay = delay
+    def __init__(self, delay: float | None = None) -> None:
+        self.delay = DELAY if delay is None else delay
+        self._adapts, self._spacing, self._jitter = delay is None, 0.0, 0.5 * DELAY
         self.clock = ClockOffset()
         self.received = self.late = 0
         """States that came, and those of them that came after they were to be shown."""
@@ -117,8 +126,18 @@ class Playout:
                 self._moments.clear()
         self.clock.add(moment.stamp, arrival)
         self.received += 1
-        self.late += arrival - moment.stamp - self.clock.value > self.delay
+        lateness = arrival - moment.stamp - self.clock.value
+        self.late += lateness > self.delay
+        if self._moments and self._adapts:
+            self._adapt(moment.stamp - self._moments[-1].stamp, lateness)
         self._moments.append(moment)
+
+    def _adapt(self, span: float, lateness: float) -> None:
+        """Go towards the delay that a state asks for that came a time after the last [s]."""
+        self._spacing += 0.1 * (span - self._spacing)
+        self._jitter = max(lateness, self._jitter * math.exp(-span / _CALMS))
+        change = min(self._spacing + self._jitter, DELAY) - self.delay
+        self.delay += min(max(change, -_DOWN * span), _UP * span)
 
     def sample(self, now: float) -> Moment | None:
         """State to show at a time of the own clock [s]; None before the first."""

@@ -154,10 +154,8 @@ class Description:
         count, most = len(frame.coordinates), len(self.scale)
         part = slice(frame.first, frame.first + count)
         if part.stop > most or (count not in (0, most) and not frame.flags & PART):
-            raise FormatError(
-                f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described',
-                where='tree state',
-            )
+            what = f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described'
+            raise FormatError(what, where='tree state')
         values: Floats = frame.coordinates * (self.scale[part] / FULL_SCALE)
         return values
 
@@ -340,11 +338,9 @@ def decode_frame(data: bytes) -> Frame:
     _, version, flags, identity, sequence, stamp, x, y, z, count = _FRAME.unpack_from(data)
     begin = _FRAME.size + 2 * bool(flags & PART)
     if version != FRAME_VERSION or len(data) != begin + 2 * count:
-        raise FormatError(
-            f'a frame of version {version}, {count} coordinates and {len(data)} bytes',
-            where='tree state',
-            cure=f'send version {FRAME_VERSION}, {begin} bytes and 2 per coordinate',
-        )
+        what = f'a frame of version {version}, {count} coordinates and {len(data)} bytes'
+        cure = f'send version {FRAME_VERSION}, {begin} bytes and 2 per coordinate'
+        raise FormatError(what, where='tree state', cure=cure)
     coordinates = np.frombuffer(data, dtype='<i2', offset=begin)
     first = int.from_bytes(data[begin - 2 : begin], 'little') if flags & PART else 0
     wind = WIND_UNIT * np.array([x, y, z])

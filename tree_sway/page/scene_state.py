@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from tree_sway.core.arrays import Floats
@@ -70,7 +72,7 @@ class SceneState:
             name, self.kinds, self.names, frame_id=frame_id, leaves=self.leaves
         )
         self._described = decode_description(self.description)
-        self._sequence = 0
+        self._framed = -1, 0.0  # together, as they are read from another thread
         self._tables: bytes | None = None
 
     @property
@@ -83,6 +85,12 @@ class SceneState:
         if self._tables is None:
             self._tables = tables_of(self.simulator, self.kinds, self.identity)
         return self._tables
+
+    def gusts(self) -> dict[str, Any] | None:
+        """Return the wind still on its way at the last frame, and that one's ``sequence``."""
+        sequence, time = self._framed
+        gusts = self.simulator.gusts
+        return None if gusts is None else {'sequence': sequence, **gusts.recent(time)}
 
     def _lay_out(self) -> None:
         """Give the coordinates of all trees numbers, one tree after another."""
@@ -127,9 +135,10 @@ class SceneState:
 
         """
         flags = PAUSED * is_paused + RESTARTED * has_restarted
-        self._sequence += 1
+        sequence, gusts = self._framed[0] + 1, self.simulator.gusts
+        self._framed = sequence, 0.0 if gusts is None else gusts.time
         wind, coordinates = self.simulator.wind, self.coordinates()
-        return encode_state(self._described, self._sequence - 1, stamp, wind, coordinates, flags)
+        return encode_state(self._described, sequence, stamp, wind, coordinates, flags)
 
 
 def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:

@@ -193,6 +193,7 @@ class PageServer:
         self._writing = asyncio.Lock()
         self._description = b''
         self._tables: Callable[[], bytes | None] = lambda: None
+        self._gusts: Callable[[], Mapping[str, object] | None] = lambda: None
         self._frame: tuple[int, bytes] = (-1, b'')
         self._clients: set[_Client] = set()
         self._loop = asyncio.new_event_loop()
@@ -222,11 +223,9 @@ class PageServer:
         if self._failure is not None:
             self._thread.join()
             where = f'{self.settings.address}:{self.settings.port}'
-            raise TransportError(
-                f'the page cannot be served ({self._failure})',
-                where=where,
-                cure='choose another port, or end what uses this one',
-            ) from self._failure
+            what = f'the page cannot be served ({self._failure})'
+            cure = 'choose another port, or end what uses this one'
+            raise TransportError(what, where=where, cure=cure) from self._failure
 
     def close(self) -> None:
         """Close every client and stop; may be called twice."""
@@ -255,14 +254,18 @@ class PageServer:
         return len(self._clients)
 
     def describe(
-        self, description: bytes, tables: Callable[[], bytes | None] = lambda: None
+        self,
+        description: bytes,
+        tables: Callable[[], bytes | None] = lambda: None,
+        gusts: Callable[[], Mapping[str, object] | None] = lambda: None,
     ) -> None:
         """
         Send all pages, now and later, what the frames that follow belong to.
 
-        Clients that ask for the wind alone are sent what `tables` returns, and solve by it.
+        Clients that ask for the wind alone are sent what `tables` returns, and solve by it; what
+        `gusts` returns is the wind that is on its way then, as `GustHistory.recent`.
         """
-        self._description, self._tables = description, tables
+        self._description, self._tables, self._gusts = description, tables, gusts
         self._call(self._wake_all)
 
     def publish(self, frame: bytes) -> None:
@@ -523,6 +526,8 @@ class PageServer:
         client.is_solving, client.states = tables is not None, 0
         if tables is not None:
             await client.socket.send_bytes(tables)
+            if gusts := self._gusts():
+                await client.socket.send_str(json.dumps({'gusts': gusts}))
             return
         reason = 'this scene cannot be solved elsewhere: it is sent state by state'
         client.say({'refused': {'name': 'wind', 'reason': reason}})

@@ -10,7 +10,6 @@ while the first goes on, and taken over between two steps.
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, replace
 import logging
 import threading
@@ -20,8 +19,6 @@ from tree_sway.core.scene.demand import set_demand
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
-from tree_sway.core.simulator.touch import Spring
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.limits import FASTEST_WIND
@@ -36,9 +33,6 @@ from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, WindSo
 _LOGGER = logging.getLogger('tree_sway.page')
 _MOST_LATE = 0.25
 _NEWEST = 0.05
-_PULL_LASTS = 0.5
-"""A pull ends after this time [s] unless its viewer renews it."""
-
 _BUSY = 0.2
 """Share of a period from which on only every second step is sent."""
 
@@ -124,7 +118,7 @@ class Session:
 
     def serve(self, server: PageServer) -> None:
         """Publish on a server from now on; the first time, begin to step."""
-        server.describe(self._scene.description, self._scene.tables)
+        server.describe(self._scene.description, self._scene.tables, self._scene.gusts)
         self._server = server
         if not self._thread.is_alive():
             self._thread.start()
@@ -171,29 +165,13 @@ class Session:
             raise ParameterError(f"'{name}' cannot be changed", where='page')
 
     def pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
-        """
-        Pull at a segment by a spring to a place [m], (3,), for half a second; let go at 0 N/m.
+        """Pull at a segment by a spring to a place, as `Run.pull`; a refusal goes to all pages."""
+        self._runtime.pull(segment, to, stiffness, self._refuse_pull)
 
-        Raises
-        ------
-        ParameterError
-            A segment that the tree lacks, a stand, or a model that cannot be pushed.
-
-        """
-        simulator = self._scene.simulator
-        if not isinstance(simulator, SwaySimulator):
-            raise ParameterError('a stand', where='pull', cure='show one tree to pull at it')
-        if not 0 <= segment < simulator.tree.n_segments or simulator.model == 'branch':
-            what = f"no segment {segment} of model '{simulator.model}'"
-            raise ParameterError(what, where='pull')
-        force = Spring(to, stiffness) if stiffness else (0.0, 0.0, 0.0)
-        lasts = _PULL_LASTS if stiffness else 1e-9
-
-        def push() -> None:
-            with suppress(ParameterError):  # of too many at once, which the simulator counts
-                simulator.push(segment, force, lasts, along=0.0)
-
-        self._runtime.request(push)
+    def _refuse_pull(self, why: str) -> None:
+        if self._server is not None:
+            self._server.n_refused += 1
+            self._server.announce({'refused': {'name': 'pull', 'reason': why}})
 
     def status(self) -> dict[str, object]:
         """Return what the page shows beside the tree."""
@@ -280,7 +258,7 @@ class Session:
         has_restarted, self._resets = self._resets, False
         if self._next is not None:
             (self._scene, self._runtime), self._next = self._next, None
-            self._server.describe(self._scene.description, self._scene.tables)
+            self._server.describe(self._scene.description, self._scene.tables, self._scene.gusts)
         if has_restarted:
             self._scene.simulator.reset()
         if not self._is_paused:

@@ -118,10 +118,10 @@ def main() -> None:
         stamp = 1_700_000_000_000_000_000 + 16_666_667 * number
         frame = Frame(description.short_identity, 2**32 - 2 + number, stamp, flags, wind, steps)
         (HERE / f'frame{number}.bin').write_bytes(encode_frame(frame))
-        told = steps * (scale / 32767)
+        sent = steps * (scale / 32767)
         poses = [
             placed(kinds[kind], part, place)
-            for (_, kind, place), part in zip(TREES, np.split(told, len(TREES)), strict=True)
+            for (_, kind, place), part in zip(TREES, np.split(sent, len(TREES)), strict=True)
         ]
         expected.append(
             {
@@ -129,7 +129,7 @@ def main() -> None:
                 'stamp_ns': str(stamp),
                 'flags': flags,
                 'wind': wind.tolist(),
-                'coordinates': np.round(told, 9).tolist(),
+                'coordinates': np.round(sent, 9).tolist(),
                 'poses': np.round(np.vstack(poses), 7).tolist(),
             }
         )

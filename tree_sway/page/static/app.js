@@ -9,23 +9,24 @@ import { Hands } from "./hands.js";
 import { readLink, recordClip, savePicture, saveTree, viewLink } from "./keepsake.js";
 import { keptScene, OwnLine } from "./own_line.js";
 import { Panel } from "./panel.js";
-import { Trace } from "./trace.js";
+import { QUANTITIES, Trace, unitOf } from "./trace.js";
 import { language, setLanguage, windFrom, word } from "./words.js";
 
 /** The newest state may be so old before the page says that it is behind [ms]. */
 const BEHIND = 1000;
+/** Numbers are written again after this time [ms]. */
 const FACTS_EVERY = 400;
 /** How far a pointer may move in a click [px]. */
 const STILL = 4;
 
-/** @template {HTMLElement} [T=HTMLElement]
- * @param {string} id
- * @returns {T} */
+/** @template {HTMLElement} [T=HTMLElement] @param {string} id @returns {T} */
 const element = (id) => /** @type {T} */ (document.getElementById(id));
 
-/** Write a text where it is another. @param {string} id @param {string} text */
-function write(id, text) {
-  if (element(id).textContent !== text) element(id).textContent = text;
+/** Write texts where they are others. @param {Record<string, string>} texts by the ids of what shows them */
+function write(texts) {
+  for (const [id, text] of Object.entries(texts)) {
+    if (element(id).textContent !== text) element(id).textContent = text;
+  }
 }
 
 /** @type {HTMLCanvasElement} */
@@ -34,54 +35,30 @@ const canvas = element("view");
 const shown = element("shown");
 /** @type {HTMLInputElement} */
 const timeLine = element("time");
-/** Least value of the scale, and units from below a value, of what is shown.
- * @type {Record<string, {least: number, units: [number, Unit][]}>} */
-const SHOWN = {
-  motion: { least: 0.02, units: [
-    [0.1, { factor: 1000, unit: "mm", digits: 0 }], [2, { factor: 100, unit: "cm", digits: 0 }],
-    [Infinity, { factor: 1, unit: "m", digits: 1 }]] },
-  strain: { least: 1e-4, units: [[Infinity, { factor: 1e6, unit: "µm/m", digits: 0 }]] },
-  moment: { least: 0.1, units: [
-    [1000, { factor: 1, unit: "N m", digits: 0 }], [Infinity, { factor: 1e-3, unit: "kN m", digits: 1 }]] },
-};
-const shownUnit = (/** @type {number} */ greatest) =>
-  (SHOWN[shown.value].units.find(([below]) => greatest < below) ?? SHOWN[shown.value].units[0])[1];
+/** @type {HTMLDialogElement} */
+const help = element("keys");
 const traces = {
-  wind: new Trace(element("wind-trace"), 4, "--blue", () => ({ factor: 1, unit: "m/s", digits: 0 })),
-  tip: new Trace(element("tip-trace"), 0.02, "--green", shownUnit),
+  wind: new Trace(element("wind-trace"), "wind", "--blue"),
+  tip: new Trace(element("tip-trace"), "motion", "--green"),
 };
-const link = readLink(location.hash);
-/** @type {Scene | null} */
-let scene = null;
-/** @type {"connecting" | "open" | "lost"} */
-let line = "connecting";
+const { settings, view } = readLink(location.hash);
+const query = new URLSearchParams(location.search);
+let line = /** @type {"connecting" | "open" | "lost"} */ ("connecting");
 let retryAt = 0;
 let lastFrameAt = 0;
 let [bytes, frames, drawn, fps, factsAt] = [0, 0, 0, 0, performance.now()];
 /** Time that leaves flutter by [s]; it stops with the tree. */
 let sceneTime = 0;
 let lastDrawn = 0;
-/** @type {Record<string, any>} */
-let status = {};
-/** @type {any[]} */
-let controls = [];
+let status = /** @type {Record<string, any>} */ ({});
+let controls = /** @type {any[]} */ ([]);
 let toastTimer = 0;
-/** @type {keyof typeof DAYLIGHT} */
-let day = "light";
-/** @type {(() => void) | null} */
-let endClip = null;
+let day = /** @type {keyof typeof DAYLIGHT} */ ("light");
+let endClip = /** @type {(() => void) | null} */ (null);
 
-try {
-  scene = new Scene(canvas, new URLSearchParams(location.search).get("quality") === "full");
-} catch (error) {
-  notice(word("blind"), word("cure", error instanceof Error ? error.message : String(error)), false);
-}
-
-const kept = await keptScene().catch((error) => {
-  scene = null;
-  notice(word("damaged"), word("write_again", error.message), false);
-  return null;
-});
+setLanguage(settings.lang ?? navigator.language.slice(0, 2));
+const kept = await keptScene().catch((error) => giveUp(word("damaged"), word("write_again", error.message)));
+const scene = await newScene().catch((error) => giveUp(word("blind"), word("cure", error.message)));
 const stream = new TreeStream(location.href, {
   onState(state, retryIn) {
     line = state;
@@ -89,18 +66,18 @@ const stream = new TreeStream(location.href, {
     showState();
   },
   onDescription(description) {
-    const isFirst = !scene?.description;
-    scene?.describe(description);
-    if (isFirst && link.view) scene?.camera.set(link.view);
-    showLeaves();
-    write("name", description.name);
-    document.title = `${description.name} – tree sway`;
-    write("trees", description.trees.length.toLocaleString("en"));
-    write("segments", description.nSegments.toLocaleString("en"));
-    write("model", [...new Set(description.kinds.map(({ model }) => modelName(model)))].join(", "));
-    const error = Math.max(...description.kinds.map((kind) => kind.basis_error));
+    const isFirst = !scene.description;
+    scene.describe(description);
+    if (isFirst && view) scene.camera.set(view);
+    const { name, trees, nSegments, kinds } = description;
+    const models = new Set(kinds.map(({ model }) => modelName(model)));
+    const counts = { trees: trees.length.toLocaleString("en"), segments: nSegments.toLocaleString("en") };
+    write({ name, ...counts, model: [...models].join(", ") });
+    document.title = `${name} – tree sway`;
+    const error = Math.max(...kinds.map((kind) => kind.basis_error));
     element("model").title = `± ${(1000 * error).toFixed(1)} mm`;
-    pick(isFirst && link.settings.branch ? Number(link.settings.branch) : scene?.picked ?? -1);
+    showButtons();
+    pick(isFirst && settings.branch ? Number(settings.branch) : scene.picked);
     showState();
   },
   onFrame(_frame, _arrival, size) {
@@ -108,71 +85,72 @@ const stream = new TreeStream(location.href, {
     bytes += size;
     frames += 1;
   },
-  onMessage(message) {
-    if (message.hello) {
-      controls = message.hello.controls;
+  onMessage({ hello, refused, unreadable, values, status: newStatus }) {
+    if (hello) {
+      controls = hello.controls;
       panel.build(controls);
       element("panel").hidden = controls.length === 0;
-      if (hands) hands.canPull = message.hello.can_pull === true;
+      hands.canPull = hello.can_pull === true;
     }
-    if (message.refused) toast(message.refused.reason);
-    if (message.unreadable) toast(message.unreadable);
-    if (message.values) {
-      for (const control of controls) control.value = message.values[control.name] ?? control.value;
-      panel.update(message.values, Boolean(message.refused));
+    if (refused || unreadable) toast(unreadable ?? refused.reason);
+    if (values) {
+      for (const control of controls) control.value = values[control.name] ?? control.value;
+      panel.update(values, Boolean(refused));
     }
-    if (message.status) status = message.status;
+    status = newStatus ?? status;
     if (Number.isFinite(status.record_time)) panel.update({ record_time: status.record_time });
   },
-}, { kept, byWind: new URLSearchParams(location.search).has("solve") });
+}, { kept, byWind: query.has("solve") });
 
 const { connection, playout } = stream;
-const hands = scene && new Hands({ scene, stream }, toast);
+const hands = new Hands({ scene, stream }, toast);
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
 const treeName = () => connection.description?.name ?? "tree";
+
+/** What draws; an `Error` without WebGL 2. Nothing is left out in full quality, however slow that is. */
+async function newScene() {
+  return new Scene(canvas, query.get("quality") === "full");
+}
+
+/** Say why there is nothing to see; nothing follows. @param {string} title @param {string} text */
+function giveUp(title, text) {
+  notice(title, text);
+  return /** @type {Promise<never>} */ (new Promise(() => undefined));
+}
 
 /** @returns {["live" | "paused" | "behind" | "empty" | "connecting" | "lost", string]} */
 function stateNow() {
   const age = performance.now() - lastFrameAt;
-  if (line === "lost") return ["lost", word("lost")];
-  if (line === "connecting") return ["connecting", word("connecting")];
+  if (line !== "open") return [line, word(line)];
   if (!connection.description) return ["empty", word("empty")];
   if (playout.back) return ["paused", word("back", (playout.back / 1000).toFixed(1))];
-  if (!lastFrameAt || age > BEHIND) {
-    return ["behind", lastFrameAt ? word("behind", (age / 1000).toFixed(1)) : word("waiting")];
-  }
+  if (!lastFrameAt) return ["behind", word("waiting")];
+  if (age > BEHIND) return ["behind", word("behind", (age / 1000).toFixed(1))];
   if (status.building) return ["behind", word("building")];
   return playout.isPaused ? ["paused", word("paused")] : ["live", word("live")];
 }
 
 function showState() {
   const [state, text] = stateNow();
-  const chip = element("state");
-  if (chip.dataset.state !== state) chip.dataset.state = state;
-  write("state-text", text);
-  if (!scene) return;
-  if (state === "lost") {
-    notice(word("lost"), word("again", Math.max(0, Math.ceil((retryAt - performance.now()) / 1000))), true);
-  } else if (state === "connecting" && !connection.description) {
-    notice(word("connecting"), word("seeking"), false);
-  } else if (state === "empty") {
-    notice(word("empty"), word("soon"), false);
-  } else if (state !== "connecting") {
-    element("notice").hidden = true;
-  }
+  element("state").dataset.state = state;
+  write({ "state-text": text });
+  const seconds = Math.max(0, Math.ceil((retryAt - performance.now()) / 1000));
+  if (state === "lost") notice(text, word("again", seconds), true);
+  else if (state === "empty") notice(text, word("soon"));
+  else if (state !== "connecting") element("notice").hidden = true;
+  else if (!connection.description) notice(text, word("seeking"));
 }
 
-/** @param {string} title @param {string} text @param {boolean} canRetry */
-function notice(title, text, canRetry) {
+/** @param {string} title @param {string} text @param {boolean} [canRetry] */
+function notice(title, text, canRetry = false) {
   element("notice").hidden = false;
-  write("notice-title", title);
-  write("notice-text", text);
+  write({ "notice-title": title, "notice-text": text });
   element("retry").hidden = !canRetry;
 }
 
 /** @param {string} text */
 function toast(text) {
-  write("toast", text);
+  write({ toast: text });
   element("toast").hidden = false;
   clearTimeout(toastTimer);
   toastTimer = setTimeout(() => (element("toast").hidden = true), 6000);
@@ -183,25 +161,26 @@ function showFacts() {
   const span = (now - factsAt) / 1000;
   if (span < FACTS_EVERY / 1000) return;
   fps = drawn / span;
-  const leftOut = scene?.leftOut;
-  write("drawn", `${Math.round(fps)} fps${leftOut ? ` · ${leftOut.leaves} % ❧` : ""}`);
-  element("drawn").title = leftOut ? word("left_out", leftOut.pixels, leftOut.leaves) : "";
-  write("stream", `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`);
+  const { leftOut } = scene;
   const { corrections = 0, largest = 0 } = stream.byWind ?? {};
+  element("drawn").title = leftOut ? word("left_out", leftOut.pixels, leftOut.leaves) : "";
   element("stream").title = stream.byWind ? word("corrected", corrections, (100 * largest).toFixed(2)) : "";
-  const latency = connection.roundTrip / 2 + Math.max(0, playout.lateness);
-  write("latency", Number.isFinite(latency) ? `${latency.toFixed(0)} + ${playout.delay} ms` : "–");
   element("latency").title = "On the way, and delayed so that the motion is smooth";
-  if (status.model && status.trees === 1) write("model", modelName(status.model));
-  if (status.rate) write("rate", `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms`);
+  const latency = connection.roundTrip / 2 + Math.max(0, playout.lateness);
+  const [x, y] = playout.wind;
+  const { mean, greatest } = traces.wind.statistics;
+  write({
+    drawn: `${Math.round(fps)} fps${leftOut ? ` · ${leftOut.leaves} % ❧` : ""}`,
+    stream: `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`,
+    latency: Number.isFinite(latency) ? `${latency.toFixed(0)} + ${playout.delay.toFixed(0)} ms` : "–",
+    "wind-now": `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(x, y)}`,
+    gust: word("gust", mean.toFixed(1), greatest.toFixed(1)),
+    ...(status.model && status.trees === 1 && { model: modelName(status.model) }),
+    ...(status.rate && { rate: `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms` }),
+  });
   [bytes, frames, drawn, factsAt] = [0, 0, 0, now];
   showState();
-  const [x, y] = playout.wind;
-  write("wind-now", `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(x, y)}`);
-  const { mean, greatest } = traces.wind.statistics;
-  write("gust", word("gust", mean.toFixed(1), greatest.toFixed(1)));
-  traces.wind.draw();
-  traces.tip.draw();
+  for (const trace of Object.values(traces)) trace.draw();
 }
 
 /** A model by its name, or by how many coordinates it has. @param {string} model */
@@ -210,7 +189,7 @@ const modelName = (model) => (/^\d+$/.test(model) ? word("coordinates", model) :
 /** @param {number} now */
 function draw(now) {
   requestAnimationFrame(draw);
-  if (!scene || hands?.isAway) return;
+  if (hands.isAway) return;
   const coordinates = stream.sample();
   const isStill = playout.isPaused || playout.back > 0;
   scene.wind = playout.wind;
@@ -218,17 +197,17 @@ function draw(now) {
   lastDrawn = now;
   scene.draw(coordinates, sceneTime, isStill);
   drawn += 1;
-  hands?.frame({ scene, stream });
+  hands.frame({ scene, stream });
   if (coordinates) {
     const [at, rest] = [scene.tip(), scene.restTip()];
-    const load = scene.load();
-    const value = { motion: Math.hypot(...at.map((each, c) => each - rest[c])), ...load }[shown.value] ?? 0;
+    const motion = Math.hypot(...at.map((each, c) => each - rest[c]));
+    const value = { motion, ...scene.load() }[shown.value] ?? 0;
     if (stateNow()[0] === "live") {
       traces.wind.add(now / 1000, Math.hypot(...playout.wind));
       traces.tip.add(now / 1000, value);
     }
-    const { factor, unit, digits } = shownUnit(value);
-    write("tip-now", `${(factor * value).toFixed(digits && digits + 1)} ${unit}`);
+    const { factor, unit, digits } = unitOf(shown.value, value);
+    write({ "tip-now": `${(factor * value).toFixed(digits && digits + 1)} ${unit}` });
   }
   showFacts();
 }
@@ -245,7 +224,7 @@ function lookBack() {
 function setDay(time) {
   day = time;
   document.documentElement.dataset.theme = time === "dark" ? "dark" : "light";
-  scene?.setDay(DAYLIGHT[time]);
+  scene.setDay(DAYLIGHT[time]);
 }
 
 function nextDay() {
@@ -253,58 +232,32 @@ function nextDay() {
   setDay(times[(times.indexOf(day) + 1) % times.length]);
 }
 
-/** Say on a button whether something is so. @param {string} id @param {boolean} isSo */
-function press(id, isSo) {
-  element(id).setAttribute("aria-pressed", String(isSo));
-}
-
-function toggleLeaves() {
-  if (scene?.hasLeaves) {
-    scene.leavesShown = !scene.leavesShown;
-    scene.repaint();
-  }
-  showLeaves();
-}
-
-/** The button says what is: a tree that was started bare has no leaves to show. */
-function showLeaves() {
-  /** @type {HTMLButtonElement} */
-  const button = element("leaves");
-  const hasLeaves = Boolean(scene?.hasLeaves);
-  button.disabled = !hasLeaves;
-  press("leaves", hasLeaves && Boolean(scene?.leavesShown));
-  button.title = word(hasLeaves ? "leaves" : "bare");
-}
-
-function toggleSeason() {
-  if (!scene) return;
-  scene.setAutumn(!scene.isAutumn);
-  press("season", scene.isAutumn);
+/** Buttons say what is: a tree that was started bare has no leaves to show. */
+function showButtons() {
+  const { hasLeaves, leavesShown, isAutumn } = scene;
+  const pressed = { leaves: hasLeaves && leavesShown, season: isAutumn, clip: endClip !== null };
+  for (const [id, isSo] of Object.entries(pressed)) element(id).setAttribute("aria-pressed", String(isSo));
+  Object.assign(element("leaves"), { disabled: !hasLeaves, title: word(hasLeaves ? "leaves" : "bare") });
 }
 
 /** @param {number} branch to follow; the highest if -1 */
 function pick(branch) {
-  if (!scene) return;
   const names = scene.watchedKind?.branch_names ?? [];
   scene.picked = names[branch] === undefined ? -1 : branch;
-  write("branch", names[branch] ?? word("tallest"));
-  traces.tip.least = SHOWN[shown.value].least;
-  traces.tip.clear();
+  write({ branch: names[branch] ?? word("tallest") });
+  traces.tip.show(shown.value);
 }
 
 /** @param {number} step to the next branch, or back */
 function pickNext(step) {
-  const count = scene?.watchedKind?.branch_names.length ?? 0;
-  if (scene && count) pick((scene.picked + step + count) % count);
+  const count = scene.watchedKind?.branch_names.length ?? 0;
+  if (count) pick((scene.picked + step + count) % count);
 }
 
 async function copyLink() {
-  if (!scene) return;
-  const settings = {
-    day, lang: language(), leaves: scene.leavesShown, autumn: scene.isAutumn, shown: shown.value,
-    ...(scene.picked >= 0 && { branch: scene.picked }),
-  };
-  history.replaceState(null, "", viewLink(scene, settings));
+  const { leavesShown: leaves, isAutumn: autumn, picked: branch } = scene;
+  const all = { day, lang: language(), leaves, autumn, shown: shown.value, ...(branch >= 0 && { branch }) };
+  history.replaceState(null, "", viewLink(scene, all));
   await navigator.clipboard?.writeText(location.href).catch(() => undefined);
   toast(`${word("copied")}: ${location.href}`);
 }
@@ -317,7 +270,6 @@ function toggleClip() {
   } catch (error) {
     toast(String(error));
   }
-  press("clip", endClip !== null);
 }
 
 /** @param {"glb" | "html"} suffix */
@@ -329,32 +281,29 @@ function toggleFull() {
 }
 
 function showHelp() {
-  const items = word("keys").split("|").map((text) => {
-    const item = document.createElement("li");
-    item.textContent = text;
-    return item;
-  });
+  const items = word("keys").split("|").map((textContent) =>
+    Object.assign(document.createElement("li"), { textContent }));
   element("keys-list").replaceChildren(...items);
-  /** @type {HTMLDialogElement} */ (element("keys")).showModal();
+  help.showModal();
 }
 
-/** @param {string} chosen */
+/** @param {string} chosen language */
 function speak(chosen) {
   setLanguage(chosen);
   /** @type {HTMLSelectElement} */ (element("language")).value = language();
   panel.build(controls);
-  showLeaves();
-  pick(scene?.picked ?? -1);
+  showButtons();
+  pick(scene.picked);
   showState();
 }
 
 /** @type {Record<string, () => void>} what buttons do, and keys that are written beside them */
 const actions = {
-  home: () => scene?.camera.home(),
-  leaves: toggleLeaves,
+  home: () => scene.camera.home(),
+  leaves: () => scene.hasLeaves && scene.dress({ leavesShown: !scene.leavesShown }),
   theme: nextDay,
-  season: toggleSeason,
-  picture: () => scene && savePicture(scene, treeName(), () => scene?.draw(null, sceneTime, true)),
+  season: () => scene.dress({ isAutumn: !scene.isAutumn }),
+  picture: () => savePicture(scene, treeName(), () => scene.draw(null, sceneTime, true)),
   clip: toggleClip,
   glb: () => takeTree("glb"),
   html: () => takeTree("html"),
@@ -362,17 +311,21 @@ const actions = {
   full: toggleFull,
   help: showHelp,
   retry: () => stream.open(),
-  close: () => /** @type {HTMLDialogElement} */ (element("keys")).close(),
+  close: () => help.close(),
 };
-for (const [id, action] of Object.entries(actions)) element(id).addEventListener("click", action);
 /** @type {Record<string, () => void>} */
 const keys = {
-  m: () => scene && (scene.hasPerson = !scene.hasPerson),
+  m: () => (scene.hasPerson = !scene.hasPerson),
   " ": () => element("control-pause")?.click(),
   "[": () => pickNext(-1), "]": () => pickNext(1), escape: () => pick(-1),
 };
-for (const button of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-key]"))) {
-  keys[button.dataset.key ?? ""] = actions[button.id];
+for (const [id, action] of Object.entries(actions)) {
+  const act = () => {
+    action();
+    showButtons();
+  };
+  element(id).addEventListener("click", act);
+  keys[element(id).dataset.key ?? id] = act;
 }
 document.addEventListener("keydown", (event) => {
   const target = /** @type {HTMLElement} */ (event.target);
@@ -382,13 +335,12 @@ document.addEventListener("keydown", (event) => {
 let pressed = [0, 0];
 canvas.addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]));
 canvas.addEventListener("click", (event) => {
-  if (!scene || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > STILL) return;
-  pick(scene.branchAt(event.clientX / canvas.clientWidth, event.clientY / canvas.clientHeight));
+  if (Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > STILL) return;
+  pick(scene.nearest(event.clientX / canvas.clientWidth, event.clientY / canvas.clientHeight).branch);
 });
-shown.addEventListener("change", () => pick(scene?.picked ?? -1));
+shown.addEventListener("change", () => pick(scene.picked));
 timeLine.addEventListener("input", lookBack);
-element("language").addEventListener("change", (event) =>
-  speak(/** @type {HTMLSelectElement} */ (event.target).value));
+element("language").addEventListener("change", ({ target }) => speak(/** @type {any} */ (target).value));
 
 document.addEventListener("dragover", (event) => event.preventDefault());
 document.addEventListener("drop", (event) => {
@@ -399,27 +351,25 @@ document.addEventListener("drop", (event) => {
 
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
-const { settings } = link;
 const asked = /** @type {keyof typeof DAYLIGHT} */ (settings.day);
 setDay(asked in DAYLIGHT ? asked : dark.matches ? "dark" : "light");
 dark.addEventListener("change", () => setDay(dark.matches ? "dark" : "light"));
-if (scene) [scene.flutters, scene.leavesShown] = [!calm.matches, settings.leaves !== "false"];
-calm.addEventListener("change", () => scene && (scene.flutters = !calm.matches));
-if (settings.autumn === "true") toggleSeason();
-if (settings.shown in SHOWN) shown.value = settings.shown;
+scene.flutters = !calm.matches;
+calm.addEventListener("change", () => (scene.flutters = !calm.matches));
+scene.dress({ leavesShown: settings.leaves !== "false", isAutumn: settings.autumn === "true" });
+if (settings.shown in QUANTITIES) shown.value = settings.shown;
 // A page that is a file is what its `.html` would be.
 for (const id of ["glb", "html"]) element(id).hidden = Boolean(kept);
-speak(settings.lang ?? navigator.language.slice(0, 2));
+speak(language());
 /** @type {HTMLDetailsElement} */ (element("panel")).open = window.innerWidth > 700;
-scene?.camera.listen(canvas);
-if (kept || !document.getElementById("scene")) stream.open();
+scene.camera.listen(canvas);
+stream.open();
 requestAnimationFrame(draw);
 
 /** For tests and for the curious at the console. */
 Object.assign(window, {
   treeSway: {
-    stream, connection, playout, traces, hands,
-    get scene() { return scene; },
+    scene, stream, connection, playout, traces, hands,
     get fps() { return fps; },
     get state() { return stateNow()[0]; },
     get status() { return status; },

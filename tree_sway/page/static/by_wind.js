@@ -14,9 +14,9 @@ export class ByWind {
   /** @param {import("./sway.js").Stand} stand */
   constructor(stand) {
     this.stand = stand;
-    /** @type {Frame | null} */
-    this._last = null;
+    this._last = /** @type {Frame | null} */ (null);
     this._spacing = stand.dt;
+    this._heard = 0;
     /** States that the stand was brought to, and the largest change by one over full scale. */
     this.corrections = 0;
     this.largest = 0;
@@ -28,20 +28,30 @@ export class ByWind {
     const { coordinates: values, flags, first } = frame;
     const isWhole = values.length > 0 && !(flags & PART);
     if (!last && !isWhole) return null;
-    if (!last) stand.correct(values);
+    if (!last) this._begin(frame);
     else if (flags & RESTARTED) stand.reset();
     else if (!(flags & PAUSED)) this._step(last, frame);
     if (last && values.length) {
       const span = (frame.stamp - last.stamp) / 1000;
-      if (!this.corrections && isWhole && span > 0) {
-        stand.correct(values.map((value, i) => (value - last.coordinates[i]) / span), 0, "rate");
-      }
-      const change = stand.correct(values, first);
+      const change = stand.correct(values, first, !this.corrections && isWhole && span > 0 ? span / stand.dt : Infinity);
       if (this.corrections++) this.largest = Math.max(this.largest, change);
     }
     this._last = frame;
     const coordinates = stand.write(new Float32Array(stand.description.nCoordinates));
     return { ...frame, flags: flags & ~PART, coordinates };
+  }
+
+  /** Feel the wind that was on its way before the first frame. @param {Recent} gusts */
+  goOn(gusts) {
+    this.stand.gusts.goOn(gusts);
+    this._heard = gusts.sequence;
+  }
+
+  /** Begin with a state, the wind of which may be known. @param {Frame} frame */
+  _begin({ coordinates, sequence, wind: [x, y, z] }) {
+    this.stand.correct(coordinates);
+    const missed = (sequence - this._heard) >>> 0;
+    for (let i = missed > MOST_STEPS ? 0 : missed; i > 0; i--) this.stand.gusts.push(x, y, z);
   }
 
   /** Go on by the steps between two frames. @param {Frame} last @param {Frame} frame */

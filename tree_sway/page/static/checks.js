@@ -1,9 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * What a description must hold before anything is placed by it; tree_sway/page/check_description.py
- * asks the same.
- */
+/** What a description must hold before anything is placed by it; tree_sway/page/check_description.py asks
+ * the same. */
 
 import { textOf } from "./files.js";
 
@@ -22,6 +20,9 @@ export const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: 
  * @type {{description: Forms, tables: Forms}} */
 export const FORMS = JSON.parse(await textOf("arrays.json"));
 
+const BY_BRANCH = ["branch_parent", "branch_base_segment", "branch_coordinate", "branch_keys", "branch_base_turn",
+  "branch_turn"];
+
 /** Refuse what does not hold. @param {boolean} holds @param {string} name */
 export function need(holds, name) {
   if (!holds) throw new ProtocolError(`${name} does not fit the rest, or is not finite`);
@@ -33,8 +34,7 @@ const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREAT
 /** Refuse arrays that are missing, of another type or shape, or not finite; the sizes of their axes.
  * @param {Arrays} parts @param {Forms} forms */
 export function sizesOf(parts, forms) {
-  /** @type {Record<string, number>} */
-  const size = {};
+  const size = /** @type {Record<string, number>} */ ({});
   for (const [name, [type, ...axes]] of Object.entries(forms)) {
     const { values, shape } = parts[name] ?? {};
     need(values?.constructor === TYPES[type] && shape.length === axes.length, name);
@@ -47,11 +47,11 @@ export function sizesOf(parts, forms) {
   return size;
 }
 
-/** Refuse a kind whose arrays do not fit each other, and find its sizes.
- * @param {Kind} kind with its arrays
- * @param {Arrays} parts its arrays with their shapes */
-export function checkKind(kind, parts) {
-  const { arrays } = kind;
+/** A kind with its arrays and its sizes; one whose arrays do not fit each other is refused.
+ * @param {Kind} kind as its header has it @param {Arrays} parts its arrays @returns {Kind} */
+export function checkedKind(kind, parts) {
+  const named = Object.entries(parts).map(([name, { values }]) => [name, values]);
+  const arrays = /** @type {Kind["arrays"]} */ (Object.fromEntries(named));
   const forms = Object.entries(FORMS.description).filter(([name]) => arrays.leaf_segment || !name.startsWith("leaf"));
   const size = sizesOf(parts, Object.fromEntries(forms));
   const { branches: b, segments: n, keys: nKeys, coordinates, rows } = size;
@@ -64,52 +64,40 @@ export function checkKind(kind, parts) {
   const first = arrays.branch_first;
   need(first[0] === 0 && first[b] === n, "branch_first");
   for (let i = 0; i < b; i++) {
-    const parent = arrays.branch_parent[i];
-    const under = arrays.branch_base_segment[i];
-    const key = arrays.branch_coordinate[i];
-    const keys = arrays.branch_keys[i];
-    const base = arrays.branch_base_turn[i];
-    const turn = arrays.branch_turn[i];
+    const [parent, under, key, keys, base, turn] = BY_BRANCH.map((name) => arrays[name][i]);
     const count = first[i + 1] - first[i];
-    need(i ? parent >= 0 && parent < i : parent === -1, `branch_parent[${i}]`);
+    const holds = [
+      i ? parent >= 0 && parent < i : parent === -1,
+      i ? under >= first[parent] && under < first[parent + 1] : under === -1,
+      key >= 0 && key + keys <= nKeys,
+      keys >= 2,
+      i ? base >= 0 && base + arrays.branch_keys[parent] <= rows : base === -1,
+      turn === -1 ? keys <= 2 : turn >= 0 && turn + count * keys <= rows,
+    ];
     need(count > 0, `branch_first[${i}]`);
-    const isOnIt = i ? under >= first[parent] && under < first[parent + 1] : under === -1;
-    need(isOnIt, `branch_base_segment[${i}]`);
-    need(keys >= 2, `branch_keys[${i}]`);
-    need(key >= 0 && key + keys <= nKeys, `branch_coordinate[${i}]`);
-    const isTurned = i ? base >= 0 && base + arrays.branch_keys[parent] <= rows : base === -1;
-    need(isTurned, `branch_base_turn[${i}]`);
-    const isDrawn = turn === -1 ? keys <= 2 : turn >= 0 && turn + count * keys <= rows;
-    need(isDrawn, `branch_turn[${i}]`);
+    need(!holds.includes(false), `${BY_BRANCH[holds.indexOf(false)]}[${i}]`);
   }
   need(arrays.leaf_segment?.every((at) => at >= 0 && at < n) ?? true, "leaf_segment");
-  kind.nBranches = b;
-  kind.nSegments = n;
-  kind.nCoordinates = coordinates;
-  kind.nKeys = nKeys;
+  return { ...kind, arrays, nBranches: b, nSegments: n, nCoordinates: coordinates, nKeys };
 }
 
-/** Refuse trees that do not fit their kinds.
- * @param {Record<string, any>} header @param {Kind[]} kinds
- * @param {{values: NumberArray, shape: number[]} | undefined} placed */
-export function checkTrees(header, kinds, placed) {
-  const { values: places, shape } = placed ?? {};
+/** Refuse trees that do not fit their kinds. @param {Record<string, any>} header @param {Kind[]} kinds
+ * @param {Arrays} own arrays of no kind */
+export function checkTrees(header, kinds, own) {
   const { trees } = header;
   need(typeof header.name === "string" && typeof header.frame_id === "string", "name");
   need(/^[0-9a-f]{16}$/.test(header.identity), "identity");
   need(trees.length > 0, "trees");
-  need(places instanceof Float32Array, "tree_place");
-  need(shape?.length === 2 && shape[0] === trees.length && shape[1] === 5, "tree_place");
-  need(/** @type {Float32Array} */ (places).every(Number.isFinite), "tree_place");
-  let [segments, poses, coordinates] = [0, 0, 0];
+  sizesOf(own, { tree_place: ["f32", trees.length, 5] });
+  let [poses, coordinates] = [0, 0];
   for (const [i, tree] of trees.entries()) {
     need(Number.isInteger(tree.kind) && tree.kind in kinds, `trees[${i}]`);
     need(typeof tree.name === "string", `trees[${i}]`);
-    need(/** @type {Float32Array} */ (places)[5 * i + 4] > 0, `tree_place[${i}]`);
+    need(own.tree_place.values[5 * i + 4] > 0, `tree_place[${i}]`);
     poses += kinds[tree.kind].nSegments;
     coordinates += kinds[tree.kind].nCoordinates;
   }
-  for (const kind of kinds) segments += kind.nSegments;
+  const segments = kinds.reduce((sum, kind) => sum + kind.nSegments, 0);
   need(Object.values(header.flutter ?? {}).every(isFinite), "flutter");
   need(segments <= MOST_SEGMENTS, "number of segments");
   need(poses <= MOST_POSES, "number of segments of all trees");
@@ -119,11 +107,13 @@ export function checkTrees(header, kinds, placed) {
 /** @param {any} value */
 const isObject = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
 
-/** Refuse a text of the server whose entries are not what doc/streaming.md says.
- * @param {any} message @returns {Record<string, any>} */
+/** Refuse a text of the server whose entries are not what doc/streaming.md says. @param {any} message
+ * @returns {Record<string, any>} */
 export function checkMessage(message) {
   need(isObject(message), "message");
-  const { pong = 0, refused, hello, status = {}, values = {} } = message;
+  const { pong = 0, refused, hello, status = {}, values = {}, gusts } = message;
+  const { sequence = 0, mean = [0, 0, 0], delay = [], wind = [] } = gusts ?? {};
+  need(mean.length === 3 && [sequence, ...mean, ...delay, ...wind].every(Number.isFinite), "gusts");
   need(isFinite(pong), "pong");
   need(isObject(status), "status");
   need(isObject(values), "values");

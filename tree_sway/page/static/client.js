@@ -1,40 +1,45 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * A client of the stream for any program: connects, keeps the line, gives the place of every segment
- * now. No dependency; three.js, Babylon or WebXR draw what it says.
- */
+/** A client of the stream for any program: connects, keeps the line, gives the place of every segment now.
+ * No dependency; three.js, Babylon or WebXR draw what it says. */
 
 import { ByWind } from "./by_wind.js";
 import { Connection } from "./connection.js";
 import { OwnLine } from "./own_line.js";
 import { Placer } from "./placing.js";
-import { DELAY, Playout } from "./playout.js";
+import { Playout } from "./playout.js";
 import { Stand } from "./sway.js";
 
 /** Playout delay of a scene that is solved here [ms]. */
 const OWN_DELAY = 40;
+/** Hosts whose line is no longer than this machine; a scene of fewer coordinates than these comes from them as
+ * often as it is drawn. */
+const [HERE, FEW] = [/^(localhost|127[.]|\[::1\])/, 1000];
 
 export class TreeStream {
   /** @param {string} page address of the page, with its token if it has one
    * @param {StreamListeners} [listeners] @param {StreamOptions} [options] */
   constructor(page, listeners = {}, options = {}) {
-    const { kept = null, byWind = false, delay = kept ? OWN_DELAY : DELAY } = options;
+    const { kept = null, byWind = false, delay = kept ? OWN_DELAY : undefined } = options;
     this.playout = new Playout(delay);
-    /** @type {Placer | null} */
-    this.placer = null;
-    /** What solves the scene by its wind; null where states come. @type {ByWind | null} */
-    this.byWind = null;
-    const { onDescription, onFrame } = listeners;
+    this.placer = /** @type {Placer | null} */ (null);
+    /** What solves the scene by its wind; null where states come. */
+    this.byWind = /** @type {ByWind | null} */ (null);
+    const { onDescription, onFrame, onMessage } = listeners;
     /** @type {Listeners} */
     const taking = {
       onState: () => undefined,
-      onMessage: () => undefined,
       ...listeners,
+      onMessage: (message) => {
+        if (message.gusts) this.byWind?.goOn(message.gusts);
+        onMessage?.(message);
+      },
       onDescription: (description) => {
         this.playout.clear();
         this.placer = null;
         this.byWind = null;
+        const isQuick = HERE.test(new URL(page).hostname) && description.nCoordinates < FEW;
+        if (isQuick && !options.rate) this.connection.send({ rate: 60 });
         onDescription?.(description);
       },
       onFrame: (frame, arrival, size) => {
@@ -42,16 +47,13 @@ export class TreeStream {
         if (whole?.coordinates.length === this.description?.nCoordinates && whole) this.playout.push(whole, arrival);
         onFrame?.(frame, arrival, size);
       },
-      ...(byWind && { onTables: (tables) => this._solve(tables) }),
+      ...(byWind && { onTables: (tables) => {
+        if (this.description) this.byWind = new ByWind(new Stand(tables, this.description));
+      } }),
     };
     this.connection = kept
       ? new OwnLine(kept, taking, new URL(page).searchParams.get("wind"))
       : new Connection(streamUrl(page), taking, options.rate ?? (byWind ? 60 : undefined));
-  }
-
-  /** @param {Tables} tables */
-  _solve(tables) {
-    if (this.description) this.byWind = new ByWind(new Stand(tables, this.description));
   }
 
   /** Open the line now, whatever the wait. */
@@ -69,8 +71,7 @@ export class TreeStream {
     return this.connection.description;
   }
 
-  /** Change a control of the server.
-   * @param {string} name @param {number | string | boolean | null} value */
+  /** Change a control of the server. @param {string} name @param {number | string | boolean | null} value */
   set(name, value) {
     this.connection.send({ set: { name, value } });
   }
@@ -87,8 +88,8 @@ export class TreeStream {
     return this.playout.sample(now);
   }
 
-  /** Poses to show, `STRIDE` numbers per segment; null before the first frame.
-   * @param {number} [now] [ms] @returns {Float32Array | null} the same array each time */
+  /** Poses to show, `STRIDE` numbers per segment; null before the first frame. @param {number} [now] [ms]
+   * @returns {Float32Array | null} the same array each time */
   poses(now = Date.now()) {
     const coordinates = this.sample(now);
     if (!coordinates || !this.description) return null;

@@ -9,31 +9,27 @@ import {
 import { decodeTables } from "./sway.js";
 
 /** Frames that may be on their way at most, and at least where they are large. */
-const MOST_CREDIT = 24;
-const LEAST_CREDIT = 8;
+const [MOST_CREDIT, LEAST_CREDIT] = [24, 8];
 /** What may be on its way [bytes], so that a slow line holds little that is old. */
 const ON_THE_WAY = 200000;
 const GRANT_EVERY = 4;
-const SHORTEST_WAIT = 500;
-const LONGEST_WAIT = 10000;
-const PING_EVERY = 2000;
+/** Until a lost line is opened again, and between pings [ms]. */
+const [SHORTEST_WAIT, LONGEST_WAIT, PING_EVERY] = [500, 10000, 2000];
 /** A line that has been silent for longer is taken for lost [ms]. */
 const SILENCE = 6000;
 const LARGEST_TEXT = 2 ** 20;
 
 /** One line to a server, kept from `open` to `close`. */
 export class Connection {
-  /** @param {string} url of the stream @param {Listeners} listeners
-   * @param {number} [rate] frames per second that are asked for */
+  /** @param {string} url of the stream @param {Listeners} listeners @param {number} [rate] frames per
+   * second that are asked for */
   constructor(url, listeners, rate = 30) {
     this.url = url;
     this.listeners = listeners;
     this.rate = rate;
     this.roundTrip = NaN;
-    /** @type {Description | null} */
-    this.description = null;
-    /** @type {WebSocket | null} */
-    this._socket = null;
+    this.description = /** @type {Description | null} */ (null);
+    this._socket = /** @type {WebSocket | null} */ (null);
     /** Messages that could not be read; after each the line is made again. */
     this.unreadable = 0;
     this._wait = SHORTEST_WAIT;
@@ -41,8 +37,7 @@ export class Connection {
     this._awaited = 0;
     this._credit = MOST_CREDIT;
     this._heard = 0;
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    this._retry = undefined;
+    this._retry = /** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined);
     this._watching = setInterval(() => this._watch(), PING_EVERY);
   }
 
@@ -128,8 +123,7 @@ export class Connection {
     deliver();
   }
 
-  /** Read a text.
-   * @param {string} data @returns {() => void} what is left to do: give it to the listener */
+  /** Read a text. @param {string} data @returns {() => void} what is left to do: give it to the listener */
   _text(data) {
     if (data.length > LARGEST_TEXT) throw new ProtocolError(`a text of ${data.length} characters`);
     const message = checkMessage(JSON.parse(data));
@@ -137,8 +131,8 @@ export class Connection {
     return () => this.listeners.onMessage(message);
   }
 
-  /** Read a description, its tables or a frame.
-   * @param {ArrayBuffer} data @param {number} arrival [ms] @returns {() => void} */
+  /** Read a description, its tables or a frame. @param {ArrayBuffer} data @param {number} arrival [ms]
+   * @returns {() => void} */
   _binary(data, arrival) {
     const size = data.byteLength;
     if (size > LARGEST_DESCRIPTION) throw new ProtocolError(`a message of ${size} bytes`);

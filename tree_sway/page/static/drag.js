@@ -14,7 +14,14 @@ const [HARDER, STIFFEST] = [1.4, 1e5];
 const [RECORDED, OFFERED] = [30, 3];
 /** Until a tree elsewhere is surely let go [ms]. */
 const RELEASED = 250;
-const MOST_UNEVEN = 4;
+/** Share of the picture that a key pulls by, and where it does. */
+const KEY_STEP = 0.02;
+/** @type {Record<string, number[]>} */
+const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+/** A solver that is late by more does not catch up [s]. */
+const WAITED = 0.25;
+/** Trees that are looked through for a branch, the largest on the screen. */
+const MOST_TREES = 60;
 
 /** Stiffness of the wood that bears a segment [N/m]: a spring of it bends a branch half the way.
  * @param {import("./drawing/scene.js").Scene} scene @param {number} segment of the watched tree */
@@ -42,17 +49,14 @@ export class Pull {
     this.stiffness = stiffnessAt(scene, segment);
     this.to = scene.position(segment);
     this._sentAt = -Infinity;
-    /** Time [s] and displacement [m] since it was let go. @type {number[][]} */
-    this.record = [];
+    /** Time [s] and displacement [m] since it was let go. */
+    this.record = /** @type {number[][]} */ ([]);
     this._from = Infinity;
     this.isHeld = true;
-    /** @type {Touch | null} */
-    this._touch = null;
-    /** @type {KindPlacer | null} */
-    this._placer = null;
-    /** The newest of the record, and the least time between two [s]. @type {Frame | null} */
-    this._last = null;
-    this._spacing = Infinity;
+    this._touch = /** @type {Touch | null} */ (null);
+    this._placer = /** @type {KindPlacer | null} */ (null);
+    /** The newest of the record. */
+    this._last = /** @type {Frame | null} */ (null);
   }
 
   /** What the spring pulls by [N]. */
@@ -99,9 +103,8 @@ export class Pull {
   _timeOf({ stamp, sequence }) {
     if (!this._last) return 0;
     const count = Math.max(1, (sequence - this._last.sequence) >>> 0);
-    const spacing = (stamp - this._last.stamp) / 1000 / count;
-    this._spacing = Math.min(this._spacing, spacing);
-    return this.seconds + count * (spacing > MOST_UNEVEN * this._spacing ? this._spacing : spacing);
+    const span = (stamp - this._last.stamp) / 1000;
+    return this.seconds + (span > WAITED * count ? (count * this.seconds) / this.record.length : span);
   }
 
   /** How long the record is [s]. */
@@ -128,15 +131,14 @@ export class Drag {
     this.scene = scene;
     this.stream = stream;
     this.isOn = false;
-    /** @type {Pull | null} */
-    this.pull = null;
+    this.pull = /** @type {Pull | null} */ (null);
     this._pointer = -1;
     const box = (/** @type {string} */ tag, /** @type {string} */ id) =>
       Object.assign(document.body.appendChild(document.createElement(tag)), { id, hidden: true });
     this._line = box("i", "pull-line");
     this._label = box("output", "pull-force");
     this._save = /** @type {HTMLAnchorElement} */ (box("a", "pull-save"));
-    this._save.download = "pull_test.csv";
+    Object.assign(this._save, { download: "pull_test.csv", href: "#" });
     this._save.addEventListener("click", () => {
       const text = new Blob([this.pull?.csv() ?? ""], { type: "text/csv" });
       this._save.href = URL.createObjectURL(text);
@@ -150,16 +152,52 @@ export class Drag {
     listen("pointerdown", (event) => scene.canvas.setPointerCapture(event.pointerId));
     listen("pointermove", (event) => this._move(event));
     for (const type of /** @type {const} */ (["pointerup", "pointercancel"])) listen(type, () => this._release());
+    scene.canvas.addEventListener("keydown", (event) => {
+      if (!this.isOn || !this._key(event.key)) return;
+      event.stopImmediatePropagation();
+      event.preventDefault();
+    }, { capture: true });
+  }
+
+  /** By keys: arrows pull the tip that is followed, Enter lets go. @param {string} key @returns {boolean}
+   * whether it is one of these */
+  _key(key) {
+    const [x, y] = WAYS[key] ?? [0, 0];
+    if (key === "Enter" && this.pull?.isHeld) this._release();
+    else if (!(key in WAYS)) return false;
+    else {
+      const { camera, followed } = this.scene;
+      if (!this.pull?.isHeld) this.pull = new Pull(this.scene, this.stream, followed);
+      const [u, v] = camera.project(this.pull.to);
+      this.pull.to = camera.under(u + KEY_STEP * x, v + KEY_STEP * y, this.pull.to);
+    }
+    return true;
   }
 
   /** @param {PointerEvent} event */
   _grab({ pointerId, clientX, clientY }) {
     const { clientWidth: wide, clientHeight: high } = this.scene.canvas;
-    const segment = this._pointer < 0 ? this.scene.nearest(clientX / wide, clientY / high).segment : -1;
+    const segment = this._pointer < 0 ? this._under(clientX / wide, clientY / high) : -1;
     if (segment < 0) return false;
     this.pull = new Pull(this.scene, this.stream, segment);
     this._pointer = pointerId;
     return true;
+  }
+
+  /** The segment under the pointer, or -1; its tree is watched from then on. @param {number} x 0 to 1 from
+   * the left @param {number} y from the top */
+  _under(x, y) {
+    const { scene, scene: { detail } } = this;
+    if (!detail) return -1;
+    const before = detail.watched;
+    for (const tree of [before, ...detail.order.subarray(0, MOST_TREES)]) {
+      detail.watched = tree;
+      const { segment } = detail.level[tree] > 0 ? scene.nearest(x, y) : { segment: -1 };
+      if (segment >= 0 && tree !== before) scene.picked = -1;
+      if (segment >= 0) return segment;
+    }
+    detail.watched = before;
+    return -1;
   }
 
   /** @param {PointerEvent} event */

@@ -11,8 +11,7 @@ window.requestAnimationFrame = () => 0; // nothing else is drawn from now on
 Object.assign(scene.canvas.style, Object.fromEntries(new URLSearchParams(location.search)));
 scene.camera.zoom(1.15);
 
-/** @type {Blob | null} */
-let picture = null;
+let picture = /** @type {Blob | null} */ (null);
 for (;;) {
   const answer = await fetch("/", { method: "POST", body: picture });
   const { time, wind, coordinates } = await answer.json();

@@ -10,12 +10,9 @@ const HEADSET = '<svg viewBox="0 0 20 20" aria-hidden="true"><path d="M2 6h16v8h
 export class Hands {
   /** @param {Shown} shown @param {(text: string) => void} complain */
   constructor(shown, complain) {
-    /** @type {import("./drag.js").Drag | null} */
-    this.drag = null;
-    /** @type {import("./headset.js").Headset | null} */
-    this.headset = null;
-    /** @type {import("./sound.js").Sound | null} */
-    this.sound = null;
+    this.drag = /** @type {import("./drag.js").Drag | null} */ (null);
+    this.headset = /** @type {import("./headset.js").Headset | null} */ (null);
+    this.sound = /** @type {import("./sound.js").Sound | null} */ (null);
     const { scene, stream } = shown;
     this._tip = scene.tip();
     this._at = performance.now();
@@ -58,8 +55,8 @@ export class Hands {
 /** Of the browser; `any`, as TypeScript's own library has none of it. */
 export const xr = /** @type {any} */ (navigator).xr;
 
-/** A button among the tools that is pressed or not, hidden at first.
- * @param {string} name also its word @param {string} sign in HTML @param {() => Promise<boolean>} act
+/** A button among the tools that is pressed or not, hidden at first. @param {string} name also its word
+ * @param {string} sign in HTML @param {() => Promise<boolean>} act
  * @param {(text: string) => void} complain */
 function button(name, sign, act, complain) {
   const made = document.createElement("button");

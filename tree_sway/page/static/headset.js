@@ -4,60 +4,23 @@
 
 import { Pull } from "./drag.js";
 import { xr } from "./hands.js";
+import { turned } from "./quaternions.js";
+
+/** @typedef {{from: number[], along: number[]}} Ray of a controller, in the scene */
 
 /** A branch is pointed at that is within this angle of the ray [rad]. */
 const AIM = 0.06;
 /** Teleport goes this far at most, and the first stand is that many heights away. */
 const [FARTHEST, HEIGHTS_AWAY] = [40, 0.9];
 
-/** The frame of the headset is y up and looks along -z; a scene is z up. */
-class Rig {
-  /** @param {number[]} origin of its floor in the scene [m] @param {number} heading of its -z [rad] */
-  constructor(origin, heading) {
-    this.origin = origin;
-    this.forward = [Math.cos(heading), Math.sin(heading)];
-  }
-
-  /** A direction of the headset in the scene. @param {{x: number, y: number, z: number}} v */
-  turned({ x, y, z }) {
-    const [c, s] = this.forward;
-    return [x * s - z * c, -x * c - z * s, y];
-  }
-
-  /** @param {{x: number, y: number, z: number}} p */
-  placed(p) {
-    return this.turned(p).map((each, c) => each + this.origin[c]);
-  }
-}
-
-/** One eye, drawn by as a `Camera` is. */
-class Eye {
-  /** @param {Rig} rig @param {any} view of WebXR */
-  constructor(rig, { transform, projectionMatrix: p }) {
-    const { matrix: m, position } = transform;
-    const [right, up, back] = [0, 4, 8].map((at) => rig.turned({ x: m[at], y: m[at + 1], z: m[at + 2] }));
-    this.eye = /** @type {[number, number, number]} */ (rig.placed(position));
-    this.matrix = new Float32Array(16);
-    const rows = [right, up, back];
-    const moved = rows.map((row) => -row.reduce((sum, each, c) => sum + each * this.eye[c], 0));
-    for (let c = 0; c < 4; c++) {
-      const column = c < 3 ? [...rows.map((row) => row[c]), 0] : [...moved, 1];
-      for (let r = 0; r < 4; r++) {
-        this.matrix[4 * c + r] = column.reduce((sum, each, k) => sum + p[4 * k + r] * each, 0);
-      }
-    }
-    const wide = right.map((each) => each / p[0]);
-    const high = up.map((each) => each / p[5]);
-    this._axes = { right: wide, up: high, back: back.map((each, c) => each - p[8] * wide[c] - p[9] * high[c]) };
-  }
-
-  axes() {
-    return this._axes;
-  }
-
-  update() {
-    return this.matrix;
-  }
+/** One eye, drawn by as a `Camera` is. @param {any} view of WebXR @returns {View["camera"]} */
+function eyeOf({ transform: { matrix: m, position: { x, y, z }, inverse }, projectionMatrix: p }) {
+  const matrix = Float32Array.from(m, (_, i) =>
+    [0, 1, 2, 3].reduce((sum, k) => sum + p[(i % 4) + 4 * k] * inverse.matrix[4 * Math.floor(i / 4) + k], 0));
+  const column = (/** @type {number} */ at, share = 1) => Array.from(m.slice(at, at + 3), (each) => share * each);
+  const [right, up] = [column(0, 1 / p[0]), column(4, 1 / p[5])];
+  const axes = { right, up, back: column(8).map((each, c) => each - p[8] * right[c] - p[9] * up[c]) };
+  return { matrix, eye: [x, y, z], axes: () => axes, update: () => matrix };
 }
 
 export class Headset {
@@ -65,14 +28,15 @@ export class Headset {
   constructor(scene, stream) {
     this.scene = scene;
     this.stream = stream;
-    /** @type {any} */
-    this.session = null;
+    this.session = /** @type {any} */ (null);
     this.frames = 0;
-    /** What each eye sees. @type {View[]} */
-    this.views = [];
-    this.rig = new Rig([0, 0, 0], 0);
-    /** What each controller pulls at, and how far off it is [m]. @type {Map<any, {pull: Pull, far: number}>} */
-    this.pulls = new Map();
+    /** What each eye sees. */
+    this.views = /** @type {View[]} */ ([]);
+    /** Place of its floor in the scene [m], and the heading that it looks along at first [rad]. */
+    this.origin = [0, 0, 0];
+    this.heading = 0;
+    /** What each controller pulls at, and how far off it is [m]. */
+    this.pulls = /** @type {Map<any, {pull: Pull, far: number}>} */ (new Map());
   }
 
   /** Enter, or leave. @param {(isIn: boolean) => void} say that it changed by itself */
@@ -86,11 +50,11 @@ export class Headset {
     await /** @type {any} */ (gl).makeXRCompatible();
     const { XRWebGLLayer } = /** @type {any} */ (window);
     await session.updateRenderState({ baseLayer: new XRWebGLLayer(session, gl) });
-    this.space = await session.requestReferenceSpace("local-floor");
+    this._floor = await session.requestReferenceSpace("local-floor");
     const { target, azimuth } = this.scene.camera;
     const away = Math.max(1.2, HEIGHTS_AWAY * this.scene.height);
-    const floor = [target[0] + away * Math.cos(azimuth), target[1] + away * Math.sin(azimuth), this.scene.ground];
-    this.rig = new Rig(floor, azimuth + Math.PI);
+    this.heading = azimuth + Math.PI;
+    this._stand(target[0] + away * Math.cos(azimuth), target[1] + away * Math.sin(azimuth));
     session.addEventListener("select", (/** @type {any} */ event) => this._teleport(this._ray(event)));
     session.addEventListener("squeezestart", (/** @type {any} */ event) => this._grab(event.inputSource, this._ray(event)));
     session.addEventListener("squeezeend", (/** @type {any} */ { inputSource }) => this._release(inputSource));
@@ -104,25 +68,36 @@ export class Headset {
     return true;
   }
 
-  /** Where a controller points from and to, in the scene; null where it is not seen.
+  /** Stand somewhere on the ground: the headset is y up and looks along -z, the scene is z up.
+   * @param {number} x [m] @param {number} y */
+  _stand(x, y) {
+    const half = Math.PI / 4 - this.heading / 2;
+    const [c, s] = [Math.SQRT1_2 * Math.cos(half), Math.SQRT1_2 * Math.sin(half)];
+    this.origin = [x, y, this.scene.ground];
+    const turn = [-c, s, s, c];
+    const [right, up, back] = turned(turn, this.origin.map((each) => -each));
+    const { XRRigidTransform } = /** @type {any} */ (window);
+    const scene = new XRRigidTransform({ x: right, y: up, z: back }, { x: -c, y: s, z: s, w: c });
+    this.space = this._floor.getOffsetReferenceSpace(scene);
+  }
+
+  /** Where a controller points from and to; null where it is not seen.
    * @param {{frame: any, inputSource: any}} event */
   _ray({ frame, inputSource }) {
     const pose = frame.getPose(inputSource.targetRaySpace, this.space);
     if (!pose) return null;
-    const { position, matrix: m } = pose.transform;
-    return { from: this.rig.placed(position), along: this.rig.turned({ x: -m[8], y: -m[9], z: -m[10] }) };
+    const { position: { x, y, z }, matrix: m } = pose.transform;
+    return { from: [x, y, z], along: [-m[8], -m[9], -m[10]] };
   }
 
-  /** @param {{from: number[], along: number[]} | null} ray */
+  /** @param {Ray | null} ray */
   _teleport(ray) {
     if (!ray || ray.along[2] > -0.02) return;
     const far = Math.min(FARTHEST, (this.scene.ground - ray.from[2]) / ray.along[2]);
-    const [x, y] = ray.from.map((each, c) => each + far * ray.along[c]);
-    this.rig.origin = [x, y, this.scene.ground];
+    this._stand(ray.from[0] + far * ray.along[0], ray.from[1] + far * ray.along[1]);
   }
 
-  /** The segment that a ray points at, -1 if none, and its distance [m].
-   * @param {{from: number[], along: number[]}} ray */
+  /** The segment that a ray points at, -1 if none, and its distance [m]. @param {Ray} ray */
   _aimed({ from, along }) {
     let [best, segment, far] = [AIM, -1, 0];
     const { kind } = this.scene.watched;
@@ -136,7 +111,7 @@ export class Headset {
     return { segment, far };
   }
 
-  /** @param {any} source @param {{from: number[], along: number[]} | null} ray */
+  /** @param {any} source @param {Ray | null} ray */
   _grab(source, ray) {
     if (!ray || !this.scene.description) return;
     const { segment, far } = this._aimed(ray);
@@ -165,7 +140,7 @@ export class Headset {
     const { baseLayer: layer } = session.renderState;
     this.views = pose.views.map((/** @type {any} */ view) => {
       const { x, y, width, height } = layer.getViewport(view);
-      return { camera: new Eye(this.rig, view), target: layer.framebuffer, area: [x, y, width, height] };
+      return { camera: eyeOf(view), target: layer.framebuffer, area: [x, y, width, height] };
     });
     scene.wind = stream.playout.wind;
     scene.draw(stream.sample(), now / 1000, stream.playout.isPaused, this.views);

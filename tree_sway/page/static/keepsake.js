@@ -13,8 +13,8 @@ function save(blob, name, suffix) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-/** Save what is seen as PNG, in full.
- * @param {import("./drawing/scene.js").Scene} scene @param {string} name @param {() => void} draw a frame */
+/** Save what is seen as PNG, in full. @param {import("./drawing/scene.js").Scene} scene
+ * @param {string} name @param {() => void} draw a frame */
 export function savePicture(scene, name, draw) {
   const { fineness, density } = scene.quality;
   [scene.quality.fineness, scene.quality.density] = [1, 1];
@@ -23,14 +23,13 @@ export function savePicture(scene, name, draw) {
   [scene.quality.fineness, scene.quality.density] = [fineness, density];
 }
 
-/** Record what is drawn from now on; what ends the clip and saves it.
- * @param {HTMLCanvasElement} canvas @param {string} name */
+/** Record what is drawn from now on; what ends the clip and saves it. @param {HTMLCanvasElement} canvas
+ * @param {string} name */
 export function recordClip(canvas, name) {
   if (!window.MediaRecorder) throw new Error("this browser records no clips: take Chrome 47, Firefox 25, Safari 14.1 or later");
   const type = ["video/mp4", "video/webm"].find((each) => MediaRecorder.isTypeSupported(each)) ?? "";
   const recorder = new MediaRecorder(canvas.captureStream(FRAMES_PER_SECOND), { mimeType: type, videoBitsPerSecond: 8e6 });
-  /** @type {Blob[]} */
-  const parts = [];
+  const parts = /** @type {Blob[]} */ ([]);
   recorder.ondataavailable = ({ data }) => parts.push(data);
   recorder.onstop = () => save(new Blob(parts, { type }), name, type.slice(6));
   recorder.start();
@@ -45,8 +44,8 @@ export async function saveTree(suffix, name) {
   save(await answer.blob(), name, suffix);
 }
 
-/** The view as the end of an address.
- * @param {import("./drawing/scene.js").Scene} scene @param {Record<string, string | number | boolean>} settings */
+/** The view as the end of an address. @param {import("./drawing/scene.js").Scene} scene
+ * @param {Record<string, string | number | boolean>} settings */
 export function viewLink(scene, settings) {
   const { azimuth, elevation, distance, target } = scene.camera;
   const view = [azimuth, elevation, distance, ...target].map((each) => Number(each.toPrecision(5)));

@@ -29,8 +29,8 @@ export async function keptScene() {
   }
 }
 
-/** A message whose arrays have their first bytes together, their second bytes and so on; files are
- * packed better so. @param {ArrayBuffer} data */
+/** A message whose arrays have their first bytes together, their second bytes and so on; files are packed
+ * better so. @param {ArrayBuffer} data */
 function outOfPlanes(data) {
   const begin = 12 + new DataView(data).getUint32(8, true);
   const whole = new Uint8Array(data.slice(0));
@@ -46,8 +46,8 @@ function outOfPlanes(data) {
 
 /** Used as a `Connection`: the same listeners, messages and frames. */
 export class OwnLine {
-  /** @param {Kept} kept @param {Listeners} listeners
-   * @param {string | null} [address] of a live wind, `wss://...` */
+  /** @param {Kept} kept @param {Listeners} listeners @param {string | null} [address] of a live wind,
+   * `wss://...` */
   constructor({ description, stand }, listeners, address = null) {
     this.description = description;
     this.stand = stand;
@@ -56,16 +56,15 @@ export class OwnLine {
     this._turbulence = new Turbulence();
     /** @type {{next: (dt: number) => number[]}} */
     this._wind = this._turbulence;
-    /** @type {Frame | null} newest of a live wind */
-    this._live = null;
+    /** newest of a live wind */
+    this._live = /** @type {Frame | null} */ (null);
     this._isPaused = false;
     this._hasRestarted = false;
     this._sequence = 0;
     this._time = 0;
     this._reported = 0;
     this._work = 0;
-    /** @type {ReturnType<typeof setInterval> | undefined} */
-    this._timer = undefined;
+    this._timer = /** @type {ReturnType<typeof setInterval> | undefined} */ (undefined);
     const unheard = () => this.listeners.onMessage({ unreadable: `no live wind from ${address}: the simulated one blows `
       + "until it comes. See whether tree-sway show runs there, with --origin null if this page is a file." });
     this._line = address === null ? null : new Connection(address, {

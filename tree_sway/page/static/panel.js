@@ -9,14 +9,16 @@ const STEPS = 400;
 /** A range that is wider is one of powers. */
 const WIDE = 1000;
 
-/** An element with properties and what is in it.
- * @template {keyof HTMLElementTagNameMap} T @param {T} tag
+/** An element with properties and what is in it. @template {keyof HTMLElementTagNameMap} T @param {T} tag
  * @param {Record<string, any>} properties @param {...(Node | string)} within */
 function made(tag, properties, ...within) {
   const element = Object.assign(document.createElement(tag), properties);
   element.append(...within);
   return element;
 }
+
+/** @param {Control} control */
+const nameOf = ({ name, label }) => (hasWord(name) ? word(name) : label);
 
 /** A number as people read it. @param {Control} control @param {number} value */
 function textOf({ name, unit }, value) {
@@ -31,8 +33,7 @@ export class Panel {
   constructor(form, send) {
     this.form = form;
     this.send = send;
-    /** @type {Map<string, (value: any) => void>} */
-    this._show = new Map();
+    this._show = /** @type {Map<string, (value: any) => void>} */ (new Map());
     /** @type {string} the one that is being moved */
     this._inHand = "";
   }
@@ -48,9 +49,8 @@ export class Panel {
     for (const { name, value } of controls) this._show.get(name)?.(value);
   }
 
-  /** Show values that hold now.
-   * @param {Record<string, any>} values
-   * @param {boolean} [isRefusal] whether also those in hand are put back */
+  /** Show values that hold now. @param {Record<string, any>} values @param {boolean} [isRefusal] whether
+   * also those in hand are put back */
   update(values, isRefusal = false) {
     for (const [name, value] of Object.entries(values)) {
       if (isRefusal || name !== this._inHand) this._show.get(name)?.(value);
@@ -64,8 +64,7 @@ export class Panel {
 
   /** @param {Control} control @param {HTMLElement} input @param {Node} [shown] its value as text */
   _field(control, input, shown = made("span", {})) {
-    const text = hasWord(control.name) ? word(control.name) : control.label;
-    return made("div", { className: "field" }, made("label", { htmlFor: input.id }, text, shown), input);
+    return made("div", { className: "field" }, made("label", { htmlFor: input.id }, nameOf(control), shown), input);
   }
 
   /** @param {Control} control */
@@ -111,8 +110,7 @@ export class Panel {
 
   /** @param {Control} control */
   _button(control) {
-    const text = hasWord(control.name) ? word(control.name) : control.label;
-    const button = made("button", { ...this._named(control), type: "button" }, text);
+    const button = made("button", { ...this._named(control), type: "button" }, nameOf(control));
     const next = () => (control.is_action ? null : button.getAttribute("aria-pressed") !== "true");
     button.addEventListener("click", () => this.send(control.name, next()));
     if (!control.is_action) {

@@ -1,20 +1,23 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * From the state to poses: state -> key rotations -> curves of branches -> segments, joined from
- * the root. The law is the solver's own (doc/streaming.md, "From a frame to poses").
- */
+/** From the state to poses: state -> key rotations -> curves of branches -> segments, joined from the
+ * root. The law is the solver's own (doc/streaming.md, "From a frame to poses"). */
 
 import { addTurned, fromHalf, multiply } from "./quaternions.js";
 
-const STRETCH_TO = (Math.PI / 2) ** 2;
-const BLEND_FROM = (Math.PI / 6) ** 2;
-const BLEND_TO = (Math.PI / 4) ** 2;
+const [STRETCH_TO, BLEND_FROM, BLEND_TO] = [2, 6, 4].map((part) => (Math.PI / part) ** 2);
 
 /** Numbers per pose: x y z [m] of the root-side node, the tree's scale, then the quaternion x y z w. */
 export const STRIDE = 8;
 
 export const AT_ORIGIN = [0, 0, 0, 0, 1];
+
+/** Where a point of a kind at rest is in a tree that has its place. @param {number[]} place
+ * @param {ArrayLike<number>} point */
+export function placed([x, y, z, yaw, scale], point) {
+  const [c, s] = [scale * Math.cos(yaw), scale * Math.sin(yaw)];
+  return [x + c * point[0] - s * point[1], y + s * point[0] + c * point[1], z + scale * point[2]];
+}
 
 /** Places the segments of a described scene, all of them, tree after tree. */
 export class Placer {
@@ -25,14 +28,12 @@ export class Placer {
     this._placers = description.kinds.map((kind) => new KindPlacer(kind));
   }
 
-  /** Rebuild the poses.
-   * @param {ArrayLike<number>} coordinates
-   * @returns {Float32Array} the poses, the same array each time */
+  /** Rebuild the poses. @param {ArrayLike<number>} coordinates @returns {Float32Array} the poses, the same
+   * array each time */
   place(coordinates) {
     for (const { kind, place, firstSegment, firstCoordinate } of this.description.trees) {
       const placer = this._placers[kind];
-      const count = placer.order.length;
-      placer.place(coordinates, firstCoordinate, place, count, this.poses, firstSegment);
+      placer.place(coordinates, firstCoordinate, place, placer.order.length, this.poses, firstSegment);
     }
     return this.poses;
   }
@@ -40,8 +41,7 @@ export class Placer {
 
 /** Places trees of one kind, or the first of their branches. */
 export class KindPlacer {
-  /** @param {Kind} kind
-   * @param {Int32Array | null} [order] of its branches, parents before their children */
+  /** @param {Kind} kind @param {Int32Array | null} [order] of its branches, parents before their children */
   constructor(kind, order = null) {
     const { arrays, nBranches } = kind;
     this.kind = kind;
@@ -74,11 +74,9 @@ export class KindPlacer {
     return poses;
   }
 
-  /** Place a tree.
-   * @param {ArrayLike<number>} coordinates of all trees @param {number} from its first
-   * @param {ArrayLike<number>} place as of a tree
-   * @param {number} count how many branches, in the order @param {Float32Array} poses written
-   * @param {number} to row of its first segment */
+  /** Place a tree. @param {ArrayLike<number>} coordinates of all trees @param {number} from its first
+   * @param {ArrayLike<number>} place as of a tree @param {number} count how many branches, in the order
+   * @param {Float32Array} poses written @param {number} to row of its first segment */
   place(coordinates, from, place, count, poses, to) {
     for (let i = 0; i < count; i++) {
       this._expand(this.order[i], coordinates, from);
@@ -87,8 +85,8 @@ export class KindPlacer {
     }
   }
 
-  /** Key rotations of a branch.
-   * @param {number} branch @param {ArrayLike<number>} coordinates @param {number} from */
+  /** Key rotations of a branch. @param {number} branch @param {ArrayLike<number>} coordinates
+   * @param {number} from */
   _expand(branch, coordinates, from) {
     const { arrays, nCoordinates } = this.kind;
     const matrix = arrays.basis_matrix;
@@ -103,8 +101,7 @@ export class KindPlacer {
   }
 
   /** Where a branch begins, and how it is turned there by the branch that it sits on.
-   * @param {number} branch @param {ArrayLike<number>} place @param {Float32Array} poses
-   * @param {number} to */
+   * @param {number} branch @param {ArrayLike<number>} place @param {Float32Array} poses @param {number} to */
   _placeBase(branch, place, poses, to) {
     const { arrays } = this.kind;
     const { _at: at, _bases: bases, _half: half, _rotations: x, _turn: turn } = this;
@@ -131,9 +128,9 @@ export class KindPlacer {
     addTurned(poses, under + 4, arrays.branch_offset, 3 * branch, place[4], at);
   }
 
-  /** The segments of a branch from its base on: by one slope about the axes across its chord, or by
-   * every key rotation in its own way.
-   * @param {number} branch @param {number} scale @param {Float32Array} poses @param {number} to */
+  /** The segments of a branch from its base on: by one slope about the axes across its chord, or by every
+   * key rotation in its own way. @param {number} branch @param {number} scale @param {Float32Array} poses
+   * @param {number} to */
   _placeSegments(branch, scale, poses, to) {
     const { arrays } = this.kind;
     const { _at: at, _bases: bases, _half: half, _rest: rest, _turn: turn, _whole: whole } = this;

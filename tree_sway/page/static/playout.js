@@ -1,14 +1,16 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * From frames that arrive when they will to a smooth motion: shown a little late, on a curve
- * through the states (Catmull-Rom), never extrapolated. The last minute is kept to look back at.
- */
+/** From frames that arrive when they will to a smooth motion: shown a little late, on a curve through the
+ * states (Catmull-Rom), never extrapolated. The last minute is kept to look back at. */
 
 import { PAUSED, RESTARTED } from "./protocol.js";
 
-/** Playout delay [ms]. */
+/** Longest playout delay, and that of the beginning [ms]. */
 export const DELAY = 150;
+/** The delay is what frames were late by, forgotten in CALMS [ms], and a frame; it goes up and down by
+ * these shares of the time. */
+const CALMS = 12000;
+const [DOWN, UP] = [0.05, 0.2];
 const WINDOW = 30000;
 const LONGEST_GAP = 500;
 const BLEND = 400;
@@ -16,12 +18,11 @@ const BLEND = 400;
 const KEPT = 62000;
 const MOST_NUMBERS = 8e6;
 
-/** Difference of two clocks from one-way times: arrival less stamp is offset plus travel, so the
- * least of the last half minute is the offset and the quickest travel. */
+/** Difference of two clocks from one-way times: arrival less stamp is offset plus travel, so the least of
+ * the last half minute is the offset and the quickest travel. */
 export class ClockOffset {
   constructor() {
-    /** @type {{at: number, value: number}[]} */
-    this._least = [];
+    this._least = /** @type {{at: number, value: number}[]} */ ([]);
   }
 
   /** @param {number} stamp sender's clock [ms] @param {number} arrival own clock [ms] */
@@ -42,12 +43,14 @@ export class ClockOffset {
 
 /** The newest states, and what to draw of them. */
 export class Playout {
-  /** @param {number} [delay] [ms] */
-  constructor(delay = DELAY) {
-    this.delay = delay;
+  /** @param {number} [delay] [ms]; as the line asks for if left out */
+  constructor(delay) {
+    this.delay = delay ?? DELAY;
+    this._adapts = delay === undefined;
+    this._spacing = 0;
+    this._jitter = DELAY / 2;
     this.clock = new ClockOffset();
-    /** @type {Frame[]} */
-    this._frames = [];
+    this._frames = /** @type {Frame[]} */ ([]);
     /** The first since the stream was cut; those before it are for looking back. */
     this._first = 0;
     this.received = 0;
@@ -55,11 +58,10 @@ export class Playout {
     this.late = 0;
     /** Age of the newest frame when it came, over the quickest [ms]. */
     this.lateness = 0;
-    /** @type {Float32Array | null} what was drawn when the stream was cut */
-    this._before = null;
+    /** what was drawn when the stream was cut */
+    this._before = /** @type {Float32Array | null} */ (null);
     this._blendFrom = 0;
-    /** @type {Float32Array | null} */
-    this._shown = null;
+    this._shown = /** @type {Float32Array | null} */ (null);
     /** @type {[number, number, number]} */
     this.wind = [0, 0, 0];
     this.isPaused = false;
@@ -68,8 +70,8 @@ export class Playout {
     this._from = 0;
   }
 
-  /** How long before the moment at which people began to look back the shown one is [ms]; 0 follows
-   * the stream. */
+  /** How long before the moment at which people began to look back the shown one is [ms]; 0 follows the
+   * stream. */
   get back() {
     return this._back;
   }
@@ -102,12 +104,21 @@ export class Playout {
     this.clock.add(frame.stamp, arrival);
     this.lateness = arrival - frame.stamp - this.clock.value;
     if (this.lateness > this.delay) this.late++;
+    if (this._adapts && last && this._first < frames.length) this._adapt(frame.stamp - last.stamp);
     frames.push(frame);
     const most = Math.max(64, MOST_NUMBERS / frame.coordinates.length);
     while (frames[0].stamp < frame.stamp - KEPT || frames.length > most) {
       frames.shift();
       this._first = Math.max(this._first - 1, 0);
     }
+  }
+
+  /** @param {number} span since the frame before [ms] */
+  _adapt(span) {
+    this._spacing += 0.1 * (span - this._spacing);
+    this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / CALMS));
+    const change = Math.min(this._spacing + this._jitter, DELAY) - this.delay;
+    this.delay += Math.min(Math.max(change, -DOWN * span), UP * span);
   }
 
   /** @param {number} now */
@@ -127,8 +138,8 @@ export class Playout {
     return this._frames.filter((frame) => frame.stamp > stamp);
   }
 
-  /** The state to draw; null before the first frame.
-   * @param {number} now own clock [ms] @returns {Float32Array | null} the same array each time */
+  /** The state to draw; null before the first frame. @param {number} now own clock [ms]
+   * @returns {Float32Array | null} the same array each time */
   sample(now) {
     const frames = this._frames;
     if (!frames.length) return this._shown;
@@ -161,8 +172,8 @@ export class Playout {
 }
 
 /** The curve through b and c whose slopes there come from the neighbours, stamps as they are.
- * @param {Frame} a @param {Frame} b @param {Frame} c @param {Frame} d
- * @param {number} u from b to c, 0 to 1 @param {Float32Array} out */
+ * @param {Frame} a @param {Frame} b @param {Frame} c @param {Frame} d @param {number} u from b to c, 0 to
+ * 1 @param {Float32Array} out */
 export function catmullRom(a, b, c, d, u, out) {
   const span = c.stamp - b.stamp;
   const before = c.stamp - a.stamp;

@@ -1,11 +1,9 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * The binary form of a swaying tree (doc/streaming.md): a description sent once, then frames that
- * need no other frame. Reads what tree_sway/page/protocol.py writes.
- */
+/** The binary form of a swaying tree (doc/streaming.md): a description sent once, then frames that need no
+ * other frame. Reads what tree_sway/page/protocol.py writes. */
 
-import { checkKind, checkTrees, ProtocolError, need, TYPES } from "./checks.js";
+import { checkedKind, checkTrees, ProtocolError, need, TYPES } from "./checks.js";
 
 export { ProtocolError };
 
@@ -29,8 +27,8 @@ const FRAME_SIZE = 28;
 export const LARGEST_DESCRIPTION = 64 * 2 ** 20;
 const LARGEST_HEADER = 8 * 2 ** 20;
 
-/** Do what reads a message; whatever goes wrong is a `ProtocolError`.
- * @template T @param {keyof typeof MAGIC} what @param {() => T} read @returns {T} */
+/** Do what reads a message; whatever goes wrong is a `ProtocolError`. @template T
+ * @param {keyof typeof MAGIC} what @param {() => T} read @returns {T} */
 export function reading(what, read) {
   try {
     return read();
@@ -44,28 +42,20 @@ export function reading(what, read) {
  * @param {ArrayBuffer} data */
 export const decodeDescription = (data) => reading("description", () => decoded(data));
 
-/**
- * Take a message of a header and arrays apart, within `reading`.
- * @param {ArrayBuffer} data @param {keyof typeof MAGIC} what
- * @returns {{header: Record<string, any>, kinds: Arrays[], own: Arrays}} own arrays are those of no kind
- */
+/** Take a message of a header and arrays apart, within `reading`. @param {ArrayBuffer} data
+ * @param {keyof typeof MAGIC} what @returns {{header: Record<string, any>, kinds: Arrays[], own: Arrays}}
+ * own arrays are those of no kind */
 export function unpack(data, what) {
   const view = new DataView(data);
-  const begins = new TextDecoder().decode(new Uint8Array(data, 0, Math.min(4, data.byteLength)));
-  if (data.byteLength < 12 || begins !== MAGIC[what]) {
-    throw new ProtocolError(`no message of ${what}: it does not begin with ${MAGIC[what]}`);
-  }
+  if (!begins(data, what)) throw new ProtocolError(`no message of ${what}: it does not begin with ${MAGIC[what]}`);
   const version = view.getUint32(4, true);
-  if (version !== VERSION) {
-    throw new ProtocolError(`a message of version ${version}: this page reads ${VERSION}`);
-  }
+  if (version !== VERSION) throw new ProtocolError(`a message of version ${version}: this page reads ${VERSION}`);
   const begin = 12 + view.getUint32(8, true);
   need(begin <= Math.min(data.byteLength, LARGEST_HEADER), "size of the header");
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, begin - 12)));
   /** @type {Arrays[]} */
   const kinds = header.kinds.map(() => ({}));
-  /** @type {Arrays} */
-  const own = {};
+  const own = /** @type {Arrays} */ ({});
   for (const [name, { type, shape, offset }] of Object.entries(header.arrays)) {
     const kind = TYPES[/** @type {keyof typeof TYPES} */ (type)];
     need(Boolean(kind) && shape.every((/** @type {number} */ n) => Number.isInteger(n) && n >= 0), name);
@@ -81,19 +71,14 @@ export function unpack(data, what) {
 /** @param {ArrayBuffer} data @returns {Description} */
 function decoded(data) {
   const { header, kinds: parts, own } = unpack(data, "description");
+  const { name, frame_id, identity, flutter = null } = header;
   /** @type {Kind[]} */
-  const kinds = header.kinds.map((/** @type {Kind} */ kind, /** @type {number} */ number) => {
-    const named = Object.entries(parts[number]).map(([name, { values }]) => [name, values]);
-    return { ...kind, arrays: Object.fromEntries(named) };
-  });
-  kinds.forEach((kind, number) => checkKind(kind, parts[number]));
-  checkTrees(header, kinds, own.tree_place);
-  const places = own.tree_place.values;
-  let nSegments = 0;
-  let nCoordinates = 0;
+  const kinds = parts.map((part, number) => checkedKind(header.kinds[number], part));
+  checkTrees(header, kinds, own);
+  let [nSegments, nCoordinates] = [0, 0];
   const trees = header.trees.map((/** @type {Tree} */ tree, /** @type {number} */ number) => {
     const kind = kinds[tree.kind];
-    const place = Array.from(places.subarray(5 * number, 5 * number + 5));
+    const place = Array.from(own.tree_place.values.subarray(5 * number, 5 * number + 5));
     const first = { firstSegment: nSegments, firstCoordinate: nCoordinates };
     nSegments += kind.nSegments;
     nCoordinates += kind.nCoordinates;
@@ -101,37 +86,27 @@ function decoded(data) {
   });
   const scale = new Float32Array(nCoordinates);
   for (const tree of trees) scale.set(kinds[tree.kind].arrays.basis_scale, tree.firstCoordinate);
-  return {
-    name: header.name,
-    frame_id: header.frame_id,
-    identity: header.identity,
-    shortIdentity: parseInt(header.identity.slice(0, 8), 16),
-    kinds,
-    trees,
-    flutter: header.flutter ?? null,
-    nSegments,
-    nCoordinates,
-    scale,
-  };
+  const shortIdentity = parseInt(identity.slice(0, 8), 16);
+  return { name, frame_id, identity, shortIdentity, kinds, trees, flutter, nSegments, nCoordinates, scale };
+}
+
+/** Whether a message begins as what is sent once. @param {ArrayBuffer} data @param {keyof typeof MAGIC} what */
+function begins(data, what) {
+  const size = data.byteLength;
+  return size >= 12 && new TextDecoder().decode(new Uint8Array(data, 0, 4)) === MAGIC[what];
 }
 
 /** Whether a message is one of tables. @param {ArrayBuffer} data */
-export function isTables(data) {
-  return data.byteLength >= 12 && new TextDecoder().decode(new Uint8Array(data, 0, 4)) === MAGIC.tables;
-}
+export const isTables = (data) => begins(data, "tables");
 
 /** Whether a message is a frame. @param {ArrayBuffer} data */
-export function isFrame(data) {
-  return data.byteLength >= FRAME_SIZE && new Uint8Array(data, 0, 1)[0] === FRAME_KIND;
-}
+export const isFrame = (data) => data.byteLength >= FRAME_SIZE && new Uint8Array(data)[0] === FRAME_KIND;
 
 /** Size of a frame [bytes]. @param {Description} description */
-export function frameSize(description) {
-  return FRAME_SIZE + 2 * description.nCoordinates;
-}
+export const frameSize = (description) => FRAME_SIZE + 2 * description.nCoordinates;
 
-/** Read a frame; null if it belongs to another description, which is to come.
- * @param {ArrayBuffer} data @param {Description | null} description @returns {Frame | null} */
+/** Read a frame; null if it belongs to another description, which is to come. @param {ArrayBuffer} data
+ * @param {Description | null} description @returns {Frame | null} */
 export function decodeFrame(data, description) {
   const view = new DataView(data);
   if (!isFrame(data)) throw new ProtocolError("not a frame");
@@ -151,17 +126,7 @@ export function decodeFrame(data, description) {
   const steps = new Int16Array(data, begin, count);
   const coordinates = new Float32Array(count);
   for (let i = 0; i < count; i++) coordinates[i] = (steps[i] / FULL_SCALE) * scale[first + i];
-  return {
-    identity,
-    sequence: view.getUint32(8, true),
-    stamp: Number(view.getBigInt64(12, true)) / 1e6,
-    flags,
-    first,
-    wind: [
-      view.getInt16(20, true) * WIND_UNIT,
-      view.getInt16(22, true) * WIND_UNIT,
-      view.getInt16(24, true) * WIND_UNIT,
-    ],
-    coordinates,
-  };
+  const [x, y, z] = [20, 22, 24].map((at) => view.getInt16(at, true) * WIND_UNIT);
+  const [sequence, stamp] = [view.getUint32(8, true), Number(view.getBigInt64(12, true)) / 1e6];
+  return { identity, sequence, stamp, flags, first, wind: [x, y, z], coordinates };
 }

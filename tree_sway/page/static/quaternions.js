@@ -1,12 +1,12 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Quaternions x y z w that lie in arrays, each from an index on; results are written, not made anew. */
+/** Quaternions x y z w that lie in arrays, each from an index on; results are written in place. */
 
 /** Product of two, first b, then a. @param {Numbers} a @param {number} i @param {Numbers} b
  * @param {number} j @param {Numbers} out @param {number} [o] */
 export function multiply(a, i, b, j, out, o = 0) {
-  const [ax, ay, az, aw] = [a[i], a[i + 1], a[i + 2], a[i + 3]];
-  const [bx, by, bz, bw] = [b[j], b[j + 1], b[j + 2], b[j + 3]];
+  const ax = a[i], ay = a[i + 1], az = a[i + 2], aw = a[i + 3];
+  const bx = b[j], by = b[j + 1], bz = b[j + 2], bw = b[j + 3];
   out[o] = aw * bx + ax * bw + ay * bz - az * by;
   out[o + 1] = aw * by - ax * bz + ay * bw + az * bx;
   out[o + 2] = aw * bz + ax * by - ay * bx + az * bw;
@@ -16,8 +16,8 @@ export function multiply(a, i, b, j, out, o = 0) {
 /** Add a vector, turned by a quaternion and scaled. @param {Numbers} q @param {number} i
  * @param {Numbers} v @param {number} j @param {number} scale @param {Numbers} out */
 export function addTurned(q, i, v, j, scale, out) {
-  const [qx, qy, qz, qw] = [q[i], q[i + 1], q[i + 2], q[i + 3]];
-  const [x, y, z] = [scale * v[j], scale * v[j + 1], scale * v[j + 2]];
+  const qx = q[i], qy = q[i + 1], qz = q[i + 2], qw = q[i + 3];
+  const x = scale * v[j], y = scale * v[j + 1], z = scale * v[j + 2];
   const tx = 2 * (qy * z - qz * y);
   const ty = 2 * (qz * x - qx * z);
   const tz = 2 * (qx * y - qy * x);
@@ -28,7 +28,7 @@ export function addTurned(q, i, v, j, scale, out) {
 
 /** Of half a rotation vector [rad]. @param {Numbers} half @param {Numbers} out */
 export function fromHalf(half, out) {
-  const [x, y, z] = [half[0], half[1], half[2]];
+  const x = half[0], y = half[1], z = half[2];
   const square = x * x + y * y + z * z;
   const angle = Math.sqrt(square);
   const sinc = square > 1e-8 ? Math.sin(angle) / angle : 1 - square / 6;

@@ -38,8 +38,8 @@ export class Sound {
     return this.isOn;
   }
 
-  /** Sound as the tree is now. @param {number} wind speed [m/s]
-   * @param {boolean} hasLeaves @param {number} motion of the tip [m/s] */
+  /** Sound as the tree is now. @param {number} wind speed [m/s] @param {boolean} hasLeaves
+   * @param {number} motion of the tip [m/s] */
   follow(wind, hasLeaves, motion) {
     const { currentTime: now } = this.context;
     const air = Math.min(1, wind / LOUD_AIR);

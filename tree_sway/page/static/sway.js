@@ -1,11 +1,10 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * The solver in JavaScript: trees in wind by the tables that this program exports.
+/** The solver in JavaScript: trees in wind by the tables that this program exports.
  *
  * A tree is m coordinates; a table has what every even wind does to them; each goes on by its exact
- * propagator. Outside of the table the load of its edge is used, which `Stand.outside` counts. The law
- * is that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it.
+ * propagator. Outside of the table the load of its edge is used, which `Stand.outside` counts. The law is
+ * that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it.
  *
  *     import { decodeDescription } from "./protocol.js";
  *     import { decodeTables, Stand } from "./sway.js";
@@ -13,8 +12,7 @@
  *     const description = decodeDescription(await bytesOf("oak.description"));
  *     const stand = new Stand(decodeTables(await bytesOf("oak.tables")), description);
  *     stand.step(6, 0, 0);                        // mean wind of a step [m/s], east, north, up
- *     placer.place(stand.write(coordinates));     // coordinates of the description, then poses
- */
+ *     placer.place(stand.write(coordinates));     // coordinates of the description, then poses */
 
 import { FORMS, need, ProtocolError, sizesOf } from "./checks.js";
 import { reading, unpack } from "./protocol.js";
@@ -36,14 +34,15 @@ const FINEST_SCALE = 0.01;
 /** Of gusts: least mean wind that carries them [m/s], change of a delay per second, the time [s] over
  * which the mean is taken, and the longest delay [s]. */
 const [SLOWEST_GUST, LARGEST_STRETCH, AVERAGING, MEMORY] = [0.5, 0.5, 60, 60];
+/** Of the wind that is on its way [s], and the share of the way of the slowest coordinate that a rate is
+ * taken to go within a step, at least. */
+const [SPACING, SLOWEST] = [0.05, 0.3];
 
 /** Functions up to each degree of the harmonics. @type {Record<number, number>} */
 const HARMONICS = { 1: 3, 3: 10, 5: 21 };
-/** Slopes by the wind's azimuth and level, and rows of each. */
-const SLOPES = { turning: AZIMUTHS * LEVELS, damping: AZIMUTHS * LEVELS, lean: AZIMUTHS, steep_turning: 2, steep_damping: 2 };
 
-/** Read tables; a `ProtocolError` with a sentence if they are damaged.
- * @param {ArrayBuffer} data @returns {Tables} */
+/** Read tables; a `ProtocolError` with a sentence if they are damaged. @param {ArrayBuffer} data
+ * @returns {Tables} */
 export const decodeTables = (data) => reading("tables", () => decoded(data));
 
 /** @param {ArrayBuffer} data @returns {Tables} */
@@ -71,7 +70,7 @@ export class Table {
     need(mostPressure > 0 && mostEnergy > 0, "most_pressure");
     need(law?.length === 3 && law.every(Number.isFinite), "drag_law");
     need(arrays.stiffness.values.every((each) => each > 0), "stiffness");
-    need(arrays.own_damping.values.every((each) => each >= 0), "own_damping");
+    for (const name of ["limit", "own_damping"]) need(arrays[name].values.every((each) => each >= 0), name);
     /** Coordinates, and those of the description. */
     this.m = m;
     this.n = n;
@@ -84,6 +83,7 @@ export class Table {
     this.law = law;
     const of = (/** @type {string} */ name) => Float64Array.from(arrays[name].values);
     this.stiffness = of("stiffness");
+    this.limit = of("limit");
     this.ownDamping = of("own_damping");
     this.motion = of("motion");
     this.levels = of("levels");
@@ -91,37 +91,37 @@ export class Table {
     this.standing = of("standing");
     this.amount = of("amount");
     this.load = of("load");
+    this.crossDamping = of("cross_damping");
     this.state = of("state");
     this.correction = of("correction");
-    const slopes = (/** @type {keyof typeof SLOPES} */ name) => this._slopes(arrays, name, size[`${name} rank`]);
     // Turning and damping side by side: they are read together.
-    this.slopes = rowsOf(paired(slopes("turning"), slopes("damping")), 2 * m * m);
-    this.steep = rowsOf(paired(slopes("steep_turning"), slopes("steep_damping")), 2 * m * m);
-    this.lean = rowsOf(Float64Array.from(slopes("lean")), m * m);
+    this.slopes = this._slopes(arrays, ["turning", "damping"]);
+    this.steep = this._slopes(arrays, ["steep_turning", "steep_damping"]);
+    this.lean = this._slopes(arrays, ["lean"]);
     /** What is worked in. */
     this.scratch = Array.from({ length: 8 }, () => new Float64Array(m));
     this.values = new Float64Array(size.h);
   }
 
-  /** Slopes from their factors, by the coordinate that is loaded and then the one that moves.
-   * @param {Arrays} arrays @param {keyof typeof SLOPES} name
-   * @param {number} rank */
-  _slopes(arrays, name, rank) {
+  /** Slopes from their factors, a row of each direction of the wind: by the coordinate that is loaded, the
+   * one that moves, and the names in turn. @param {Arrays} arrays @param {string[]} names */
+  _slopes(arrays, names) {
     const { m, stiffness } = this;
-    const [rows, shapes] = [arrays[`${name}_rows`].values, arrays[`${name}_shapes`].values];
     const root = stiffness.map(Math.sqrt);
-    const all = new Float32Array(SLOPES[name] * m * m);
-    for (let row = 0; row < SLOPES[name]; row++) {
-      for (let moved = 0; moved < m; moved++) {
-        for (let loaded = 0; loaded < m; loaded++) {
+    const [directions] = FORMS.tables[`${names[0]}_rows`].slice(1);
+    const all = Array.from({ length: Number(directions) }, () => new Float64Array(names.length * m * m));
+    names.forEach((name, number) => {
+      const [{ values: rows }, { values: shapes }] = [arrays[`${name}_rows`], arrays[`${name}_shapes`]];
+      const rank = rows.length / all.length;
+      all.forEach((slopes, row) => {
+        for (let at = 0; at < m * m; at++) {
+          const [moved, loaded] = [Math.floor(at / m), at % m];
           let sum = 0;
-          for (let r = 0, at = moved * m + loaded; r < rank; r++, at += m * m) {
-            sum += rows[row * rank + r] * shapes[at];
-          }
-          all[(row * m + loaded) * m + moved] = sum * (root[moved] * root[loaded]);
+          for (let r = 0; r < rank; r++) sum += rows[row * rank + r] * shapes[r * m * m + at];
+          slopes[(loaded * m + moved) * names.length + number] = Math.fround(sum * (root[moved] * root[loaded]));
         }
-      }
-    }
+      });
+    });
     return all;
   }
 
@@ -134,22 +134,9 @@ export class Table {
   }
 }
 
-/** @param {Float32Array} a @param {Float32Array} b */
-function paired(a, b) {
-  const both = new Float64Array(2 * a.length);
-  for (let i = 0; i < a.length; i++) [both[2 * i], both[2 * i + 1]] = [a[i], b[i]];
-  return both;
-}
-
-/** @param {Float64Array} all @param {number} size of a row */
-const rowsOf = (all, size) =>
-  Array.from({ length: all.length / size }, (_, row) => all.subarray(row * size, (row + 1) * size));
-
-/**
- * How oscillators of unit inertia go on exactly in a time under a constant force, per coordinate:
- * position from position, rate and force, then the rate from them.
- * @param {Float64Array} stiffness @param {Float64Array} damping @param {number} time [s]
- */
+/** How oscillators of unit inertia go on exactly in a time under a constant force, per coordinate:
+ * position from position, rate and force, then the rate from them. @param {Float64Array} stiffness
+ * @param {Float64Array} damping @param {number} time [s] */
 export function propagator(stiffness, damping, time) {
   const out = new Float64Array(6 * stiffness.length);
   stiffness.forEach((k, i) => {
@@ -186,8 +173,7 @@ export class TreeState {
     this.force = new Float64Array(table.m);
   }
 
-  /** Go on a step.
-   * @param {Float64Array} half `propagator` of half a step @param {Float64Array} whole
+  /** Go on a step. @param {Float64Array} half `propagator` of half a step @param {Float64Array} whole
    * @param {number} wx mean wind in the frame of the kind [m/s] @param {number} wy @param {number} wz
    * @returns {boolean} whether the load was that of the table's edge */
   step(half, whole, wx, wy, wz) {
@@ -207,7 +193,7 @@ export class TreeState {
     windForce(table, speed > 0 ? [wx / speed, wy / speed, wz / speed] : [1, 0, 0], push, drag);
     let energy = 0;
     for (let i = 0, at = 0; i < m; i++, at += 6) {
-      // Implicit in the coordinate's own damping: stable for any wind and step.
+      // Implicit in all damping, as if the others moved with it: stable for any wind and step.
       const own = diagonal[i] * half[at + 5];
       const f = (wanted[i] - own * force[i]) / (1 - own);
       const [q, v] = [eta[i], rate[i]];
@@ -228,26 +214,24 @@ export class TreeState {
     return isOutside;
   }
 
-  /** Write the coordinates of the description that hold this state, or their rates.
-   * @template {Float32Array | Float64Array} T @param {T} out @param {number} [from]
-   * @param {"eta" | "rate"} [what] @returns {T} */
-  coordinates(out, from = 0, what = "eta") {
+  /** Write the coordinates of the description that hold this state.
+   * @template {Float32Array | Float64Array} T @param {T} out @param {number} [from] @returns {T} */
+  coordinates(out, from = 0) {
     const { m, n, state: matrix } = this.table;
     for (let k = 0; k < n; k++) {
       let sum = 0;
-      for (let i = 0; i < m; i++) sum += this[what][i] * matrix[i * n + k];
+      for (let i = 0; i < m; i++) sum += this.eta[i] * matrix[i * n + k];
       out[from + k] = sum;
     }
     return out;
   }
 }
 
-/** Modal forces of an even wind on a tree half a step on, and the diagonal of their slope by the
- * rates, into the scratch of its table.
- * @param {Table} table @param {number[]} way where the wind goes, a unit vector
- * @param {number} push dynamic pressure [kg/m/s^2] @param {number} drag the same over speed squared */
+/** Modal forces of an even wind on a tree half a step on, and the diagonal of their slope by the rates,
+ * into the scratch of its table. @param {Table} table @param {number[]} way where the wind goes, a unit
+ * vector @param {number} push dynamic pressure [kg/m/s^2] @param {number} drag the same over speed squared */
 function windForce(table, [x, y, z], push, drag) {
-  const { m, load, standing, slopes, lean, steep: poles, harmonics, values } = table;
+  const { m, load, limit, crossDamping: cross, standing, slopes, lean, steep: poles, harmonics, values } = table;
   const [eta, rate, force, diagonal, off, leaning, leaned] = table.scratch;
   fillHarmonics(x, y, z, table.degree, values);
   const { first, second, level: j, share, up } = corners(table, x, y);
@@ -306,7 +290,10 @@ function windForce(table, [x, y, z], push, drag) {
         damped += s4 * rate[k] * pole[p++];
       }
     }
-    force[i] = push * (force[i] + turned) + dragged * damped;
+    // Slopes hold near a pose. However far it is from there, a wind loads a tree no more.
+    const bounded = Math.min(Math.max(force[i] + turned, -limit[i]), limit[i]);
+    force[i] = push * bounded + dragged * damped;
+    diagonal[i] -= dragged * (a * cross[ia + i] + b * cross[ia + m + i] + c * cross[ic + i] + d * cross[ic + m + i]);
   }
 }
 
@@ -332,31 +319,32 @@ function corners(table, x, y) {
   return { first, second, level, share, up: Math.min(Math.max((lean - below) / (above - below), 0), 1) };
 }
 
-const root = Math.sqrt;
+/** Square norms of the harmonics by degree and order, over those of their Legendre functions. */
+const NORMS = [0, 1, 2, 3, 4, 5].map((degree) => {
+  let norm = 2 * degree + 1;
+  return Array.from({ length: degree + 1 }, (_, order) => {
+    if (order) norm /= (degree + order) * (degree - order + 1);
+    return Math.sqrt(order ? 2 * norm : norm);
+  });
+});
 
 /** Real spherical harmonics of odd degree up to 1, 3 or 5, as of tree_sway/core/motion/harmonics.py.
- * @param {number} x @param {number} y @param {number} z a unit vector @param {number} degree
+ * @param {number} x @param {number} y @param {number} z a unit vector @param {number} most degree
  * @param {Float64Array} out */
-function fillHarmonics(x, y, z, degree, out) {
-  [out[0], out[1], out[2]] = [root(3) * y, root(3) * z, root(3) * x];
-  if (degree < 3) return;
-  const [xx, yy, zz] = [x * x, y * y, z * z];
-  const [u, v] = [xx - yy, 2 * x * y];
-  const [s3, c3] = [y * (3 * xx - yy), x * (xx - 3 * yy)];
-  [out[3], out[9]] = [root(35 / 8) * s3, root(35 / 8) * c3];
-  [out[4], out[8]] = [0.5 * root(105) * v * z, 0.5 * root(105) * u * z];
-  [out[5], out[7]] = [root(21 / 8) * y * (5 * zz - 1), root(21 / 8) * x * (5 * zz - 1)];
-  out[6] = (root(7) / 2) * z * (5 * zz - 3);
-  if (degree < 5) return;
-  const [s4, c4] = [2 * u * v, u * u - v * v];
-  const [s5, c5] = [x * s4 + y * c4, x * c4 - y * s4];
-  const ring = 21 * zz * zz - 14 * zz + 1;
-  [out[10], out[20]] = [3 * root(77 / 128) * s5, 3 * root(77 / 128) * c5];
-  [out[11], out[19]] = [1.5 * root(385 / 16) * z * s4, 1.5 * root(385 / 16) * z * c4];
-  [out[12], out[18]] = [root(385 / 128) * s3 * (9 * zz - 1), root(385 / 128) * c3 * (9 * zz - 1)];
-  [out[13], out[17]] = [root(1155 / 16) * z * v * (3 * zz - 1), root(1155 / 16) * z * u * (3 * zz - 1)];
-  [out[14], out[16]] = [root(165 / 64) * y * ring, root(165 / 64) * x * ring];
-  out[15] = (root(11) / 8) * z * (63 * zz * zz - 70 * zz + 15);
+function fillHarmonics(x, y, z, most, out) {
+  let [c, s, first] = [1, 0, 1];
+  for (let order = 0; order <= most; order++) {
+    // Legendre functions over the sine to the power of their order, by their recurrence in the degree.
+    let [before, now] = [0, first];
+    for (let degree = order; degree <= most; degree++) {
+      const middle = (degree * (degree + 1)) / 2;
+      if (degree % 2) out[middle - order] = NORMS[degree][order] * now * s;
+      if (degree % 2) out[middle + order] = NORMS[degree][order] * now * c;
+      const next = ((2 * degree + 1) * z * now - (degree + order) * before) / (degree - order + 1);
+      [before, now] = [now, next];
+    }
+    [c, s, first] = [x * c - y * s, x * s + y * c, (2 * order + 1) * first];
+  }
 }
 
 /** The wind of the last minute, and what of it each place feels: gusts travel with the mean wind. */
@@ -401,6 +389,17 @@ class Gusts {
     });
   }
 
+  /** Go on from what another has felt, `GustHistory.recent` of tree_sway/core/wind/gust_travel.py.
+   * @param {Recent} recent */
+  goOn({ mean, delay, wind }) {
+    const { _run: run, _dt: dt } = this;
+    for (let i = 1; i <= (wind.length * SPACING) / 3 / dt; i++) {
+      const at = 3 * Math.floor(((i - 0.5) * dt) / SPACING);
+      run.push(run[i - 1].map((each, c) => each + dt * (c ? wind[at + c - 1] : 1)));
+    }
+    if (delay.length === this._delay.length) [this._mean, this._delay] = [mean, delay];
+  }
+
   /** Run of the wind at a time; before the history begins it blew as in its first step.
    * @param {number} time [s] */
   _until(time) {
@@ -417,8 +416,7 @@ class Gusts {
 
 /** Described trees that sway in one wind. */
 export class Stand {
-  /** @param {Tables} tables @param {Description} description
-   * @param {number} [dt] time step [s] */
+  /** @param {Tables} tables @param {Description} description @param {number} [dt] time step [s] */
   constructor(tables, description, dt = STEP) {
     const { kinds, trees, identity } = description;
     need(tables.description === identity && tables.speeds.length === trees.length, "description");
@@ -426,13 +424,12 @@ export class Stand {
     this.dt = dt;
     this.description = description;
     this._newGusts = () => new Gusts(trees.map(({ place }) => place), tables, dt);
-    this._gusts = this._newGusts();
+    this.gusts = this._newGusts();
     /** Trees whose load was at the edge of their table in the last step. */
     this.outside = 0;
-    /** @type {Map<string, Float64Array>} */
-    const propagators = new Map();
-    /** Pushes by the numbers of trees. @type {Map<number, Touch>} */
-    this._touches = new Map();
+    const propagators = /** @type {Map<string, Float64Array>} */ (new Map());
+    /** Pushes by the numbers of trees. */
+    this._touches = /** @type {Map<number, Touch>} */ (new Map());
     this.trees = trees.map(({ kind, place, firstCoordinate }, number) => {
       const table = tables.kinds[kind];
       const step = Math.round(Math.log(place[4]) / FINEST_SCALE);
@@ -454,10 +451,10 @@ export class Stand {
    * @param {number} z */
   step(x, y, z) {
     if (!Number.isFinite(x + y + z)) throw new ProtocolError("a wind that is not finite");
-    this._gusts.push(x, y, z);
+    this.gusts.push(x, y, z);
     this.outside = 0;
     this.trees.forEach(({ state, half, whole, speed, turn: [c, s] }, i) => {
-      const [u, v, w] = this._gusts.felt[i];
+      const [u, v, w] = this.gusts.felt[i];
       if (state.step(half, whole, c * u + s * v, c * v - s * u, speed * w)) this.outside++;
       const touch = this._touches.get(i);
       if (!touch) return;
@@ -467,8 +464,8 @@ export class Stand {
   }
 
   /** Push at the root side of a segment, or pull it by a spring, while the trees go on swaying.
-   * @param {Push} push a spring of no stiffness lets go
-   * @param {number} [seconds] that it lasts unless it is renewed [s] */
+   * @param {Push} push a spring of no stiffness lets go @param {number} [seconds] that it lasts unless it
+   * is renewed [s] */
   push(push, seconds = push.to && !push.stiffness ? 1e-6 : 0.5) {
     const { segment, force = [], to = [], stiffness = 0 } = push;
     const { trees, kinds } = this.description;
@@ -481,27 +478,32 @@ export class Stand {
     this._touches.get(tree)?.add(push, seconds);
   }
 
-  /** Write the coordinates of the description that hold the state, or their rates.
-   * @template {Float32Array | Float64Array} T @param {T} out @param {"eta" | "rate"} [what]
-   * @returns {T} */
-  write(out, what = "eta") {
-    for (const { state, firstCoordinate } of this.trees) state.coordinates(out, firstCoordinate, what);
+  /** Write the coordinates of the description that hold the state.
+   * @template {Float32Array | Float64Array} T @param {T} out @returns {T} */
+  write(out) {
+    for (const { state, firstCoordinate } of this.trees) state.coordinates(out, firstCoordinate);
     return out;
   }
 
-  /** Bring coordinates of the description, or their rates, to values that came from elsewhere.
-   * @param {Float32Array} values @param {number} [from] the first of them
-   * @param {"eta" | "rate"} [what] @returns {number} the largest change over full scale */
-  correct(values, from = 0, what = "eta") {
+  /** Bring coordinates of the description to values that came from elsewhere, and rates to what would
+   * have brought them there. @param {Float32Array} values @param {number} [from] the first of them
+   * @param {number} [steps] that they had for it @returns {number} the largest change over full scale */
+  correct(values, from = 0, steps = Infinity) {
     const { nCoordinates, scale } = this.description;
-    const now = this.write(new Float64Array(nCoordinates), what);
+    const now = this.write(new Float64Array(nCoordinates));
     let largest = 0;
-    for (const { state, firstCoordinate: first } of this.trees) {
-      const { m, n, correction } = state.table;
+    for (const { state: { eta, rate, table }, whole, firstCoordinate: first } of this.trees) {
+      const { m, n, correction } = table;
+      const ways = eta.map((_, i) => whole[6 * i + 1]);
+      const least = SLOWEST * Math.max(...ways);
       for (let k = 0; k < n; k++) {
         const by = values[first + k - from] - now[first + k];
         if (first + k < from || first + k - from >= values.length) continue;
-        for (let i = 0; i < m; i++) state[what][i] += by * correction[k * m + i];
+        for (let i = 0; i < m; i++) {
+          const own = by * correction[k * m + i];
+          eta[i] += own;
+          rate[i] += (own * whole[6 * i + 4]) / (Math.max(ways[i], least) * steps);
+        }
         largest = Math.max(largest, Math.abs(by) / scale[first + k]);
       }
     }
@@ -511,6 +513,6 @@ export class Stand {
   /** Back to rest, without wind. */
   reset() {
     for (const { state } of this.trees) for (const each of [state.eta, state.rate, state.force]) each.fill(0);
-    this._gusts = this._newGusts();
+    this.gusts = this._newGusts();
   }
 }

@@ -1,9 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * Pushes and springs on trees that are solved here, as of tree_sway/core/simulator/touch.py: a force f
- * at a place p does (dp/dc)^T f to the coordinates c of the description, found by differences.
- */
+/** Pushes and springs on trees that are solved here, as of tree_sway/core/simulator/touch.py: a force f at
+ * a place p does (dp/dc)^T f to the coordinates c of the description, found by differences. */
 
 import { KindPlacer, STRIDE } from "./placing.js";
 
@@ -11,8 +9,7 @@ import { KindPlacer, STRIDE } from "./placing.js";
 const [RENEWED, SHARE] = [0.1, 0.01];
 const MOST_PUSHES = 64;
 
-/** Branches from the root to that of a segment. @param {Kind} kind
- * @param {number} segment */
+/** Branches from the root to that of a segment. @param {Kind} kind @param {number} segment */
 export function chainTo({ arrays, nBranches }, segment) {
   const { branch_first: first, branch_parent: parent } = arrays;
   const chain = [];
@@ -104,8 +101,8 @@ export class Touch {
 }
 
 /** Force of a spring by where it is at the end of the step, and no stiffer than a step can follow.
- * @param {ArrayLike<number>} at @param {number[]} to @param {number} stiffness
- * @param {number[][]} give [m/N] */
+ * @param {ArrayLike<number>} at @param {number[]} to @param {number} stiffness @param {number[][]} give
+ * [m/N] */
 function pull(at, to, stiffness, give) {
   const k = Math.min(stiffness, 0.5 / (give[0][0] + give[1][1] + give[2][2]));
   const [a, b, c] = give.map((row, i) => row.map((g, j) => k * g + (i === j ? 1 : 0)));

@@ -177,8 +177,18 @@ interface DrawnLevel {
 /** A kind with the levels that have been used. */
 type DrawnKind = Shape & { drawn: DrawnLevel[] };
 
+/** What is below the trees. */
+interface Ground {
+  /** Number of how it looks. */
+  kind: number;
+  /** Its height [m]. */
+  ground: number;
+  /** One over how far one sees [1/m]. */
+  haze: number;
+}
+
 interface Daylight {
-  /** Towards the sun. */
+  /** Towards the sun, of length 1. */
   light: number[];
   /** Colour of its light. */
   sun: number[];
@@ -242,6 +252,8 @@ interface Shade {
 
 /** What a number is shown in. */
 interface Unit {
+  /** Values that it is for; all if left out. */
+  below?: number;
   factor: number;
   unit: string;
   digits: number;
@@ -261,6 +273,17 @@ interface View {
 }
 
 /** A force at the root side of a segment, or a spring from it to a place. */
+interface Recent {
+  /** Of the frame that it was found at. */
+  sequence: number;
+  /** Mean wind of the anemometer, and its span [m/s, m/s, s]. */
+  mean: number[];
+  /** Of each tree [s]. */
+  delay: number[];
+  /** Its means over `SPACING`, three numbers each [m/s]. */
+  wind: number[];
+}
+
 interface Push {
   /** Its number among those of all trees. */
   segment: number;

@@ -18,11 +18,9 @@ const FASTEST = 150;
 /** A number of the standard normal distribution (Box and Muller 1958). */
 const normal = () => Math.sqrt(-2 * Math.log(1 - Math.random())) * Math.cos(2 * Math.PI * Math.random());
 
-/**
- * Turbulence whose mean can be changed while it blows. Each component is a sum of first-order
- * processes; variances that go with their time scales to 2/3 give the slope of -5/3 of the inertial
- * range (Kolmogorov 1941).
- */
+/** Turbulence whose mean can be changed while it blows. Each component is a sum of first-order processes;
+ * variances that go with their time scales to 2/3 give the slope of -5/3 of the inertial range (Kolmogorov
+ * 1941). */
 export class Turbulence {
   constructor() {
     /** Mean [m/s], standard deviation over it, and where it blows to, clockwise from north [rad].
@@ -81,45 +79,33 @@ export class Recorded {
   }
 }
 
-const NAMES = {
-  time: ["time", "t", "timestamp", "stamp", "seconds"],
-  u: ["u", "x", "east"],
-  v: ["v", "y", "north"],
-  w: ["w", "z", "up"],
-  speed: ["speed", "wind_speed", "ws"],
-  direction: ["direction", "wind_direction", "dir", "wd"],
-};
+const NAMES = [["time", "t", "timestamp", "stamp", "seconds"], ["u", "x", "east"], ["v", "y", "north"],
+  ["w", "z", "up"], ["speed", "wind_speed", "ws"], ["direction", "wind_direction", "dir", "wd"]];
 const UNITS = { "km/h": 1 / 3.6, kt: 0.514444, kn: 0.514444, mph: 0.44704 };
 
-/**
- * Read a table with a header: `time` [s, or a date], and `u`, `v` and maybe `w` [m/s], where the wind
+/** Read a table with a header: `time` [s, or a date], and `u`, `v` and maybe `w` [m/s], where the wind
  * blows to, or `speed` and `direction` [degrees], where it comes from. A unit may follow a name.
- * @param {string} text @param {string} file its name @returns {Recorded}
- */
+ * @param {string} text @param {string} file its name @returns {Recorded} */
 export function readWind(text, file) {
   const rows = text.split(/\r?\n/).map((line) => line.split(/[,;\t]/).map((cell) => cell.trim()));
-  const head = rows.findIndex((row) => row.some((cell) => NAMES.time.includes(nameOf(cell))));
+  const head = rows.findIndex((row) => row.some((cell) => NAMES[0].includes(nameOf(cell))));
   const names = rows[head]?.map(nameOf) ?? [];
-  const at = (/** @type {keyof typeof NAMES} */ what) => names.findIndex((name) => NAMES[what].includes(name));
-  const [time, u, v, w, speed, direction] = /** @type {(keyof typeof NAMES)[]} */ (Object.keys(NAMES)).map(at);
+  const columns = NAMES.map((known) => names.findIndex((name) => known.includes(name)));
+  const [time, u, v, w, speed, direction] = columns;
   if (time < 0 || ((u < 0 || v < 0) && (speed < 0 || direction < 0))) {
     throw new ProtocolError(`${file} is no table of wind: its first line must name a column "time", and "u" and "v"`
       + ` (m/s, blowing to) or "speed" and "direction" (m/s, degrees it comes from). Drop another file.`);
   }
   const isVector = u >= 0 && v >= 0;
   const unit = Object.entries(UNITS).find(([name]) => rows[head][isVector ? u : speed].includes(name))?.[1] ?? 1;
-  /** @type {number[]} */
-  const times = [];
-  /** @type {number[][]} */
-  const winds = [];
+  const times = /** @type {number[]} */ ([]);
+  const winds = /** @type {number[][]} */ ([]);
   for (const row of rows.slice(head + 1)) {
-    const number = (/** @type {number} */ column) => (row[column] ? Number(row[column]) : NaN);
-    const when = Number.isFinite(number(time)) ? number(time) : Date.parse(row[time]) / 1000;
-    const angle = (number(direction) * Math.PI) / 180;
-    const wind = isVector
-      ? [number(u), number(v), w < 0 ? 0 : number(w)].map((each) => unit * each)
-      : [-unit * number(speed) * Math.sin(angle), -unit * number(speed) * Math.cos(angle), 0];
-    if (!(Math.hypot(...wind) <= FASTEST && when > (times[times.length - 1] ?? -Infinity))) continue;
+    const [seconds, x, y, z, s, from] = columns.map((at) => (row[at] ? Number(row[at]) : NaN));
+    const when = Number.isFinite(seconds) ? seconds : Date.parse(row[time]) / 1000;
+    const way = [-Math.sin((from * Math.PI) / 180), -Math.cos((from * Math.PI) / 180), 0];
+    const wind = isVector ? [x, y, w < 0 ? 0 : z].map((each) => unit * each) : way.map((each) => unit * s * each);
+    if (!(Math.hypot(...wind) <= FASTEST && when > (times.at(-1) ?? -Infinity))) continue;
     times.push(when);
     winds.push(wind);
   }

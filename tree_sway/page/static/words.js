@@ -9,7 +9,7 @@ export const LANGUAGES = ["en", "de", "fr", "ja"];
 /** @type {Record<string, string[]>} a word in each language */
 const WORDS = JSON.parse(await textOf("words.json"));
 
-let chosen = Math.max(0, LANGUAGES.indexOf(navigator.language.slice(0, 2)));
+let chosen = 0;
 
 /** @param {string} language */
 export function setLanguage(language) {
@@ -17,31 +17,25 @@ export function setLanguage(language) {
   document.documentElement.lang = LANGUAGES[chosen];
   for (const each of document.querySelectorAll("[data-word]")) {
     const text = word(/** @type {HTMLElement} */ (each).dataset.word ?? "");
-    if (each.matches("#tools button, input")) {
-      each.setAttribute("title", text);
-      each.setAttribute("aria-label", text);
-    } else each.textContent = text;
+    if (each.matches("#tools button, input")) Object.assign(each, { title: text, ariaLabel: text });
+    else each.textContent = text;
   }
 }
 
-export function language() {
-  return LANGUAGES[chosen];
-}
+export const language = () => LANGUAGES[chosen];
 
-/** A word in the language that is chosen; the key where there is none.
- * @param {string} key @param {...(string | number)} values in place of {0}, {1} */
+/** A word in the language that is chosen; the key where there is none. @param {string} key
+ * @param {...(string | number)} values in place of {0}, {1} */
 export function word(key, ...values) {
   const text = WORDS[key]?.[chosen] ?? key;
   return text.replace(/\{(\d)\}/g, (_, i) => String(values[i]));
 }
 
 /** Whether there is a word of a key. @param {string} key */
-export function hasWord(key) {
-  return key in WORDS;
-}
+export const hasWord = (key) => key in WORDS;
 
-/** Where a wind comes from, as people say it: the one convention of the page.
- * @param {number} x it blows to, east [m/s] @param {number} y north */
+/** Where a wind comes from, as people say it: the one convention of the page. @param {number} x it blows
+ * to, east [m/s] @param {number} y north */
 export function windFrom(x, y) {
   if (Math.hypot(x, y) < 0.05) return "";
   const degrees = (((Math.atan2(-x, -y) * 180) / Math.PI) + 360) % 360;

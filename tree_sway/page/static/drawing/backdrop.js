@@ -1,9 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * Sky, hills, haze and ground. They are painted when the camera moves and copied when it does not:
- * their pixels are many, and may cost something.
- */
+/** Sky, hills, haze and ground. They are painted when the camera moves and copied when it does not: their
+ * pixels are many, and may cost something. */
 
 import { textOf } from "../files.js";
 import { canvasTexture, drawable, drawPart, use } from "./gl.js";
@@ -16,59 +14,59 @@ export const DAYLIGHT = JSON.parse(await textOf("drawing/daylight.json"));
 export const GROUNDS = { terrace: 0, meadow: 1 };
 
 export class Backdrop {
-  /** @param {WebGL2RenderingContext} gl */
-  constructor(gl) {
+  /** @param {WebGL2RenderingContext} gl @param {boolean} isPlain whether the shadow is kept, too, as every
+   * pixel costs something */
+  constructor(gl, isPlain) {
     this.gl = gl;
     this._program = shaded(gl, "backdrop");
-    this._copy = shaded(gl, "copy");
+    this._copying = shaded(gl, "copy");
     this._whole = drawable(gl, this._program, [-1, -1, 3, -1, -1, 3], [["corner", 2]], [0, 1, 2]);
-    /** @type {ReturnType<typeof canvasTexture> | null} */
-    this._kept = null;
+    this._isPlain = isPlain;
+    /** Without the shadow, and with it. */
+    this._pictures = /** @type {ReturnType<typeof canvasTexture>[]} */ ([]);
     this._paintedFor = "";
   }
 
-  /** @param {import("./camera.js").Camera} camera @param {Daylight} day
-   * @param {{kind: number, height: number, haze: number}} ground @param {number} width [px]; 0 paints
-   * at once, for a camera that is never still @param {number} height */
-  draw(camera, day, ground, width, height) {
+  /** Paint into what is bound. @param {import("./camera.js").Camera} camera @param {Daylight} day
+   * @param {Ground} under */
+  paint(camera, day, under) {
+    this.gl.disable(this.gl.DEPTH_TEST);
+    use(this.gl, this._program, { ...day, ...camera.axes(), ...under, eye: camera.eye });
+    drawPart(this.gl, this._whole);
+  }
+
+  /** Show it on the canvas. @param {import("./camera.js").Camera} camera @param {Daylight} day
+   * @param {Ground} under @param {() => void} drawShadow on the ground @param {boolean} isNew whether the
+   * shadow is another than before */
+  show(camera, day, under, drawShadow, isNew) {
     const { gl } = this;
+    const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
     gl.disable(gl.DEPTH_TEST);
-    if (!width) return this._paint(camera, day, ground);
-    const wanted = [...camera.matrix, day.zenith, ground.kind, ground.height, width, height].join();
-    if (this._paintedFor !== wanted) {
+    const wanted = [...camera.matrix, day.zenith, under.kind, under.ground, width, height].join();
+    const isOther = this._paintedFor !== wanted;
+    if (isOther) {
       this._paintedFor = wanted;
-      this._keep(width, height);
-      this._paint(camera, day, ground);
-      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+      if (this._pictures[0]?.width !== width || this._pictures[0].height !== height) {
+        for (const each of this._pictures) each.release(true);
+        this._pictures = [0, 1].map(() => canvasTexture(gl, width, height, gl.RGBA8));
+      }
+      gl.bindFramebuffer(gl.FRAMEBUFFER, this._pictures[0].target);
+      this.paint(camera, day, under);
     }
-    if (this._kept) {
-      use(gl, this._copy, { picture: [2, this._kept.texture] });
-      drawPart(gl, this._whole);
+    const [bare, shaded] = this._pictures;
+    if (this._isPlain && (isOther || isNew)) {
+      this._copy(bare, shaded.target);
+      drawShadow();
     }
+    this._copy(this._isPlain ? shaded : bare, null);
+    if (!this._isPlain) drawShadow();
   }
 
-  /** Paint into a texture of the size of the picture.
-   * @param {number} width @param {number} height */
-  _keep(width, height) {
-    const { gl } = this;
-    if (this._kept?.width !== width || this._kept.height !== height) {
-      this._kept?.release();
-      if (this._kept) gl.deleteTexture(this._kept.texture);
-      this._kept = canvasTexture(gl, width, height, gl.RGBA8);
-    }
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this._kept.target);
-  }
-
-  /** @param {import("./camera.js").Camera} camera @param {Daylight} day
-   * @param {{kind: number, height: number, haze: number}} ground */
-  _paint(camera, day, ground) {
-    const { gl } = this;
-    const size = Math.hypot(...day.light);
-    const { height, haze, kind } = ground;
-    use(gl, this._program, {
-      ...day, ...camera.axes(), eye: camera.eye, ground: height, haze, kind,
-      light: day.light.map((l) => l / size),
-    });
-    drawPart(gl, this._whole);
+  /** Copy a picture, and draw on what it is copied to. @param {ReturnType<typeof canvasTexture>} picture
+   * @param {WebGLFramebuffer | null} to */
+  _copy({ texture }, to) {
+    this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, to);
+    use(this.gl, this._copying, { picture: [2, texture] });
+    drawPart(this.gl, this._whole);
   }
 }

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /** A camera that turns about a point: mouse, touch and keys, and the matrix it makes. z is up. */
 
-const FIELD = (32 * Math.PI) / 180;
+/** Half of the height of the picture over how far it is away. */
+const HALF = Math.tan((16 * Math.PI) / 180);
 
 export class Camera {
   constructor() {
@@ -13,8 +14,7 @@ export class Camera {
     this.target = [0, 0, 0];
     this.aspect = 1;
     this._size = 1;
-    /** @type {(() => void) | null} */
-    this._home = null;
+    this._home = /** @type {(() => void) | null} */ (null);
     this.matrix = new Float32Array(16);
     /** @type {Vector} */
     this.eye = [0, 0, 0];
@@ -34,7 +34,7 @@ export class Camera {
       this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2 - lower];
       const seen = tall * Math.cos(this.elevation) + wide * Math.sin(this.elevation);
       const half = (this.aspect < 1 ? 0.65 : 0.5) * Math.max(seen, wide / this.aspect, 0.7 * this._size);
-      this.distance = half / Math.tan(FIELD / 2) + (wide > 3 * tall ? 0.1 : 0.4) * wide;
+      this.distance = half / HALF + (wide > 3 * tall ? 0.1 : 0.4) * wide;
     };
     this._home();
   }
@@ -58,10 +58,9 @@ export class Camera {
 
   /** @param {number} dx share of the height @param {number} dy */
   pan(dx, dy) {
-    const span = 2 * this.distance * Math.tan(FIELD / 2);
-    const right = [-Math.sin(this.azimuth), Math.cos(this.azimuth)];
-    this.target[0] -= right[0] * dx * span;
-    this.target[1] -= right[1] * dx * span;
+    const span = 2 * this.distance * HALF;
+    this.target[0] += Math.sin(this.azimuth) * dx * span;
+    this.target[1] -= Math.cos(this.azimuth) * dx * span;
     this.target[2] += dy * span;
   }
 
@@ -71,12 +70,12 @@ export class Camera {
     this.distance = Math.min(Math.max(this.distance * factor, least), 20 * this._size);
   }
 
-  /** How the picture lies in the scene: half its width, half its height, and back to the eye. */
+  /** How the picture lies in the scene, one from the eye: half its width, half its height, and back to the eye. */
   axes() {
-    const [ca, sa, ce, se] = [Math.cos(this.azimuth), Math.sin(this.azimuth), Math.cos(this.elevation), Math.sin(this.elevation)];
-    const half = Math.tan(FIELD / 2);
-    const [right, up] = [[-sa, ca, 0], [-se * ca, -se * sa, ce]];
-    return { right: right.map((r) => half * this.aspect * r), up: up.map((u) => half * u), back: [ce * ca, ce * sa, se] };
+    const [[ca, sa], [ce, se]] = [this.azimuth, this.elevation].map((angle) => [Math.cos(angle), Math.sin(angle)]);
+    const right = [-sa, ca, 0].map((each) => HALF * this.aspect * each);
+    const up = [-se * ca, -se * sa, ce].map((each) => HALF * each);
+    return { right, up, back: [ce * ca, ce * sa, se] };
   }
 
   /** @returns {Float32Array} from the scene to clip space, column by column */
@@ -86,30 +85,25 @@ export class Camera {
     this.eye = [x, y, z];
     const near = 0.02 * this.distance;
     const far = this.distance + 30 * this._size;
-    const half = Math.tan(FIELD / 2);
-    const deep = (far + near) / (near - far);
-    const rows = [
-      right.map((r) => r / (half * this.aspect) ** 2), up.map((u) => u / half ** 2), back.map((b) => deep * b),
-      back.map((b) => -b),
-    ];
-    rows.forEach((row, r) => {
-      for (let c = 0; c < 3; c++) this.matrix[4 * c + r] = row[c];
-      this.matrix[12 + r] = -row.reduce((sum, each, c) => sum + each * this.eye[c], 0);
+    const sizes = [(HALF * this.aspect) ** -2, HALF ** -2, (far + near) / (near - far), -1];
+    [right, up, back, back].forEach((axis, r) => {
+      for (let c = 0; c < 3; c++) this.matrix[4 * c + r] = sizes[r] * axis[c];
+      this.matrix[12 + r] = -sizes[r] * axis.reduce((sum, each, c) => sum + each * this.eye[c], 0);
     });
     this.matrix[14] += (2 * far * near) / (near - far);
     return this.matrix;
   }
 
-  /** Where a point is seen, 0 to 1 from the left and from the top.
-   * @param {ArrayLike<number>} p @returns {[number, number]} */
+  /** Where a point is seen, 0 to 1 from the left and from the top. @param {ArrayLike<number>} p
+   * @returns {[number, number]} */
   project(p) {
     const m = this.matrix;
     const [x, y, w] = [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
     return [0.5 + (0.5 * x) / w, 0.5 - (0.5 * y) / w];
   }
 
-  /** The point under a place of the picture that is as deep in it as another point.
-   * @param {number} x 0 to 1 from the left @param {number} y from the top @param {number[]} p */
+  /** The point under a place of the picture that is as deep in it as another point. @param {number} x 0 to
+   * 1 from the left @param {number} y from the top @param {number[]} p */
   under(x, y, p) {
     const { right, up, back } = this.axes();
     const depth = this.eye.reduce((sum, each, c) => sum + (each - p[c]) * back[c], 0);
@@ -118,32 +112,27 @@ export class Camera {
 
   /** Let mouse, touch and keys move the camera. @param {HTMLElement} element */
   listen(element) {
-    /** @type {Map<number, PointerEvent>} */
-    const pointers = new Map();
+    const pointers = /** @type {Map<number, PointerEvent>} */ (new Map());
     element.addEventListener("pointerdown", (event) => {
       element.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, event);
     });
-    const release = (/** @type {PointerEvent} */ event) => pointers.delete(event.pointerId);
-    element.addEventListener("pointerup", release);
-    element.addEventListener("pointercancel", release);
+    for (const type of /** @type {const} */ (["pointerup", "pointercancel"])) {
+      element.addEventListener(type, ({ pointerId }) => pointers.delete(pointerId));
+    }
     element.addEventListener("pointermove", (event) => {
       const before = pointers.get(event.pointerId);
       if (!before) return;
-      const high = element.clientHeight;
-      const dx = event.clientX - before.clientX;
-      const dy = event.clientY - before.clientY;
-      if (pointers.size === 2) {
-        const [other] = [...pointers.values()].filter((each) => each.pointerId !== event.pointerId);
-        const span = (/** @type {PointerEvent} */ e) =>
-          Math.hypot(e.clientX - other.clientX, e.clientY - other.clientY);
-        this.zoom(Math.max(span(before), 1) / Math.max(span(event), 1));
-        this.pan(dx / high / 2, dy / high / 2);
-      } else if (event.shiftKey || event.buttons & 6) {
-        this.pan(dx / high, dy / high);
-      } else {
-        this.orbit(dx, dy);
+      const [dx, dy] = [event.clientX - before.clientX, event.clientY - before.clientY];
+      const share = 1 / element.clientHeight / pointers.size;
+      const other = [...pointers.values()].find(({ pointerId }) => pointerId !== event.pointerId);
+      if (other) {
+        const [was, is] = [before, event].map((each) =>
+          Math.max(1, Math.hypot(each.clientX - other.clientX, each.clientY - other.clientY)));
+        this.zoom(was / is);
       }
+      if (other || event.shiftKey || event.buttons & 6) this.pan(share * dx, share * dy);
+      else this.orbit(dx, dy);
       pointers.set(event.pointerId, event);
     });
     element.addEventListener("contextmenu", (event) => event.preventDefault());

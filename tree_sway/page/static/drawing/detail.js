@@ -1,9 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * How much of each tree is placed and drawn: a small one is a picture of its kind, a larger one has its
- * thickest branches, one out of sight nothing; near trees come first, until a budget is spent.
- */
+/** How much of each tree is placed and drawn: a small one is a picture of its kind, a larger one has its
+ * thickest branches, one out of sight nothing; near trees come first, until a budget is spent. */
 
 /** Area of the screen [px^2] that a segment is worth. */
 const AREA = 80;
@@ -11,12 +9,10 @@ const AREA = 80;
 const NEAR = 800;
 const FEWEST_CARDS = 40;
 
-/** Levels of a kind: its picture, of which the top alone is placed; then each of about twice the
- * segments of the one before.
- * @param {import("../placing.js").KindPlacer} placer
- * @param {number} highest segment, which is of every other level
- * @param {{segments: number, cards: number, far: number}} most segments and cards of leaves; and the
- * height [px] below which a tree is drawn as a picture @returns {Level[]} */
+/** Levels of a kind: its picture, of which the top alone is placed; then each of about twice the segments
+ * of the one before. @param {import("../placing.js").KindPlacer} placer @param {number} highest segment,
+ * which is of every other level @param {{segments: number, cards: number, far: number}} most segments and
+ * cards of leaves; and the height [px] below which a tree is drawn as a picture @returns {Level[]} */
 export function levelsOf({ reached, order, slots }, highest, most) {
   let branches = 0;
   while (reached[branches] <= slots[highest]) branches++;
@@ -39,14 +35,13 @@ export function levelsOf({ reached, order, slots }, highest, most) {
 
 /** The level of every tree of a scene. */
 export class Detail {
-  /** @param {Tree[]} trees @param {Level[][]} levels of each kind
-   * @param {number[]} radii of a ball about the middle of each kind [m]
-   * @param {number} watched tree that is always placed */
+  /** @param {Tree[]} trees @param {Level[][]} levels of each kind @param {number[]} radii of a ball about
+   * the middle of each kind [m] @param {number} watched tree that is always placed */
   constructor(trees, levels, radii, watched) {
     this.trees = trees;
     this.levels = levels;
     this._radii = radii;
-    this._watched = watched;
+    this.watched = watched;
     /** Trees, the largest on the screen first. */
     this.order = Uint32Array.from(trees, (_, t) => t);
     /** Level of each tree; -1 of one that is out of sight. */
@@ -57,10 +52,8 @@ export class Detail {
     this.segments = 0;
   }
 
-  /** Choose again.
-   * @param {Float32Array} camera matrix from the scene to clip space
-   * @param {number} height of the picture [px]
-   * @param {number} budget segments and cards beyond those of far trees */
+  /** Choose again. @param {Float32Array} camera matrix from the scene to clip space @param {number} height
+   * of the picture [px] @param {number} budget segments and cards beyond those of far trees */
   choose(camera, height, budget) {
     const pixels = this.trees.map((tree) => this._height(tree, camera, height));
     this.order.sort((a, b) => pixels[b] - pixels[a]);
@@ -69,7 +62,7 @@ export class Detail {
     for (const t of this.order) {
       const levels = this.levels[this.trees[t].kind];
       const cost = (/** @type {number} */ level) => (level ? levels[level].segments + levels[level].cards : 0);
-      const least = t === this._watched ? 1 : pixels[t] ? 0 : -1;
+      const least = t === this.watched ? 1 : pixels[t] ? 0 : -1;
       let level = pixels[t] ? levels.length - 1 : least;
       while (level > least && levels[level].from > pixels[t]) level--;
       while (level > least && spent + cost(level) > budget) level--;
@@ -80,8 +73,14 @@ export class Detail {
     }
   }
 
-  /** Height of a tree on the screen [px]; 0 out of sight. @param {Tree} tree
-   * @param {Float32Array} m matrix of the camera @param {number} height of the picture */
+  /** The level of a tree; none of one that is out of sight. @param {number} tree its number
+   * @returns {Level} */
+  levelOf(tree) {
+    return this.levels[this.trees[tree].kind][this.level[tree]];
+  }
+
+  /** Height of a tree on the screen [px]; 0 out of sight. @param {Tree} tree @param {Float32Array} m
+   * matrix of the camera @param {number} height of the picture */
   _height({ place: [x, y, z, , scale], kind, height: tall }, m, height) {
     const middle = [x, y, z + tall / 2, 1];
     const radius = this._radii[kind] * scale;

@@ -2,27 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The graphics unit: programs, vertex arrays, textures. */
 
-/** A context of a canvas, and whether it draws on the processor.
- * @param {HTMLCanvasElement} canvas */
+/** A context of a canvas, and whether it draws on the processor. @param {HTMLCanvasElement} canvas */
 export function contextOf(canvas) {
   const probe = document.createElement("canvas").getContext("webgl2");
   const info = probe?.getExtension("WEBGL_debug_renderer_info");
-  const name = info ? String(probe?.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
-  const isSoftware = /swiftshader|llvmpipe|software|basic render/i.test(name);
+  const name = info && probe?.getParameter(info.UNMASKED_RENDERER_WEBGL);
+  const isSoftware = /swiftshader|llvmpipe|software|basic render/i.test(String(name));
   probe?.getExtension("WEBGL_lose_context")?.loseContext();
   const gl = canvas.getContext("webgl2", { antialias: !isSoftware, alpha: false, powerPreference: "high-performance" });
   if (!gl) throw new Error("this browser has no WebGL 2");
   return { gl, isSoftware };
 }
 
-/** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment
- * @returns {Program} */
+/** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment @returns {Program} */
 export function program(gl, vertex, fragment) {
   const made = gl.createProgram();
-  for (const [kind, source] of /** @type {[number, string][]} */ ([
-    [gl.VERTEX_SHADER, vertex],
-    [gl.FRAGMENT_SHADER, fragment],
-  ])) {
+  for (const source of [vertex, fragment]) {
+    const kind = source === vertex ? gl.VERTEX_SHADER : gl.FRAGMENT_SHADER;
     const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
     gl.shaderSource(shader, source);
     gl.compileShader(shader);
@@ -31,8 +27,7 @@ export function program(gl, vertex, fragment) {
   }
   gl.linkProgram(made);
   if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(String(gl.getProgramInfoLog(made)));
-  /** @type {Program["uniforms"]} */
-  const uniforms = {};
+  const uniforms = /** @type {Program["uniforms"]} */ ({});
   for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
     const { name, type } = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(made, i));
     const at = gl.getUniformLocation(made, name);
@@ -55,29 +50,26 @@ export function program(gl, vertex, fragment) {
 }
 
 /** Set what a program is given: numbers, vectors and matrices; of a texture, its unit and itself.
- * @param {WebGL2RenderingContext} gl @param {Program} used
- * @param {Record<string, any>} values those that it has not are left out */
+ * @param {WebGL2RenderingContext} gl @param {Program} used @param {Record<string, any>} values those that
+ * it has not are left out */
 export function use(gl, used, values) {
   gl.useProgram(used.program);
   for (const [name, value] of Object.entries(values)) used.uniforms[name]?.(value);
 }
 
-/** A vertex array of its own.
- * @param {WebGL2RenderingContext} gl @param {Program} used
- * @param {ArrayLike<number>} values vertex after vertex
- * @param {[string, number][]} fields names and sizes of what a vertex has
- * @param {ArrayLike<number>} indices @returns {Drawable} */
+/** A vertex array of its own. @param {WebGL2RenderingContext} gl @param {Program} used
+ * @param {ArrayLike<number>} values vertex after vertex @param {[string, number][]} fields names and sizes
+ * of what a vertex has @param {ArrayLike<number>} indices @returns {Drawable} */
 export function drawable(gl, used, values, fields, indices) {
   const vao = gl.createVertexArray();
   gl.bindVertexArray(vao);
-  const filled = (/** @type {number} */ kind, /** @type {ArrayBufferView} */ data) => {
+  const buffers = [Float32Array.from(values), Uint32Array.from(indices)].map((data, i) => {
     const buffer = gl.createBuffer();
+    const kind = i ? gl.ELEMENT_ARRAY_BUFFER : gl.ARRAY_BUFFER;
     gl.bindBuffer(kind, buffer);
     gl.bufferData(kind, data, gl.STATIC_DRAW);
     return buffer;
-  };
-  const buffers = [filled(gl.ARRAY_BUFFER, Float32Array.from(values)),
-    filled(gl.ELEMENT_ARRAY_BUFFER, Uint32Array.from(indices))];
+  });
   const width = fields.reduce((sum, [, size]) => sum + size, 0);
   let offset = 0;
   for (const [name, size] of fields) {
@@ -97,15 +89,14 @@ export function discard(gl, part) {
   gl.deleteVertexArray(part.vao);
 }
 
-/** @param {WebGL2RenderingContext} gl @param {Drawable} part
- * @param {number} [share] of its triangles */
+/** @param {WebGL2RenderingContext} gl @param {Drawable} part @param {number} [share] of its triangles */
 export function drawPart(gl, part, share = 1) {
   gl.bindVertexArray(part.vao);
   gl.drawElements(gl.TRIANGLES, 3 * Math.round((share * part.count) / 3), gl.UNSIGNED_INT, 0);
 }
 
-/** @param {WebGL2RenderingContext} gl @param {number} wrap @param {number} less filter where it is
- * smaller @param {number} more where it is larger */
+/** @param {WebGL2RenderingContext} gl @param {number} wrap @param {number} less filter where it is smaller
+ * @param {number} more where it is larger */
 function sample(gl, wrap, less, more) {
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, wrap);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, wrap);
@@ -113,10 +104,9 @@ function sample(gl, wrap, less, more) {
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, more);
 }
 
-/** A texture of a picture; where it has no smaller ones these are made.
- * @param {WebGL2RenderingContext} gl @param {ImageData[]} mips from the finest
- * @param {number} wrap
- * @param {boolean} isPlain the nearest point alone is looked up, which costs less */
+/** A texture of a picture; where it has no smaller ones these are made. @param {WebGL2RenderingContext} gl
+ * @param {ImageData[]} mips from the finest @param {number} wrap @param {boolean} isPlain the nearest
+ * point alone is looked up, which costs less */
 export function pictureTexture(gl, mips, wrap, isPlain) {
   const texture = gl.createTexture();
   gl.activeTexture(gl.TEXTURE2);
@@ -128,9 +118,8 @@ export function pictureTexture(gl, mips, wrap, isPlain) {
   return texture;
 }
 
-/** A texture that poses lie in.
- * @param {WebGL2RenderingContext} gl @param {WebGLTexture} texture @param {number} width
- * @param {Float32Array} texels */
+/** A texture that poses lie in. @param {WebGL2RenderingContext} gl @param {WebGLTexture} texture
+ * @param {number} width @param {Float32Array} texels */
 export function poseTexture(gl, texture, width, texels) {
   gl.activeTexture(gl.TEXTURE0);
   gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -138,9 +127,8 @@ export function poseTexture(gl, texture, width, texels) {
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, texels.length / 4 / width, 0, gl.RGBA, gl.FLOAT, texels);
 }
 
-/** What is drawn into a texture.
- * @param {WebGL2RenderingContext} gl @param {number} width @param {number} height
- * @param {number} format such as R8 @param {boolean} hasDepth */
+/** What is drawn into a texture. @param {WebGL2RenderingContext} gl @param {number} width
+ * @param {number} height @param {number} format such as R8 @param {boolean} hasDepth */
 export function canvasTexture(gl, width, height, format, hasDepth = false) {
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -155,9 +143,10 @@ export function canvasTexture(gl, width, height, format, hasDepth = false) {
     gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT16, width, height);
     gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, depth);
   }
-  const release = () => {
+  const release = (isWhole = false) => {
     gl.deleteFramebuffer(target);
     gl.deleteRenderbuffer(depth);
+    if (isWhole) gl.deleteTexture(texture);
   };
   return { texture, target, width, height, release };
 }

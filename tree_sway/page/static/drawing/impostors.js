@@ -2,18 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Far trees: each kind is painted once from all sides, then drawn as pictures that lean. */
 
-import { AT_ORIGIN, STRIDE } from "../placing.js";
+import { AT_ORIGIN, placed, STRIDE } from "../placing.js";
 import { canvasTexture, discard, drawable, use } from "./gl.js";
 import { ELEVATIONS, ROUND } from "./shaders.js";
 
 const TILE = 128;
-/** Numbers per corner, of which a picture has four. */
-const PER_CORNER = 9;
+/** Parts of a picture from its foot up, each as wide as what it shows: to look at what is clear costs time. */
+const BANDS = 6;
+/** Corners of a picture, and numbers of each. */
+const [CORNERS, PER_CORNER] = [2 * (BANDS + 1), 9];
+/** Of the cover of a pixel, 0 to 255; the shader discards what has less. */
+const LEAST_SEEN = 0.35 * 255;
 
 export class Impostor {
-  /** @param {WebGL2RenderingContext} gl @param {Program} used
-   * @param {Shape} shape @param {number} most how many trees
-   * @param {boolean} isPlain the nearest point alone is looked up, which costs less */
+  /** @param {WebGL2RenderingContext} gl @param {Program} used @param {Shape} shape @param {number} most
+   * how many trees @param {boolean} isPlain the nearest point alone is looked up, which costs less */
   constructor(gl, used, shape, most, isPlain) {
     const { kind, low, high, rest, highest } = shape;
     const leaf = Math.max(0, ...(kind.arrays.leaf_size ?? []));
@@ -27,14 +30,16 @@ export class Impostor {
     this.count = 0;
     this._atlas = canvasTexture(gl, ROUND * TILE, ELEVATIONS.length * TILE, gl.RGBA8, true);
     if (isPlain) gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-    this._values = new Float32Array(4 * PER_CORNER * most);
-    const indices = Array.from({ length: most }, (_, i) => [0, 1, 2, 1, 3, 2].map((corner) => 4 * i + corner)).flat();
+    /** Half of its width at the ends of bands, 0 to 1. */
+    this._wide = new Float32Array(BANDS + 1);
+    this._values = new Float32Array(CORNERS * PER_CORNER * most);
+    const indices = Array.from({ length: BANDS * most }, (_, i) =>
+      [0, 1, 2, 1, 3, 2].map((corner) => CORNERS * Math.floor(i / BANDS) + 2 * (i % BANDS) + corner)).flat();
     // Not as instances: without a graphics unit each of them costs as much as a whole picture.
     this._part = drawable(gl, used, this._values, [["corner", 2], ["stand", 4], ["tree", 3]], indices);
   }
 
-  /** Paint the kind from every side.
-   * @param {(camera: Float32Array, eye: number[]) => void} paint
+  /** Paint the kind from every side. @param {(camera: Float32Array, eye: number[]) => void} paint
    * @param {number[]} color of its leaves, which the cut edges have */
   bake(paint, color) {
     const { gl } = this;
@@ -48,8 +53,7 @@ export class Impostor {
       const high = 0.5 * tall * ce + wide * se;
       const deep = wide + tall;
       for (let side = 0; side < ROUND; side++) {
-        const turn = (2 * Math.PI * side) / ROUND;
-        const [c, s] = [Math.cos(turn), Math.sin(turn)];
+        const [c, s] = [Math.cos, Math.sin].map((of) => of((2 * Math.PI * side) / ROUND));
         const axes = [[-s / wide, c / wide, 0], [(-se * c) / high, (-se * s) / high, ce / high],
           [(-ce * c) / deep, (-ce * s) / deep, -se / deep]];
         const camera = [0, 1, 2].flatMap((k) => [...axes.map((axis) => axis[k]), 0]);
@@ -58,19 +62,33 @@ export class Impostor {
         paint(Float32Array.from(camera), [100 * deep * ce * c, 100 * deep * ce * s, middle + 100 * deep * se]);
       }
     });
+    this._measure();
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     this._atlas.release();
   }
 
-  /** Draw a tree, too.
-   * @param {number[]} place x, y, z, turn, scale @param {number} row of its highest node
-   * @param {number} number among all trees */
+  /** Find how wide the pictures are that were painted. */
+  _measure() {
+    const { gl, _atlas: { width, height }, _wide: wide } = this;
+    const pixels = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    for (let i = 0; i < width * height; i++) {
+      if (pixels[4 * i + 3] < LEAST_SEEN) continue;
+      const away = (Math.abs((i % TILE) + 0.5 - TILE / 2) + 1.5) / (TILE / 2);
+      const band = Math.floor((BANDS * (Math.floor(i / width) % TILE)) / TILE);
+      for (const end of [band, band + 1]) wide[end] = Math.max(wide[end], Math.min(1, away));
+    }
+  }
+
+  /** Draw a tree, too. @param {number[]} place x, y, z, turn, scale @param {number} row of its highest
+   * node @param {number} number among all trees */
   add(place, row, number) {
     const tint = 0.86 + 0.28 * ((number * 0.618034) % 1);
-    let at = 4 * PER_CORNER * this.count++;
-    for (const [x, y] of [[-1, -1], [1, -1], [-1, 1], [1, 1]]) {
-      this._values.set([x, y, ...place, row, tint], at);
-      at += PER_CORNER;
+    const from = CORNERS * PER_CORNER * this.count++;
+    for (let corner = 0; corner < CORNERS; corner++) {
+      const end = Math.floor(corner / 2);
+      const x = corner % 2 ? this._wide[end] : -this._wide[end];
+      this._values.set([x, (2 * end) / BANDS - 1, ...place, row, tint], from + PER_CORNER * corner);
     }
   }
 
@@ -78,7 +96,7 @@ export class Impostor {
   upload() {
     const { gl } = this;
     gl.bindBuffer(gl.ARRAY_BUFFER, this._part.buffers[0]);
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, 4 * PER_CORNER * this.count);
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, CORNERS * PER_CORNER * this.count);
   }
 
   /** Place the top of a tree, which is linear in the coordinates of what is far.
@@ -93,20 +111,16 @@ export class Impostor {
       v += by * moves[at + 1];
       w += by * moves[at + 2];
     }
-    const [c, s] = [scale * Math.cos(yaw), scale * Math.sin(yaw)];
-    poses[STRIDE * row] = x + c * u - s * v;
-    poses[STRIDE * row + 1] = y + s * u + c * v;
-    poses[STRIDE * row + 2] = z + scale * w;
+    poses.set(placed([x, y, z, yaw, scale], [u, v, w]), STRIDE * row);
   }
 
-  /** @param {Program} used
-   * @param {number} shade of the foot of a tree among others */
+  /** @param {Program} used @param {number} shade of the foot of a tree among others */
   draw(used, shade) {
     const { gl, box, tip } = this;
     const picture = [2, this._atlas.texture];
     use(gl, used, { picture, box: [box.wide, box.middle, box.tall, shade], restTip: tip });
     gl.bindVertexArray(this._part.vao);
-    gl.drawElements(gl.TRIANGLES, 6 * this.count, gl.UNSIGNED_INT, 0);
+    gl.drawElements(gl.TRIANGLES, 6 * BANDS * this.count, gl.UNSIGNED_INT, 0);
   }
 
   /** Give its memory back. */
@@ -116,8 +130,8 @@ export class Impostor {
   }
 }
 
-/** How far the highest node moves per unit of each coordinate, three numbers each.
- * @param {Shape} shape @param {number[]} tip the node at rest */
+/** How far the highest node moves per unit of each coordinate, three numbers each. @param {Shape} shape
+ * @param {number[]} tip the node at rest */
 function movesOf({ kind, placer, highest }, tip) {
   const row = STRIDE * placer.slots[highest];
   const branches = placer.reached.findIndex((reached) => reached > placer.slots[highest]);

@@ -1,9 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * Meshes of a kind at rest: bark as tubes, leaves as cards. Each vertex hangs on a segment, whose row
- * is its first number, and moves with it. A branch is one tube: a ring between two segments is of both.
- */
+/** Meshes of a kind at rest: bark as tubes, leaves as cards. Each vertex hangs on a segment, whose row is
+ * its first number, and moves with it. A branch is one tube: a ring between two segments is of both. */
 
 import { KindPlacer, STRIDE } from "../placing.js";
 import { between, multiply, turned } from "../quaternions.js";
@@ -42,8 +40,8 @@ export function shapeOf(kind) {
   return { kind, placer, rest, low, high, highest, shade };
 }
 
-/** Branches by what they cover of a picture, parents before their children; what carries the
- * highest segment comes first. @param {Kind} kind @param {number} highest */
+/** Branches by what they cover of a picture, parents before their children; what carries the highest
+ * segment comes first. @param {Kind} kind @param {number} highest */
 function branchOrder({ arrays, nBranches }, highest) {
   const { branch_first: first, branch_parent: parents } = arrays;
   const isTop = new Uint8Array(nBranches);
@@ -66,23 +64,22 @@ function leafPlace({ arrays }, rest, i) {
   return turned(rest, offset, o + 4).map((each, c) => each + rest[o + c]);
 }
 
-/**
- * The bark: rings of [along, across cosine, across sine, thickness], joined to tubes; of twigs two
- * edges of a ribbon, [along, across, 0, thickness - 2]; then [place on the bark (2), openness].
- * @param {Shape} shape @param {Int32Array} branches
- * @param {number} pixels height of the tree on the screen @returns {Mesh}
- */
-export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pixels) {
+/** The bark: rings of [along, across cosine, across sine, thickness], joined to tubes; of twigs two edges
+ * of a ribbon, [along, across, 0, thickness - 2]; then [place on the bark (2), openness].
+ * @param {Shape} shape @param {Int32Array} branches @param {number} pixels height of the tree on the
+ * screen @param {number} [fineness] of the picture, points per pixel @returns {Mesh} */
+export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pixels, fineness = 1) {
   const { branch_first: first, branch_parent: parents, segment_radius: radius, segment_length: length } = kind.arrays;
   const size = Math.max(high[2] - low[2], 0.1);
   const pixel = size / pixels;
+  const point = pixel / fineness;
   const tile = Math.min(BARK_TILE, 0.06 * size);
   /** @type {Mesh} */
   const { values, indices } = { values: [], indices: [] };
   for (const branch of branches) {
     const [from, end] = [first[branch], first[branch + 1]];
     const thick = radius[2 * from];
-    const sides = thick > 4.8 * pixel ? 12 : thick > 2 * pixel ? 6 : 2;
+    const sides = thick > 4.8 * point ? 12 : thick > 2 * point ? 6 : 2;
     const corners = sides === 2 ? 2 : sides + 1;
     const thickness = Math.min(1, thick / (0.01 * size));
     const around = Math.max(1, Math.round((2 * Math.PI * thick) / tile));
@@ -94,7 +91,7 @@ export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pix
       if (s > from && !isLast) {
         const twist = between(rest, STRIDE * (s - 1) + 4, rest, STRIDE * s + 4);
         turn += 2 * Math.atan2(twist[0], twist[3]);
-        if (risen - drawn < RING_SPACING * pixel) continue;
+        if (risen - drawn < RING_SPACING * point) continue;
       }
       drawn = risen;
       // At a joint both segments agree on the thickness: no steps in the bark.
@@ -119,12 +116,11 @@ export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pix
   return { values, indices };
 }
 
-/** Leaves: each cluster is up to three cards that fan out from the twig and show leaves in a
- * picture. They come in a mixed order, so that any first part of them is a thinner crown. Per
- * vertex: place (3), how it moves with the flutter (3), normal (3), where light comes from (3),
- * flutter frequency and phase (2), openness, tint, place in the picture (2).
- * @param {Shape} shape @param {Int32Array} branches that are drawn @param {number} cards
- * @param {number} most cards of the whole crown, whose area fewer have as well
+/** Leaves: each cluster is up to three cards that fan out from the twig and show leaves in a picture. They
+ * come in a mixed order, so that any first part of them is a thinner crown. Per vertex: place (3), how it
+ * moves with the flutter (3), normal (3), where light comes from (3), flutter frequency and phase (2),
+ * openness, tint, place in the picture (2). @param {Shape} shape @param {Int32Array} branches that are
+ * drawn @param {number} cards @param {number} most cards of the whole crown, whose area fewer have as well
  * @returns {{mesh: Mesh, across: number}} and how many leaves the picture is wide */
 export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
   const { arrays, species } = kind;
@@ -171,9 +167,9 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
 }
 
 /** Corners of a card: its place, how it moves with the flutter and its normal, in the frame of the
- * cluster; and the place in the picture.
- * @param {string} species @param {number} size of the card [m] @param {number} number in its cluster
- * @param {boolean} isAlone whether the picture is of one leaf @param {() => number} random */
+ * cluster; and the place in the picture. @param {string} species @param {number} size of the card [m]
+ * @param {number} number in its cluster @param {boolean} isAlone whether the picture is of one leaf
+ * @param {() => number} random */
 function cardCorners(species, size, number, isAlone, random) {
   const { form, slender } = lookOf(species);
   const isConifer = hasNeedles(species);
@@ -196,8 +192,8 @@ function cardCorners(species, size, number, isAlone, random) {
   });
 }
 
-/** Groups of indices in a random order (Fisher and Yates).
- * @param {number[]} indices @param {number} size of a group @param {() => number} random */
+/** Groups of indices in a random order (Fisher and Yates). @param {number[]} indices @param {number} size
+ * of a group @param {() => number} random */
 function mixed(indices, size, random) {
   const order = Int32Array.from({ length: indices.length / size }, (_, i) => i);
   for (let i = order.length - 1; i > 0; i--) {

@@ -1,15 +1,13 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * What is left out without a graphics unit so that frames come in time: first pixels, then frames,
- * then leaves. No leaf grows to make up for others.
- */
+/** What is left out without a graphics unit so that frames come in time: first pixels, then frames, then
+ * leaves. No leaf grows to make up for others. */
 
 /** Frames per second that fewer pixels are drawn for, and those that leaves are left out for. */
 const WANTED = 55;
 const LEAST = 24;
 /** Pixels per pixel of the page each way, and the share of leaves, that are drawn at least. */
-const COARSEST = 0.5;
+export const COARSEST = 0.5;
 const THINNEST = 0.4;
 
 export class Quality {
@@ -24,8 +22,7 @@ export class Quality {
     this._coarsened = 0;
   }
 
-  /** Count a frame.
-   * @param {number} now [ms] @param {boolean} hasLeaves whether there are any to leave out */
+  /** Count a frame. @param {number} now [ms] @param {boolean} hasLeaves whether there are any to leave out */
   count(now, hasLeaves) {
     // A page that was hidden was not slow.
     if (now - this._last > 1500) [this._from, this._frames] = [now, -1];

@@ -1,9 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/**
- * Shade within a crown, found once at rest: how open each place is to the sky, and towards where. The
- * light weakens by the leaf area on its way, exp(-A / 2) for leaves in every direction.
- */
+/** Shade within a crown, found once at rest: how open each place is to the sky, and towards where. The
+ * light weakens by the leaf area on its way, exp(-A / 2) for leaves in every direction. */
 
 const CELLS = 14;
 /** Of the light that a leaf stops; it lets some through. */
@@ -15,9 +13,8 @@ const WAYS = Array.from({ length: 16 }, (_, i) => {
   return [flat * Math.cos(2.399963 * i), flat * Math.sin(2.399963 * i), z];
 });
 
-/** @param {number[][]} places of leaves [m] @param {number[]} areas of theirs [m^2]
- * @param {number[]} low corner of the box of the tree @param {number[]} high
- * @returns {(place: ArrayLike<number>) => Shade} */
+/** @param {number[][]} places of leaves [m] @param {number[]} areas of theirs [m^2] @param {number[]} low
+ * corner of the box of the tree @param {number[]} high @returns {(place: ArrayLike<number>) => Shade} */
 export function crownShade(places, areas, low, high) {
   if (!places.length) return () => ({ open: 1, towards: [0, 0, 0] });
   const step = low.map((l, c) => (Math.max(high[c] - l, 0.1) * 1.02) / CELLS);
@@ -27,8 +24,7 @@ export function crownShade(places, areas, low, high) {
   const index = (/** @type {number[]} */ [i, j, k]) => i + CELLS * (j + CELLS * k);
   const density = new Float32Array(CELLS ** 3);
   places.forEach((place, i) => (density[index(inside(cellOf(place)))] += areas[i] / (step[0] * step[1] * step[2])));
-  /** @type {Map<number, Shade>} */
-  const found = new Map();
+  const found = /** @type {Map<number, Shade>} */ (new Map());
   const shadeAt = (/** @type {number[]} */ cell) => {
     const towards = [0, 0, 0];
     let open = 0;

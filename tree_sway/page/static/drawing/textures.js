@@ -11,8 +11,7 @@ const BARK_PIXELS = 128;
 /** Length of a compound leaf in leaflets. */
 const RACHIS = 3.4;
 
-/** Leaves across the picture for cards of a size, so that none is drawn larger than 1.5 times its
- * own.
+/** Leaves across the picture for cards of a size, so that none is drawn larger than 1.5 times its own.
  * @param {string} species @param {number} size of a card [m] */
 export function leavesAcross(species, size) {
   const look = lookOf(species);
@@ -21,9 +20,8 @@ export function leavesAcross(species, size) {
   return ACROSS.find((across) => across >= wanted && across >= least) ?? ACROSS[ACROSS.length - 1];
 }
 
-/** Paint leaves: the twig comes in at the left.
- * @param {string} species @param {number} across how many leaves the picture is wide
- * @param {boolean} isAutumn */
+/** Paint leaves: the twig comes in at the left. @param {string} species @param {number} across how many
+ * leaves the picture is wide @param {boolean} isAutumn */
 export function leafPicture(species, across, isAutumn) {
   const look = lookOf(species);
   const base = isAutumn && look.autumn ? look.autumn : look.leaf;
@@ -77,8 +75,8 @@ class Brush {
   }
 
   /** A twig with side twigs, leaves in turn on both sides. @param {number} x @param {number} y
-   * @param {number} turn @param {number} leaf length of one
-   * @param {number} [length] of the twig; of the main one if left out */
+   * @param {number} turn @param {number} leaf length of one @param {number} [length] of the twig; of the
+   * main one if left out */
   spray(x, y, turn, leaf, length) {
     const { look, random } = this;
     const unit = look.form === "compound" ? RACHIS * leaf : leaf;
@@ -113,8 +111,8 @@ class Brush {
   }
 
   /** A twig of a conifer: side shoots that grow shorter to its tip, needles on all of them.
-   * @param {number} x @param {number} y @param {number} turn @param {number} length
-   * @param {number} unit length of a shoot @param {number} depth */
+   * @param {number} x @param {number} y @param {number} turn @param {number} length @param {number} unit
+   * length of a shoot @param {number} depth */
   shoot(x, y, turn, length, unit, depth) {
     const { look, random } = this;
     const isTuft = look.form === "tufts";
@@ -177,8 +175,8 @@ class Brush {
   }
 }
 
-/** A picture halved again and again; each has the cover of the first, so that no crown thins out
- * where it is far, and what is cut away has the leaves' colour, so that no leaf has a rim.
+/** A picture halved again and again; each has the cover of the first, so that no crown thins out where it
+ * is far, and what is cut away has the leaves' colour, so that no leaf has a rim.
  * @param {CanvasRenderingContext2D} context @param {number[]} mean colour */
 function mipsOf(context, mean) {
   const mips = [];
