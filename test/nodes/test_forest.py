@@ -52,14 +52,14 @@ def test_a_forest_is_streamed_as_one(compose, observer, statuses, forest_file):
     described = observer.listen(TREE_DESCRIPTION)
     frames, markers = observer.listen(SEGMENT_POSES), observer.listen(MARKERS)
     observer.until(lambda: described and frames and markers, 'a frame')
-    told = json.loads(described[0].data)
+    description = json.loads(described[0].data)
     tree = open_scene(forest_file).tree
-    assert told['name'] == 'glade'
-    assert told['segments']['names'] == list(tree.segment_names)
-    assert told['segments']['names'][0].startswith('oak/')
-    assert told['segments']['names'][7].startswith('elm/')
+    assert description['name'] == 'glade'
+    assert description['segments']['names'] == list(tree.segment_names)
+    assert description['segments']['names'][0].startswith('oak/')
+    assert description['segments']['names'][7].startswith('elm/')
     # Only the elm is in leaf, whatever the parameter.
-    assert set(told['leaves']['segment']) <= set(range(7, 14))
+    assert set(description['leaves']['segment']) <= set(range(7, 14))
     rest = positions(frames[0])
     assert rest == pytest.approx(tree.start, abs=1e-12)
     assert sum(len(marker.points) for marker in markers[0].markers) == 2 * 14

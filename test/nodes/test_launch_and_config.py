@@ -105,8 +105,8 @@ def test_arguments_that_are_not_given_override_nothing(launch_file):
 def test_the_player_learns_how_to_read_and_where_to_begin(launch_file):
     given = {'reader_options': 'topic=/mast/wind yaw=1.57'}
     given |= {'start': '30', 'playback_rate': '2', 'loop': 'False'}
-    told = launch_file.overrides_of('player', GIVEN | given)
-    assert told == {
+    overrides = launch_file.overrides_of('player', GIVEN | given)
+    assert overrides == {
         'reader_options': 'topic=/mast/wind yaw=1.57',
         **{'start': 30.0, 'rate': 2.0, 'loop': False},
     }

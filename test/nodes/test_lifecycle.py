@@ -24,12 +24,12 @@ def state_of(observer, node):
     return observer.call(GetState, f'{node}/get_state', GetState.Request()).current_state.label
 
 
-def has_predecessor(observer, messages):
+def is_published(observer, messages):
     n = len(messages)
     observer.until(lambda: len(messages) > n + 5, 'messages')
 
 
-def stands(observer, messages, others):
+def is_silent(observer, messages, others):
     """Nothing more comes while others continue."""
     n, m = len(messages), len(others)
     observer.until(lambda: len(others) > m + 10, 'others')
@@ -50,18 +50,18 @@ def test_a_managed_chain_is_configured_started_stopped_and_started_again(
     assert (frames, said) == ([], [])
     for node in names:
         assert manage(node, Transition.TRANSITION_ACTIVATE)
-    has_predecessor(observer, frames)
-    has_predecessor(observer, filtered)
+    is_published(observer, frames)
+    is_published(observer, filtered)
     assert manage('wind', Transition.TRANSITION_DEACTIVATE)
-    stands(observer, filtered, said)
+    is_silent(observer, filtered, said)
     assert manage('solver', Transition.TRANSITION_DEACTIVATE)
-    stands(observer, frames, said)
+    is_silent(observer, frames, said)
     for node in ('wind', 'solver'):
         assert manage(node, Transition.TRANSITION_CLEANUP)
         assert manage(node, Transition.TRANSITION_CONFIGURE)
         assert manage(node, Transition.TRANSITION_ACTIVATE)
-    has_predecessor(observer, frames)
-    has_predecessor(observer, filtered)
+    is_published(observer, frames)
+    is_published(observer, filtered)
     assert state_of(observer, 'solver') == 'active'
 
 

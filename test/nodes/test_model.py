@@ -24,21 +24,21 @@ from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 from tree_sway_ros.wire.wind_messages import wind_to_message, WindSample  # noqa: E402
 
 
-def told(status):
+def values_of(status):
     return {value.key: value.value for value in status.values}
 
 
 def test_a_camera_that_comes_nearer_gets_a_better_model(compose, observer, statuses, tree_file):
     compose(solver={'tree': tree_file, 'model': 'auto', 'tolerance': 5.0})
     observer.until(lambda: statuses('solver: model') is not None, 'diagnostics')
-    assert told(statuses('solver: model'))['chosen'] == '0'
+    assert values_of(statuses('solver: model'))['chosen'] == '0'
     near = PoseStamped()
     near.pose.position.x = 1.0
     camera = observer.publisher(CAMERA)
     expected = 0.5 * (1.0 / 1000.0)
 
     def tolerance():
-        return float(told(statuses('solver: model'))['tolerance [m]'])
+        return float(values_of(statuses('solver: model'))['tolerance [m]'])
 
     observer.until(
         lambda: camera.publish(near) or tolerance() < 0.01, 'the tolerance of the camera'
@@ -67,7 +67,7 @@ def test_auto_starts_tuned_and_is_tuned_while_it_runs(compose, observer, statuse
     observer.until(
         lambda: len(frames) > n + 10 and statuses('solver: model') is not None, 'frames that go on'
     )
-    assert told(statuses('solver: model'))['restarted'] == '0'
+    assert values_of(statuses('solver: model'))['restarted'] == '0'
 
 
 @pytest.mark.parametrize('model', [0, 12, 'branch', 'full'])
@@ -91,7 +91,7 @@ def test_a_budget_is_reported_and_kept_where_it_can_be(compose, observer, status
     status = statuses('solver: model')
     assert status.level[0] == WARN
     assert 'no model is within the budget; allow' in status.message
-    values = told(status)
+    values = values_of(status)
     assert float(values['budget [us]']) == 0.5
     assert float(values['estimated cost [us]']) > 0.5
     assert values['chosen'] == '0'
@@ -107,7 +107,7 @@ def test_a_wind_outside_of_the_table_and_one_that_is_refused_are_counted(
 
     def said(name, count):
         status = statuses(name)
-        return -1 if status is None else int(told(status)[count])
+        return -1 if status is None else int(values_of(status)[count])
 
     def blow(w):
         now = stamp().nanoseconds
@@ -141,7 +141,7 @@ def test_a_camera_nowhere_is_refused_and_counted(compose, observer, statuses, tr
     wrong.pose.position.y = bad
     # Again and again: a sample of best effort is lost until the other side is matched as well.
     observer.until(lambda: camera.publish(wrong) or statuses('solver: camera') is not None, 'WARN')
-    assert int(told(statuses('solver: camera'))['refused']) > 0
+    assert int(values_of(statuses('solver: camera'))['refused']) > 0
     n = len(frames)
     observer.until(lambda: len(frames) > n + 10, 'frames that go on')
     assert nodes['solver'].simulator.tolerance == 0.005

@@ -63,7 +63,7 @@ def poses_of(compose, observer, wind_file, tree_file, rate):
     frames = observer.listen(SEGMENT_POSES, depth=1000)
     simulated = {'use_sim_time': True}
     nodes = compose(
-        solver={'tree': tree_file, 'wind_delay': 1.0, **simulated},
+        solver={'tree': tree_file, 'wind_delay': 2.0, **simulated},
         wind=simulated,
         player={'file': wind_file, 'publish_clock': True, 'loop': False, 'rate': rate},
     )
@@ -98,7 +98,7 @@ def test_nothing_begins_before_a_subscriber_is_there_nor_does_the_clock(
     nodes = compose(player={'file': wind_file, 'publish_clock': True, 'rate': 20.0})
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     observer.node.create_subscription(Vector3Stamped, WIND.name, print, latched)  # hears nothing
-    observer.until(lambda: len(ticks) > 10, 'a clock that stands')
+    observer.until(lambda: len(ticks) > 10, 'a clock that stops')
     assert len({stamp_to_ns(tick.clock) for tick in ticks}) == 1
     assert nodes['player']._playback.progress()['samples'] == 0.0
     said = observer.listen(WIND)

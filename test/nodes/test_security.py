@@ -77,6 +77,7 @@ def test_every_topic_may_be_said_by_somebody():
     assert {topic.name for topic in TOPICS} - allowed == {
         'camera',
         '~/push',
+        '~/pull',
         '/tf',
         '/tf_static',
     }  # of others

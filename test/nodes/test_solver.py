@@ -79,11 +79,11 @@ def test_a_late_joiner_gets_the_structure_and_the_next_pose(compose, observer, t
     compose(solver={'tree': tree_file})
     described = observer.listen(TREE_DESCRIPTION)
     observer.until(lambda: described, 'the description')
-    told = json.loads(described[0].data)
+    description = json.loads(described[0].data)
     frames = observer.listen(SEGMENT_POSES)
     markers = observer.listen(MARKERS)
     observer.until(lambda: frames and markers, 'a frame')
-    assert len(frames[0].poses) == len(told['segments']['names']) == 7
+    assert len(frames[0].poses) == len(description['segments']['names']) == 7
     lines = sum(len(marker.points) for marker in markers[0].markers)
     assert lines == 2 * 7
 
@@ -228,8 +228,8 @@ def test_pause_holds_the_pose_and_reset_goes_to_rest(compose, observer, tree_fil
     assert observer.call(SetBool, 'solver/pause', SetBool.Request(data=True)).success
     n = len(frames) + 2
     observer.until(lambda: len(frames) > n + 10, 'frames while paused')
-    held = [block(frame) for frame in frames[n:]]
-    assert all((pose == held[0]).all() for pose in held)
+    last = [block(frame) for frame in frames[n:]]
+    assert all((pose == last[0]).all() for pose in last)
     assert observer.call(Trigger, 'solver/reset', Trigger.Request()).success
     observer.until(lambda: (block(frames[-1]) == rest).all(), 'rest')
     breeze.vector = None

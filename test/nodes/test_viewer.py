@@ -97,6 +97,51 @@ def test_a_page_without_solver_says_what_is_missing(compose):
     assert 'nothing offers' in asyncio.run(look())
 
 
+def test_a_drag_on_the_page_pulls_the_tree(compose, observer, statuses, tree_file):
+    nodes = compose(solver={'tree': tree_file, 'model': '20'}, viewer=QUIET)
+    url, solver, wrong = nodes['viewer'].server.url, nodes['solver'], {'segment': 99}
+
+    def is_pulled():
+        return np.linalg.norm(solver.simulator.push_load[:3]) > 1.0
+
+    async def drag():
+        async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream') as ws:
+            assert json.loads((await ws.receive()).data)['hello']['can_pull']
+            pull = {'segment': 2, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0}
+            end = time.monotonic() + DEADLINE
+            while not is_pulled():  # the solver may not have been found yet
+                assert time.monotonic() < end
+                await ws.send_json({'pull': pull})
+                await asyncio.sleep(0.05)
+            await ws.send_json({'pull': {**pull, 'stiffness': 0.0}})
+            while is_pulled():
+                await asyncio.sleep(0.01)
+            assert time.monotonic() < end
+            while statuses('solver: pull') is None:
+                await ws.send_json({'pull': {**pull, **wrong}})
+                await asyncio.sleep(0.05)
+
+    asyncio.run(drag())
+    assert 'no segment 99' in statuses('solver: pull').message
+    nodes.check()
+
+
+def test_who_may_set_nothing_may_not_pull(compose):
+    nodes = compose(viewer={**QUIET, 'control': False})
+    url = nodes['viewer'].server.url
+
+    async def look():
+        async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream') as ws:
+            assert not json.loads((await ws.receive()).data)['hello']['can_pull']
+            await ws.send_json({'pull': {'segment': 0, 'to': [0, 0, 0], 'stiffness': 1.0}})
+            while 'refused' not in (said := json.loads((await ws.receive()).data)):
+                pass
+            return said['refused']['reason']
+
+    assert 'can be pulled' in asyncio.run(look())
+    assert nodes['viewer'].server.n_refused == 1
+
+
 def basis_is_sought():
     return 'basis' in {thread.name for thread in threading.enumerate()}
 

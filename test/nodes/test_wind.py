@@ -11,7 +11,7 @@ pytestmark = pytest.mark.ros
 
 from geometry_msgs.msg import TransformStamped, Vector3Stamped  # noqa: E402, I100
 
-from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES  # noqa: E402
+from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway_ros.nodes import wind as wind_node  # noqa: E402
 from tree_sway_ros.nodes.wind import WindNode  # noqa: E402
 from tree_sway_ros.process.topics import (  # noqa: E402
@@ -79,8 +79,8 @@ def test_a_westerly_bends_the_tree_to_the_east(
     assert abs(frames[-1].poses[2].position.y) < 1e-4
 
 
-@pytest.mark.parametrize('tree', BUILTIN_TREES)
-def test_a_westerly_bends_every_tree_to_the_east(compose, observer, tree):
+def test_a_westerly_bends_a_tree_of_the_package_to_the_east(compose, observer):
+    tree = 'goldcrest'
     compose(solver={'tree': tree}, wind={}, anemometer={'intensity': 0.0})
     frames = observer.listen(SEGMENT_POSES)
     start = builtin_tree(tree).start

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import time
 from typing import Any
@@ -18,17 +19,16 @@ from tree_sway.core.scene.shard import dealt
 from tree_sway.core.simulator.live_tuning import LIVE
 from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
-from tree_sway.files.set_up_files import SetUpFiles
 from tree_sway.files.trees.source import open_scene
+from tree_sway.page.controls import ControlPanel
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import CAMERA, PUSH, WIND_FILTERED
+from tree_sway_ros.process.topics import CAMERA, PULL, PUSH, WIND_FILTERED
 from tree_sway_ros.reports.diagnostics import Status, WARN
 from tree_sway_ros.reports.sway_report import SwayReport
 from tree_sway_ros.timing.pacer import Tick
@@ -89,9 +89,7 @@ class SolverNode(TreeSwayNode):
             damping_ratio=self.values['damping_ratio'] or None,
             profile=WindProfile(self.values['profile'], self.values['anemometer_height']),
         )
-        self.simulator: Simulator = source.simulator(
-            settings, cache=SetUpFiles(), **self.values('tolerance')
-        )
+        self.simulator: Simulator = source.simulator(settings, **self.values('tolerance'))
         if self.values['stiffness_factor'] != 1.0:
             self.simulator.tune(**self.values('stiffness_factor'))
         self._camera: Any = None
@@ -113,10 +111,11 @@ class SolverNode(TreeSwayNode):
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
         self.subscription(WIND_FILTERED, self._receive)
         self.subscription(CAMERA, self._see)
-        is_one = isinstance(self.simulator, SwaySimulator)
-        names = source.tree.segment_names if is_one else ()
+        names = source.tree.segment_names
         self._segments = {name: number for number, name in enumerate(names)}
+        self._hands = ControlPanel(pull=self._pull)
         self.subscription(PUSH, self._take_push)
+        self.subscription(PULL, self._take_pull)
         self.create_service(Trigger, '~/reset', self._reset)
         self.create_service(SetBool, '~/pause', self._pause)
         self.report_with(source.tree.name, self._statuses)
@@ -140,7 +139,7 @@ class SolverNode(TreeSwayNode):
         name, force = message.header.frame_id, message.wrench.force
         components = (force.x, force.y, force.z)
         if name not in self._segments:
-            self._refuse('push', f"no segment '{name}'; tree_description names those of one tree")
+            self._refuse('push', f"no segment '{name}'; tree_description names all")
         elif not math.hypot(*components) <= _STRONGEST_PUSH:  # NaN is not, either
             self._refuse('push', f'not finite or above {_STRONGEST_PUSH:g} N')
         else:
@@ -149,11 +148,21 @@ class SolverNode(TreeSwayNode):
     def _push(self, segment: int, components: tuple[float, float, float]) -> None:
         """Push at the origin of a segment's frame, by a force [N] in its axes."""
         axes = Rotation.from_quat(self.simulator.place()[segment, 3:])
-        tree = self.simulator.simulators[0]
         try:
-            tree.push(segment, axes.apply(components), _PUSH_LASTS, along=0.0)
+            self.simulator.push(segment, axes.apply(components), _PUSH_LASTS, along=0.0)
         except ParameterError as error:
             self._refuse('push', str(error))
+
+    def _take_pull(self, message: Any) -> None:
+        try:
+            why = self._hands.pull(json.loads(message.data))
+        except (ValueError, RecursionError) as error:
+            why = f'not JSON ({error})'
+        if why is not None:
+            self._refuse('pull', why)
+
+    def _pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
+        self._run.pull(segment, to, stiffness, lambda why: self._refuse('pull', why))
 
     def _refuse(self, what: str, why: str) -> None:
         """Count what is refused, for the report."""

@@ -10,6 +10,7 @@ from typing import Any
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
+from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.errors import FormatError, ParameterError
@@ -18,7 +19,7 @@ from tree_sway.page.protocol import decode_description, Description, encode_stat
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import TREE_DESCRIPTION, TREE_STATE
+from tree_sway_ros.process.topics import PULL, qos_profile, TREE_DESCRIPTION, TREE_STATE
 from tree_sway_ros.reports.diagnostics import OK, Status
 from tree_sway_ros.wire.tree_state import read_state, read_state_entry
 from tree_sway_ros.wire.wind_messages import stamp_to_ns
@@ -42,7 +43,9 @@ class ViewerNode(TreeSwayNode):
             **self.values('max_clients'),
             origins=tuple(self.values['origins'].split()),
         )
-        self._panel = ControlPanel(_controls(), self._apply) if self.values['control'] else None
+        controls = _controls(), self._apply, self._pull
+        self._panel = ControlPanel(*controls) if self.values['control'] else None
+        self._pulls = self.create_publisher(String, 'solver/pull', qos_profile(PULL))
         self._description: Description | None = None
         self._described = ''
         self._sequence = 0
@@ -115,6 +118,16 @@ class ViewerNode(TreeSwayNode):
             number = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value))
             request = SetParameters.Request(parameters=[ParameterMessage(name=name, value=number)])
             self._ask(self._setters[_LIVE[name][0]], request)
+
+    def _pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
+        """Pass a viewer's pull on to the solver."""
+        kinds = self._description.header['kinds'] if self._description else ()
+        if any(kind['model'] == 'branch' for kind in kinds):
+            raise ParameterError("model 'branch' cannot be pulled", where='pull')
+        if self._pulls.get_subscription_count() == 0:
+            raise ParameterError('nothing offers solver/pull', cure='start the solver')
+        pull = {'segment': segment, 'to': to, 'stiffness': stiffness}
+        self._pulls.publish(String(data=json.dumps(pull)))
 
     def _ask(self, client: Any, request: Any) -> None:
         if not client.service_is_ready():

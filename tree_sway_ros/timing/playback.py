@@ -140,7 +140,7 @@ class Playback(Worker):
             heard = None
             while heard is None or time.monotonic() < heard + _SETTLING:
                 if self.has_clock:
-                    self.publish(-1, self.begin)  # time stands, for all who come
+                    self.publish(-1, self.begin)  # time stops, for all who come
                 if heard is None and self.may_start():
                     heard = time.monotonic()
                 if self._stopping.wait(_POLL):

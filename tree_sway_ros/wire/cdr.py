@@ -23,7 +23,8 @@ from numpy.typing import NDArray
 from tree_sway.errors import TransportError
 
 _LITTLE_ENDIAN = 1
-# Patterns that no other field of a message holds: a stamp's second and a number's value.
+# Patterns that no other field of a message holds: both numbers of a stamp, and a number's value.
+# They are longer than the gaps between fields, where the serialiser leaves what was there before.
 _STAMP = 0x5EC0_0000
 _NUMBER = struct.unpack('<d', bytes.fromhex('0000c3d2e1f05a41'))[0]
 
@@ -75,7 +76,7 @@ class CdrTemplate:
         self._buffer = backing[self._shift : self._shift + self._size]
         self._buffer[:] = np.frombuffer(data, dtype=np.uint8)
         self._stamps = [
-            self._view(_find(data, struct.pack('<i', _STAMP + i)), np.int32, (2,))
+            self._view(_find(data, 2 * struct.pack('<i', _STAMP + i)), np.int32, (2,))
             for i in range(n_stamps)
         ]
         self.blocks: list[NDArray[np.float64]] = [
@@ -100,7 +101,7 @@ class CdrTemplate:
 
 def mark_stamp(stamp: Any, number: int = 0) -> None:
     """Mark a ``builtin_interfaces/Time`` as the stamp of that number."""
-    stamp.sec = _STAMP + number
+    stamp.sec = stamp.nanosec = _STAMP + number
 
 
 def stamp_of(data: bytes) -> int:

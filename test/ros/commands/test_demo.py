@@ -160,5 +160,5 @@ def test_the_player_learns_how_to_read_a_bag_and_where_to_begin() -> None:
     demo.add_arguments(parser)
     words = 'goldcrest --wind bag --wind-option topic=/mast/wind --wind-option yaw=1.57 --start 30'
     player = demo._nodes(parser.parse_args(words.split()), 'goldcrest')['player']
-    told = {'file': 'bag', 'reader_options': 'topic=/mast/wind yaw=1.57', 'start': 30.0}
-    assert player == told
+    parameters = {'file': 'bag', 'reader_options': 'topic=/mast/wind yaw=1.57', 'start': 30.0}
+    assert player == parameters

@@ -81,11 +81,11 @@ def test_a_bad_start_is_refused(declare, overrides, message):
 
 
 def test_a_live_change_is_taken_and_reported(declare):
-    told = []
-    node, values = declare(told.append)
+    reports = []
+    node, values = declare(reports.append)
     assert change(node, 'delay', 1).successful
     assert values['delay'] == 1.0
-    assert told == [{'delay': 1.0}]
+    assert reports == [{'delay': 1.0}]
 
 
 @pytest.mark.parametrize(
@@ -101,8 +101,8 @@ def test_a_live_change_is_taken_and_reported(declare):
     ],
 )
 def test_a_bad_change_is_refused_with_the_reason(declare, name, value, reason):
-    told = []
-    node, values = declare(told.append)
+    reports = []
+    node, values = declare(reports.append)
     before = values[name]
     result = change(node, name, value)
     assert not result.successful
@@ -110,7 +110,7 @@ def test_a_bad_change_is_refused_with_the_reason(declare, name, value, reason):
     assert values[name] == before
     shown = node.get_parameter(name).value
     assert (tuple(shown) if isinstance(before, tuple) else shown) == before
-    assert told == []
+    assert reports == []
 
 
 @pytest.mark.parametrize(

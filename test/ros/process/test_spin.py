@@ -178,10 +178,10 @@ print(ctypes.c_size_t.from_address(libc.malloc(4 << 20) - 8).value & 2)
 @pytest.mark.skipif(platform.libc_ver()[0] != 'glibc', reason='of glibc alone')
 @pytest.mark.parametrize(('before', 'bit'), [('nothing', 0), ('init', 2)])
 def test_large_blocks_go_back_to_the_system_after_larger_ones(before, bit):
-    told = subprocess.run(
+    result = subprocess.run(
         [sys.executable, '-c', FREED, before], capture_output=True, text=True, check=True
     )
-    assert int(told.stdout) == bit
+    assert int(result.stdout) == bit
 
 
 def test_no_ros_is_one_line(monkeypatch, capsys):
@@ -244,6 +244,6 @@ def test_a_domain_that_cannot_be_joined_is_named(monkeypatch):
 def test_a_bad_namespace_is_one_line(error):
     with pytest.raises(
         TransportError, match=r"namespace 'a b': .*names have letters, digits and _"
-    ) as told:
+    ) as failure:
         spin.create(lambda **_: raises(error)(), namespace='a b')
-    assert len(str(told.value).splitlines()) == 1
+    assert len(str(failure.value).splitlines()) == 1

@@ -116,24 +116,24 @@ def test_a_frozen_sensor_is_named(clock):
     assert (status.level, status.message[:6]) == (WARN, 'frozen')
 
 
-def pace(skipped, silence=0.0):
+def timing_of(skipped, silence=0.0):
     return Timing(60.0, 1e-4, 2e-3, 5e-3, 1e-3, 600, skipped, 0, 0, silence)
 
 
 def test_frames_that_are_skipped_are_a_warning_until_it_keeps_up():
     report = SwayReport()
-    assert report._output(pace(0), 60.0, 60, False).level == OK
-    late = report._output(pace(30), 60.0, 90, False)
+    assert report._output(timing_of(0), 60.0, 60, False).level == OK
+    late = report._output(timing_of(30), 60.0, 90, False)
     assert late.level == WARN
     assert '30 frames skipped, 2.0 ms late' in late.message
-    assert report._output(pace(30), 60.0, 150, False).level == OK
+    assert report._output(timing_of(30), 60.0, 150, False).level == OK
 
 
 def test_a_stream_that_stops_is_a_warning_unless_simulated_time_does():
     report = SwayReport()
-    standing = report._output(pace(0, silence=5.0), 60.0, 60, False)
+    standing = report._output(timing_of(0, silence=5.0), 60.0, 60, False)
     assert (standing.level, standing.message) == (WARN, 'no frame for 5.0 s')
-    assert report._output(pace(0, silence=5.0), 60.0, 60, True).level == OK
+    assert report._output(timing_of(0, silence=5.0), 60.0, 60, True).level == OK
 
 
 @pytest.mark.parametrize(

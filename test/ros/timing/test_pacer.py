@@ -72,15 +72,15 @@ def test_wall_time_ticks_on_the_grid_at_the_rate(ticks):
     paced.pacer.start()
     paced.wait(100)
     paced.pacer.stop()
-    pace = paced.pacer.timing()
+    timing = paced.pacer.timing()
     times = np.array([tick.time for tick in paced.seen])
     periods = np.array([tick.periods for tick in paced.seen])
     assert (times % paced.pacer.period == 0).all()
     # Whatever the load: time is counted from the clock, so no period is lost or made up.
     np.testing.assert_array_equal(np.diff(times), periods[1:] * paced.pacer.period)
-    assert pace.ticks >= 100
-    assert pace.skipped == (periods - 1).sum()
-    assert pace.rate * periods[1:].mean() == pytest.approx(200.0, rel=0.25)
+    assert timing.ticks >= 100
+    assert timing.skipped == (periods - 1).sum()
+    assert timing.rate * periods[1:].mean() == pytest.approx(200.0, rel=0.25)
 
 
 def test_simulated_time_is_followed(ticks):
@@ -140,9 +140,9 @@ def test_work_that_takes_too_long_skips_frames_without_a_backlog(ticks):
     late = [tick.periods for tick in paced.seen[1:]]
     assert min(late) >= 2
     assert max(late) <= LONGEST_STEP / paced.pacer.period
-    pace = paced.pacer.timing()
-    assert pace.skipped > 0
-    assert pace.late_p50 < 0.01  # of the newest period: nothing queues up
+    timing = paced.pacer.timing()
+    assert timing.skipped > 0
+    assert timing.late_p50 < 0.01  # of the newest period: nothing queues up
 
 
 def test_one_tick_that_fails_is_reported_and_the_next_comes(ticks):

@@ -10,10 +10,11 @@ from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion  # noqa: E402, 
 from hypothesis import given, settings  # noqa: E402
 from hypothesis import strategies as st  # noqa: E402
 from rclpy.serialization import deserialize_message  # noqa: E402
+from sensor_msgs.msg import PointCloud2  # noqa: E402
 from std_msgs.msg import String  # noqa: E402
 
 from tree_sway.errors import TransportError  # noqa: E402
-from tree_sway_ros.wire.cdr import CdrTemplate, pose_array_template  # noqa: E402
+from tree_sway_ros.wire.cdr import CdrTemplate, mark_stamp, pose_array_template  # noqa: E402
 
 FRAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=12)
 
@@ -63,6 +64,15 @@ def test_a_new_template_is_all_zero():
 def test_a_mark_that_is_not_there_is_an_error():
     with pytest.raises(TransportError, match='not laid out'):
         CdrTemplate(String(data='no stamp'), 1, [])
+
+
+def test_what_an_earlier_message_left_between_fields_is_no_mark():
+    message = PointCloud2()
+    mark_stamp(message.header.stamp)
+    message.height = message.header.stamp.sec
+    found = deserialize_message(CdrTemplate(message, 1, []).to_bytes(7_000_000_005), PointCloud2)
+    assert (found.header.stamp.sec, found.header.stamp.nanosec) == (7, 5)
+    assert found.height == message.height
 
 
 def test_a_mark_that_is_there_twice_is_an_error():

@@ -28,31 +28,31 @@ def test_it_fits_its_schema():
 
 
 def test_leaves_are_part_of_it():
-    told = describe(TREE, 'map', leaf_clusters(TREE, np.random.default_rng(0), count=12))
-    SCHEMA.validate(json.loads(told))
-    assert len(json.loads(told)['leaves']['segment']) == 12
+    description = describe(TREE, 'map', leaf_clusters(TREE, np.random.default_rng(0), count=12))
+    SCHEMA.validate(json.loads(description))
+    assert len(json.loads(description)['leaves']['segment']) == 12
 
 
 def test_every_tree_of_several_begins_with_a_segment_without_a_parent():
     trees = [PlacedTree('a', TREE), PlacedTree('b', TREE, x=3.0)]
-    told = json.loads(describe(joined([each.placed() for each in trees]), 'map'))
-    SCHEMA.validate(told)
-    parents, names = told['segments']['parents'], told['segments']['names']
+    description = json.loads(describe(joined([each.placed() for each in trees]), 'map'))
+    SCHEMA.validate(description)
+    parents, names = description['segments']['parents'], description['segments']['names']
     roots = [name for name, parent in zip(names, parents, strict=True) if parent < 0]
     assert [name.split('/')[0] for name in roots] == ['a', 'b']
     assert len(set(names)) == 2 * TREE.n_segments
 
 
 def test_it_says_what_the_tree_says():
-    told = json.loads(describe(TREE, 'odom'))
-    assert (told['version'], told['frame_id']) == (VERSION, 'odom')
-    segments = told['segments']
+    description = json.loads(describe(TREE, 'odom'))
+    assert (description['version'], description['frame_id']) == (VERSION, 'odom')
+    segments = description['segments']
     assert segments['names'] == list(TREE.segment_names)
     assert segments['parents'] == TREE.segment_parent.tolist()
     assert segments['branches'] == TREE.branch_of_segment.tolist()
     np.testing.assert_allclose(segments['lengths'], TREE.length)
     np.testing.assert_allclose(segments['base_radii'], TREE.base_diameter / 2)
-    assert told['branches']['first_segments'] == TREE.branch_first[:-1].tolist()
+    assert description['branches']['first_segments'] == TREE.branch_first[:-1].tolist()
     assert all(len(column) == TREE.n_segments for column in segments.values())
 
 
