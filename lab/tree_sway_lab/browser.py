@@ -29,24 +29,13 @@ def chromium() -> str | None:
     return shutil.which('chromium') or shutil.which('chromium-browser')
 
 
-class Browser:
-    """One page in a browser of its own."""
+class Chromium:
+    """A browser without a page, its address, and its end."""
 
     def __init__(self) -> None:
         self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         command = [str(chromium()), *_FLAGS, f'--user-data-dir={self._folder.name}', 'about:blank']
         self._process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-        self._number = 0
-        self._target = ''
-        self.console: list[str] = []
-        self.requests: list[str] = []
-
-    @property
-    def process(self) -> int:
-        """Number of its process."""
-        return self._process.pid
-
-    async def __aenter__(self) -> Browser:
         assert self._process.stderr is not None
         for line in self._process.stderr:
             found = re.search(r'DevTools listening on (ws://\S+)', line)
@@ -54,14 +43,52 @@ class Browser:
                 break
         else:
             raise AssertionError('Chromium did not start')
+        self.address = found[1]
+
+    @property
+    def process(self) -> int:
+        """Number of its process."""
+        return self._process.pid
+
+    def close(self) -> None:
+        """End it, and remove what it wrote."""
+        self._process.kill()
+        self._process.wait()
+        assert self._process.stderr is not None
+        self._process.stderr.close()
+        self._folder.cleanup()
+
+
+class Browser:
+    """One page, with storage and cache of its own, in a given browser or one of its own."""
+
+    def __init__(self, shared: Chromium | None = None) -> None:
+        self._own = None if shared else Chromium()
+        self._chromium = shared or self._own
+        self._number = 0
+        self._target = ''
+        self.console: list[str] = []
+        self.messages: list[str] = []
+        self.requests: list[str] = []
+
+    @property
+    def process(self) -> int:
+        """Number of its process."""
+        assert self._chromium is not None
+        return self._chromium.process
+
+    async def __aenter__(self) -> Browser:
         import aiohttp
 
+        assert self._chromium is not None
         self._session = aiohttp.ClientSession()
-        self._ws = await self._session.ws_connect(found[1], max_msg_size=0)
-        created = await self.call('Target.createTarget', url='about:blank')
+        self._ws = await self._session.ws_connect(self._chromium.address, max_msg_size=0)
+        # It ends with the line, and its pages with it.
+        context = await self.call('Target.createBrowserContext', disposeOnDetach=True)
+        created = await self.call('Target.createTarget', url='about:blank', **context)
         answer = await self.call('Target.attachToTarget', flatten=True, **created)
         self._target = answer['sessionId']
-        for domain in ('Page', 'Runtime', 'Network'):
+        for domain in ('Page', 'Runtime', 'Network', 'Log'):
             await self.call(f'{domain}.enable')
         return self
 
@@ -73,11 +100,8 @@ class Browser:
     ) -> None:
         await self._ws.close()
         await self._session.close()
-        self._process.kill()
-        self._process.wait()
-        assert self._process.stderr is not None
-        self._process.stderr.close()
-        self._folder.cleanup()
+        if self._own is not None:
+            self._own.close()
 
     async def call(self, method: str, **parameters: Any) -> Any:
         """Call a method of the protocol."""
@@ -94,12 +118,14 @@ class Browser:
             self._note(answer)
 
     def _note(self, message: dict[str, Any]) -> None:
-        """Keep what went wrong on the page, and every address that it asked for."""
+        """Keep what went wrong on the page, what it said, and every address that it asked for."""
         method, details = message.get('method'), message.get('params', {})
         if method == 'Runtime.exceptionThrown':
             self.console.append(json.dumps(details['exceptionDetails'])[:600])
         elif method == 'Network.requestWillBeSent':
             self.requests.append(details['request']['url'])
+        elif method in ('Runtime.consoleAPICalled', 'Log.entryAdded'):
+            self.messages.append(json.dumps(details)[:600])
 
     async def open(  # noqa: A003
         self, url: str, width: int = 1280, height: int = 800, dark: bool = False

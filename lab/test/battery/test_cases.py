@@ -9,7 +9,7 @@ import pytest
 from tree_sway_lab.battery.report import CASES, load_case
 from tree_sway_lab.methods.registry import method_named
 
-LONG = ('T1', 'T2', 'T3', 'T4', 'T6', 'T18')
+LONG = ('T1', 'T2', 'T3', 'T4', 'T5', 'T6', 'T7', 'T18')
 
 
 @pytest.mark.parametrize(

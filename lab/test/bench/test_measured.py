@@ -60,7 +60,7 @@ def test_the_stamp_of_a_message_is_read_from_its_bytes():
 
 
 @pytest.mark.parametrize(
-    ('arguments', 'told'),
+    ('arguments', 'message'),
     [
         (['stand', '--size', '0'], '--size: 0'),
         (['stream', '--seconds', 'nan'], '--seconds: nan'),
@@ -69,9 +69,9 @@ def test_the_stamp_of_a_message_is_read_from_its_bytes():
         (['sizes', '--baseline', 'nowhere.json'], 'nowhere.json'),
     ],
 )
-def test_bad_arguments_are_refused(capsys, arguments, told):
+def test_bad_arguments_are_refused(capsys, arguments, message):
     assert cli.main(['lab', 'bench', *arguments]) == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_figures_are_reported_as_json_and_drawn(tmp_path, monkeypatch, capsys):
@@ -81,6 +81,6 @@ def test_figures_are_reported_as_json_and_drawn(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(command._FIGURES, 'stand', lambda arguments: ROWS)
     chart = tmp_path / 'chart.png'
     assert cli.main(['lab', 'bench', 'stand', '--json', '--chart', str(chart)]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert [row['value'] for row in told['measured']] == [2.0, 3.0, 0.0]
+    printed = json.loads(capsys.readouterr().out)
+    assert [row['value'] for row in printed['measured']] == [2.0, 3.0, 0.0]
     assert chart.stat().st_size > 1000

@@ -30,6 +30,7 @@ def test_a_picture_is_of_the_figures_beside_it(name: str) -> None:
         assert picture.text['Description'] == digest_of(PICTURES / f'{name}.csv'), CURE
 
 
+@pytest.mark.long
 def test_the_errors_of_the_models_are_those_of_the_code() -> None:
     models = ('20', 'full', 'branch')
     figures = {
@@ -47,9 +48,9 @@ def test_the_errors_of_the_models_are_those_of_the_code() -> None:
 def test_the_errors_and_operations_of_the_methods_are_those_of_the_code() -> None:
     names = ('exact_foh', 'exact_zoh', 'semi_implicit_euler')
     found = {(p.method, p.system, p.wind): p for p in measure(rates=(60,), methods=names)}
-    told = [row for row in rows('methods') if row['method'] in names and row['rate'] == '60']
-    assert {row['method'] for row in told} == set(names)
-    for row in told:
+    recorded = [row for row in rows('methods') if row['method'] in names and row['rate'] == '60']
+    assert {row['method'] for row in recorded} == set(names)
+    for row in recorded:
         point = found[row['method'], row['system'], row['wind']]
         error = np.nan if row['error'] == 'gone' else float(row['error'])
         assert point.error == pytest.approx(error, rel=0.01, nan_ok=True), CURE

@@ -28,9 +28,12 @@ def rows() -> dict[str, dict[str, str]]:
 
 
 def test_every_picture_is_the_one_that_was_drawn_with_this_code() -> None:
-    told = rows()
-    assert set(told) == {*(f'{name}_in_wind.png' for name in PORTRAITS), 'benjamina_sways.gif'}
-    for name, row in told.items():
+    portraits = rows()
+    assert set(portraits) == {
+        *(f'{name}_in_wind.png' for name in PORTRAITS),
+        'benjamina_sways.gif',
+    }
+    for name, row in portraits.items():
         assert digest_of_file(PICTURES / name) == row['file'], CURE
         assert drawing_digest() == row['drawing'], CURE
 
@@ -45,8 +48,8 @@ def test_its_trees_stand_and_sway_as_they_do_now(
     now = film_figures() if name == 'film' else figures(settled(name)[1])
     assert str(now['segments']) == row['segments'], CURE
     for what in ('height', 'tip_east', 'tip_up'):
-        told = float(row[what])
-        assert float(now[what]) == pytest.approx(told, rel=0.02, abs=0.002), CURE
+        recorded = float(row[what])
+        assert float(now[what]) == pytest.approx(recorded, rel=0.02, abs=0.002), CURE
 
 
 def test_a_comment_is_no_change_of_the_drawing(tmp_path: Path) -> None:

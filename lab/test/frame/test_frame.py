@@ -106,13 +106,13 @@ def test_branch_off_its_node_rides_on_a_rigid_offset():
     loose = tree_from_segments(
         [stem[0], child[0]], [stem[1], child[1]], [0.1, 0.05], parent=[-1, 0]
     )
-    held = tree_from_segments(
+    with_bracket = tree_from_segments(
         [stem[0], bracket[0], child[0]], [stem[1], bracket[1], child[1]], [0.1, 0.5, 0.05],
         parent=[-1, 0, 1],
     )  # fmt: skip
     push = np.array([[0.0, 0, 0], [0.0, 1.0, 0.3]])
     moved = frame_model(loose, E, RHO).static(push)[-1]
-    same = frame_model(held, E, RHO).static(np.insert(push, 1, 0.0, axis=0))[-1]
+    same = frame_model(with_bracket, E, RHO).static(np.insert(push, 1, 0.0, axis=0))[-1]
     assert moved == pytest.approx(same, rel=2e-3, abs=1e-9)
 
 

@@ -33,8 +33,8 @@ def test_blocks_step_as_the_bank_does(n, kind, slack):
     blocks = BranchBlocks(rows, guard, kind)
     blocks.state, blocks.load = state, load
     for _ in range(3):
-        held = step_bank(state, load, rows, guard)
-        assert blocks.step() == held
+        clamped = step_bank(state, load, rows, guard)
+        assert blocks.step() == clamped
     assert blocks.state == pytest.approx(state, rel=slack, abs=slack * 50)
     assert blocks.load == pytest.approx(load, rel=1e-6)
 

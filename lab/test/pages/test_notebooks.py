@@ -36,7 +36,7 @@ def doubled(number):
     return 2 * number
 
 
-#: Told below.
+#: Described below.
 FOUND = []
 
 

@@ -154,13 +154,13 @@ def energy(model, bodies):
         w, v = model.state.turn[i, 0], model.state.turn[i, 1:]
         cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
         own = np.eye(3) + 2 * w * cross + 2 * cross @ cross
-        held = carrier >= 0
-        base = rotation[carrier] if held else np.eye(3)
+        has_carrier = carrier >= 0
+        base = rotation[carrier] if has_carrier else np.eye(3)
         arm = base @ bodies.arm[i]
         rotation[i] = base @ own
-        spin[i] = (spin[carrier] if held else 0) + rotation[i] @ model.state.rate[i]
-        speed[i] = speed[carrier] + np.cross(spin[carrier], arm) if held else 0.0
-        place[i] = (place[carrier] if held else 0) + arm
+        spin[i] = (spin[carrier] if has_carrier else 0) + rotation[i] @ model.state.rate[i]
+        speed[i] = speed[carrier] + np.cross(spin[carrier], arm) if has_carrier else 0.0
+        place[i] = (place[carrier] if has_carrier else 0) + arm
         r = rotation[i] @ bodies.centre[i]
         velocity = speed[i] + np.cross(spin[i], r)
         inertia = rotation[i] @ bodies.inertia[i] @ rotation[i].T

@@ -32,7 +32,7 @@ class Method(ABC):
 
     The class attributes are the declaration: `name`; `form`, "minimal" (angles) or "multiplier"
     (the paper's coordinates); `order`, the one that a test measures; `nodes`, fractions of the
-    step at which it wants the load; `limit`, the largest w h [-] it stands without damping,
+    step at which it wants the load; `limit`, the largest w h [-] that is stable without damping,
     infinite where it has no limit; `notes` and `source` on its stability.
 
     """

@@ -19,7 +19,7 @@ CHAIN = uniform_chain(2, 1.0, 0.0)
 MASS = CHAIN.table[:, [0, 0, 1]].ravel()
 THETA, OMEGA = np.array([0.4, 0.9]), np.array([1.0, -3.0])
 LOAD = np.array([[1.0, 2.0], [-0.5, 1.0]])
-HELD = (
+CLAMPED = (
     'projection',
     'rattle',
     'radau_ggl',
@@ -40,7 +40,7 @@ def speed_gap(state):
     return np.abs(form.jacobian(CHAIN.table, state[0]) @ state[1]).max()
 
 
-@pytest.mark.parametrize('name', HELD)
+@pytest.mark.parametrize('name', CLAMPED)
 def test_positions_stay_on_the_constraint_to_rounding(name):
     method = method_named(name)
     assert method.gap(CHAIN, run(method, 5.0)) < 1e-12

@@ -28,7 +28,7 @@ class Frequencies(NamedTuple):
     model, frame
         First frequency in [Hz] by the model and by the beam frame.
     has_weight
-        Whether it stands under its weight; else frequencies are without.
+        Whether it is stable under its weight; else frequencies leave it out.
 
     """
 
@@ -60,7 +60,7 @@ def measure(effort: Effort) -> Section:
         'weight and twist. A tree that buckles under its weight is compared without it, outside '
         'of the limit.'
     )
-    head = ['file', 'branches', 'segments', 'stands', 'f1 of the frame [Hz]', 'error']
+    head = ['file', 'branches', 'segments', 'stable', 'f1 of the frame [Hz]', 'error']
     return Section('First frequencies of scanned trees', text, checks, markdown_table(head, rows))
 
 
