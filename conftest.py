@@ -1,9 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""For all tests: Hypothesis that repeats, a thread and a ROS domain each, limits, small trees."""
+"""For all tests: Hypothesis that repeats, kernels made once, a ROS domain each, small trees."""
 
 import contextlib
 import functools
+import hashlib
 import os
 from pathlib import Path
 import random
@@ -23,7 +24,7 @@ from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
 from tree_sway.core.simulator.simulator import SwaySimulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
 from tree_sway.errors import MissingDependencyError  # noqa: E402
-from tree_sway.files.set_up_files import SetUpFiles  # noqa: E402
+from tree_sway.set_up_files import SetUpFiles  # noqa: E402
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)
@@ -76,6 +77,57 @@ def set_ups_are_made_once(tmp_path_factory):
     SwaySimulator.__init__ = make_from_cache
     yield
     SwaySimulator.__init__ = make
+
+
+@pytest.fixture(scope='session', autouse=True)
+def kernels_are_compiled_once(tmp_path_factory):
+    """
+    Compile what no other worker of the run compiles at this time, and untraced.
+
+    Coverage sees no kernel, and its tracer makes the compiler slower by two fifths.
+    """
+    if WHY_PLAIN:
+        yield
+        return
+    from numba.core.compiler_lock import global_compiler_lock
+    from numba.core.dispatcher import Dispatcher
+
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if 'PYTEST_XDIST_WORKER' in os.environ else base) / 'compiling'
+    folder.mkdir(exist_ok=True)
+    compile_kernel, mine = Dispatcher.compile, set()
+
+    @contextlib.contextmanager
+    def alone(kernel, signature):
+        key = getattr(kernel._cache, '_key', None)
+        place = key and folder / hashlib.sha256(f'{key}{signature}'.encode()).hexdigest()
+        if not place or place in mine or not sys.platform.startswith('linux'):
+            yield
+            return
+        import fcntl
+
+        # A kernel waits for those that it calls, and they for none that call it.
+        with place.open('w') as claimed:
+            fcntl.flock(claimed, fcntl.LOCK_EX)
+            mine.add(place)
+            try:
+                yield
+            finally:
+                mine.discard(place)
+
+    @functools.wraps(compile_kernel)
+    def compile_alone(self, signature):
+        tracer = sys.gettrace()
+        sys.settrace(None)
+        try:
+            with global_compiler_lock, alone(self, signature):
+                return compile_kernel(self, signature)
+        finally:
+            sys.settrace(tracer)
+
+    Dispatcher.compile = compile_alone
+    yield
+    Dispatcher.compile = compile_kernel
 
 
 @pytest.fixture(scope='session')

@@ -26,8 +26,9 @@ PACKAGES = {
 
 #: Layer of each room of the library; a room imports only from lower layers and from itself.
 LAYERS = {
-    'errors': 0, 'tables': 0, 'kernel_folder': 0, 'kernel_cache': 0.5, 'core': 1, 'files': 2,
-    'parameters': 2.5, 'page': 3, 'pictures': 3, 'studies': 5, 'commands': 4,
+    'errors': 0, 'tables': 0, 'kernel_folder': 0, 'kernel_cache': 0.5, 'set_up_files': 0.7,
+    'core': 1, 'files': 2, 'parameters': 2.5,
+    'page': 3, 'pictures': 3, 'studies': 5, 'commands': 4,
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {
@@ -233,7 +234,7 @@ def docstring_faults(source: str) -> Iterator[tuple[int, str]]:
             yield node.lineno, f'{name} has no docstring'
         elif '\n' in raw.strip():
             if raw.split('\n')[0].strip():
-                yield node.lineno, f'{name}: the summary stands on the second line'
+                yield node.lineno, f'{name}: the summary is on the second line'
             elif re.search(r'^ *---+$', raw, re.MULTILINE) and not raw.rstrip(' ').endswith(
                 '\n\n'
             ):

@@ -106,7 +106,7 @@ def test_a_machine_without_wheels(
         ('tree-sway plot', {'plot'}, {'ros'}),
         ('tree-sway lab compare', {'lab'}, {'plot', 'test'}),
         ('solver --ros-args', {'ros'}, {'plot'}),
-        ('pytest -n 2', {'ros', 'bag', 'plot', 'lab', 'test'}, {'lint'}),
+        ('pytest -n 4', {'ros', 'bag', 'plot', 'lab', 'test'}, {'lint'}),
         ('mypy', {'lint'}, {'ros', 'lab'}),
         (f'python {"x" * 300}', {'fast'}, {'ros'}),
     ],
@@ -227,9 +227,9 @@ def test_the_readme_has_the_command_that_the_checks_run() -> None:
 
 def test_every_ros_wheel_is_held_to_a_hash(script: ModuleType) -> None:
     pinned = script.CONSTRAINTS.read_text().split()
-    told = script.HASHES.read_text().replace('\\\n', '').splitlines()[1:]
-    held = {line.split()[0]: line.split()[1:] for line in told}
-    assert set(held) == set(pinned)
-    for hashes in held.values():
+    lines = script.HASHES.read_text().replace('\\\n', '').splitlines()[1:]
+    by_requirement = {line.split()[0]: line.split()[1:] for line in lines}
+    assert set(by_requirement) == set(pinned)
+    for hashes in by_requirement.values():
         assert hashes
         assert all(re.fullmatch('--hash=sha256:[0-9a-f]{64}', each) for each in hashes)

@@ -51,6 +51,7 @@ def compiled(copy, tmp_path_factory):
     return cache, *copy(cache)
 
 
+@pytest.mark.long
 def test_an_edited_callee_is_run_by_callers_in_other_files(copy, compiled):
     cache, before, _ = compiled
     assert copy(cache)[0] == before, 'compiled and cached runs give the same bits'

@@ -135,6 +135,7 @@ def copy_of_source(folder: Path) -> Path:
     return Path(shutil.copytree(ROOT, folder / 'source', ignore=ignored))
 
 
+@pytest.mark.long
 def test_a_wheel_brings_executables_to_where_ros2_run_looks(tmp_path: Path) -> None:
     source = copy_of_source(tmp_path)
     pip = [sys.executable, '-m', 'pip', '--disable-pip-version-check', 'wheel', '--no-deps']

@@ -16,6 +16,7 @@ import pytest
 import tree_sway
 
 SOURCE = Path(tree_sway.__file__)
+SEEDLING = Path(__file__).parent / 'files' / 'data' / 'seedling.yaml'
 
 
 def in_a_fresh_interpreter(program: str) -> str:
@@ -44,7 +45,7 @@ def test_about_twenty_names_and_no_other() -> None:
 
 
 def test_type_checkers_are_reported_the_same_names_from_the_same_modules() -> None:
-    told = {
+    exported = {
         alias.name: node.module
         for block in ast.parse(SOURCE.read_text(encoding='utf-8')).body
         if isinstance(block, ast.If)
@@ -53,7 +54,7 @@ def test_type_checkers_are_reported_the_same_names_from_the_same_modules() -> No
         for alias in node.names
     }
     homes = {name: f'tree_sway.{home}' for name, home in tree_sway._HOMES.items()}
-    assert told == homes
+    assert exported == homes
     assert {*homes, '__version__'} == set(tree_sway.__all__)
 
 
@@ -96,8 +97,7 @@ def test_one_default_model_behind_every_door() -> None:
     from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 
     default = tree_sway.Settings().model
-    file = tree_sway.open_tree('goldcrest')
-    tree = file.tree
+    tree = tree_sway.open_tree(SEEDLING).tree
     doors = (
         tree_sway.make_simulator(tree),
         SwaySimulator(tree),

@@ -44,13 +44,13 @@ def info(path: Path, capsys: pytest.CaptureFixture[str], *more: str) -> dict[str
     return facts
 
 
-def record(path: Path, sim: SwaySimulator, winds: np.ndarray, dt: float, held: int = 0) -> None:
-    """Sway of the tip as a file: what comes after `held` steps."""
+def record(path: Path, sim: SwaySimulator, winds: np.ndarray, dt: float, pulled: int = 0) -> None:
+    """Sway of the tip as a file: what comes after `pulled` steps."""
     rows = ['time [s],x [mm],y [mm]']
     for step, wind in enumerate(winds):
         sim.step(wind, dt)
         sim.place()
-        if step >= held:
+        if step >= pulled:
             x, y, _ = 1e3 * sim.tip_displacement
             rows.append(f'{step * dt:.3f},{x:.6g},{y:.6g}')
     path.write_text('\n'.join(rows) + '\n')
@@ -89,9 +89,9 @@ def test_a_pull_and_release_gives_the_tree_back(
     """A wind holds the tree aside and stops; the record leads from another guess to its wood."""
     truth = open_tree(tree)
     sim = SwaySimulator(truth.tree, truth.species, model=12)
-    held, free = round(15.0 / DT), round(20.0 / DT)
-    winds = np.repeat([[4.0, 1.5, 0.0], [0.0, 0.0, 0.0]], [held, free], axis=0)
-    record(tmp_path / 'pull.csv', sim, winds, DT, held=held - 150)
+    pulled, free = round(15.0 / DT), round(20.0 / DT)
+    winds = np.repeat([[4.0, 1.5, 0.0], [0.0, 0.0, 0.0]], [pulled, free], axis=0)
+    record(tmp_path / 'pull.csv', sim, winds, DT, pulled=pulled - 150)
     out = tmp_path / 'fitted.yaml'
     command = ['calibrate', str(tree), '--modulus', '2e10', '--record', str(tmp_path / 'pull.csv')]
     assert cli.main([*command, '-o', str(out)]) == 0

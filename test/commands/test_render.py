@@ -107,7 +107,7 @@ def test_a_film_that_cannot_be_is_refused_before_the_tree_is_opened(
 
 
 @pytest.mark.parametrize(
-    ('arguments', 'told'),
+    ('arguments', 'message'),
     [
         (['-o', 'a.jpg'], 'no moving picture'),
         (['-o', 'a.gif', '--rate', '0'], '--rate'),
@@ -116,7 +116,7 @@ def test_a_film_that_cannot_be_is_refused_before_the_tree_is_opened(
     ],
 )
 def test_what_cannot_be_rendered_is_refused(
-    arguments: list[str], told: str, capsys: pytest.CaptureFixture[str]
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(['render', SEEDLING, '--pixels', '64', *arguments]) == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err

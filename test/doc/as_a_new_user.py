@@ -52,9 +52,9 @@ def main() -> None:
         print(f'clone to a moving tree: {seen:.0f} s; {size(folder)} MB with its environment')
         print(f'second start to a moving tree: {look(folder, time.monotonic()):.1f} s')
         began = time.monotonic()
-        told = run(f'cd tree_sway_ros && {DEMO}')
+        output = run(f'cd tree_sway_ros && {DEMO}')
         print(f'demo, with what it installs: {time.monotonic() - began:.0f} s; {size(folder)} MB')
-        print(told.splitlines()[-1])
+        print(output.splitlines()[-1])
 
 
 @contextmanager
@@ -87,10 +87,10 @@ def debian(folder: str, suite: str) -> Iterator[object]:
 
         def run(line: str) -> str:
             process = start(folder, line)
-            told = process.communicate()[0]
+            output = process.communicate()[0]
             if process.returncode:
-                sys.exit(f'{line}\n{told}')
-            return str(told)
+                sys.exit(f'{line}\n{output}')
+            return str(output)
 
         yield run
     finally:
@@ -144,8 +144,8 @@ async def moving(url: str) -> float:
 def size(folder: str) -> int:
     """Megabytes of what the new user has."""
     home = f'{folder}/home/newcomer'
-    told = subprocess.run(['du', '-sm', home], capture_output=True, text=True, check=True).stdout
-    return int(told.split()[0])
+    output = subprocess.run(['du', '-sm', home], capture_output=True, text=True, check=True).stdout
+    return int(output.split()[0])
 
 
 if __name__ == '__main__':

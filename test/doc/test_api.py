@@ -20,10 +20,10 @@ ENTRIES = re.findall(r'^\.\. auto(\w+):: (\S+)$', PAGE, re.MULTILINE)
 
 
 def test_no_public_name_is_missing() -> None:
-    told = {entry for _, entry in ENTRIES}
+    documented = {entry for _, entry in ENTRIES}
     homes = tree_sway._HOMES
     wanted = {f'tree_sway.{homes[name]}.{name}' for name in homes if homes[name] != 'errors'}
-    assert wanted - told == set()
+    assert wanted - documented == set()
     assert ('module', 'tree_sway.errors') in ENTRIES
 
 

@@ -75,13 +75,13 @@ class Machine:
                 stdout=out, stderr=subprocess.STDOUT, start_new_session=True,
             )  # fmt: skip
         self.running.append((line, process, log))
-        told = threading.Event()
-        watch = threading.Timer(DEADLINE, told.set)
+        timed_out = threading.Event()
+        watch = threading.Timer(DEADLINE, timed_out.set)
         watch.start()
         try:
             while not re.search(pattern, text := log.read_text(encoding='utf-8')):
                 assert process.poll() in (None, 0), f'{line}\n{text}'
-                assert not told.wait(0.1), f"no '{pattern}' of {line}\n{text}"
+                assert not timed_out.wait(0.1), f"no '{pattern}' of {line}\n{text}"
         finally:
             watch.cancel()
 
@@ -128,10 +128,10 @@ def instrument() -> Iterator[str]:
     """Path of a serial port on which an anemometer speaks NMEA, ten times per second."""
     ours, theirs = pty.openpty()
     tty.setraw(theirs)
-    told = threading.Event()
+    stopped = threading.Event()
 
     def speak() -> None:
-        while not told.wait(0.1):
+        while not stopped.wait(0.1):
             text = 'WIMWV,270.0,T,6.0,M,A'
             check = 0
             for letter in text.encode():
@@ -141,7 +141,7 @@ def instrument() -> Iterator[str]:
     thread = threading.Thread(target=speak)
     thread.start()
     yield os.ttyname(theirs)
-    told.set()
+    stopped.set()
     thread.join()
     os.close(ours)
     os.close(theirs)
@@ -190,7 +190,7 @@ def test_its_commands_do_what_they_promise(
             ['bash', '-c', SHELL + made], cwd=machine.folder, env=machine.environment, check=True
         )
     if 'avenue.yaml' in text:
-        (stand,) = (each for _, each in blocks(page, 'python') if 'avenue.yaml").write' in each)
+        (stand,) = (each for _, each in blocks(page, 'python') if "avenue.yaml').write" in each)
         written = [sys.executable, '-c', stand]
         subprocess.run(written, cwd=machine.folder, env=machine.environment, check=True)
     if 'config/examples/grown_trees.yaml' in text:

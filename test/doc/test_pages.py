@@ -47,7 +47,10 @@ def blocks(page: Path, *languages: str) -> list[tuple[str, str]]:
     return [(language, text) for language, text in found if language in languages]
 
 
-LONG = ('first_trees', 'scan_to_numbers', 'stand', 'study', 'tree_as_a_file', 'trees')
+LONG = (
+    *('anemometer', 'blender_godot', 'calibration', 'first_trees', 'integrate', 'new_species'),
+    *('scan_to_numbers', 'stand', 'study', 'tree_as_a_file', 'trees'),
+)
 """Pages whose commands take longer; `.ci/run` runs them, too."""
 
 
@@ -72,7 +75,7 @@ def test_it_runs_as_written(
         if (ROOT / folder).is_dir():
             (tmp_path / folder).symlink_to(ROOT / folder)
     monkeypatch.chdir(tmp_path)
-    told = {'PYTHON': sys.executable}
+    environment = {'PYTHON': sys.executable}
     paths = os.pathsep.join([str(ROOT), os.environ.get('PYTHONPATH', '')])
     for language, text in blocks(page, 'sh', 'python'):
         if language == 'python':
@@ -80,10 +83,10 @@ def test_it_runs_as_written(
             assert capsys.readouterr().out
             continue
         if 'tree-sway demo' in text:
-            told |= request.getfixturevalue('ros_environment')
+            environment |= request.getfixturevalue('ros_environment')
         result = subprocess.run(
             ['bash', '-c', SHELL + text],
-            env=os.environ | told | {'PYTHONPATH': paths},
+            env=os.environ | environment | {'PYTHONPATH': paths},
             capture_output=True,
             text=True,
             timeout=DEADLINE,

@@ -14,29 +14,29 @@ import pytest
 
 timed = SimpleNamespace(**runpy.run_path(str(Path(__file__).with_name('time_tasks.py'))))
 TASKS = timed.tasks()
-QUICK = {1, 12}
-"""Those of some seconds; all others are for a day with time."""
 ON_ROS = {5, 10, 11}
 NEEDS = {6: 'aiohttp', 7: 'pyarrow', 11: 'serial', 13: 'imageio_ffmpeg', 14: 'matplotlib'}
 
 
-def each_task(quick: set[int]) -> pytest.MarkDecorator:
-    """Parametrise by task; those that are not quick are marked as long."""
-    marks = {n: [pytest.mark.long] * (n not in quick) for n in range(1, len(TASKS) + 1)}
-    for number in ON_ROS:
-        marks[number].append(pytest.mark.ros)
-    rows = [pytest.param(each, id=each.title, marks=marks[each.number]) for each in TASKS]
-    return pytest.mark.parametrize('task', rows)
+each_task = pytest.mark.parametrize(
+    'task',
+    [
+        pytest.param(each, id=each.title, marks=[pytest.mark.ros] * (each.number in ON_ROS))
+        for each in TASKS
+    ],
+)
 
 
-@each_task(QUICK)
+@pytest.mark.long
+@each_task
 def test_it_does_what_the_page_says(
     task: SimpleNamespace, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     look(task, tmp_path, request)
 
 
-@each_task(set())
+@pytest.mark.long
+@each_task
 def test_it_does_so_in_short(
     task: SimpleNamespace, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:

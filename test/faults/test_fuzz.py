@@ -64,11 +64,11 @@ def stamps(rng, times):
     """Seconds and nanoseconds of a block, (n, 2), and those that are said twice."""
     is_wrong = rng.random(BLOCK) < rng.choice((0.0, 0.0, 0.05, 0.4, 1.0))
     kind = np.where(is_wrong, rng.integers(1, 6, BLOCK), 0)
-    told = times - 1_000_000
+    stamps = times - 1_000_000
     for number, most in ((1, 50_000_000), (2, 600_000_000), (3, 10**11)):
         there = kind == number
-        told[there] += rng.integers(-most, most, there.sum())
-    fields = np.stack(np.divmod(told, 10**9), axis=1)
+        stamps[there] += rng.integers(-most, most, there.sum())
+    fields = np.stack(np.divmod(stamps, 10**9), axis=1)
     wild = kind == 4
     fields[wild] = rng.integers((-(2**31), 0), LAST, (wild.sum(), 2), endpoint=True)
     fields[wild & (rng.random(BLOCK) < 0.5)] = ((0, 0), (0, 1), (-(2**31), 0), LAST)[
@@ -102,11 +102,11 @@ class Sender:
         for _, header, _ in self._kinds[:3]:
             header.frame_id = FRAME_IDS[rng.integers(len(FRAME_IDS))]
         kinds = np.where(rng.random(BLOCK) < 0.9, 0, rng.integers(4, size=BLOCK)).tolist()
-        for kind, (x, y, z), told in zip(kinds, wind.tolist(), fields.tolist(), strict=True):
+        for kind, (x, y, z), stamp in zip(kinds, wind.tolist(), fields.tolist(), strict=True):
             message, header, vector = self._kinds[kind]
             vector.x, vector.y, vector.z = x, y, z
             if header is not None:
-                header.stamp.sec, header.stamp.nanosec = told
+                header.stamp.sec, header.stamp.nanosec = stamp
             yield message
 
 
@@ -150,10 +150,11 @@ def fuzz(wind, solver, n, seed):
 
 
 @pytest.fixture
-def nodes(compose):
+def nodes(compose, tree_file, request):
     """Make the wind node and the solver, configured; time is the test's."""
     pytest.importorskip('rclpy', reason='ROS 2 is not installed')
-    own = {'wind': {'frozen_after': 1.0}, 'solver': {'tree': 'benjamina'}}
+    tree = 'benjamina' if request.node.get_closest_marker('long') else tree_file
+    own = {'wind': {'frozen_after': 1.0}, 'solver': {'tree': tree}}
     made = compose(**{name: {**values, 'autostart': False} for name, values in own.items()})
     for node in made.nodes:
         node.configure()

@@ -90,5 +90,5 @@ def test_all_faults_one_after_another_leave_the_stream_whole(chain, faulty):
     first = faulty('all', fault_every=0.3, fault_duration=0.15)
     chain.until(lambda: len(chain.frames) > first + 240, 'four seconds of every fault')
     assert chain.largest_jump(first) < FASTEST
-    pace = chain.nodes['solver'].pacer.timing()
-    assert pace.clamped == pace.restarts == 0
+    timing = chain.nodes['solver'].pacer.timing()
+    assert timing.clamped == timing.restarts == 0

@@ -187,7 +187,7 @@ def fuzz(samples, folder: Path, n_examples: int) -> None:
 
 @pytest.mark.filterwarnings('ignore::RuntimeWarning', 'ignore::UserWarning')
 def test_some_damaged_files(samples, tmp_path):
-    fuzz(samples, tmp_path, 200)
+    fuzz(samples, tmp_path, 100)
 
 
 @pytest.mark.long

@@ -21,9 +21,9 @@ DEADLINE = 60.0
 
 
 def generate_test_description():
-    told = {'tree': LaunchConfiguration('tree')}
+    arguments = {'tree': LaunchConfiguration('tree')}
     sway = IncludeLaunchDescription(
-        PythonLaunchDescriptionSource(str(SWAY)), launch_arguments=told.items()
+        PythonLaunchDescriptionSource(str(SWAY)), launch_arguments=arguments.items()
     )
     tree = DeclareLaunchArgument('tree')
     return LaunchDescription([tree, sway, launch_testing.actions.ReadyToTest()])

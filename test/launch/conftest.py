@@ -30,9 +30,9 @@ from launch.actions import IncludeLaunchDescription
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 mode, path, *given = sys.argv[1:]
 source = PythonLaunchDescriptionSource(path)
-told = [word.split(":=", 1) for word in given]
+overrides = [word.split(":=", 1) for word in given]
 service = LaunchService(argv=given, noninteractive=mode == "service")
-action = IncludeLaunchDescription(source, launch_arguments=told)
+action = IncludeLaunchDescription(source, launch_arguments=overrides)
 service.include_launch_description(LaunchDescription([action]))
 raise SystemExit(service.run())
 """
@@ -45,12 +45,12 @@ exec {python} -c 'from tree_sway_ros.nodes.executables import {0} as f; raise Sy
 class Launched:
     """A launch that runs, and what it has said."""
 
-    def __init__(self, path, told, environment, mode):
+    def __init__(self, path, overrides, environment, mode):
         self.said = []
         self._is_over = False
         self._more = threading.Condition()
         self.process = subprocess.Popen(
-            [sys.executable, '-c', RUN, mode, str(path), *told],
+            [sys.executable, '-c', RUN, mode, str(path), *overrides],
             env=environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -138,8 +138,8 @@ def launched(environment):
     pytest.importorskip('launch_ros', reason='launch_ros is not installed')
     made, variables = [], environment
 
-    def start(path, mode='terminal', environment=None, **told):
-        words = [f'{name}:={value}' for name, value in told.items()]
+    def start(path, mode='terminal', environment=None, **overrides):
+        words = [f'{name}:={value}' for name, value in overrides.items()]
         whole = {**variables, **(environment or {})}
         made.append(Launched(ROOT / 'launch' / path, words, whole, mode))
         return made[-1]

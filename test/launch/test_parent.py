@@ -24,13 +24,13 @@ SHARED = """\
 
 
 def test_two_trees_stand_side_by_side_in_one_wind(launched, observer, tree_file, tmp_path):
-    told = tmp_path / 'shared.yaml'
-    told.write_text(SHARED)
+    parameters = tmp_path / 'shared.yaml'
+    parameters.write_text(SHARED)
     poses, winds, trees = (
         {name: observer.listen(topic, name=f'/{name}/{topic.name}') for name in ('elm', 'oak')}
         for topic in (SEGMENT_POSES, WIND_FILTERED, TREE_DESCRIPTION)
     )
-    run = launched(PARENT, tree=tree_file, told=told)
+    run = launched(PARENT, tree=tree_file, parameters=parameters)
     observer.until(
         lambda: (
             run.process.poll() is not None

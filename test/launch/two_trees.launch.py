@@ -18,13 +18,16 @@ def generate_launch_description():
     sway = PythonLaunchDescriptionSource(os.path.join(share, 'launch', 'sway.launch.py'))
 
     def tree(name, pose):
-        told = {'tree': LaunchConfiguration('tree'), 'params_file': LaunchConfiguration('told')}
+        parameters = {
+            'tree': LaunchConfiguration('tree'),
+            'params_file': LaunchConfiguration('parameters'),
+        }
         return GroupAction(
             [
                 PushRosNamespace(name),
                 SetRemap('wind', '/mast/wind'),
                 IncludeLaunchDescription(
-                    sway, launch_arguments={**told, 'source': 'live', 'pose': pose}.items()
+                    sway, launch_arguments={**parameters, 'source': 'live', 'pose': pose}.items()
                 ),
             ]
         )
@@ -39,7 +42,7 @@ def generate_launch_description():
     return LaunchDescription(
         [
             DeclareLaunchArgument('tree'),
-            DeclareLaunchArgument('told'),
+            DeclareLaunchArgument('parameters'),
             SetParameter('exposure', 0.1),
             SetParameter('gravity', 9.0),
             mast,

@@ -103,11 +103,9 @@ class TextTable:
         if not unit or not units:
             return default
         if unit not in units:
-            raise FormatError(
-                f"unknown unit '{unit[:20]}'",
-                where=f'{self.source}:{self.unit_line}',
-                cure=f'use {", ".join(units)}',
-            )
+            what = f"unknown unit '{unit[:20]}'"
+            cure = f'use {", ".join(units)}'
+            raise FormatError(what, where=f'{self.source}:{self.unit_line}', cure=cure)
         return units[unit]
 
     def find(self, quantity: str) -> Column | None:

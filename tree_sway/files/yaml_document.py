@@ -131,17 +131,11 @@ def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
         for key, child in node.value:
             line = key.start_mark.line + 1
             if not isinstance(key, yaml.ScalarNode):
-                raise FormatError(
-                    f'{_KINDS[_TYPES[type(key)]]} as a key',
-                    where=f'{source}:{line}',
-                    cure='use a word as the key',
-                )
+                what = f'{_KINDS[_TYPES[type(key)]]} as a key'
+                raise FormatError(what, where=f'{source}:{line}', cure='use a word as the key')
             if key.value in values:
-                raise FormatError(
-                    f"key '{key.value}' occurs twice, first in line {lines[key.value]}",
-                    where=f'{source}:{line}',
-                    cure='remove one of them',
-                )
+                what = f"key '{key.value}' occurs twice, first in line {lines[key.value]}"
+                raise FormatError(what, where=f'{source}:{line}', cure='remove one of them')
             values[key.value] = _value(child, known.get(key.value, {}), root, source)
             lines[key.value] = child.start_mark.line + 1
         return values

@@ -62,7 +62,7 @@ def test_trees_of_very_different_height_are_of_two_kinds(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ('rows', 'told'),
+    ('rows', 'message'),
     [
         ('', 'no rows|header and rows|no row'),
         ('0,0,oak,10\n5,nan,oak,12\n', r':3: .*y'),
@@ -75,9 +75,9 @@ def test_trees_of_very_different_height_are_of_two_kinds(tmp_path):
         ('0,0\n', r':2: '),
     ],
 )
-def test_a_bad_row_is_refused_by_its_line(tmp_path, rows, told):
+def test_a_bad_row_is_refused_by_its_line(tmp_path, rows, message):
     path = written(tmp_path, 'x,y,species,height\n' + rows)
-    with pytest.raises(TreeSwayError, match=told):
+    with pytest.raises(TreeSwayError, match=message):
         read_stand_table(path)
 
 
@@ -112,7 +112,7 @@ def test_yaml_names_a_table_and_its_kinds(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ('text', 'told'),
+    ('text', 'message'),
     [
         ('stand: nowhere.csv\n', 'nowhere.csv'),
         ('stand: plot.csv\ntrees_: 3\n', 'trees_'),
@@ -120,9 +120,9 @@ def test_yaml_names_a_table_and_its_kinds(tmp_path):
         ('stand: plot.csv\nconvection_ratio: -1\n', 'convection_ratio'),
     ],
 )
-def test_bad_yaml_is_refused(tmp_path, text, told):
+def test_bad_yaml_is_refused(tmp_path, text, message):
     written(tmp_path, 'x,y,species,height\n0,0,goldcrest,1.6\n')
-    with pytest.raises(TreeSwayError, match=told):
+    with pytest.raises(TreeSwayError, match=message):
         open_scene(written(tmp_path, text, 'bad.yaml'))
 
 

@@ -49,11 +49,8 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
     Raises a `FormatError` for more segments than a skin can have joints.
     """
     if tree.n_segments > _MAX_JOINTS:
-        raise FormatError(
-            f'{tree.n_segments} segments, more than the {_MAX_JOINTS} joints of a skin',
-            where=tree.name,
-            cure='convert its trees one by one',
-        )
+        what = f'{tree.n_segments} segments, more than the {_MAX_JOINTS} joints of a skin'
+        raise FormatError(what, where=tree.name, cure='convert its trees one by one')
     document, poses = GltfDocument(_GENERATOR), tree.rest_poses
     joints = list(range(1, tree.n_segments + 1))
     root = document.add('nodes', name=tree.name, rotation=_Y_UP, children=joints)

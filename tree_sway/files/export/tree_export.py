@@ -16,7 +16,6 @@ from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError
 from tree_sway.files.export.gltf_document import GltfDocument
-from tree_sway.files.export.gltf_tree import skinned_tree
 from tree_sway.files.export.yaml_writing import yaml_of_tree
 from tree_sway.files.whole_file import whole_file, write_text_whole
 
@@ -55,12 +54,11 @@ def write_tree(
         tree, species = tree_and_species(tree, species)
     suffix = Path(path).suffix.lower()
     if suffix not in _SUFFIXES:
-        raise FormatError(
-            f"cannot write '{Path(path).suffix}'",
-            where=str(path),
-            cure=f'use {", ".join(_SUFFIXES)}',
-        )
+        what = f"cannot write '{Path(path).suffix}'"
+        raise FormatError(what, where=str(path), cure=f'use {", ".join(_SUFFIXES)}')
     if suffix == '.glb':
+        from tree_sway.files.export.gltf_tree import skinned_tree  # it takes long to load
+
         write_gltf(path, skinned_tree(tree, leaves))
     else:
         write_text_whole(path, yaml_of_tree(tree, species))

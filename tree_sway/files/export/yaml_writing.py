@@ -37,11 +37,8 @@ def yaml_of_tree(tree: Tree, species: Species | None = None) -> str:
 
     """
     if np.count_nonzero(tree.branch_parent < 0) > 1:
-        raise FormatError(
-            'a forest as the YAML of one tree',
-            where=tree.name,
-            cure='convert its trees one by one, or write .glb',
-        )
+        cure = 'convert its trees one by one, or write .glb'
+        raise FormatError('a forest as the YAML of one tree', where=tree.name, cure=cure)
     species = species_named(tree.species) if species is None else species
     wood = _wood(species)
     content = {

@@ -92,10 +92,8 @@ def read_stand_table(
                 kind = made[own] = _grown(wood[stand.species[row]][0], own, seed, stand)
             scale = height / kind.tree.height
             if not SMALLEST <= scale <= LARGEST:
-                raise ParameterError(
-                    f"{height:g} m is {scale:.3g} times the height of the tree of '{key}'",
-                    cure=f'give {SMALLEST:g} to {LARGEST:g} times',
-                )
+                what = f"{height:g} m is {scale:.3g} times the height of the tree of '{key}'"
+                raise ParameterError(what, cure=f'give {SMALLEST:g} to {LARGEST:g} times')
             at = float(stand.x[row]), float(stand.y[row]), float(z[row])
             how: dict[str, Any] = {
                 'yaw': float(yaw[row]),

@@ -14,16 +14,10 @@ def refuse_same_names(names: Sequence[str], where: Callable[[int], str]) -> None
     first: dict[str, int] = {}
     for number, name in enumerate(names):
         if '/' in name:
-            raise FormatError(
-                f"a slash in the name '{name}'",
-                where=where(number),
-                cure='leave it out: it separates tree and branch in the names of segments',
-            )
+            cure = 'leave it out: it separates tree and branch in the names of segments'
+            raise FormatError(f"a slash in the name '{name}'", where=where(number), cure=cure)
         if name in first:
             line = where(first[name]).rsplit(':', 1)[1]
-            raise FormatError(
-                f"two trees called '{name}', the first in line {line}",
-                where=where(number),
-                cure='give each a name of its own',
-            )
+            what = f"two trees called '{name}', the first in line {line}"
+            raise FormatError(what, where=where(number), cure='give each a name of its own')
         first[name] = number

@@ -49,10 +49,8 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     text = str(name_or_path)
     if text in BUILTIN_TREES:
         if options:
-            raise ParameterError(
-                f"option '{next(iter(options))}' for a built-in tree",
-                cure='leave it out: it has no file',
-            )
+            what = f"option '{next(iter(options))}' for a built-in tree"
+            raise ParameterError(what, cure='leave it out: it has no file')
         tree = builtin_tree(text, seed)
         return TreeFile(tree, species_named(tree.species), text)
     path = path_of(text)
@@ -102,11 +100,9 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> Scene
         files = [each.checked() for each in read_trees(path, head=head, **options)]
         return scene_of_files(files, path.stem)
     if options:
-        raise ParameterError(
-            f"option '{next(iter(options))}' for a forest",
-            where=str(path),
-            cure='convert its trees first, and name the new files in the forest',
-        )
+        what = f"option '{next(iter(options))}' for a forest"
+        cure = 'convert its trees first, and name the new files in the forest'
+        raise ParameterError(what, where=str(path), cure=cure)
     return read()
 
 

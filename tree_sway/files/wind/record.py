@@ -139,11 +139,8 @@ class WindRows:
         rows = np.flatnonzero(good)[~late]
         if len(rows) == 0:
             first = f'; first {self.first_refused}' if self.refused else ''
-            raise FormatError(
-                f'no good row of wind, {self.refused} refused{first}',
-                where=self.source,
-                cure='check that it is a file of wind',
-            )
+            what = f'no good row of wind, {self.refused} refused{first}'
+            raise FormatError(what, where=self.source, cure='check that it is a file of wind')
         time, velocity = time[rows], np.ascontiguousarray(velocity[rows])
         return WindRecord(
             time - time[0],

@@ -94,11 +94,8 @@ def read_sensor_log(
             rows.add(number, (len(rows.time) + rows.refused) / rate, said.velocity)
     there = [kind for kind in kinds if kind in found]
     if not there:
-        raise FormatError(
-            f'no sentence {" or ".join(kinds)}',
-            where=str(path),
-            cure="log the wind instrument's output",
-        )
+        what = f'no sentence {" or ".join(kinds)}'
+        raise FormatError(what, where=str(path), cure="log the wind instrument's output")
     best = next((kind for kind in there if found[kind].time), there[0])
     spaced = f'{best} sentences have no time of their own and are taken at {rate:g} Hz'
     return best, found[best].record(notes=(spaced, *notes))

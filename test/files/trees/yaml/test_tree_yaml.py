@@ -37,8 +37,8 @@ def test_wood_replaces_the_tables_values():
 
 
 def test_a_tree_gives_its_own_shear_and_roots():
-    told = parse_yaml_tree(STEM + 'wood: {shear_ratio: 0.05, root_stiffness: 2.5e6}\n').species
-    assert (told.shear_ratio, told.root_stiffness) == (0.05, 2.5e6)
+    wood = parse_yaml_tree(STEM + 'wood: {shear_ratio: 0.05, root_stiffness: 2.5e6}\n').species
+    assert (wood.shear_ratio, wood.root_stiffness) == (0.05, 2.5e6)
     assert parse_yaml_tree(STEM).species.root_stiffness == math.inf
     with pytest.raises(FormatError, match=r"wood\.root_stiffness is '0'; give a number of more"):
         parse_yaml_tree(STEM + 'wood: {root_stiffness: 0}\n')

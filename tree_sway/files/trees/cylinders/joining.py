@@ -47,11 +47,9 @@ def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | N
     loose = roots[roots != stem]
     largest = int(loose[np.argmax(volume[loose])])
     if len(loose) > _MAX_LOOSE or volume[largest] > _MAX_LOOSE_VOLUME * volume[stem]:
-        raise TreeError(
-            f'{len(roots)} roots: a forest of trees that are not connected',
-            where=cylinders.labels[largest],
-            cure='give each tree a file of its own, or this cylinder a parent',
-        )
+        what = f'{len(roots)} roots: a forest of trees that are not connected'
+        cure = 'give each tree a file of its own, or this cylinder a parent'
+        raise TreeError(what, where=cylinders.labels[largest], cure=cure)
     on_stem = np.flatnonzero(root_of == stem)
     joined, farthest = parent.copy(), 0.0
     for index in loose:

@@ -35,11 +35,8 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     for name in _FIELDS:
         if name not in columns:
             trunks = ': trunks without branches' if name == 'parent_id' else ''
-            raise FormatError(
-                f'no field {name}{trunks}',
-                where=f'{path}:{numbers[0]}',
-                cure='extract the trees with rayextract trees',
-            )
+            cure = 'extract the trees with rayextract trees'
+            raise FormatError(f'no field {name}{trunks}', where=f'{path}:{numbers[0]}', cure=cure)
     if len(lines) < 2:
         raise FormatError('no trees', where=str(path))
     n_of_tree = sum(bool(name.strip()) for name in of_tree.split(','))
@@ -54,11 +51,8 @@ def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
     """Cylinders of a line, whose nodes are the rows of a table."""
     size = len(columns)
     if not cells or len(cells) % size:
-        raise FormatError(
-            f'{len(cells)} values are not whole nodes of {size}',
-            where=where,
-            cure=f'a node has {",".join(columns)}',
-        )
+        what = f'{len(cells)} values are not whole nodes of {size}'
+        raise FormatError(what, where=where, cure=f'a node has {",".join(columns)}')
     nodes = [','.join(cells[begin : begin + size]) for begin in range(0, len(cells), size)]
     table = TextTable(
         tuple(columns), range(len(nodes)), nodes, lambda node: node.split(','), f'{where}: node'
@@ -68,11 +62,8 @@ def _tree(cells: list[str], columns: list[str], where: str) -> Cylinders:
     for row, above in enumerate(parent.tolist()):
         labels.append(f'{where}: node {row}')
         if (above < 0) != (row == 0) or above >= len(nodes):
-            raise TreeError(
-                f'parent_id is {above}',
-                where=labels[row],
-                cure='the first node has -1, every other the number of a node of its line',
-            )
+            cure = 'the first node has -1, every other the number of a node of its line'
+            raise TreeError(f'parent_id is {above}', where=labels[row], cure=cure)
     radius, above = values[:, 3], np.maximum(parent, -1)
     return cylinders_of_nodes(values[:, :3], 2.0 * radius, above, labels, where, cones=False)
 

@@ -55,11 +55,8 @@ def _read_mat(path: Path) -> tuple[Cylinders, ...]:
         trees.append(_cylinders(table, labels, source))
         trees[-1].name = name
     if not trees:
-        raise FormatError(
-            "no struct with a field 'cylinder'",
-            where=source,
-            cure='save the QSM struct of TreeQSM',
-        )
+        what = "no struct with a field 'cylinder'"
+        raise FormatError(what, where=source, cure='save the QSM struct of TreeQSM')
     return tuple(trees)
 
 
@@ -125,10 +122,8 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     reach, starts, axes, relatives = table[:, 1], table[:, 2:5], table[:, 5:8], table[:, 8:10]
     is_whole = (relatives == np.round(relatives)) & (np.abs(relatives) <= 2**53)
     for row, column in np.argwhere(~is_whole)[:1]:
-        raise FormatError(
-            f'parent or extension is {relatives[row, column]:g}, not a whole number',
-            where=labels[row],
-        )
+        what = f'parent or extension is {relatives[row, column]:g}, not a whole number'
+        raise FormatError(what, where=labels[row])
     first = 1 + int(relatives[:, 0].min())
     if first not in (0, 1):
         raise FormatError(

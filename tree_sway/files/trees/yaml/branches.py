@@ -81,11 +81,8 @@ def _indices(branches: list[Values], where: list[str]) -> dict[str, int]:
     for number, branch in enumerate(branches):
         if branch['name'] in index:
             first = where[index[branch['name']]].rsplit(': ', 1)[0]
-            raise FormatError(
-                f'a second branch of that name, the first is at {first}',
-                where=where[number],
-                cure='give each branch a name of its own',
-            )
+            what = f'a second branch of that name, the first is at {first}'
+            raise FormatError(what, where=where[number], cure='give each branch a name of its own')
         index[branch['name']] = number
     return index
 
@@ -100,21 +97,15 @@ def _parents(branches: list[Values], index: dict[str, int], where: list[str]) ->
         parents.append(-1 if name is None else index[name])
     stems = [number for number, its_parent in enumerate(parents) if its_parent < 0]
     if len(stems) > 1:
-        raise TreeError(
-            'a second branch without a parent',
-            where=where[stems[1]],
-            cure=f"give it a parent, as '{branches[stems[0]]['name']}' is the stem",
-        )
+        cure = f"give it a parent, as '{branches[stems[0]]['name']}' is the stem"
+        raise TreeError('a second branch without a parent', where=where[stems[1]], cure=cure)
     return parents
 
 
 def _own_points(branch: Values, where: str) -> tuple[Floats, Floats, Floats]:
     if ('nodes' in branch) == ('segments' in branch):
-        raise FormatError(
-            'both nodes and segments' if 'nodes' in branch else 'neither nodes nor segments',
-            where=where,
-            cure='give one of the two',
-        )
+        what = 'both nodes and segments' if 'nodes' in branch else 'neither nodes nor segments'
+        raise FormatError(what, where=where, cure='give one of the two')
     if 'nodes' in branch:
         nodes = np.array(branch['nodes'], dtype=np.float64)
         return nodes[:-1, :3], nodes[1:, :3], np.stack([nodes[:-1, 3], nodes[1:, 3]], axis=1)
@@ -143,11 +134,8 @@ def _attachment(branch: Values, on: _Placed, first_node: Floats, where: str) -> 
     if 'segment' not in branch:
         return _nearest(branch, on, first_node, where), np.zeros(3)
     if branch['segment'] >= len(length):
-        raise FormatError(
-            f"no segment {branch['segment']} on its parent '{branch['parent']}'",
-            where=where,
-            cure=f'name a segment from 0 to {len(length) - 1}',
-        )
+        what = f"no segment {branch['segment']} on its parent '{branch['parent']}'"
+        raise FormatError(what, where=where, cure=f'name a segment from 0 to {len(length) - 1}')
     return branch['segment'], np.zeros(3)
 
 
@@ -156,9 +144,7 @@ def _nearest(branch: Values, on: _Placed, point: Floats, where: str) -> int:
     segment, distance = nearest_axis(on.start, on.end, point)
     size = float(np.linalg.norm(on.end - on.start))
     if distance > on.diameter[segment].max() + 0.01 * size:
-        raise TreeError(
-            f"starts {distance:.3g} m off its parent '{branch['parent']}'",
-            where=where,
-            cure="move its first node onto the parent, or say where with 'at' or 'segment'",
-        )
+        what = f"starts {distance:.3g} m off its parent '{branch['parent']}'"
+        cure = "move its first node onto the parent, or say where with 'at' or 'segment'"
+        raise TreeError(what, where=where, cure=cure)
     return segment

@@ -72,11 +72,9 @@ def species_of(document: YamlDocument) -> Species:
         ratio = wood.pop('damping_ratio')
         for state in ('damping_bare', 'damping_in_leaf'):
             if state in wood:
-                raise FormatError(
-                    f'both damping_ratio and {state}',
-                    where=document.where('wood', state),
-                    cure='give damping_ratio alone, or the two states apart',
-                )
+                what = f'both damping_ratio and {state}'
+                cure = 'give damping_ratio alone, or the two states apart'
+                raise FormatError(what, where=document.where('wood', state), cure=cure)
             wood[state] = ratio
     # A modulus from the file is a measured one, and no longer the table's guess.
     return replace(species, **wood, is_estimate=species.is_estimate and 'modulus' not in wood)
