@@ -15,7 +15,7 @@ import time
 from types import TracebackType
 from typing import Any
 
-DEADLINE = 60.0
+DEADLINE = 180.0
 _FLAGS = (
     '--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run', '--mute-audio',
