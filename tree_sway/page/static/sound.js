@@ -31,11 +31,10 @@ export class Sound {
     this.isOn = false;
   }
 
-  /** On or off. @returns {Promise<boolean>} whether it is on */
-  async toggle() {
+  /** On or off. */
+  toggle() {
     this.isOn = !this.isOn;
-    await (this.isOn ? this.context.resume() : this.context.suspend());
-    return this.isOn;
+    return this.isOn ? this.context.resume() : this.context.suspend();
   }
 
   /** Sound as the tree is now. @param {number} wind speed [m/s] @param {boolean} hasLeaves
