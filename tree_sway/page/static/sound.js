@@ -8,8 +8,10 @@ const [LOUD_AIR, LOUD_LEAVES] = [18, 10];
 const FOLLOWS = 0.15;
 
 export class Sound {
+  context = new AudioContext();
+  isOn = false;
+
   constructor() {
-    this.context = new AudioContext();
     const { context } = this;
     const noise = context.createBuffer(1, 4 * context.sampleRate, context.sampleRate);
     const samples = noise.getChannelData(0);
@@ -28,7 +30,6 @@ export class Sound {
     };
     this._air = voice("bandpass", 200);
     this._leaves = voice("highpass", 2500);
-    this.isOn = false;
   }
 
   /** On or off. */
