@@ -8,7 +8,7 @@ import { Scene } from "./drawing/scene.js";
 import { Hands, xr } from "./hands.js";
 import { readLink, recordClip, savePicture, saveTree, viewLink } from "./keepsake.js";
 import { keptScene, OwnLine } from "./own_line.js";
-import { made, Panel } from "./panel.js";
+import { element, made, Panel } from "./panel.js";
 import { QUANTITIES, Trace, unitOf } from "./trace.js";
 import { language, setLanguage, windFrom, word } from "./words.js";
 
@@ -18,9 +18,6 @@ const BEHIND = 1000;
 const FACTS_EVERY = 400;
 /** How far a pointer may move in a click [px]. */
 const STILL = 4;
-
-/** @param {string} id */
-const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
 /** Write texts where they are others. @param {Record<string, string>} texts by the ids of what shows them */
 function write(texts) {

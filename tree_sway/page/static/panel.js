@@ -9,6 +9,9 @@ const STEPS = 400;
 /** A range that is wider is one of powers. */
 const WIDE = 1000;
 
+/** An element of the page. @param {string} id */
+export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
 /** An element with properties and what is in it. @template {keyof HTMLElementTagNameMap} T @param {T} tag
  * @param {Record<string, any>} properties @param {...(Node | string)} within */
 export function made(tag, properties, ...within) {
