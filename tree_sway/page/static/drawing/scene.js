@@ -215,10 +215,11 @@ export class Scene {
     return found;
   }
 
-  /** The last segment of the branch that is picked, or the highest. */
+  /** The last segment of the branch that is picked, if it is drawn, or the highest. */
   get followed() {
-    const { kind, highest } = this.watched;
-    return this.picked < 0 ? highest : kind.arrays.branch_first[this.picked + 1] - 1;
+    const { kind, highest, number, placer: { slots } } = this.watched;
+    const last = kind.arrays.branch_first[this.picked + 1] - 1;
+    return this.picked >= 0 && slots[last] < this.detail.levelOf(number).segments ? last : highest;
   }
 
   /** At the base of the branch that is picked, or of the stem: further strain of the outer wood, and
