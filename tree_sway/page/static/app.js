@@ -5,7 +5,6 @@
 import { TreeStream } from "./client.js";
 import { DAYLIGHT } from "./drawing/backdrop.js";
 import { Scene } from "./drawing/scene.js";
-import { Hands, xr } from "./hands.js";
 import { readLink, recordClip, savePicture, saveTree, viewLink } from "./keepsake.js";
 import { keptScene, OwnLine } from "./own_line.js";
 import { element, made, Panel } from "./panel.js";
@@ -98,7 +97,12 @@ const stream = new TreeStream(location.href, {
 }, { kept, byWind: query.has("solve") });
 
 const { connection, playout } = stream;
-const hands = new Hands(scene, stream, showButtons);
+/** What is loaded when it is asked for. */
+const hands = {
+  drag: /** @type {import("./drag.js").Drag | null} */ (null),
+  sound: /** @type {import("./sound.js").Sound | null} */ (null),
+  headset: /** @type {import("./headset.js").Headset | null} */ (null),
+};
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
 const treeName = () => connection.description?.name ?? "tree";
 
@@ -179,7 +183,7 @@ const modelName = (model) => (/^\d+$/.test(model) ? word("coordinates", model) :
 /** @param {number} now */
 function draw(now) {
   requestAnimationFrame(draw);
-  if (hands.areOn.headset) return;
+  if (hands.headset?.session) return;
   const coordinates = stream.sample();
   const isStill = playout.isPaused || playout.back > 0;
   scene.wind = playout.wind;
@@ -188,8 +192,9 @@ function draw(now) {
   scene.draw(coordinates, sceneTime, isStill);
   drawn += 1;
   if (coordinates) {
-    hands.frame();
     const [at, rest] = [scene.tip(), scene.restTip()];
+    hands.drag?.frame();
+    hands.sound?.follow(Math.hypot(...playout.wind), scene.leavesShown && scene.hasLeaves, at);
     const motion = Math.hypot(...at.map((each, c) => each - rest[c]));
     const value = { motion, ...scene.load() }[shown.value] ?? 0;
     if (stateNow()[0] === "live") {
@@ -225,8 +230,9 @@ function nextDay() {
 /** Buttons say what is: a tree that was started bare has no leaves to show. */
 function showButtons() {
   const { hasLeaves, leavesShown, isAutumn: season } = scene;
-  const pressed = { leaves: hasLeaves && leavesShown, season, clip: endClip !== null, ...hands.areOn };
-  for (const [id, isSo] of Object.entries(pressed)) element(id).setAttribute("aria-pressed", String(isSo));
+  const [pull, sound, headset] = [hands.drag?.isOn, hands.sound?.isOn, hands.headset?.session];
+  const pressed = { leaves: hasLeaves && leavesShown, season, clip: endClip, pull, sound, headset };
+  for (const [id, isSo] of Object.entries(pressed)) element(id).setAttribute("aria-pressed", String(Boolean(isSo)));
   Object.assign(element("leaves"), { disabled: !hasLeaves, title: word(hasLeaves ? "leaves" : "bare") });
 }
 
@@ -252,7 +258,6 @@ async function copyLink() {
   toast(`${word("copied")}: ${location.href}`);
 }
 
-/** Begin a clip, or end and save it. */
 function toggleClip() {
   endClip?.();
   endClip = endClip ? null : recordClip(canvas, treeName());
@@ -289,9 +294,18 @@ const actions = {
   help: () => help.showModal(),
   retry: () => stream.open(),
   close: () => help.close(),
-  pull: () => hands.togglePull(),
-  sound: () => hands.toggleSound(),
-  headset: () => hands.toggleHeadset(),
+  pull: async () => {
+    hands.drag ??= new (await import("./drag.js")).Drag(scene, stream);
+    hands.drag.isOn = !hands.drag.isOn;
+  },
+  sound: async () => {
+    hands.sound ??= new (await import("./sound.js")).Sound();
+    await hands.sound.toggle();
+  },
+  headset: async () => {
+    hands.headset ??= new (await import("./headset.js")).Headset(scene, stream);
+    await hands.headset.toggle(showButtons);
+  },
 };
 /** @type {Record<string, () => unknown>} */
 const keys = {
@@ -316,7 +330,7 @@ document.addEventListener("keydown", (event) => {
   if (target.closest("input, select, button, summary, dialog") || event.ctrlKey || event.metaKey) return;
   keys[event.key.toLowerCase()]?.();
 });
-xr?.isSessionSupported("immersive-vr").then((/** @type {boolean} */ isSo) => (element("headset").hidden = !isSo), () => undefined);
+navigator.xr?.isSessionSupported("immersive-vr").then((/** @type {boolean} */ isSo) => (element("headset").hidden = !isSo), () => undefined);
 let pressed = [0, 0];
 canvas.addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]));
 canvas.addEventListener("click", (event) => {

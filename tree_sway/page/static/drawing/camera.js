@@ -28,7 +28,6 @@ export class Camera {
     this.target = [x, y, z];
   }
 
-  /** Back to where the whole scene is seen. */
   home() {
     const [low, high] = this._box;
     const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
