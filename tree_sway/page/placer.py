@@ -69,8 +69,8 @@ class Placer:
             c, s = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
             keys = kind.matrix @ coordinates[first:last]
             origin = np.array([x, y, z])
-            records, room = (*GIVEN, *kind.records), room_for(len(keys))
-            place(*records, c, s, scale, room, keys, origin, poses[row:end])
+            room, (segments, heads, bases) = room_for(len(keys)), kind.records
+            place(*GIVEN, segments, heads, bases, c, s, scale, room, keys, origin, poses[row:end])
             row, first = end, last
         return poses
 
