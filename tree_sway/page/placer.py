@@ -19,7 +19,7 @@ from tree_sway.core.motion.fill_records import (
     Places,
     segment_records,
 )
-from tree_sway.core.motion.placing import GIVEN, place
+from tree_sway.core.motion.placing import GIVEN, place, room_for
 from tree_sway.core.motion.records import BRANCH, head_layout, SEGMENT
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array
@@ -68,11 +68,9 @@ class Placer:
             last, end = first + kind.matrix.shape[1], row + kind.n_segments
             c, s = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
             keys = kind.matrix @ coordinates[first:last]
-            branches, segments, heads, bases = kind.records
             origin = np.array([x, y, z])
-            place(
-                *GIVEN, branches, segments, heads, bases, c, s, scale, keys, origin, poses[row:end]
-            )
+            room, (segments, heads, bases) = room_for(len(keys)), kind.records
+            place(*GIVEN, segments, heads, bases, c, s, scale, room, keys, origin, poses[row:end])
             row, first = end, last
         return poses
 
@@ -82,8 +80,8 @@ class _Kind(NamedTuple):
 
     matrix: Floats
     n_segments: int
-    records: tuple[_Records, _Records, _Records, Floats]
-    """Its branches and segments, heads of these, and scratch."""
+    records: tuple[_Records, _Records, Floats]
+    """Its segments, heads of its branches, and scratch."""
 
 
 def _kind(arrays: dict[str, Array]) -> _Kind:
@@ -126,4 +124,4 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     branches, segments = np.zeros(len(parent), BRANCH), segment_records(places)
     fill_places(places, branches)
     heads = head_records(branches, segments)
-    return _Kind(matrix, int(first[-1]), (branches, segments, heads, np.zeros((len(branches), 8))))
+    return _Kind(matrix, int(first[-1]), (segments, heads, np.zeros((len(branches), 8))))

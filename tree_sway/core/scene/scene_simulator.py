@@ -359,8 +359,8 @@ class SceneSimulator:
         records, bank = self._models[kind].bank, self._banks[kind]
         heads, bases, x, block = self._scratch[kind]
         place_standing(
-            self._standing, self._instances, rows, bank.laid_shapes, records.branches,
-            records.segments, heads, bases, x, block, out,
+            self._standing, self._instances, rows, bank.laid_shapes, records.segments, heads,
+            bases, x, block, out,
         )  # fmt: skip
 
     @cached_property
