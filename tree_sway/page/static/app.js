@@ -45,7 +45,8 @@ let lastDrawn = 0;
 let status = /** @type {Record<string, any>} */ ({});
 let controls = /** @type {any[]} */ ([]);
 let toastTimer = 0;
-let day = /** @type {keyof typeof DAYLIGHT} */ ("light");
+const days = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
+let day = days[0];
 let endClip = /** @type {(() => void) | null} */ (null);
 
 setLanguage(settings.lang ?? navigator.language.slice(0, 2));
@@ -207,24 +208,11 @@ function draw(now) {
   showFacts();
 }
 
-/** Look at what was, as far back as the time line says. */
-function lookBack() {
-  playout.back = -1000 * Number(timeLine.value);
-  for (const trace of Object.values(traces)) trace.back = -Number(timeLine.value);
-  timeLine.setAttribute("aria-valuetext", stateNow()[1]);
-  showState();
-}
-
-/** @param {keyof typeof DAYLIGHT} time of day */
+/** @param {typeof day} time of day */
 function setDay(time) {
   day = time;
   document.documentElement.dataset.theme = time === "dark" ? "dark" : "light";
   scene.setDay(DAYLIGHT[time]);
-}
-
-function nextDay() {
-  const times = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
-  setDay(times[(times.indexOf(day) + 1) % times.length]);
 }
 
 /** Buttons say what is: a tree that was started bare has no leaves to show. */
@@ -258,16 +246,6 @@ async function copyLink() {
   toast(`${word("copied")}: ${location.href}`);
 }
 
-function toggleClip() {
-  endClip?.();
-  endClip = endClip ? null : recordClip(canvas, treeName());
-}
-
-function toggleFull() {
-  if (document.fullscreenElement) document.exitFullscreen();
-  else document.documentElement.requestFullscreen?.().catch(() => undefined);
-}
-
 /** @param {string} chosen language */
 function speak(chosen) {
   setLanguage(chosen);
@@ -283,14 +261,17 @@ function speak(chosen) {
 const actions = {
   home: () => scene.camera.home(),
   leaves: () => scene.hasLeaves && scene.dress({ leavesShown: !scene.leavesShown }),
-  theme: nextDay,
+  theme: () => setDay(days[(days.indexOf(day) + 1) % days.length]),
   season: () => scene.dress({ isAutumn: !scene.isAutumn }),
   picture: () => savePicture(scene, treeName(), () => scene.draw(null, sceneTime, true)),
-  clip: toggleClip,
+  clip: () => {
+    endClip?.();
+    endClip = endClip ? null : recordClip(canvas, treeName());
+  },
   glb: () => saveTree("glb", treeName()),
   html: () => saveTree("html", treeName()),
   link: copyLink,
-  full: toggleFull,
+  full: () => (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.()),
   help: () => help.showModal(),
   retry: () => stream.open(),
   close: () => help.close(),
@@ -338,7 +319,12 @@ canvas.addEventListener("click", (event) => {
   if (scene.description) pick(scene.nearest(event.clientX / canvas.clientWidth, event.clientY / canvas.clientHeight).branch);
 });
 shown.addEventListener("change", () => pick(scene.picked));
-timeLine.addEventListener("input", lookBack);
+timeLine.addEventListener("input", () => {
+  playout.back = -1000 * Number(timeLine.value);
+  for (const trace of Object.values(traces)) trace.back = -Number(timeLine.value);
+  timeLine.setAttribute("aria-valuetext", stateNow()[1]);
+  showState();
+});
 element("language").addEventListener("change", ({ target }) => speak(/** @type {any} */ (target).value));
 
 document.addEventListener("dragover", (event) => event.preventDefault());
@@ -350,9 +336,9 @@ document.addEventListener("drop", (event) => {
 
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
-const asked = /** @type {keyof typeof DAYLIGHT} */ (settings.day);
-setDay(asked in DAYLIGHT ? asked : dark.matches ? "dark" : "light");
-dark.addEventListener("change", () => setDay(dark.matches ? "dark" : "light"));
+const dayOrNight = () => (dark.matches ? "dark" : "light");
+setDay(days.find((each) => each === settings.day) ?? dayOrNight());
+dark.addEventListener("change", () => setDay(dayOrNight()));
 scene.flutters = !calm.matches;
 calm.addEventListener("change", () => (scene.flutters = !calm.matches));
 scene.dress({ leavesShown: settings.leaves !== "false", isAutumn: settings.autumn === "true" });

@@ -129,13 +129,17 @@ function sample(gl, less, more) {
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, more);
 }
 
-/** A texture of a picture. @param {WebGL2RenderingContext} gl @param {ImageData[]} mips from the finest
- * @param {boolean} isPlain the nearest point alone is looked up, which costs less */
-export function pictureTexture(gl, mips, isPlain) {
+/** A texture of a picture, its colours times its alpha: no leaf has a rim of what is around it.
+ * @param {WebGL2RenderingContext} gl @param {HTMLCanvasElement} picture @param {boolean} isPlain the nearest
+ * point alone is looked up, which costs less */
+export function pictureTexture(gl, picture, isPlain) {
   const texture = gl.createTexture();
   gl.activeTexture(gl.TEXTURE2);
   gl.bindTexture(gl.TEXTURE_2D, texture);
-  mips.forEach((mip, level) => gl.texImage2D(gl.TEXTURE_2D, level, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, mip));
+  gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, true);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+  gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false); // poses are no colours
+  gl.generateMipmap(gl.TEXTURE_2D);
   if (isPlain) sample(gl, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST);
   else sample(gl, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
   return texture;

@@ -31,17 +31,11 @@ export function leafPicture(species, across, isAutumn) {
   else if (hasNeedles(species)) brush.shoot(0.98 - 0.3 * long, long);
   else if (across <= 6) brush.spray(long);
   else brush.cloud(long);
-  return mipsOf(brush.context, base.map((c) => 255 * c));
+  return brush.context.canvas;
 }
 
 /** @param {number[]} color */
 const css = (color) => `rgb(${color.map((c) => Math.round(255 * Math.min(1, Math.max(0, c)))).join(" ")})`;
-
-/** A square canvas. @param {number} size [px] */
-function canvasOf(size) {
-  const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
-  return /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { willReadFrequently: true }));
-}
 
 /** Paints leaves and twigs of a species on a unit square, from the middle of its left side on. */
 class Brush {
@@ -54,7 +48,8 @@ class Brush {
     const half = outlineOf(look);
     const other = half.map(([x, y]) => [x, -y]).reverse();
     this.blade = new Path2D(`M${[...half, ...other].join("L")}Z`);
-    this.context = canvasOf(size);
+    const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     this.context.scale(size, size);
     this.context.translate(0, 0.5);
     this.context.lineCap = "round";
@@ -161,27 +156,4 @@ class Brush {
       }
     });
   }
-}
-
-/** A picture halved again and again; each has the cover of the first, so that no crown thins out where it
- * is far, and what is cut away has the leaves' colour, so that no leaf has a rim.
- * @param {CanvasRenderingContext2D} context @param {number[]} mean colour */
-function mipsOf(context, mean) {
-  const mips = [];
-  let cover = 0;
-  for (let size = context.canvas.width; size >= 1; size /= 2) {
-    const mip = context.getImageData(0, 0, size, size);
-    const alphas = mip.data.filter((_, i) => i % 4 === 3).sort();
-    cover ||= alphas.filter((alpha) => alpha > 127).length / alphas.length;
-    const gain = 128 / Math.max(alphas[Math.min(alphas.length - 1, Math.floor((1 - cover) * alphas.length))], 16);
-    for (let i = 0; i < mip.data.length; i += 4) {
-      if (mip.data[i + 3] < 8) mip.data.set(mean, i);
-      mip.data[i + 3] *= gain;
-    }
-    mips.push(mip);
-    const half = canvasOf(Math.max(size / 2, 1));
-    half.drawImage(context.canvas, 0, 0, size / 2, size / 2);
-    context = half;
-  }
-  return mips;
 }
