@@ -40,7 +40,7 @@ def fused(function: _F) -> _F:
     bit for bit on one machine, for a callee becomes part of each caller: were it called, a caller
     would run whichever copy of it was loaded first. Not for code that counts on rounding.
     """
-    return _compiled(function, fastmath=_LOOSE, forceinline=True)
+    return _compiled(function, fastmath=_LOOSE, forceinline=True, _nrt=False)
 
 
 def inlined(function: _F) -> _F:
@@ -58,7 +58,7 @@ def part(function: _F) -> _F:
     if not WHY_PLAIN:
         from numba.extending import register_jitable
 
-        options = {'error_model': 'numpy', 'nogil': True, 'no_cfunc_wrapper': True}
+        options = {'error_model': 'numpy', 'nogil': True, 'no_cfunc_wrapper': True, '_nrt': False}
         register_jitable(fastmath=_LOOSE, forceinline=True, **options)(function)
     return function
 

@@ -19,7 +19,7 @@ from tree_sway.core.motion.fill_records import (
     Places,
     segment_records,
 )
-from tree_sway.core.motion.placing import GIVEN, place
+from tree_sway.core.motion.placing import GIVEN, place, room_for
 from tree_sway.core.motion.records import BRANCH, head_layout, SEGMENT
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array
@@ -73,11 +73,9 @@ class Placer:
             keys = kind.matrix @ coordinates[first:last]
             own = (number >= key) & (number < key + len(keys))
             keys[number[own].astype(np.int64) - key] += turn[own]
-            branches, segments, heads, bases = kind.records
             origin = np.array([x, y, z])
-            place(
-                *GIVEN, branches, segments, heads, bases, c, s, scale, keys, origin, poses[row:end]
-            )
+            room, (segments, heads, bases) = room_for(len(keys)), kind.records
+            place(*GIVEN, segments, heads, bases, c, s, scale, room, keys, origin, poses[row:end])
             row, first, key = end, last, key + len(keys)
         return poses
 
@@ -87,8 +85,8 @@ class _Kind(NamedTuple):
 
     matrix: Floats
     n_segments: int
-    records: tuple[_Records, _Records, _Records, Floats]
-    """Its branches and segments, heads of these, and scratch."""
+    records: tuple[_Records, _Records, Floats]
+    """Its segments, heads of its branches, and scratch."""
 
 
 def _kind(arrays: dict[str, Array]) -> _Kind:
@@ -131,4 +129,4 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     branches, segments = np.zeros(len(parent), BRANCH), segment_records(places)
     fill_places(places, branches)
     heads = head_records(branches, segments)
-    return _Kind(matrix, int(first[-1]), (branches, segments, heads, np.zeros((len(branches), 8))))
+    return _Kind(matrix, int(first[-1]), (segments, heads, np.zeros((len(branches), 8))))

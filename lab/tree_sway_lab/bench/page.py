@@ -92,7 +92,8 @@ async def _counted(url: str, seconds: float) -> list[Measured]:
             found.append(await browser.run('treeSway.fps'))
         frames = await browser.run('treeSway.scene._frame') - first
         used = 1e3 * (_processor_time(browser) - used) / max(frames, 1)
-        left = await browser.run('treeSway.scene.leftOut') or {'leaves': 100, 'pixels': 100}
+        left = await browser.run('treeSway.scene.quality.leftOut')
+        left = left or {'leaves': 100, 'pixels': 100}
         memory = [await _memory(browser)]
         # Twice: what is kept of a minute is there after the first.
         for _ in range(2):

@@ -23,7 +23,7 @@ from tree_sway.core.motion.fill_records import (
     places_of,
     segment_records,
 )
-from tree_sway.core.motion.placing import GIVEN, place
+from tree_sway.core.motion.placing import GIVEN, place, room_for
 from tree_sway.core.reduction.matrices import reduce_tree
 
 pytestmark = pytest.mark.compiled
@@ -49,8 +49,8 @@ class Reduced:
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
         bases = np.zeros((self.tree.n_branches, 8))
-        records = self.branches, self.segments, self.heads
-        place(*GIVEN, *records, bases, 1.0, 0.0, 1.0, x, self.tree.start[0], out)
+        records, room = (self.segments, self.heads, bases), room_for(len(x))
+        place(*GIVEN, *records, 1.0, 0.0, 1.0, room, x, self.tree.start[0], out)
         return out
 
     def points(self, x):

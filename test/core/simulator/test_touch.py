@@ -264,7 +264,8 @@ def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
             for _ in range(600):
                 sim.push(segment, force, 1.0, along=0.0)
                 sim.step(CALM, DT)
-            frame = described.coordinates(decode_frame(state.frame(0)))
+            frame = decode_frame(state.frame(0))
+            shape = np.concatenate([described.coordinates(frame), frame.beyond])
             goal *= 0.001 / np.linalg.norm(goal)
             moves = [each[segment, :3] - tree.start[segment] for each in
                      (sim.place(), Placer(described).place(shape))]  # fmt: skip

@@ -124,6 +124,7 @@ def head_records(branches: Records, segments: Records) -> Records:
     heads['block'] = [*first, len(segments)]
     heads['n_records'][:-1] = np.diff(heads['block'])
     heads['n_lanes'][:-1] = segments['n_lanes'][first]
+    heads['n_eights'] = -(-heads['n_lanes'] // 8)
     np.maximum.at(heads['n_bearing'], block[parent[1:]], lane[parent[1:]] + 1)
     np.maximum.at(heads['n_rows'], block, branches['n_coordinates'])
     heads['branch'][block, lane] = np.arange(len(branches))
@@ -131,12 +132,13 @@ def head_records(branches: Records, segments: Records) -> Records:
     np.maximum.at(heads['n_parent_rows'], block, branches['n_coordinates'][parent])
     for name in ('parent', 'coordinate', 'base_segment', 'first'):
         heads[name][block, lane] = branches[name]
-    for name in ('frame', 'skew', 'tip_skew', 'offset'):
+    for name in ('frame', 'skew', 'tip_skew', 'offset', 'steepest'):
         heads[name][block, ..., lane] = branches[name]
+    heads['last'][block, lane] = branches['n_coordinates'] - 1
+    heads['parent_coordinate'][block, lane] = branches['coordinate'][parent]
     heads['is_at_axes'] = (np.abs(heads['offset'][:, 1:]) <= _AS_ONE * heads['offset'][:, :1]).all(
         axis=(1, 2)
     )
-    heads['steepest'][block, lane] = branches['steepest'][:, 0]
     heads['base_turn'][block, ..., lane] = branches['twist'][..., 3:]
     return heads
 

@@ -20,15 +20,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Singles
-from tree_sway.core.kernel import fused, inlined, part
+from tree_sway.core.arrays import Floats, Ints, Singles
+from tree_sway.core.branch.shapes import MAX_COORDINATES
+from tree_sway.core.kernel import fused, part
 from tree_sway.core.motion.records import (
-    Branches,
     Head,
     Heads,
     instance_layout,
     Instances,
-    LANES,
     Segment,
     Segments,
 )
@@ -39,7 +38,6 @@ from tree_sway.core.rotation import (
     half_angle_series,
     NEAR_LIMIT,
     product,
-    quaternion,
     rotated,
     SERIES_LIMIT,
 )
@@ -52,6 +50,8 @@ _STRETCH_TO = np.deg2rad(90.0) ** 2
 
 GIVEN = np.zeros(1, instance_layout(0, 1)), np.zeros((0, 0, TOGETHER), dtype=np.float32)
 """An instance and shapes for `place` where key rotations are given."""
+
+NONE = np.zeros(0)
 
 
 @fused
@@ -66,11 +66,16 @@ def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
         add_shapes(shapes, block, shown, x)
 
 
+def room_for(n_coordinates: int) -> Floats:
+    """Return zeros for `place` to write key rotations to: it reads past the last of a branch."""
+    return np.zeros(n_coordinates + MAX_COORDINATES)
+
+
 @fused
 def place(
-    instances: Instances, shapes: Singles,
-    branches: Branches, segments: Segments, heads: Heads, bases: Floats,
-    cosine: float, sine: float, scale: float, x: Floats, origin: Floats, out: Floats,
+    instances: Instances, shapes: Singles, segments: Segments, heads: Heads, bases: Floats,
+    cosine: float, sine: float, scale: float, x: Floats, given: Floats, origin: Floats,
+    out: Floats,
 ) -> None:  # fmt: skip
     """
     Place every segment of a tree.
@@ -78,73 +83,69 @@ def place(
     Parameters
     ----------
     instances, shapes
-        What key rotations are found from (`expand`), or `GIVEN`.
-    branches, segments, heads
-        Records of `BRANCH` (b,), `SEGMENT` and `head_layout`.
+        What key rotations are found from (`expand`), or `GIVEN` where they are given.
+    segments, heads
+        Records of `SEGMENT` and `head_layout`.
     bases
         Written: orientation of each base from rest, w x y z, then half the key rotation,
-        stretched, for who sits on a plain branch, (b, 8).
+        stretched, (b, 8).
     cosine, sine
         Of half the angle that the tree is turned by about the vertical.
     scale
         Its size over that of its records.
     x
-        Key rotations, (N,), in the order of the coordinates; written unless they are given.
+        Written: key rotations in the order of the coordinates, (N,), in a `room_for` them.
+    given
+        Key rotations, (N,), or `NONE` where they are found.
     origin
         Root node, (3,).
     out
         Pose block to write, (n, 7).
 
     """
-    expand(instances, shapes, x)
+    if len(shapes) > 0:
+        expand(instances, shapes, x)
+    else:
+        for i in range(len(given)):
+            x[i] = given[i]
     last = len(heads) - 1
     scratch = heads[last]
     for block in range(last):
         head = heads[block]
-        _read_parents(branches, head, scratch, bases, x, origin, cosine, sine, out)
+        _read_parents(head, scratch, bases, x, origin, cosine, sine, out)
         is_near = _turn_on_parents(head, scratch)
-        if is_near:
-            farthest = _turn_bases(head, scratch, scale, True)
-        else:
-            farthest = _turn_bases(head, scratch, scale, False)
+        farthest = _turn_bases(head, scratch, scale, x, is_near)
         _write_bases(head, scratch, bases)
-        if head.n_rows > 2:
-            farthest = max(farthest, _set_further_keys(branches, head, scratch, x))
-        is_near = is_near and farthest <= NEAR_LIMIT
+        is_short = is_near and farthest <= NEAR_LIMIT and head.n_rows == 2 and head.is_joined == 1
         for rank in range(head.n_records):
             segment = segments[head.block + rank]
-            if is_near and head.n_rows == 2 and head.is_joined:
-                _bend_and_join(segment, scratch, scale)
+            if is_short:
+                _bend_and_join(segment, scratch, scale, head.n_eights)
             else:
-                if not farthest <= SERIES_LIMIT:
-                    _bend_far(segment, scratch, head.n_rows)
-                elif head.n_rows > 2:
-                    _bend(segment, scratch)
-                else:
-                    _bend_in_plane(segment, scratch)
-                _join(segment, scratch, scale)
+                _bend(segment, scratch, head.n_rows, farthest, head.n_eights)
+                _join(segment, scratch, scale, head.is_joined, head.n_eights)
             _write_poses(head, scratch, rank, segment.n_lanes, out)
 
 
 @part
 def _read_parents(
-    branches: Branches, head: Head, scratch: Head, bases: Floats, x: Floats, origin: Floats,
+    head: Head, scratch: Head, bases: Floats, x: Floats, origin: Floats,
     cosine: float, sine: float, out: Floats,
 ) -> None:  # fmt: skip
     """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
-    key, parent_key = scratch.key, scratch.parent_key
-    base, carrier = scratch.parent_base, scratch.carrier
-    if head.n_parent_rows > 2:
-        parent_key[2:] = 0.0
-    if head.parent[0] < 0:  # the stem, alone
-        parent_key[:], base[:], carrier[:] = 0.0, 0.0, 0.0
-        base[0, 0], base[1, 0], base[2, 0], base[3, 0] = cosine, 0.0, 0.0, sine
-        carrier[0, 0], carrier[1, 0], carrier[2, 0] = origin[0], origin[1], origin[2]
-        carrier[5, 0], carrier[6, 0] = sine, cosine
-        key[:] = 0.0
-        key[0, 0], key[1, 0] = x[head.coordinate[0]], x[head.coordinate[0] + 1]
+    key, parent_key, carrier = scratch.key, scratch.parent_key, scratch.carrier
+    base, parents, on = scratch.parent_base, head.parent, head.base_segment
+    own = head.coordinate
+    for j in range(8 * head.n_eights):  # lanes that are empty have the keys of the stem
+        i = np.uintp(own[j])
+        key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
+    if parents[0] < 0:  # the stem, alone
+        for j in range(8 * head.n_eights):
+            for row in range(7):
+                base[row, j] = carrier[row, j] = 0.0
+            base[0, j], base[3, j], carrier[5, j], carrier[6, j] = cosine, sine, sine, cosine
+            carrier[0, j], carrier[1, j], carrier[2, j] = origin[0], origin[1], origin[2]
         return
-    parents, on = head.parent, head.base_segment
     for j in range(0, head.n_lanes, 4):  # what is read of lanes that are empty is of no account
         a, b, c, d = on[j], on[j + 1], on[j + 2], on[j + 3]
         take_four(out, a, b, c, d, 0, carrier, 0, j)
@@ -152,36 +153,16 @@ def _read_parents(
         a, b, c, d = parents[j], parents[j + 1], parents[j + 2], parents[j + 3]
         take_four(bases, a, b, c, d, 0, base, 0, j)
         take_four(bases, a, b, c, d, 4, base, 4, j)
-    for j in range(head.n_lanes):
-        i = np.uintp(head.coordinate[j])
-        key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
-    for j in range(head.n_lanes, LANES):  # which series is taken hangs on no key of before
-        key[0, j], key[1, j] = 0.0, 0.0
-    if head.n_parent_rows > 2:
-        for j in range(LANES):
-            parent_key[0, j], parent_key[1, j] = base[4, j], base[5, j]
-        for j in range(head.n_lanes):
-            parent = branches[parents[j]]
-            own = parent.coordinate
-            for c in range(2, parent.n_coordinates):
-                parent_key[c, j] = 0.5 * x[own + c]
+        if head.n_parent_rows > 2:
+            _take_further(x, head.parent_coordinate, parent_key, j)
 
 
-@inlined
-def _turn_by(key: Floats, per: Floats, turned: Floats, n_rows: int, j: int) -> None:
-    """Sum what the first rows of keys turn the lane j by."""
-    hx, hy, hz = 0.0, 0.0, 0.0
-    for c in range(n_rows):
-        u = key[c, j]
-        hx, hy, hz = hx + u * per[c, 0, j], hy + u * per[c, 1, j], hz + u * per[c, 2, j]
-    turned[0, j], turned[1, j], turned[2, j] = hx, hy, hz
-
-
-@inlined
-def _is_beyond(turned: Floats, key: Floats, j: int) -> int:
-    """Return 1 where the lane j is turned or bent further than the short series holds."""
-    hx, hy, hz, x, y = turned[0, j], turned[1, j], turned[2, j], key[0, j], key[1, j]
-    return 1 if hx * hx + hy * hy + hz * hz > NEAR_LIMIT or x * x + y * y > _BLEND_FROM else 0
+@part
+def _take_further(x: Floats, first: Ints, keys: Floats, j: int) -> None:
+    """Read further coordinates of four lanes, and what lies behind those of who has fewer."""
+    for c in range(2, keys.shape[0], 4):
+        row = min(c, keys.shape[0] - 4)
+        take_four(x, first[j], first[j + 1], first[j + 2], first[j + 3], row, keys, row, j)
 
 
 @part
@@ -192,88 +173,95 @@ def _turn_on_parents(head: Head, scratch: Head) -> bool:
     Returns whether none is turned, nor bent by its key, beyond the short series.
     """
     key, per, turned = scratch.parent_key, head.base_turn, scratch.carrier_turn
-    base, n_beyond = scratch.parent_base, 0
-    if head.n_parent_rows == 2:
-        for j in range(LANES):
-            _turn_by(base[4:], per, turned, 2, j)
-            n_beyond += _is_beyond(turned, scratch.key, j)
-    else:
-        for j in range(LANES):
-            _turn_by(key, per, turned, per.shape[0], j)
-            n_beyond += _is_beyond(turned, scratch.key, j)
-    if n_beyond == 0:
-        return True
-    for j in range(head.n_lanes):
-        hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
-        if hx * hx + hy * hy + hz * hz > SERIES_LIMIT:
-            qw, qx, qy, qz = quaternion(2.0 * hx, 2.0 * hy, 2.0 * hz)
-            base[0, j], base[1, j], base[2, j], base[3, j] = product(
-                base[0, j], base[1, j], base[2, j], base[3, j], qw, qx, qy, qz
-            )
-            turned[0, j], turned[1, j], turned[2, j] = 0.0, 0.0, 0.0
-    return False
+    base, own, angle, n_beyond = scratch.parent_base, scratch.key, scratch.angle, 0
+    for j in range(8 * head.n_eights):
+        u, v = base[4, j], base[5, j]
+        for k in range(3):
+            turned[k, j] = u * per[0, k, j] + v * per[1, k, j]
+    if head.n_parent_rows > 2:
+        for j in range(8 * head.n_eights):
+            hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
+            for c in range(2, per.shape[0]):
+                u = 0.5 * key[c, j]
+                hx, hy, hz = hx + u * per[c, 0, j], hy + u * per[c, 1, j], hz + u * per[c, 2, j]
+            turned[0, j], turned[1, j], turned[2, j] = hx, hy, hz
+    for j in range(8 * head.n_eights):
+        hx, hy, hz, u, v = turned[0, j], turned[1, j], turned[2, j], own[0, j], own[1, j]
+        angle[j] = hx * hx + hy * hy + hz * hz
+        n_beyond += 1 if angle[j] > NEAR_LIMIT or u * u + v * v > _BLEND_FROM else 0
+    return n_beyond == 0
 
 
 @part
-def _turn_bases(head: Head, scratch: Head, scale: float, is_near: bool) -> float:
+def _half_angles(scratch: Head, farthest: float, n_eights: int) -> None:
+    """Find cosine and sine over it of sixteen half angles from their squares, of which one is."""
+    angle, cosine, sinc = scratch.angle, scratch.cosine, scratch.sinc
+    if farthest <= NEAR_LIMIT:
+        for j in range(8 * n_eights):
+            cosine[j], sinc[j] = half_angle_near(angle[j])
+    elif farthest <= SERIES_LIMIT:
+        for j in range(8 * n_eights):
+            cosine[j], sinc[j] = half_angle_series(angle[j])
+    else:
+        for j in range(8 * n_eights):
+            cosine[j], sinc[j] = half_angle(angle[j])
+
+
+@part
+def _turn_bases(head: Head, scratch: Head, scale: float, x: Floats, is_near: bool) -> float:
     """
-    Turn the bases of sixteen branches, place them, and set how their first shape bends.
+    Turn the bases of sixteen branches, place them, and set how their shapes bend.
 
     Returns a bound on the square of half the angle that any segment turns by.
     """
-    key, below = scratch.key, scratch.parent_base
-    carrier, turned = scratch.carrier, scratch.carrier_turn
-    frame, offset = head.frame, head.offset
-    base, half_turn, half_key, swing, following = (
-        scratch.base, scratch.half_turn, scratch.half_key, scratch.swing, scratch.next
-    )  # fmt: skip
-    together = 0.0
-    for j in range(LANES):
-        x, y = key[0, j], key[1, j]
-        t = x * x + y * y
-        blend, bounded = 0.0, 0.5 * t
-        if not is_near:
-            blend = min(max((t - _BLEND_FROM) * _PER_BLEND, 0.0), 1.0)
-            bounded = 0.5 * min(t, _STRETCH_TO)
+    key, below, steepest = scratch.key, scratch.parent_base, head.steepest
+    turned, frame, base, swing = scratch.carrier_turn, head.frame, scratch.base, scratch.swing
+    half_turn, half_key, bound = scratch.half_turn, scratch.half_key, scratch.bound
+    _half_angles(scratch, 0.0 if is_near else np.inf, head.n_eights)
+    for j in range(8 * head.n_eights):
+        u, v = key[0, j], key[1, j]
+        t = u * u + v * v
+        blend = min(max((t - _BLEND_FROM) * _PER_BLEND, 0.0), 1.0)
+        bounded = 0.5 * min(t, _STRETCH_TO)
         own = 0.5 + bounded * head.skew[j]
-        half = own
-        if not is_near:
-            half += bounded * blend * (head.tip_skew[j] - head.skew[j])
-        ux = x * frame[2, 0, j] - y * frame[1, 0, j]
-        uy = x * frame[2, 1, j] - y * frame[1, 1, j]
-        uz = x * frame[2, 2, j] - y * frame[1, 2, j]
-        base[4, j], base[5, j] = own * x, own * y
-        wx, wy, wz = half * ux, half * uy, half * uz
+        half = own + bounded * blend * (head.tip_skew[j] - head.skew[j])
+        wx = half * (u * frame[2, 0, j] - v * frame[1, 0, j])
+        wy = half * (u * frame[2, 1, j] - v * frame[1, 1, j])
+        wz = half * (u * frame[2, 2, j] - v * frame[1, 2, j])
+        base[4, j], base[5, j] = own * u, own * v
         half_turn[0, j], half_turn[1, j], half_turn[2, j] = wx, wy, wz
-        half_key[0, j], half_key[1, j] = half * x, half * y
-        square = half * half * t
-        scratch.blend[j], scratch.square[j] = blend, square
-        scratch.half_angle[j] = square * head.steepest[j]
-        together += square * head.steepest[j]
-        hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
-        if is_near:
-            c, s = half_angle_near(hx * hx + hy * hy + hz * hz)
-        else:
-            c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
+        half_key[0, j], half_key[1, j] = half * u, half * v
+        scratch.blend[j], scratch.square[j] = blend, half * half * t
+        bound[j] = half * half * t * steepest[0, j]
+        c, s = scratch.cosine[j], scratch.sinc[j]
         bw, bx, by, bz = product(
-            below[0, j], below[1, j], below[2, j], below[3, j], c, s * hx, s * hy, s * hz
-        )
+            below[0, j], below[1, j], below[2, j], below[3, j],
+            c, s * turned[0, j], s * turned[1, j], s * turned[2, j],
+        )  # fmt: skip
         base[0, j], base[1, j], base[2, j], base[3, j] = bw, bx, by, bz
         swing[0, j] = -bx * wx - by * wy - bz * wz
         swing[1, j] = bw * wx + by * wz - bz * wy
         swing[2, j] = bw * wy - bx * wz + bz * wx
         swing[3, j] = bw * wz + bx * wy - by * wx
-    if head.is_at_axes:
-        for j in range(LANES):
-            _reach_ahead(carrier, following, scale * offset[0, j], j)
-    else:
-        for j in range(LANES):
-            _reach(carrier, following, scale, offset, j)
+    _reach(scratch.carrier, scratch.next, scale, head.offset, head.is_at_axes, head.n_eights)
+    if head.n_rows > 2:
+        # The square of a sum of n is at most n times the sum of the squares.
+        for j in range(0, 8 * head.n_eights, 4):
+            _take_further(x, head.coordinate, half_key, j)
+        for j in range(8 * head.n_eights):
+            most = bound[j]
+            for c in range(2, half_key.shape[0]):
+                half = 0.5 * half_key[c, j]
+                half_key[c, j] = half
+                most += half * half * steepest[c, j]
+            bound[j] = most * head.last[j]
+    together, farthest = 0.0, 0.0
+    for j in range(8 * head.n_eights):
+        together += bound[j]
     if together <= NEAR_LIMIT:
         return together
-    farthest = 0.0
-    for j in range(head.n_lanes):
-        farthest = max(farthest, scratch.half_angle[j])
+    for j in range(8 * head.n_eights):
+        farthest = max(farthest, bound[j])
     return farthest
 
 
@@ -291,27 +279,6 @@ def _write_bases(head: Head, scratch: Head, bases: Floats) -> None:
 
 
 @part
-def _set_further_keys(branches: Branches, head: Head, scratch: Head, x: Floats) -> float:
-    """Set the further coordinates; return as `_turn_bases`, of the branches that have them."""
-    farthest, half_key = 0.0, scratch.half_key
-    half_key[2:] = 0.0
-    for j in range(head.n_lanes):
-        branch = branches[head.branch[j]]
-        if branch.n_coordinates == 2:
-            continue
-        i, further = branch.coordinate, 0.0
-        for c in range(2, branch.n_coordinates):
-            half = 0.5 * x[i + c]
-            half_key[c, j] = half
-            further += half * half * branch.steepest[c]
-        # The square of a sum is at most twice the square of its first and twice that of the
-        # others.
-        others = branch.n_coordinates - 2
-        farthest = max(farthest, 2.0 * (scratch.half_angle[j] + others * further))
-    return farthest
-
-
-@part
 def _write_poses(head: Head, scratch: Head, rank: int, n_lanes: int, out: Floats) -> None:
     """Write the poses of sixteen segments, each behind the one before it on its branch."""
     pose, first = scratch.pose, head.first
@@ -326,116 +293,90 @@ def _write_poses(head: Head, scratch: Head, rank: int, n_lanes: int, out: Floats
 
 
 @part
-def _half_vector(segment: Segment, scratch: Head, j: int) -> tuple[float, float, float]:
-    """Half the rotation vector of a segment of the lane j, by all its coordinates."""
-    turn, half_key, half_turn = segment.turn, scratch.half_key, scratch.half_turn
-    far = scratch.blend[j] * (segment.tip_slope[j] - segment.slope[j])
-    hx, hy, hz = far * half_turn[0, j], far * half_turn[1, j], far * half_turn[2, j]
-    # All rows that there is room for: a count known when compiled lets the lanes be a vector.
-    for c in range(turn.shape[0]):
-        key = half_key[c, j]
-        hx, hy, hz = hx + key * turn[c, 0, j], hy + key * turn[c, 1, j], hz + key * turn[c, 2, j]
-    return hx, hy, hz
-
-
-@part
-def _turn(
-    segment: Segment, scratch: Head, j: int, qw: float, qx: float, qy: float, qz: float
+def _reach(
+    pose: Floats, to: Floats, scale: float, own: Floats, is_ahead: int, n_eights: int
 ) -> None:
-    """Turn the segment of the lane j from rest."""
-    rest, pose = segment.rest, scratch.pose
-    pose[6, j], pose[3, j], pose[4, j], pose[5, j] = product(
-        qw, qx, qy, qz, rest[0, j], rest[1, j], rest[2, j], rest[3, j]
-    )
+    """Find where points of segments' own frames, all on their x axes or not, are at poses."""
+    for j in range(8 * n_eights):
+        x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
+        length = scale * own[0, j]
+        twice = length + length
+        to[0, j] = pose[0, j] + length - twice * (y * y + z * z)
+        to[1, j] = pose[1, j] + twice * (x * y + w * z)
+        to[2, j] = pose[2, j] + twice * (x * z - w * y)
+    if not is_ahead:
+        for j in range(8 * n_eights):
+            x, y, z = rotated(
+                pose[6, j], pose[3, j], pose[4, j], pose[5, j], 0.0, own[1, j], own[2, j]
+            )
+            to[0, j] += scale * x
+            to[1, j] += scale * y
+            to[2, j] += scale * z
 
 
 @part
-def _reach_ahead(pose: Floats, to: Floats, length: float, j: int) -> None:
-    """Find where the x axis of the pose of the lane j reaches."""
-    x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
-    twice = length + length
-    to[0, j] = pose[0, j] + length - twice * (y * y + z * z)
-    to[1, j] = pose[1, j] + twice * (x * y + w * z)
-    to[2, j] = pose[2, j] + twice * (x * z - w * y)
-
-
-@part
-def _reach(pose: Floats, to: Floats, scale: float, own: Floats, j: int) -> None:
-    """Find where a point of a segment's own frame is at the pose of the lane j."""
-    x, y, z = rotated(
-        pose[6, j], pose[3, j], pose[4, j], pose[5, j], own[0, j], own[1, j], own[2, j]
-    )
-    to[0, j] = pose[0, j] + scale * x
-    to[1, j] = pose[1, j] + scale * y
-    to[2, j] = pose[2, j] + scale * z
-
-
-@part
-def _join(segment: Segment, scratch: Head, scale: float) -> None:
+def _join(segment: Segment, scratch: Head, scale: float, is_joined: int, n_eights: int) -> None:
     """Put sixteen turned segments behind those before them, and find where the next ones are."""
-    pose, following, reach = scratch.pose, scratch.next, segment.reach
-    for j in range(LANES):
+    pose, following = scratch.pose, scratch.next
+    for j in range(8 * n_eights):
         pose[0, j], pose[1, j], pose[2, j] = following[0, j], following[1, j], following[2, j]
-        _reach(pose, following, scale, reach, j)
+    _reach(pose, following, scale, segment.reach, is_joined, n_eights)
 
 
 @part
-def _swing(segment: Segment, scratch: Head, j: int, c: float, s: float) -> None:
-    """Turn the segment of the lane j about the one axis of its branch."""
-    base, swing = scratch.base, scratch.swing
-    _turn(
-        segment, scratch, j,
-        c * base[0, j] + s * swing[0, j], c * base[1, j] + s * swing[1, j],
-        c * base[2, j] + s * swing[2, j], c * base[3, j] + s * swing[3, j],
-    )  # fmt: skip
-
-
-@part
-def _bend_and_join(segment: Segment, scratch: Head, scale: float) -> None:
+def _bend_and_join(segment: Segment, scratch: Head, scale: float, n_eights: int) -> None:
     """Turn and join sixteen straight segments of branches that bend a little about one axis."""
-    pose, following, reach = scratch.pose, scratch.next, segment.reach
-    for j in range(LANES):
+    base, swing, rest, reach = scratch.base, scratch.swing, segment.rest, segment.reach
+    pose, following = scratch.pose, scratch.next
+    for j in range(8 * n_eights):
         slope = segment.slope[j]
         c, s = half_angle_near(slope * slope * scratch.square[j])
-        _swing(segment, scratch, j, c, s * slope)
-        pose[0, j], pose[1, j], pose[2, j] = following[0, j], following[1, j], following[2, j]
-        _reach_ahead(pose, following, scale * reach[0, j], j)
+        s *= slope
+        w, x, y, z = product(
+            c * base[0, j] + s * swing[0, j], c * base[1, j] + s * swing[1, j],
+            c * base[2, j] + s * swing[2, j], c * base[3, j] + s * swing[3, j],
+            rest[0, j], rest[1, j], rest[2, j], rest[3, j],
+        )  # fmt: skip
+        length = scale * reach[0, j]
+        twice = length + length
+        px, py, pz = following[0, j], following[1, j], following[2, j]
+        pose[0, j], pose[1, j], pose[2, j] = px, py, pz
+        pose[3, j], pose[4, j], pose[5, j], pose[6, j] = x, y, z, w
+        following[0, j] = px + length - twice * (y * y + z * z)
+        following[1, j] = py + twice * (x * y + w * z)
+        following[2, j] = pz + twice * (x * z - w * y)
 
 
 @part
-def _bend_in_plane(segment: Segment, scratch: Head) -> None:
-    """Turn sixteen segments, each of a branch that bends about one axis."""
-    slope = segment.slope
-    for j in range(LANES):
-        first = slope[j] + scratch.blend[j] * (segment.tip_slope[j] - slope[j])
-        c, s = half_angle_series(first * first * scratch.square[j])
-        _swing(segment, scratch, j, c, s * first)
-
-
-@part
-def _bend(segment: Segment, scratch: Head) -> None:
-    """Turn sixteen segments of branches with further coordinates."""
-    base = scratch.base
-    for j in range(LANES):
-        hx, hy, hz = _half_vector(segment, scratch, j)
-        c, s = half_angle_series(hx * hx + hy * hy + hz * hz)
-        bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
-        qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)
-        _turn(segment, scratch, j, qw, qx, qy, qz)
-
-
-@part
-def _bend_far(segment: Segment, scratch: Head, n_rows: int) -> None:
-    """Turn sixteen segments, some of a branch that bends beyond the series."""
-    base, half_turn = scratch.base, scratch.half_turn
-    for j in range(segment.n_lanes):
-        if n_rows > 2:
-            hx, hy, hz = _half_vector(segment, scratch, j)
-        else:
+def _bend(segment: Segment, scratch: Head, n_rows: int, farthest: float, n_eights: int) -> None:
+    """Turn sixteen segments from rest by all coordinates of their branches."""
+    turn, half, angle, rest = segment.turn, scratch.half, scratch.angle, segment.rest
+    base, half_key, half_turn = scratch.base, scratch.half_key, scratch.half_turn
+    pose, blend = scratch.pose, scratch.blend
+    if n_rows == 2:
+        for j in range(8 * n_eights):
             slope = segment.slope[j]
-            slope += scratch.blend[j] * (segment.tip_slope[j] - slope)
+            slope += blend[j] * (segment.tip_slope[j] - slope)
             hx, hy, hz = slope * half_turn[0, j], slope * half_turn[1, j], slope * half_turn[2, j]
-        c, s = half_angle(hx * hx + hy * hy + hz * hz)
-        bw, bx, by, bz = base[0, j], base[1, j], base[2, j], base[3, j]
-        qw, qx, qy, qz = product(bw, bx, by, bz, c, s * hx, s * hy, s * hz)
-        _turn(segment, scratch, j, qw, qx, qy, qz)
+            half[0, j], half[1, j], half[2, j] = hx, hy, hz
+            angle[j] = hx * hx + hy * hy + hz * hz
+    else:
+        # All rows that there is room for: a count known when compiled lets the lanes be a vector.
+        for j in range(8 * n_eights):
+            slope = blend[j] * (segment.tip_slope[j] - segment.slope[j])
+            hx, hy, hz = slope * half_turn[0, j], slope * half_turn[1, j], slope * half_turn[2, j]
+            for c in range(turn.shape[0]):
+                u = half_key[c, j]
+                hx, hy, hz = hx + u * turn[c, 0, j], hy + u * turn[c, 1, j], hz + u * turn[c, 2, j]
+            half[0, j], half[1, j], half[2, j] = hx, hy, hz
+            angle[j] = hx * hx + hy * hy + hz * hz
+    _half_angles(scratch, farthest, n_eights)
+    for j in range(8 * n_eights):
+        c, s = scratch.cosine[j], scratch.sinc[j]
+        w, x, y, z = product(
+            base[0, j], base[1, j], base[2, j], base[3, j],
+            c, s * half[0, j], s * half[1, j], s * half[2, j],
+        )  # fmt: skip
+        pose[6, j], pose[3, j], pose[4, j], pose[5, j] = product(
+            w, x, y, z, rest[0, j], rest[1, j], rest[2, j], rest[3, j]
+        )

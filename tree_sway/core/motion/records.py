@@ -90,6 +90,7 @@ class Head:
     block: int  # first record of their segments
     n_records: int
     n_lanes: int
+    n_eights: int  # of lanes, the last ones with empty ones
     n_bearing: int  # lanes up to the last that others sit on
     n_rows: int  # most coordinates that one of them has; 2 where all are plain
     n_parent_rows: int  # the same of their parents
@@ -104,13 +105,15 @@ class Head:
     frame: Annotated[Floats, 3, 3, LANES]
     skew: Annotated[Floats, LANES]
     tip_skew: Annotated[Floats, LANES]
-    steepest: Annotated[Floats, LANES]
+    steepest: Annotated[Floats, 'rows', LANES]
+    last: Annotated[Floats, LANES]  # of its coordinates, from its first
+    parent_coordinate: Annotated[Ints, LANES]
     # Rotation of its base per unit of each of its parent's coordinates:
     base_turn: Annotated[Floats, 'rows', 3, LANES]
     offset: Annotated[Floats, 3, LANES]
     # Scratch:
     key: Annotated[Floats, 2, LANES]  # key rotation
-    parent_key: Annotated[Floats, 'rows', LANES]  # half of each parent's, stretched
+    parent_key: Annotated[Floats, 'rows', LANES]  # half of each parent's further ones
     parent_base: Annotated[Floats, 8, LANES]  # bases of `place`
     carrier: Annotated[Floats, 7, LANES]  # pose of the base segment
     carrier_turn: Annotated[Floats, 3, LANES]  # half the rotation vector from the parent's base
@@ -120,7 +123,11 @@ class Head:
     half_key: Annotated[Floats, 'rows', LANES]  # half of each coordinate, stretched
     square: Annotated[Floats, LANES]  # of the length of half_turn
     swing: Annotated[Floats, 4, LANES]  # half_turn, then the base: what a sine is multiplied by
-    half_angle: Annotated[Floats, LANES]  # bound on the squared half turn of any segment
+    bound: Annotated[Floats, LANES]  # on the squared half turn of any segment
+    half: Annotated[Floats, 3, LANES]  # half the rotation vector of the segment
+    angle: Annotated[Floats, LANES]  # square of half an angle, its cosine, and its sine over it
+    cosine: Annotated[Floats, LANES]
+    sinc: Annotated[Floats, LANES]
     next: Annotated[Floats, 3, LANES]  # where the segment after this one starts
     pose: Annotated[Floats, 7, LANES]  # of the segment, in message order
 

@@ -37,9 +37,10 @@ def put_four(
 def take_four(
     array: Any, a: int, b: int, c: int, d: int, first: int, lanes: Any, row: int, lane: int
 ) -> None:
-    """Read what `put_four` writes."""
+    """Read what `put_four` writes, or four numbers each of an array (n,) from an element on."""
     for of, j in ((a, lane), (b, lane + 1), (c, lane + 2), (d, lane + 3)):
-        lanes[row : row + 4, j] = array[of, first : first + 4]
+        rows = array[of] if array.ndim == 2 else array[of:]
+        lanes[row : row + 4, j] = rows[first : first + 4]
 
 
 def write_past_caches(of: Any, into: Any) -> None:
@@ -113,7 +114,11 @@ if not WHY_PLAIN:
                     )
                     for k in range(4)
                 ]  # fmt: skip
-                to = [_place(context, builder, kinds[3], array, each, first) for each in rows]
+                if kinds[3].ndim == 2:
+                    to = [_place(context, builder, kinds[3], array, each, first) for each in rows]
+                else:
+                    at = [builder.add(each, first) for each in rows]
+                    to = [_place(context, builder, kinds[3], array, each) for each in at]
                 of, to = (of, to) if is_put else (to, of)
                 read = [builder.load(where, align=8) for where in of]
                 for value, where in zip(_turned(builder, read), to, strict=True):

@@ -20,8 +20,8 @@ import numpy as np
 from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf, Singles
 from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import pressure
-from tree_sway.core.motion.placing import place
-from tree_sway.core.motion.records import Branches, Heads, Instances, Segments, Tables, TimeSteps
+from tree_sway.core.motion.placing import NONE, place
+from tree_sway.core.motion.records import Heads, Instances, Segments, Tables, TimeSteps
 from tree_sway.core.motion.simd import settle, write_past_caches
 from tree_sway.core.motion.wind_basis import step_instance
 
@@ -105,7 +105,7 @@ def step_standing(
 @fused
 def place_standing(
     standing: Stand, instances: Instances, which: Ints, shapes: Singles,
-    branches: Branches, segments: Segments, heads: Heads, bases: Floats, x: Floats, poses: Floats,
+    segments: Segments, heads: Heads, bases: Floats, x: Floats, poses: Floats,
     out: Floats,
 ) -> None:  # fmt: skip
     """
@@ -122,7 +122,7 @@ def place_standing(
         Trees and their first rows in the pose block, (w, 2).
     shapes
         Of the kind, as of `placing.expand`.
-    branches, segments, heads, bases
+    segments, heads, bases
         Of the kind, as of `placing.place`.
     x, poses
         To work in, (N,) and (m, 7).
@@ -135,12 +135,13 @@ def place_standing(
         t, first = which[row, 0], which[row, 1]
         here = standing[t]
         place(
-            instances[t : t + 1], shapes, branches, segments, heads, bases,
-            here.cosine, here.sine, here.scale, x, here.at[:], poses,
+            instances[t : t + 1], shapes, segments, heads, bases,
+            here.cosine, here.sine, here.scale, x, NONE, here.at[:], poses,
         )  # fmt: skip
         into = whole[7 * first : 7 * first + len(block)]
         if len(whole) > _CACHED:
             write_past_caches(block, into)
         else:
-            into[:] = block
+            for i in range(len(block)):
+                into[i] = block[i]
     settle()

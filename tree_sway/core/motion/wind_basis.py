@@ -23,7 +23,7 @@ from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.modal import ModalBank
-from tree_sway.core.motion.placing import expand
+from tree_sway.core.motion.placing import expand, room_for
 from tree_sway.core.motion.records import (
     Instance,
     instance_layout,
@@ -88,7 +88,7 @@ class WindBasisBank:
 
     def room_for_rotations(self) -> Floats:
         """Zeros for `expand` to write key rotations to, (N,) and some more."""
-        return np.zeros(len(self.laid_shapes) * TOGETHER)
+        return room_for(len(self.laid_shapes) * TOGETHER)
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""

@@ -354,14 +354,14 @@ class SceneSimulator:
         records, bank = self._models[kind].bank, self._banks[kind]
         heads, bases, x, block = self._scratch[kind]
         place_standing(
-            self._standing, self._instances, rows, bank.laid_shapes, records.branches,
-            records.segments, heads, bases, x, block, out,
+            self._standing, self._instances, rows, bank.laid_shapes, records.segments, heads,
+            bases, x, block, out,
         )  # fmt: skip
         for number, first in rows.tolist() if self.pushed else ():
             if number in self.pushed:
                 at, keys = self._standing[number], self.pushed[number].rotations()
-                turned = at['cosine'], at['sine'], at['scale'], keys, at['at']
-                bent = *GIVEN, records.branches, records.segments, heads, bases, *turned
+                turned = at['cosine'], at['sine'], at['scale'], x, keys, at['at']
+                bent = *GIVEN, records.segments, heads, bases, *turned
                 place(*bent, out[first : first + len(block)])
 
     @cached_property

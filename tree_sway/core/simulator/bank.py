@@ -110,23 +110,25 @@ class Bank:
         """
         if self.plain:
             return self._plain_placing.place
-        from tree_sway.core.motion.placing import GIVEN
+        from tree_sway.core.motion.placing import GIVEN, room_for
 
-        return self._placing((self.oscillators.to_place or GIVEN)[0], GIVEN[1])
+        instance, shapes = (self.oscillators.to_place or GIVEN)[0], GIVEN[1]
+        return self._placing(instance, shapes, room_for(int(self.branches['n_coordinates'].sum())))
 
-    def _placing(self, instance: Records, shapes: Singles) -> Callable[..., None]:
+    def _placing(self, instance: Records, shapes: Singles, x: Floats) -> Callable[..., None]:
         from tree_sway.core.motion.placing import place
 
-        arrays = instance, shapes, self.branches, self.segments, self.heads, self.bases
-        first = *arrays, 1.0, 0.0, 1.0
+        arrays = instance, shapes, self.segments, self.heads, self.bases
+        first = *arrays, 1.0, 0.0, 1.0, x
         given = np.zeros(1), np.zeros(3), np.zeros((1, 7))
         return partial(entry_of(place, *first, *given), *first)
 
     @cached_property
     def place_now(self) -> Callable[[Floats, Floats], None]:
         """Place every segment as the oscillators are, from a root node (3,) on, as `place`."""
+        from tree_sway.core.motion.placing import NONE
+
         oscillators = self.oscillators
         if oscillators.to_place is not None:
-            instance, shapes, x = oscillators.to_place
-            return partial(self._placing(instance, shapes), x)
+            return partial(self._placing(*oscillators.to_place), NONE)
         return lambda origin, out: self.place(oscillators.rotations(), origin, out)

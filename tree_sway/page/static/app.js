@@ -5,10 +5,10 @@
 import { TreeStream } from "./client.js";
 import { DAYLIGHT } from "./drawing/backdrop.js";
 import { Scene } from "./drawing/scene.js";
-import { Hands } from "./hands.js";
+import { Hands, xr } from "./hands.js";
 import { readLink, recordClip, savePicture, saveTree, viewLink } from "./keepsake.js";
 import { keptScene, OwnLine } from "./own_line.js";
-import { Panel } from "./panel.js";
+import { element, made, Panel } from "./panel.js";
 import { QUANTITIES, Trace, unitOf } from "./trace.js";
 import { language, setLanguage, windFrom, word } from "./words.js";
 
@@ -19,9 +19,6 @@ const FACTS_EVERY = 400;
 /** How far a pointer may move in a click [px]. */
 const STILL = 4;
 
-/** @template {HTMLElement} [T=HTMLElement] @param {string} id @returns {T} */
-const element = (id) => /** @type {T} */ (document.getElementById(id));
-
 /** Write texts where they are others. @param {Record<string, string>} texts by the ids of what shows them */
 function write(texts) {
   for (const [id, text] of Object.entries(texts)) {
@@ -29,17 +26,13 @@ function write(texts) {
   }
 }
 
-/** @type {HTMLCanvasElement} */
-const canvas = element("view");
-/** @type {HTMLSelectElement} */
-const shown = element("shown");
-/** @type {HTMLInputElement} */
-const timeLine = element("time");
-/** @type {HTMLDialogElement} */
-const help = element("keys");
+const canvas = /** @type {HTMLCanvasElement} */ (element("view"));
+const shown = /** @type {HTMLSelectElement} */ (element("shown"));
+const timeLine = /** @type {HTMLInputElement} */ (element("time"));
+const help = /** @type {HTMLDialogElement} */ (element("keys"));
 const traces = {
-  wind: new Trace(element("wind-trace"), "wind", "--blue"),
-  tip: new Trace(element("tip-trace"), "motion", "--green"),
+  wind: new Trace(element("wind-trace"), "wind"),
+  tip: new Trace(element("tip-trace"), "motion"),
 };
 const { settings, view } = readLink(location.hash);
 const query = new URLSearchParams(location.search);
@@ -58,7 +51,9 @@ let endClip = /** @type {(() => void) | null} */ (null);
 
 setLanguage(settings.lang ?? navigator.language.slice(0, 2));
 const kept = await keptScene().catch((error) => giveUp(word("damaged"), word("write_again", error.message)));
-const scene = await newScene().catch((error) => giveUp(word("blind"), word("cure", error.message)));
+// Nothing is left out in full quality, however slow that is.
+const scene = await (async () => new Scene(canvas, query.get("quality") === "full"))()
+  .catch((error) => giveUp(word("blind"), word("cure", error.message)));
 const stream = new TreeStream(location.href, {
   onState(state, retryIn) {
     line = state;
@@ -90,7 +85,7 @@ const stream = new TreeStream(location.href, {
       controls = hello.controls;
       panel.build(controls);
       element("panel").hidden = controls.length === 0;
-      hands.canPull = hello.can_pull === true;
+      element("pull").hidden = hello.can_pull !== true;
     }
     if (refused || unreadable) toast(unreadable ?? refused.reason);
     if (values) {
@@ -103,19 +98,15 @@ const stream = new TreeStream(location.href, {
 }, { kept, byWind: query.has("solve") });
 
 const { connection, playout } = stream;
-const hands = new Hands({ scene, stream }, toast);
+const hands = new Hands(scene, stream, showButtons);
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
 const treeName = () => connection.description?.name ?? "tree";
 
-/** What draws; an `Error` without WebGL 2. Nothing is left out in full quality, however slow that is. */
-async function newScene() {
-  return new Scene(canvas, query.get("quality") === "full");
-}
-
-/** Say why there is nothing to see; nothing follows. @param {string} title @param {string} text */
+/** Say why there is nothing to see; nothing follows. @param {string} title @param {string} text
+ * @returns {Promise<never>} */
 function giveUp(title, text) {
   notice(title, text);
-  return /** @type {Promise<never>} */ (new Promise(() => undefined));
+  return new Promise(() => undefined);
 }
 
 /** @returns {["live" | "paused" | "behind" | "empty" | "connecting" | "lost", string]} */
@@ -161,11 +152,10 @@ function showFacts() {
   const span = (now - factsAt) / 1000;
   if (span < FACTS_EVERY / 1000) return;
   fps = drawn / span;
-  const { leftOut } = scene;
+  const { leftOut } = scene.quality;
   const { corrections = 0, largest = 0 } = stream.byWind ?? {};
   element("drawn").title = leftOut ? word("left_out", leftOut.pixels, leftOut.leaves) : "";
   element("stream").title = stream.byWind ? word("corrected", corrections, (100 * largest).toFixed(2)) : "";
-  element("latency").title = "On the way, and delayed so that the motion is smooth";
   const latency = connection.roundTrip / 2 + Math.max(0, playout.lateness);
   const [x, y] = playout.wind;
   const { mean, greatest } = traces.wind.statistics;
@@ -189,7 +179,7 @@ const modelName = (model) => (/^\d+$/.test(model) ? word("coordinates", model) :
 /** @param {number} now */
 function draw(now) {
   requestAnimationFrame(draw);
-  if (hands.isAway) return;
+  if (hands.areOn.headset) return;
   const coordinates = stream.sample();
   const isStill = playout.isPaused || playout.back > 0;
   scene.wind = playout.wind;
@@ -197,8 +187,8 @@ function draw(now) {
   lastDrawn = now;
   scene.draw(coordinates, sceneTime, isStill);
   drawn += 1;
-  hands.frame({ scene, stream });
   if (coordinates) {
+    hands.frame();
     const [at, rest] = [scene.tip(), scene.restTip()];
     const motion = Math.hypot(...at.map((each, c) => each - rest[c]));
     const value = { motion, ...scene.load() }[shown.value] ?? 0;
@@ -234,8 +224,8 @@ function nextDay() {
 
 /** Buttons say what is: a tree that was started bare has no leaves to show. */
 function showButtons() {
-  const { hasLeaves, leavesShown, isAutumn } = scene;
-  const pressed = { leaves: hasLeaves && leavesShown, season: isAutumn, clip: endClip !== null };
+  const { hasLeaves, leavesShown, isAutumn: season } = scene;
+  const pressed = { leaves: hasLeaves && leavesShown, season, clip: endClip !== null, ...hands.areOn };
   for (const [id, isSo] of Object.entries(pressed)) element(id).setAttribute("aria-pressed", String(isSo));
   Object.assign(element("leaves"), { disabled: !hasLeaves, title: word(hasLeaves ? "leaves" : "bare") });
 }
@@ -265,39 +255,26 @@ async function copyLink() {
 /** Begin a clip, or end and save it. */
 function toggleClip() {
   endClip?.();
-  try {
-    endClip = endClip ? null : recordClip(canvas, treeName());
-  } catch (error) {
-    toast(String(error));
-  }
+  endClip = endClip ? null : recordClip(canvas, treeName());
 }
-
-/** @param {"glb" | "html"} suffix */
-const takeTree = (suffix) => saveTree(suffix, treeName()).catch((error) => toast(error.message));
 
 function toggleFull() {
   if (document.fullscreenElement) document.exitFullscreen();
   else document.documentElement.requestFullscreen?.().catch(() => undefined);
 }
 
-function showHelp() {
-  const items = word("keys").split("|").map((textContent) =>
-    Object.assign(document.createElement("li"), { textContent }));
-  element("keys-list").replaceChildren(...items);
-  help.showModal();
-}
-
 /** @param {string} chosen language */
 function speak(chosen) {
   setLanguage(chosen);
   /** @type {HTMLSelectElement} */ (element("language")).value = language();
+  element("keys-list").replaceChildren(...word("keys").split("|").map((text) => made("li", {}, text)));
   panel.build(controls);
   showButtons();
   pick(scene.picked);
   showState();
 }
 
-/** @type {Record<string, () => void>} what buttons do, and keys that are written beside them */
+/** @type {Record<string, () => unknown>} what buttons do, and keys that are written beside them */
 const actions = {
   home: () => scene.camera.home(),
   leaves: () => scene.hasLeaves && scene.dress({ leavesShown: !scene.leavesShown }),
@@ -305,23 +282,30 @@ const actions = {
   season: () => scene.dress({ isAutumn: !scene.isAutumn }),
   picture: () => savePicture(scene, treeName(), () => scene.draw(null, sceneTime, true)),
   clip: toggleClip,
-  glb: () => takeTree("glb"),
-  html: () => takeTree("html"),
+  glb: () => saveTree("glb", treeName()),
+  html: () => saveTree("html", treeName()),
   link: copyLink,
   full: toggleFull,
-  help: showHelp,
+  help: () => help.showModal(),
   retry: () => stream.open(),
   close: () => help.close(),
+  pull: () => hands.togglePull(),
+  sound: () => hands.toggleSound(),
+  headset: () => hands.toggleHeadset(),
 };
-/** @type {Record<string, () => void>} */
+/** @type {Record<string, () => unknown>} */
 const keys = {
   m: () => (scene.hasPerson = !scene.hasPerson),
   " ": () => element("control-pause")?.click(),
   "[": () => pickNext(-1), "]": () => pickNext(1), escape: () => pick(-1),
 };
 for (const [id, action] of Object.entries(actions)) {
-  const act = () => {
-    action();
+  const act = async () => {
+    try {
+      await action();
+    } catch (error) {
+      toast(/** @type {Error} */ (error).message);
+    }
     showButtons();
   };
   element(id).addEventListener("click", act);
@@ -332,11 +316,12 @@ document.addEventListener("keydown", (event) => {
   if (target.closest("input, select, button, summary, dialog") || event.ctrlKey || event.metaKey) return;
   keys[event.key.toLowerCase()]?.();
 });
+xr?.isSessionSupported("immersive-vr").then((/** @type {boolean} */ isSo) => (element("headset").hidden = !isSo), () => undefined);
 let pressed = [0, 0];
 canvas.addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]));
 canvas.addEventListener("click", (event) => {
   if (Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > STILL) return;
-  pick(scene.nearest(event.clientX / canvas.clientWidth, event.clientY / canvas.clientHeight).branch);
+  if (scene.description) pick(scene.nearest(event.clientX / canvas.clientWidth, event.clientY / canvas.clientHeight).branch);
 });
 shown.addEventListener("change", () => pick(scene.picked));
 timeLine.addEventListener("input", lookBack);
@@ -359,7 +344,7 @@ calm.addEventListener("change", () => (scene.flutters = !calm.matches));
 scene.dress({ leavesShown: settings.leaves !== "false", isAutumn: settings.autumn === "true" });
 if (settings.shown in QUANTITIES) shown.value = settings.shown;
 // A page that is a file is what its `.html` would be.
-for (const id of ["glb", "html"]) element(id).hidden = Boolean(kept);
+for (const id of ["glb", "html"]) element(id).hidden = kept !== null;
 speak(language());
 /** @type {HTMLDetailsElement} */ (element("panel")).open = window.innerWidth > 700;
 scene.camera.listen(canvas);

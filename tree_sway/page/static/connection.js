@@ -67,9 +67,8 @@ export class Connection {
   close() {
     clearTimeout(this._retry);
     clearInterval(this._watching);
-    const socket = this._socket;
+    this._socket?.close();
     this._socket = null;
-    socket?.close();
   }
 
   /** @param {Record<string, any>} message */
@@ -88,9 +87,8 @@ export class Connection {
 
   /** Close the line, and make it again. */
   _drop() {
-    const socket = this._socket;
+    this._socket?.close();
     this._lose();
-    socket?.close();
   }
 
   _watch() {

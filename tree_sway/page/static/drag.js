@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /** A branch pulled by hand: a spring to the pointer, and the pull test when it is let go. */
 
+import { save } from "./keepsake.js";
+import { element } from "./panel.js";
 import { STRIDE } from "./placing.js";
 import { chainTo, Touch } from "./touch.js";
 import { word } from "./words.js";
@@ -131,54 +133,41 @@ export class Drag {
     this.isOn = false;
     this.pull = /** @type {Pull | null} */ (null);
     this._pointer = -1;
-    const box = (/** @type {string} */ tag, /** @type {string} */ id) =>
-      Object.assign(document.body.appendChild(document.createElement(tag)), { id, hidden: true });
-    this._line = box("i", "pull-line");
-    this._label = box("output", "pull-force");
-    this._save = /** @type {HTMLAnchorElement} */ (box("a", "pull-save"));
-    Object.assign(this._save, { download: "pull_test.csv", href: "#" });
-    this._save.addEventListener("click", () => {
-      const text = new Blob([this.pull?.csv() ?? ""], { type: "text/csv" });
-      this._save.href = URL.createObjectURL(text);
-    });
-    const listen = (/** @type {"pointerdown" | "pointermove" | "pointerup" | "pointercancel"} */ type,
-      /** @type {(event: PointerEvent) => void} */ act) => scene.canvas.addEventListener(type, (event) => {
-      if (type === "pointerdown" ? !this.isOn || !this._grab(event) : event.pointerId !== this._pointer) return;
-      event.stopImmediatePropagation();
-      act(event);
-    }, { capture: true });
-    listen("pointerdown", (event) => scene.canvas.setPointerCapture(event.pointerId));
-    listen("pointermove", (event) => this._move(event));
-    for (const type of /** @type {const} */ (["pointerup", "pointercancel"])) listen(type, () => this._release());
-    scene.canvas.addEventListener("keydown", (event) => {
-      if (!this.isOn || !this._key(event.key)) return;
-      event.stopImmediatePropagation();
-      event.preventDefault();
-    }, { capture: true });
+    this._line = element("pull-line");
+    this._label = element("pull-force");
+    this._save = element("pull-save");
+    this._save.addEventListener("click", () => save(new Blob([this.pull?.csv() ?? ""]), "pull_test", "csv"));
+    /** @type {[string, (event: any) => boolean][]} by their types, what takes an event; whether it is one for it */
+    const takers = [["pointerdown", (event) => this._grab(event)], ["pointermove", (event) => this._move(event)],
+      ["pointerup", (event) => this._release(event)], ["pointercancel", (event) => this._release(event)],
+      ["keydown", (event) => this._key(event)]];
+    for (const [type, take] of takers) {
+      scene.canvas.addEventListener(type, (event) => take(event) && event.stopImmediatePropagation(), { capture: true });
+    }
   }
 
-  /** By keys: arrows pull the tip that is followed, Enter lets go. @param {string} key @returns {boolean}
-   * whether it is one of these */
-  _key(key) {
-    const [x, y] = WAYS[key] ?? [0, 0];
-    if (key === "Enter" && this.pull?.isHeld) this._release();
-    else if (!(key in WAYS)) return false;
-    else {
-      const { camera, followed } = this.scene;
-      if (!this.pull?.isHeld) this.pull = new Pull(this.scene, this.stream, followed);
-      const [u, v] = camera.project(this.pull.to);
-      this.pull.to = camera.under(u + KEY_STEP * x, v + KEY_STEP * y, this.pull.to);
-    }
+  /** By keys: arrows pull the tip that is followed, Enter lets go. @param {KeyboardEvent} event */
+  _key(event) {
+    const { key } = event;
+    if (!this.isOn || !(key in WAYS || (key === "Enter" && this.pull?.isHeld))) return false;
+    event.preventDefault();
+    if (key === "Enter") return this._release({ pointerId: this._pointer });
+    const { camera, followed } = this.scene;
+    if (!this.pull?.isHeld) this.pull = new Pull(this.scene, this.stream, followed);
+    const [u, v] = camera.project(this.pull.to);
+    this.pull.to = camera.under(u + KEY_STEP * WAYS[key][0], v + KEY_STEP * WAYS[key][1], this.pull.to);
     return true;
   }
 
   /** @param {PointerEvent} event */
   _grab({ pointerId, clientX, clientY }) {
-    const { clientWidth: wide, clientHeight: high } = this.scene.canvas;
-    const segment = this._pointer < 0 ? this._under(clientX / wide, clientY / high) : -1;
+    const { canvas } = this.scene;
+    const isFree = this.isOn && this._pointer < 0;
+    const segment = isFree ? this._under(clientX / canvas.clientWidth, clientY / canvas.clientHeight) : -1;
     if (segment < 0) return false;
     this.pull = new Pull(this.scene, this.stream, segment);
     this._pointer = pointerId;
+    canvas.setPointerCapture(pointerId);
     return true;
   }
 
@@ -199,15 +188,19 @@ export class Drag {
   }
 
   /** @param {PointerEvent} event */
-  _move({ clientX, clientY }) {
-    if (!this.pull) return;
+  _move({ pointerId, clientX, clientY }) {
+    if (!this.pull || pointerId !== this._pointer) return false;
     const { canvas, camera } = this.scene;
     this.pull.to = camera.under(clientX / canvas.clientWidth, clientY / canvas.clientHeight, this.pull.to);
+    return true;
   }
 
-  _release() {
+  /** @param {{pointerId: number}} event */
+  _release({ pointerId }) {
+    if (pointerId !== this._pointer) return false;
     this._pointer = -1;
     this.pull?.release();
+    return true;
   }
 
   /** Go on with what is drawn. */

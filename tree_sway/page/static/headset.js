@@ -39,12 +39,9 @@ export class Headset {
     this.pulls = /** @type {Map<any, {pull: Pull, far: number}>} */ (new Map());
   }
 
-  /** Enter, or leave. @param {(isIn: boolean) => void} say that it changed by itself */
-  async toggle(say) {
-    if (this.session) {
-      await this.session.end();
-      return false;
-    }
+  /** Enter, or leave. @param {() => void} onEnd what is done when it has ended */
+  async toggle(onEnd) {
+    if (this.session) return this.session.end();
     const { gl } = this.scene;
     const session = await xr.requestSession("immersive-vr", { requiredFeatures: ["local-floor"] });
     await /** @type {any} */ (gl).makeXRCompatible();
@@ -61,11 +58,10 @@ export class Headset {
     session.addEventListener("end", () => {
       this.session = null;
       for (const source of this.pulls.keys()) this._release(source);
-      say(false);
+      onEnd();
     });
     this.session = session;
     session.requestAnimationFrame((/** @type {number} */ now, /** @type {any} */ frame) => this._draw(now, frame));
-    return true;
   }
 
   /** Stand somewhere on the ground: the headset is y up and looks along -z, the scene is z up.

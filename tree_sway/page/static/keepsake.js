@@ -5,7 +5,7 @@
 const FRAMES_PER_SECOND = 30;
 
 /** Hand a file to whoever looks. @param {Blob} blob @param {string} name @param {string} suffix */
-function save(blob, name, suffix) {
+export function save(blob, name, suffix) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
   link.download = `${name.replace(/[^\p{L}\p{N}]+/gu, "_")}.${suffix}`;

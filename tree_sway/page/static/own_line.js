@@ -3,7 +3,7 @@
 /** The line of a page that solves by itself: it gives the states that a server would send. */
 
 import { Connection } from "./connection.js";
-import { decodeDescription, PAUSED, ProtocolError, RESTARTED } from "./protocol.js";
+import { decodeDescription, PAUSED, RESTARTED } from "./protocol.js";
 import { decodeTables, Stand } from "./sway.js";
 import { readWind, Recorded, Turbulence } from "./wind.js";
 
@@ -11,37 +11,17 @@ import { readWind, Recorded, Turbulence } from "./wind.js";
 const LATEST = 250;
 const STATUS_EVERY = 500;
 
-/** What the page itself holds; null on one that is served. A `ProtocolError` if it is damaged.
+/** What the page itself holds; null on one that is served. An `Error` if it is damaged.
  * @returns {Promise<Kept | null>} */
 export async function keptScene() {
-  const text = document.getElementById("scene")?.textContent;
-  if (text === undefined || text === null) return null;
-  try {
-    const packed = new Blob([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))]);
-    const stream = packed.stream().pipeThrough(new DecompressionStream("gzip"));
-    const data = await new Response(stream).arrayBuffer();
-    const from = 4 + new DataView(data).getUint32(0, true);
-    const description = decodeDescription(outOfPlanes(data.slice(4, from)));
-    const tables = decodeTables(outOfPlanes(data.slice(from)));
-    return { description, stand: new Stand(tables, description) };
-  } catch (error) {
-    throw error instanceof ProtocolError ? error : new ProtocolError(String(error));
-  }
-}
-
-/** A message whose arrays have their first bytes together, their second bytes and so on; files are packed
- * better so. @param {ArrayBuffer} data */
-function outOfPlanes(data) {
-  const begin = 12 + new DataView(data).getUint32(8, true);
-  const whole = new Uint8Array(data.slice(0));
-  const { arrays } = JSON.parse(new TextDecoder().decode(whole.subarray(12, begin)));
-  for (const { type, shape, offset } of Object.values(arrays)) {
-    const size = type === "u8" ? 1 : type === "i16" ? 2 : 4;
-    const count = shape.reduce((/** @type {number} */ a, /** @type {number} */ b) => a * b, 1);
-    const planes = new Uint8Array(data, begin + offset, size * count);
-    planes.forEach((byte, i) => (whole[begin + offset + size * (i % count) + Math.floor(i / count)] = byte));
-  }
-  return whole.buffer;
+  const text = document.getElementById("scene")?.textContent ?? null;
+  if (text === null) return null;
+  const packed = new Blob([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))]);
+  const stream = packed.stream().pipeThrough(new DecompressionStream("gzip"));
+  const data = await new Response(stream).arrayBuffer();
+  const from = 4 + new DataView(data).getUint32(0, true);
+  const description = decodeDescription(data.slice(4, from), true);
+  return { description, stand: new Stand(decodeTables(data.slice(from), true), description) };
 }
 
 /** Used as a `Connection`: the same listeners, messages and frames. */
@@ -67,15 +47,15 @@ export class OwnLine {
     this._timer = /** @type {ReturnType<typeof setInterval> | undefined} */ (undefined);
     const unheard = () => this.listeners.onMessage({ unreadable: `no live wind from ${address}: the simulated one blows `
       + "until it comes. See whether tree-sway show runs there, with --origin null if this page is a file." });
-    this._line = address === null ? null : new Connection(address, {
-      onState: (state) => {
-        if (state === "lost" && (this._live || this._line?.description === null)) unheard();
-        if (state === "lost") this._live = null;
-      },
-      onDescription: () => undefined,
-      onFrame: (frame) => (this._live = frame),
-      onMessage: () => undefined,
-    }, 60);
+    const onState = (/** @type {string} */ state) => {
+      if (state !== "lost") return;
+      if (this._live || this._line?.description === null) unheard();
+      this._live = null;
+    };
+    const ignore = () => undefined;
+    const onFrame = (/** @type {Frame} */ frame) => (this._live = frame);
+    this._line = address === null ? null
+      : new Connection(address, { onState, onDescription: ignore, onFrame, onMessage: ignore }, 60);
   }
 
   open() {
@@ -94,7 +74,10 @@ export class OwnLine {
 
   /** Say what can be changed. */
   _hello() {
-    const controls = controlsOf(this._turbulence.values, this._wind);
+    const { mean_speed: speed, intensity, bearing_to: bearing } = this._turbulence.values;
+    const controls = [control("mean_speed", speed, "m/s", 0, 40), control("intensity", intensity),
+      control("bearing_to", bearing, "rad", -6.3, 6.3), control("pause", false), control("reset", null)];
+    if (this._wind instanceof Recorded) controls.push(control("record_time", 0, "s", 0, this._wind.length));
     this.listeners.onMessage({ hello: { controls, can_pull: true } });
   }
 
@@ -134,8 +117,7 @@ export class OwnLine {
 
   _step() {
     const begin = performance.now();
-    const { wind: live } = this._live ?? {};
-    const [x, y, z] = live ?? this._wind.next(this.stand.dt);
+    const [x, y, z] = this._live?.wind ?? this._wind.next(this.stand.dt);
     if (!this._isPaused) this.stand.step(x, y, z);
     this._work += 0.05 * (performance.now() - begin - this._work);
     const flags = (this._isPaused ? PAUSED : 0) + (this._hasRestarted ? RESTARTED : 0);
@@ -147,11 +129,6 @@ export class OwnLine {
   }
 }
 
-/** @param {Record<string, number>} values @param {Object} wind */
-function controlsOf({ mean_speed: speed, intensity, bearing_to: bearing }, wind) {
-  const control = (/** @type {string} */ name, /** @type {any} */ value, unit = "", minimum = 0, maximum = 1) =>
-    ({ name, label: name, description: "", value, unit, minimum, maximum, choices: [], is_action: value === null });
-  return [control("mean_speed", speed, "m/s", 0, 40), control("intensity", intensity),
-    control("bearing_to", bearing, "rad", -6.3, 6.3), ...(wind instanceof Recorded ? [control("record_time", 0, "s", 0, wind.length)] : []),
-    control("pause", false), control("reset", null)];
-}
+/** @param {string} name @param {any} value */
+const control = (name, value, unit = "", minimum = 0, maximum = 1) =>
+  ({ name, label: name, description: "", value, unit, minimum, maximum, choices: [], is_action: value === null });

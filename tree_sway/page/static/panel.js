@@ -9,9 +9,12 @@ const STEPS = 400;
 /** A range that is wider is one of powers. */
 const WIDE = 1000;
 
+/** An element of the page. @param {string} id */
+export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
 /** An element with properties and what is in it. @template {keyof HTMLElementTagNameMap} T @param {T} tag
  * @param {Record<string, any>} properties @param {...(Node | string)} within */
-function made(tag, properties, ...within) {
+export function made(tag, properties, ...within) {
   const element = Object.assign(document.createElement(tag), properties);
   element.append(...within);
   return element;
@@ -69,16 +72,12 @@ export class Panel {
 
   /** @param {Control} control */
   _slider(control) {
-    const { name } = control;
-    const [low, high] = [control.minimum ?? 0, control.maximum ?? 1];
+    const { name, minimum, maximum } = control;
+    const [low, high] = [minimum ?? 0, maximum ?? 1];
     const isWide = low > 0 && high / low > WIDE;
-    const shareOf = (/** @type {number} */ value) =>
-      isWide ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
-    const input = made("input", { ...this._named(control), type: "range", min: "0", max: String(STEPS) });
-    const valueOf = () => {
-      const share = Number(input.value) / STEPS;
-      return isWide ? low * (high / low) ** share : Math.min(high, low + share * (high - low));
-    };
+    const [min, max] = isWide ? [0, Math.log(high / low)] : [low, high];
+    const input = made("input", { ...this._named(control), type: "range", min, max, step: (max - min) / STEPS });
+    const valueOf = () => Math.min(high, isWide ? low * Math.exp(Number(input.value)) : Number(input.value));
     const shown = made("span", {});
     const show = (/** @type {number} */ value) => {
       shown.textContent = textOf(control, value);
@@ -93,7 +92,7 @@ export class Panel {
     });
     input.addEventListener("change", () => setTimeout(() => (this._inHand = ""), 600));
     this._show.set(name, (value) => {
-      input.value = String(Math.round(STEPS * shareOf(value)));
+      input.value = String(isWide ? Math.log(value / low) : value);
       show(value);
     });
     return this._field(control, input, shown);
@@ -113,9 +112,8 @@ export class Panel {
     const button = made("button", { ...this._named(control), type: "button" }, nameOf(control));
     const next = () => (control.is_action ? null : button.getAttribute("aria-pressed") !== "true");
     button.addEventListener("click", () => this.send(control.name, next()));
-    if (!control.is_action) {
-      this._show.set(control.name, (value) => button.setAttribute("aria-pressed", String(Boolean(value))));
-    }
+    const show = (/** @type {any} */ value) => button.setAttribute("aria-pressed", String(Boolean(value)));
+    if (!control.is_action) this._show.set(control.name, show);
     return button;
   }
 }

@@ -21,9 +21,7 @@ const MOST_NUMBERS = 8e6;
 /** Difference of two clocks from one-way times: arrival less stamp is offset plus travel, so the least of
  * the last half minute is the offset and the quickest travel. */
 export class ClockOffset {
-  constructor() {
-    this._least = /** @type {{at: number, value: number}[]} */ ([]);
-  }
+  _least = /** @type {{at: number, value: number}[]} */ ([]);
 
   /** @param {number} stamp sender's clock [ms] @param {number} arrival own clock [ms] */
   add(stamp, arrival) {

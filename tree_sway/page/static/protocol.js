@@ -39,13 +39,14 @@ export function reading(what, read) {
 }
 
 /** Read a description; a `ProtocolError` if it is none, or if an array points outside of another.
- * @param {ArrayBuffer} data */
-export const decodeDescription = (data) => reading("description", () => decoded(data));
+ * @param {ArrayBuffer} data @param {boolean} [inPlanes] as of `unpack` */
+export const decodeDescription = (data, inPlanes) => reading("description", () => decoded(data, inPlanes));
 
 /** Take a message of a header and arrays apart, within `reading`. @param {ArrayBuffer} data
- * @param {keyof typeof MAGIC} what @returns {{header: Record<string, any>, kinds: Arrays[], own: Arrays}}
- * own arrays are those of no kind */
-export function unpack(data, what) {
+ * @param {keyof typeof MAGIC} what @param {boolean} [inPlanes] whether arrays have their first bytes
+ * together, their second bytes and so on; files are packed better so @returns {{header: Record<string,
+ * any>, kinds: Arrays[], own: Arrays}} own arrays are those of no kind */
+export function unpack(data, what, inPlanes = false) {
   const view = new DataView(data);
   if (!begins(data, what)) throw new ProtocolError(`no message of ${what}: it does not begin with ${MAGIC[what]}`);
   const version = view.getUint32(4, true);
@@ -60,17 +61,20 @@ export function unpack(data, what) {
     const kind = TYPES[/** @type {keyof typeof TYPES} */ (type)];
     need(Boolean(kind) && shape.every((/** @type {number} */ n) => Number.isInteger(n) && n >= 0), name);
     const count = shape.reduce((/** @type {number} */ a, /** @type {number} */ b) => a * b, 1);
-    const from = begin + offset;
-    need(from >= begin && from + count * kind.BYTES_PER_ELEMENT <= data.byteLength, name);
+    const [from, size] = [begin + offset, kind.BYTES_PER_ELEMENT];
+    need(from >= begin && from + count * size <= data.byteLength, name);
+    const planes = inPlanes && new Uint8Array(data, from, size * count);
+    const whole = planes && planes.map((_, i) => planes[(i % size) * count + Math.floor(i / size)]);
     const [number, field] = name.split("/");
-    (field ? kinds[Number(number)] : own)[field ?? name] = { values: new kind(data, from, count), shape };
+    const values = whole ? new kind(whole.buffer) : new kind(data, from, count);
+    (field ? kinds[Number(number)] : own)[field ?? name] = { values, shape };
   }
   return { header, kinds, own };
 }
 
-/** @param {ArrayBuffer} data @returns {Description} */
-function decoded(data) {
-  const { header, kinds: parts, own } = unpack(data, "description");
+/** @param {ArrayBuffer} data @param {boolean} [inPlanes] @returns {Description} */
+function decoded(data, inPlanes) {
+  const { header, kinds: parts, own } = unpack(data, "description", inPlanes);
   const { name, frame_id, identity, flutter = null } = header;
   /** @type {Kind[]} */
   const kinds = parts.map((part, number) => checkedKind(header.kinds[number], part));

@@ -8,8 +8,10 @@ const [LOUD_AIR, LOUD_LEAVES] = [18, 10];
 const FOLLOWS = 0.15;
 
 export class Sound {
+  context = new AudioContext();
+  isOn = false;
+
   constructor() {
-    this.context = new AudioContext();
     const { context } = this;
     const noise = context.createBuffer(1, 4 * context.sampleRate, context.sampleRate);
     const samples = noise.getChannelData(0);
@@ -28,14 +30,12 @@ export class Sound {
     };
     this._air = voice("bandpass", 200);
     this._leaves = voice("highpass", 2500);
-    this.isOn = false;
   }
 
-  /** On or off. @returns {Promise<boolean>} whether it is on */
-  async toggle() {
+  /** On or off. */
+  toggle() {
     this.isOn = !this.isOn;
-    await (this.isOn ? this.context.resume() : this.context.suspend());
-    return this.isOn;
+    return this.isOn ? this.context.resume() : this.context.suspend();
   }
 
   /** Sound as the tree is now. @param {number} wind speed [m/s] @param {boolean} hasLeaves

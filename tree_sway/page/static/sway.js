@@ -42,12 +42,12 @@ const [SPACING, SLOWEST] = [0.05, 0.3];
 const HARMONICS = { 1: 3, 3: 10, 5: 21 };
 
 /** Read tables; a `ProtocolError` with a sentence if they are damaged. @param {ArrayBuffer} data
- * @returns {Tables} */
-export const decodeTables = (data) => reading("tables", () => decoded(data));
+ * @param {boolean} [inPlanes] as of `unpack` */
+export const decodeTables = (data, inPlanes) => reading("tables", () => decoded(data, inPlanes));
 
-/** @param {ArrayBuffer} data @returns {Tables} */
-function decoded(data) {
-  const { header, kinds, own } = unpack(data, "tables");
+/** @param {ArrayBuffer} data @param {boolean} [inPlanes] @returns {Tables} */
+function decoded(data, inPlanes) {
+  const { header, kinds, own } = unpack(data, "tables", inPlanes);
   const { description, anemometer, convection_ratio: ratio } = header;
   need(typeof description === "string", "description");
   need(anemometer === null || (anemometer.length === 3 && anemometer.every(Number.isFinite)), "anemometer");

@@ -219,18 +219,8 @@ interface Look {
   autumn: number[] | null;
 }
 
-/** The relief of bark. */
-interface Pattern {
-  /** Of its noise, around and up a tile. */
-  cells: [number, number];
-  /** How steep furrows are. */
-  ridge?: number;
-  /** Share without dark spots. */
-  spot?: number;
-  /** Of its shade. */
-  depth: number;
-  grain: number;
-}
+/** The relief of bark, as its shader has it. */
+type Pattern = Record<"ridge" | "spot" | "depth" | "rough", number> & { cells: [number, number] };
 
 /** Shapes turned about the vertical. */
 interface Turned {

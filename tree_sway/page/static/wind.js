@@ -11,6 +11,8 @@ const LENGTH = [56.7, 18.9, 4.6];
 /** Processes that make up a component; each is so much quicker than the one before. */
 const PROCESSES = 4;
 const QUICKER = 4;
+const POWERS = Array.from({ length: PROCESSES }, (_, n) => QUICKER ** ((-2 / 3) * n));
+const WEIGHTS = POWERS.map((power) => Math.sqrt(power / POWERS.reduce((a, b) => a + b)));
 const SLOWEST = 0.5;
 /** Nothing faster is wind [m/s]. */
 const FASTEST = 150;
@@ -22,15 +24,10 @@ const normal = () => Math.sqrt(-2 * Math.log(1 - Math.random())) * Math.cos(2 * 
  * variances that go with their time scales to 2/3 give the slope of -5/3 of the inertial range (Kolmogorov
  * 1941). */
 export class Turbulence {
-  constructor() {
-    /** Mean [m/s], standard deviation over it, and where it blows to, clockwise from north [rad].
-     * @type {Record<string, number>} */
-    this.values = { mean_speed: 6, intensity: 0.2, bearing_to: Math.PI / 2 };
-    this._state = SPREAD.map(() => Array.from({ length: PROCESSES }, normal));
-    const powers = Array.from({ length: PROCESSES }, (_, n) => QUICKER ** ((-2 / 3) * n));
-    const all = powers.reduce((a, b) => a + b);
-    this._weights = powers.map((power) => Math.sqrt(power / all));
-  }
+  /** Mean [m/s], standard deviation over it, and where it blows to, clockwise from north [rad].
+   * @type {Record<string, number>} */
+  values = { mean_speed: 6, intensity: 0.2, bearing_to: Math.PI / 2 };
+  _state = SPREAD.map(() => Array.from({ length: PROCESSES }, normal));
 
   /** Mean wind of the next step. @param {number} dt [s] */
   next(dt) {
@@ -41,7 +38,7 @@ export class Turbulence {
         const scale = LENGTH[c] / Math.max(mean, SLOWEST) / QUICKER ** n;
         const stays = Math.exp(-dt / scale);
         state[n] = stays * value + Math.sqrt(1 - stays * stays) * normal();
-        sum += this._weights[n] * state[n];
+        sum += WEIGHTS[n] * state[n];
       });
       return SPREAD[c] * intensity * mean * sum;
     });
@@ -52,13 +49,14 @@ export class Turbulence {
 
 /** A recorded wind, again from its beginning after its end. */
 export class Recorded {
+  time = 0;
+  _row = 0;
+
   /** @param {number[]} times [s] @param {number[][]} winds blowing to [m/s] */
   constructor(times, winds) {
     this.times = times;
     this.winds = winds;
     this.length = times[times.length - 1] - times[0];
-    this.time = 0;
-    this._row = 0;
   }
 
   /** Go on from a time after the beginning [s]. @param {number} time */

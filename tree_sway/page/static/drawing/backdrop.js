@@ -4,8 +4,7 @@
  * pixels are many, and may cost something. */
 
 import { textOf } from "../files.js";
-import { canvasTexture, drawable, drawPart, use } from "./gl.js";
-import { shaded } from "./shaders.js";
+import { canvasTexture, drawable, drawPart, program, use } from "./gl.js";
 
 /** Times of day. @type {Record<"light" | "evening" | "dark", Daylight>} */
 export const DAYLIGHT = JSON.parse(await textOf("drawing/daylight.json"));
@@ -18,9 +17,9 @@ export class Backdrop {
    * pixel costs something */
   constructor(gl, isPlain) {
     this.gl = gl;
-    this._program = shaded(gl, "backdrop");
-    this._copying = shaded(gl, "copy");
-    this._whole = drawable(gl, this._program, [-1, -1, 3, -1, -1, 3], [["corner", 2]], [0, 1, 2]);
+    this._program = program(gl, "backdrop");
+    this._copying = program(gl, "copy");
+    this._whole = drawable(gl, this._program, { values: [-1, -1, 3, -1, -1, 3], indices: [0, 1, 2] }, [["corner", 2]]);
     this._isPlain = isPlain;
     /** Without the shadow, and with it. */
     this._pictures = /** @type {ReturnType<typeof canvasTexture>[]} */ ([]);

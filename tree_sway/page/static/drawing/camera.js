@@ -6,37 +6,20 @@
 const HALF = Math.tan((16 * Math.PI) / 180);
 
 export class Camera {
-  constructor() {
-    this.azimuth = -0.6;
-    this.elevation = 0.18;
-    this.distance = 3;
-    /** @type {Vector} */
-    this.target = [0, 0, 0];
-    this.aspect = 1;
-    this._size = 1;
-    this._home = /** @type {(() => void) | null} */ (null);
-    this.matrix = new Float32Array(16);
-    /** @type {Vector} */
-    this.eye = [0, 0, 0];
-  }
+  azimuth = -0.6;
+  elevation = 0.18;
+  distance = 3;
+  target = /** @type {Vector} */ ([0, 0, 0]);
+  aspect = 1;
+  matrix = new Float32Array(16);
+  eye = /** @type {Vector} */ ([0, 0, 0]);
+  _size = 1;
+  _box = /** @type {number[][]} */ ([[0, 0, 0], [1, 1, 1]]);
 
   /** Frame a scene. @param {number[]} low corner of its box @param {number[]} high */
   frame(low, high) {
-    this._home = () => {
-      const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
-      const tall = high[2] - low[2];
-      this._size = Math.hypot(wide, tall);
-      this.azimuth = -0.6;
-      // What is much wider than high is seen from higher up.
-      this.elevation = Math.min(0.32, 0.16 + 0.02 * Math.max(0, wide / tall - 3));
-      // On a phone the lines of wind and motion lie below.
-      const lower = this.aspect < 1 ? 0.15 * tall : 0;
-      this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2 - lower];
-      const seen = tall * Math.cos(this.elevation) + wide * Math.sin(this.elevation);
-      const half = (this.aspect < 1 ? 0.65 : 0.5) * Math.max(seen, wide / this.aspect, 0.7 * this._size);
-      this.distance = half / HALF + (wide > 3 * tall ? 0.1 : 0.4) * wide;
-    };
-    this._home();
+    this._box = [low, high];
+    this.home();
   }
 
   /** Where a link looked from. @param {number[]} view azimuth, elevation, distance, target */
@@ -47,7 +30,19 @@ export class Camera {
 
   /** Back to where the whole scene is seen. */
   home() {
-    this._home?.();
+    const [low, high] = this._box;
+    const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
+    const tall = high[2] - low[2];
+    this._size = Math.hypot(wide, tall);
+    this.azimuth = -0.6;
+    // What is much wider than high is seen from higher up.
+    this.elevation = Math.min(0.32, 0.16 + 0.02 * Math.max(0, wide / tall - 3));
+    // On a phone the lines of wind and motion lie below.
+    const lower = this.aspect < 1 ? 0.15 * tall : 0;
+    this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2 - lower];
+    const seen = tall * Math.cos(this.elevation) + wide * Math.sin(this.elevation);
+    const half = (this.aspect < 1 ? 0.65 : 0.5) * Math.max(seen, wide / this.aspect, 0.7 * this._size);
+    this.distance = half / HALF + (wide > 3 * tall ? 0.1 : 0.4) * wide;
   }
 
   /** @param {number} dx [px] @param {number} dy */
@@ -140,15 +135,17 @@ export class Camera {
       event.preventDefault();
       this.zoom(Math.exp(0.0012 * Math.max(-400, Math.min(400, event.deltaY))));
     }, { passive: false });
+    const move = (/** @type {number} */ x, /** @type {number} */ y) => (/** @type {boolean} */ isShifted) =>
+      isShifted ? this.pan(0.05 * x, 0.05 * y) : this.orbit(18 * x, 14 * y);
+    const [nearer, home] = [() => this.zoom(0.88), () => this.home()];
+    /** @type {Record<string, (isShifted: boolean) => void>} */
+    const keys = {
+      ArrowLeft: move(1, 0), ArrowRight: move(-1, 0), ArrowUp: move(0, 1), ArrowDown: move(0, -1),
+      "+": nearer, "=": nearer, "-": () => this.zoom(1.14), 0: home, Home: home,
+    };
     element.addEventListener("keydown", (event) => {
-      const step = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-      const move = step[/** @type {keyof typeof step} */ (event.key)];
-      if (move && event.shiftKey) this.pan(0.05 * move[0], 0.05 * move[1]);
-      else if (move) this.orbit(18 * move[0], 14 * move[1]);
-      else if (event.key === "+" || event.key === "=") this.zoom(0.88);
-      else if (event.key === "-") this.zoom(1.14);
-      else if (event.key === "0" || event.key === "Home") this.home();
-      else return;
+      if (!(event.key in keys)) return;
+      keys[event.key](event.shiftKey);
       event.preventDefault();
     });
   }

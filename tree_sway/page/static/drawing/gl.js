@@ -1,6 +1,32 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** The graphics unit: programs, vertex arrays, textures. */
+/** The graphics unit: the programs of shaders.glsl, vertex arrays, textures. */
+
+import { textOf } from "../files.js";
+
+/** Texels in a row of poses. */
+const TEXTURE_WIDTH = 1024;
+/** Directions that an impostor is baked from: round the tree, and elevations [rad]. */
+export const ROUND = 8;
+export const ELEVATIONS = [0.08, 0.5];
+
+const HEAD = `#version 300 es
+#define ROUND ${ROUND}
+#define LOW ${ELEVATIONS[0]}
+#define HIGH ${ELEVATIONS[1]}
+`;
+
+const parts = (await textOf("drawing/shaders.glsl")).split("\n#part ").slice(1).map((part) => {
+  const [names, ...lines] = part.split("\n");
+  const [name, base] = names.split(" ");
+  return { name, base, text: lines.join("\n") };
+});
+
+/** A part after those that it builds on. @param {string | undefined} wanted @returns {string} */
+function source(wanted) {
+  const part = parts.find(({ name }) => name === wanted);
+  return part ? source(part.base) + part.text : "";
+}
 
 /** A context of a canvas, and whether it draws on the processor. @param {HTMLCanvasElement} canvas */
 export function contextOf(canvas) {
@@ -14,13 +40,12 @@ export function contextOf(canvas) {
   return { gl, isSoftware };
 }
 
-/** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment @returns {Program} */
-export function program(gl, vertex, fragment) {
+/** @param {WebGL2RenderingContext} gl @param {string} name among the parts @returns {Program} */
+export function program(gl, name) {
   const made = gl.createProgram();
-  for (const source of [vertex, fragment]) {
-    const kind = source === vertex ? gl.VERTEX_SHADER : gl.FRAGMENT_SHADER;
+  for (const [kind, stage] of /** @type {const} */ ([[gl.VERTEX_SHADER, "vertex"], [gl.FRAGMENT_SHADER, "fragment"]])) {
     const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
-    gl.shaderSource(shader, source);
+    gl.shaderSource(shader, HEAD + source(`${name}.${stage}`));
     gl.compileShader(shader);
     gl.attachShader(made, shader);
     if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(String(gl.getShaderInfoLog(shader)));
@@ -58,9 +83,9 @@ export function use(gl, used, values) {
 }
 
 /** A vertex array of its own. @param {WebGL2RenderingContext} gl @param {Program} used
- * @param {ArrayLike<number>} values vertex after vertex @param {[string, number][]} fields names and sizes
- * of what a vertex has @param {ArrayLike<number>} indices @returns {Drawable} */
-export function drawable(gl, used, values, fields, indices) {
+ * @param {{values: ArrayLike<number>, indices: ArrayLike<number>}} mesh vertex after vertex
+ * @param {[string, number][]} fields names and sizes of what a vertex has @returns {Drawable} */
+export function drawable(gl, used, { values, indices }, fields) {
   const vao = gl.createVertexArray();
   gl.bindVertexArray(vao);
   const buffers = [Float32Array.from(values), Uint32Array.from(indices)].map((data, i) => {
@@ -83,10 +108,10 @@ export function drawable(gl, used, values, fields, indices) {
   return { vao, count: indices.length, buffers };
 }
 
-/** @param {WebGL2RenderingContext} gl @param {Drawable} part */
+/** @param {WebGL2RenderingContext} gl @param {Drawable | null} part */
 export function discard(gl, part) {
-  for (const buffer of part.buffers) gl.deleteBuffer(buffer);
-  gl.deleteVertexArray(part.vao);
+  for (const buffer of part?.buffers ?? []) gl.deleteBuffer(buffer);
+  gl.deleteVertexArray(part?.vao ?? null);
 }
 
 /** @param {WebGL2RenderingContext} gl @param {Drawable} part @param {number} [share] of its triangles */
@@ -95,36 +120,39 @@ export function drawPart(gl, part, share = 1) {
   gl.drawElements(gl.TRIANGLES, 3 * Math.round((share * part.count) / 3), gl.UNSIGNED_INT, 0);
 }
 
-/** @param {WebGL2RenderingContext} gl @param {number} wrap @param {number} less filter where it is smaller
- * @param {number} more where it is larger */
-function sample(gl, wrap, less, more) {
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, wrap);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, wrap);
+/** @param {WebGL2RenderingContext} gl @param {number} less filter where it is smaller @param {number} more
+ * where it is larger */
+function sample(gl, less, more) {
+  for (const way of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, way, gl.CLAMP_TO_EDGE);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, less);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, more);
 }
 
-/** A texture of a picture; where it has no smaller ones these are made. @param {WebGL2RenderingContext} gl
- * @param {ImageData[]} mips from the finest @param {number} wrap @param {boolean} isPlain the nearest
- * point alone is looked up, which costs less */
-export function pictureTexture(gl, mips, wrap, isPlain) {
+/** A texture of a picture. @param {WebGL2RenderingContext} gl @param {ImageData[]} mips from the finest
+ * @param {boolean} isPlain the nearest point alone is looked up, which costs less */
+export function pictureTexture(gl, mips, isPlain) {
   const texture = gl.createTexture();
   gl.activeTexture(gl.TEXTURE2);
   gl.bindTexture(gl.TEXTURE_2D, texture);
   mips.forEach((mip, level) => gl.texImage2D(gl.TEXTURE_2D, level, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, mip));
-  if (mips.length === 1) gl.generateMipmap(gl.TEXTURE_2D);
-  if (isPlain) sample(gl, wrap, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST);
-  else sample(gl, wrap, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
+  if (isPlain) sample(gl, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST);
+  else sample(gl, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
   return texture;
 }
 
-/** A texture that poses lie in. @param {WebGL2RenderingContext} gl @param {WebGLTexture} texture
- * @param {number} width @param {Float32Array} texels */
-export function poseTexture(gl, texture, width, texels) {
+/** Rows of a texture with the poses of segments, of two texels each. @param {number} segments */
+const rowsOf = (segments) => Math.ceil((2 * segments) / TEXTURE_WIDTH);
+
+/** Room for poses. @param {number} segments */
+export const texelsOf = (segments) => new Float32Array(4 * TEXTURE_WIDTH * rowsOf(segments));
+
+/** Put poses into a texture. @param {WebGL2RenderingContext} gl @param {WebGLTexture} texture
+ * @param {Float32Array} texels @param {number} segments the first of them */
+export function uploadPoses(gl, texture, texels, segments) {
   gl.activeTexture(gl.TEXTURE0);
   gl.bindTexture(gl.TEXTURE_2D, texture);
-  sample(gl, gl.CLAMP_TO_EDGE, gl.NEAREST, gl.NEAREST);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, texels.length / 4 / width, 0, gl.RGBA, gl.FLOAT, texels);
+  sample(gl, gl.NEAREST, gl.NEAREST);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, TEXTURE_WIDTH, rowsOf(segments), 0, gl.RGBA, gl.FLOAT, texels);
 }
 
 /** What is drawn into a texture. @param {WebGL2RenderingContext} gl @param {number} width
@@ -133,7 +161,7 @@ export function canvasTexture(gl, width, height, format, hasDepth = false) {
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
   gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
-  sample(gl, gl.CLAMP_TO_EDGE, gl.LINEAR, gl.LINEAR);
+  sample(gl, gl.LINEAR, gl.LINEAR);
   const target = gl.createFramebuffer();
   gl.bindFramebuffer(gl.FRAMEBUFFER, target);
   gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);

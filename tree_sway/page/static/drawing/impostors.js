@@ -3,8 +3,7 @@
 /** Far trees: each kind is painted once from all sides, then drawn as pictures that lean. */
 
 import { AT_ORIGIN, placed, STRIDE } from "../placing.js";
-import { canvasTexture, discard, drawable, use } from "./gl.js";
-import { ELEVATIONS, ROUND } from "./shaders.js";
+import { canvasTexture, discard, drawable, drawPart, ELEVATIONS, ROUND, use } from "./gl.js";
 
 const TILE = 128;
 /** Parts of a picture from its foot up, each as wide as what it shows: to look at what is clear costs time. */
@@ -36,7 +35,7 @@ export class Impostor {
     const indices = Array.from({ length: BANDS * most }, (_, i) =>
       [0, 1, 2, 1, 3, 2].map((corner) => CORNERS * Math.floor(i / BANDS) + 2 * (i % BANDS) + corner)).flat();
     // Not as instances: without a graphics unit each of them costs as much as a whole picture.
-    this._part = drawable(gl, used, this._values, [["corner", 2], ["stand", 4], ["tree", 3]], indices);
+    this._part = drawable(gl, used, { values: this._values, indices }, [["corner", 2], ["stand", 4], ["tree", 3]]);
   }
 
   /** Paint the kind from every side. @param {(camera: Float32Array, eye: number[]) => void} paint
@@ -119,8 +118,7 @@ export class Impostor {
     const { gl, box, tip } = this;
     const picture = [2, this._atlas.texture];
     use(gl, used, { picture, box: [box.wide, box.middle, box.tall, shade], restTip: tip });
-    gl.bindVertexArray(this._part.vao);
-    gl.drawElements(gl.TRIANGLES, 6 * BANDS * this.count, gl.UNSIGNED_INT, 0);
+    drawPart(gl, this._part, (6 * BANDS * this.count) / this._part.count);
   }
 
   /** Give its memory back. */

@@ -23,16 +23,10 @@ const BARK_TILE = 0.6;
  * @param {Kind} kind */
 export function shapeOf(kind) {
   const rest = new KindPlacer(kind).rest();
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  let highest = 0;
-  for (let s = 0; s < rest.length; s += STRIDE) {
-    if (rest[s + 2] > high[2]) highest = s / STRIDE;
-    for (let c = 0; c < 3; c++) {
-      low[c] = Math.min(low[c], rest[s + c]);
-      high[c] = Math.max(high[c], rest[s + c]);
-    }
-  }
+  const [xs, ys, zs] = [0, 1, 2].map((c) => rest.filter((_, i) => i % STRIDE === c));
+  const [low, high] = [-1, 1].map((sign) =>
+    [xs, ys, zs].map((all) => sign * all.reduce((most, each) => Math.max(most, sign * each), -Infinity)));
+  const highest = zs.indexOf(high[2]);
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
   const places = Array.from(carrier ?? [], (_, i) => leafPlace(kind, rest, i));
   const shade = crownShade(places, Array.from(sizes ?? [], (size) => 0.25 * Math.PI * size * size), low, high);
@@ -48,13 +42,11 @@ function branchOrder({ arrays, nBranches }, highest) {
   for (let top = first.findIndex((from) => from > highest) - 1; top >= 0; top = parents[top]) isTop[top] = 1;
   const weight = new Float64Array(nBranches);
   for (let b = 0; b < nBranches; b++) {
-    let length = 0;
-    for (let s = first[b]; s < first[b + 1]; s++) length += arrays.segment_length[s];
+    const length = Array.from(arrays.segment_length.subarray(first[b], first[b + 1])).reduce((a, c) => a + c);
     const own = isTop[b] ? Infinity : length * arrays.segment_radius[2 * first[b]];
     weight[b] = parents[b] < 0 ? Infinity : Math.min(own, weight[parents[b]]);
   }
-  const order = Int32Array.from({ length: nBranches }, (_, i) => i);
-  return order.sort((a, b) => (weight[a] === weight[b] ? a - b : weight[b] > weight[a] ? 1 : -1));
+  return Int32Array.from(parents, (_, b) => b).sort((a, b) => weight[b] - weight[a] || a - b);
 }
 
 /** Where a cluster of leaves is at rest. @param {Kind} kind @param {Float32Array} rest @param {number} i */

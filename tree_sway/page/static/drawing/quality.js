@@ -11,16 +11,14 @@ export const COARSEST = 0.5;
 const THINNEST = 0.4;
 
 export class Quality {
-  constructor() {
-    /** Pixels of the picture per pixel of the page, each way. */
-    this.fineness = 1;
-    /** Share of the leaves that is drawn. */
-    this.density = 1;
-    this._from = 0;
-    this._frames = 0;
-    this._last = 0;
-    this._coarsened = 0;
-  }
+  /** Pixels of the picture per pixel of the page, each way. */
+  fineness = 1;
+  /** Share of the leaves that is drawn. */
+  density = 1;
+  _from = 0;
+  _frames = 0;
+  _last = 0;
+  _coarsened = 0;
 
   /** Count a frame. @param {number} now [ms] @param {boolean} hasLeaves whether there are any to leave out */
   count(now, hasLeaves) {
@@ -46,7 +44,6 @@ export class Quality {
   /** What is left out, for people: shares of pixels and leaves in percent; null if nothing. */
   get leftOut() {
     if (this.fineness > 0.99 && this.density > 0.99) return null;
-    const pixels = Math.round(100 * this.fineness ** 2);
-    return { pixels, leaves: Math.round(100 * this.density) };
+    return { pixels: Math.round(100 * this.fineness ** 2), leaves: Math.round(100 * this.density) };
   }
 }

@@ -7,24 +7,25 @@ import { between } from "../quaternions.js";
 import { Backdrop, DAYLIGHT, GROUNDS } from "./backdrop.js";
 import { Camera } from "./camera.js";
 import { Detail, levelsOf } from "./detail.js";
-import { canvasTexture, contextOf, discard, drawable, drawPart, pictureTexture, poseTexture, use } from "./gl.js";
+import {
+  canvasTexture, contextOf, discard, drawable, drawPart, pictureTexture, program, texelsOf, uploadPoses, use,
+} from "./gl.js";
 import { Impostor } from "./impostors.js";
 import { barkMesh, leafMesh, shapeOf } from "./mesh.js";
 import { arrowLength, arrowMesh, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
-import * as shaders from "./shaders.js";
-import { isPotted, lookOf } from "./species.js";
-import { barkPicture, leafPicture } from "./textures.js";
+import { barkPattern, isPotted, lookOf } from "./species.js";
+import { leafPicture } from "./textures.js";
 
 /** A shadow is drawn again after this number of frames without a graphics unit, of a crowd less often. */
 const SHADOW_EVERY = 8;
 /** Share of the leaves that cast it then. */
 const SHADOW_LEAVES = 0.4;
 const CROWD = 50;
-/** Segments of all trees and cards of leaves of one, at most, and height of far trees [px]. */
+/** Segments of all trees and cards of leaves of one, at most, and height of far trees [px]: with a graphics
+ * unit, without one, and of a crowd without one. */
 const MOST = { segments: 40000, cards: 3000, far: 90 };
 const MOST_SLOW = { segments: 12000, cards: 3000, far: 150 };
-/** The same of a crowd without a graphics unit. */
 const MOST_CROWD = { segments: 5000, cards: 3000, far: 220 };
 /** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
 const CHOOSE_EVERY = 6;
@@ -36,11 +37,12 @@ const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
 const PAINTED = 260;
 
-/** @type {Record<"bark" | "leaf" | "solid", [string, number][]>} what a vertex has */
+/** @type {Record<"bark" | "leaf" | "solid" | "shadow", [string, number][]>} what a vertex has */
 const FIELDS = {
   bark: [["segment", 1], ["ring", 4], ["skin", 3]],
   leaf: [["segment", 1], ["place", 3], ["swing", 3], ["facing", 3], ["towards", 3], ["flutter", 4], ["corner", 2]],
   solid: [["at", 3], ["facing", 3], ["tint", 3]],
+  shadow: [["corner", 2]],
 };
 
 export class Scene {
@@ -68,14 +70,15 @@ export class Scene {
     this._time = 0;
     this._frame = 0;
     this.description = /** @type {Description | null} */ (null);
-    this.detail = /** @type {Detail | null} */ (null);
+    this.detail = new Detail([], [], [], 0);
     this._kinds = /** @type {DrawnKind[]} */ ([]);
     this._budget = 0;
     this._chosenFor = "";
     const names = /** @type {const} */ (["bark", "leaf", "impostor", "solid", "shadow"]);
     this._programs = /** @type {Record<typeof names[number], Program>} */ (
-      Object.fromEntries(names.map((name) => [name, shaders.shaded(gl, name)])));
+      Object.fromEntries(names.map((name) => [name, program(gl, name)])));
     this._backdrop = new Backdrop(gl, this.isSlow);
+    /** Of leaves, painted when they are first used. */
     this._pictures = /** @type {Map<string, WebGLTexture>} */ (new Map());
     this._texture = gl.createTexture();
     /** Where the shaders look poses up. */
@@ -83,15 +86,15 @@ export class Scene {
     /** Poses of the segments that are drawn, tree after tree. */
     this._texels = new Float32Array(0);
     this._coordinates = /** @type {Float32Array} */ (new Float32Array(0));
-    const [arrow, pot, person] = [arrowMesh(), propMesh("pot"), propMesh("person")].map((mesh) =>
-      drawable(gl, this._programs.solid, mesh.values, FIELDS.solid, mesh.indices));
-    const shadow = drawable(gl, this._programs.shadow, [-1, -1, 1, -1, 1, 1, -1, 1], [["corner", 2]],
-      [0, 1, 2, 0, 2, 3]);
-    this._parts = { arrow, pot, person, shadow };
+    const square = { values: [-1, -1, 1, -1, 1, 1, -1, 1], indices: [0, 1, 2, 0, 2, 3] };
+    this._parts = {
+      arrow: this._drawable("solid", arrowMesh()), pot: this._drawable("solid", propMesh("pot")),
+      person: this._drawable("solid", propMesh("person")), shadow: this._drawable("shadow", square),
+    };
     const size = this.isSlow ? 256 : 1024;
     this._shadow = canvasTexture(gl, size, size, gl.R8);
-    this._shadowMiddle = [0, 0];
-    this._shadowHalf = 1;
+    /** Where it falls: middle x, y, and half its size [m]. */
+    this._shadowArea = [0, 0, 1];
     /** Height of the ground [m], and of the highest tree. */
     this.ground = 0;
     this.height = 1;
@@ -109,20 +112,15 @@ export class Scene {
   /** Another time of day. @param {Daylight} day */
   setDay(day) {
     this.day = day;
-    if (this.description) this._frameShadow();
+    this._frameShadow();
     this._frame = 0;
   }
 
-  /** Paint again what is painted once: far trees, pictures of leaves. */
-  repaint() {
-    if (this.description) this.describe(this.description);
-  }
-
   /** @param {{leavesShown?: boolean, isAutumn?: boolean}} leaves whether they are drawn, and whether those
-   * that fall have the colours of autumn */
+   * that fall have the colours of autumn; far trees and pictures of leaves are painted again */
   dress(leaves) {
     Object.assign(this, leaves);
-    this.repaint();
+    if (this.description) this.describe(this.description);
   }
 
   /** Take another tree. @param {Description} description */
@@ -146,7 +144,6 @@ export class Scene {
     }));
     [this._low, this._high] = [Math.min, Math.max].map((of) =>
       [0, 1, 2].map((c) => corners.reduce((best, at) => of(best, at[c]), corners[0][c])));
-    if (!isSame) this.picked = -1;
     const [wide, deep, tall] = this._high.map((each, c) => each - this._low[c]);
     this._extent = Math.max(wide, deep, tall, 0.05);
     this.height = Math.max(tall, 0.2 * wide, 0.2 * deep, 0.05);
@@ -154,7 +151,10 @@ export class Scene {
     this._potSize = trees.length === 1 && isPotted(kinds[0].species) ? POT_HEIGHT * this.height : 0;
     this.ground = this._potSize ? root[2] - this._potSize : Math.min(this._low[2], root[2]);
     this._frameShadow();
-    if (!isSame) this.camera.frame([this._low[0], this._low[1], this.ground], this._high);
+    if (!isSame) {
+      this.picked = -1;
+      this.camera.frame([this._low[0], this._low[1], this.ground], this._high);
+    }
     this._frame = 0;
     this._chosenFor = "";
     this._chooseDetail();
@@ -163,13 +163,13 @@ export class Scene {
 
   /** The tree that is followed, the highest: its number, where it is, and its kind at rest. */
   get watched() {
-    const { trees, watched: number } = /** @type {Detail} */ (this.detail);
+    const { trees, watched: number } = this.detail;
     return { ...trees[number], ...this._kinds[trees[number].kind], number };
   }
 
   /** The kind of the watched tree. @returns {Kind | null} */
   get watchedKind() {
-    return this.detail && this.watched.kind;
+    return this.description && this.watched.kind;
   }
 
   /** Where the tip of the branch that is picked is now, or the top of the tallest tree. */
@@ -184,7 +184,6 @@ export class Scene {
 
   /** Where a segment's root-side node is at rest. @param {number} segment */
   restPosition(segment) {
-    if (!this.detail) return [0, 0, 0];
     const { rest, place } = this.watched;
     return placed(place, rest.subarray(STRIDE * segment));
   }
@@ -197,7 +196,7 @@ export class Scene {
 
   /** Row of a segment of the watched tree. @param {number} segment */
   _row(segment) {
-    return this.detail ? this.detail.start[this.detail.watched] + this.watched.placer.slots[segment] : 0;
+    return this.detail.start[this.detail.watched] + this.watched.placer.slots[segment];
   }
 
   /** The branch of the watched tree nearest to a place of the picture, and its segment; -1 if none is
@@ -205,7 +204,6 @@ export class Scene {
    * share of the height */
   nearest(x, y, reach = 0.03) {
     let [best, found] = [reach, { branch: -1, segment: -1 }];
-    if (!this.detail) return found;
     const { placer: { order }, number, kind: { arrays: { branch_first: first } } } = this.watched;
     for (const branch of order.subarray(0, this.detail.levelOf(number).branches)) {
       for (let s = first[branch]; s < first[branch + 1]; s++) {
@@ -217,26 +215,25 @@ export class Scene {
     return found;
   }
 
-  /** The last segment of the branch that is picked, or the highest. */
+  /** The last segment of the branch that is picked, if it is drawn, or the highest. */
   get followed() {
-    if (!this.detail) return 0;
-    const { kind, highest } = this.watched;
-    return this.picked < 0 ? highest : kind.arrays.branch_first[this.picked + 1] - 1;
+    const { kind, highest, number, placer: { slots } } = this.watched;
+    const last = kind.arrays.branch_first[this.picked + 1] - 1;
+    return this.picked >= 0 && slots[last] < this.detail.levelOf(number).segments ? last : highest;
   }
 
   /** At the base of the branch that is picked, or of the stem: further strain of the outer wood, and
    * further bending moment [N m], by the bend between the first two segments. */
   load() {
-    if (!this.detail) return { strain: 0, moment: 0 };
     const { kind, rest, place } = this.watched;
     const { branch_first: first, segment_length: length, segment_radius: radius } = kind.arrays;
     const branch = Math.max(0, this.picked);
     const base = first[branch];
     if (first[branch + 1] - base < 2) return { strain: 0, moment: 0 };
-    const bendOf = (/** @type {Float32Array} */ poses, /** @type {number[]} */ [from, to]) =>
-      between(poses, STRIDE * from + 4, poses, STRIDE * to + 4);
-    const now = bendOf(this._texels, [this._row(base), this._row(base + 1)]);
-    const before = bendOf(rest, [base, base + 1]);
+    const [now, before] = [this._texels, rest].map((poses) => {
+      const [a, b] = [base, base + 1].map((s) => STRIDE * (poses === rest ? s : this._row(s)) + 4);
+      return between(poses, a, poses, b);
+    });
     const bends = [0, 1, 2].map((c) => Math.sign(now[3]) * now[c] - Math.sign(before[3]) * before[c]);
     const thick = radius[2 * (base + 1)];
     const strain = (4 * Math.hypot(...bends) * thick) / (length[base] + length[base + 1]);
@@ -245,12 +242,11 @@ export class Scene {
 
   /** Choose what of each tree is drawn, where the camera or the picture is another than before. */
   _chooseDetail() {
-    const { gl, detail } = this;
-    const matrix = this.camera.update();
-    const wanted = [...matrix, this.canvas.clientHeight].join();
-    if (!detail || wanted === this._chosenFor) return;
+    const { detail, camera, canvas: { clientHeight: high } } = this;
+    const wanted = [...camera.update(), high].join();
+    if (wanted === this._chosenFor) return;
     this._chosenFor = wanted;
-    detail.choose(matrix, this.canvas.clientHeight, this._budget);
+    detail.choose(camera.matrix, high, this._budget);
     this._eachLevel((level) => {
       level.starts.length = 0;
       if (level.impostor) level.impostor.count = 0;
@@ -264,15 +260,13 @@ export class Scene {
       level.impostor?.add(place, detail.start[t], t);
     }
     this._eachLevel((level) => level.impostor?.upload());
-    if (4 * shaders.TEXTURE_WIDTH * rowsOf(detail.segments) <= this._texels.length) return;
-    this._texels = texelsOf(1.25 * detail.segments);
-    poseTexture(gl, this._texture, shaders.TEXTURE_WIDTH, this._texels);
+    if (STRIDE * detail.segments > this._texels.length) this._texels = texelsOf(1.25 * detail.segments);
   }
 
   /** A level of a kind, when it is first used. @param {number} number of the kind @param {number} level
    * @returns {DrawnLevel} */
   _drawnLevel(number, level) {
-    const { levels: { [number]: levels }, trees } = /** @type {Detail} */ (this.detail);
+    const { levels: { [number]: levels }, trees } = this.detail;
     const shape = this._kinds[number];
     const none = { starts: [], bark: null, leaf: null, across: 1, impostor: null };
     const count = trees.filter(({ kind }) => kind === number).length;
@@ -280,10 +274,14 @@ export class Scene {
     const { branches: most, pixels, cards } = levels[level];
     const branches = shape.placer.order.slice(0, most);
     const { mesh, across } = leafMesh(shape, branches, cards, levels[levels.length - 1].cards);
-    const made = (/** @type {"bark" | "leaf"} */ part, /** @type {Mesh} */ { values, indices }) =>
-      indices.length ? drawable(this.gl, this._programs[part], values, FIELDS[part], indices) : null;
     const bark = barkMesh(shape, branches, pixels, this.isSlow ? COARSEST : 1);
-    return { ...none, across, bark: made("bark", bark), leaf: made("leaf", mesh) };
+    const leaf = mesh.indices.length ? this._drawable("leaf", mesh) : null;
+    return { ...none, across, bark: this._drawable("bark", bark), leaf };
+  }
+
+  /** @param {keyof typeof FIELDS} part @param {Mesh} mesh */
+  _drawable(part, mesh) {
+    return drawable(this.gl, this._programs[part], mesh, FIELDS[part]);
   }
 
   /** Paint the picture of a kind that far trees are drawn by: a tree at rest in even light.
@@ -291,15 +289,15 @@ export class Scene {
   _bake(number, most) {
     const { gl, _programs: { bark, leaf } } = this;
     const shape = this._kinds[number];
-    const levels = /** @type {Detail} */ (this.detail).levels[number];
+    const levels = this.detail.levels[number];
     const finest = Math.max(1, levels.findIndex(({ pixels }) => pixels >= PAINTED));
     const level = { ...(shape.drawn[finest] ??= this._drawnLevel(number, finest)), starts: [0] };
     const impostor = new Impostor(gl, this._programs.impostor, shape, most, this.isSlow);
-    const texels = texelsOf(levels[finest].segments);
-    const still = new Float32Array(shape.kind.nCoordinates);
-    shape.placer.place(still, 0, AT_ORIGIN, levels[finest].branches, texels, 0);
+    const { segments, branches } = levels[finest];
+    const texels = texelsOf(segments);
+    shape.placer.place(new Float32Array(shape.kind.nCoordinates), 0, AT_ORIGIN, branches, texels, 0);
     this._poses = gl.createTexture();
-    poseTexture(gl, this._poses, shaders.TEXTURE_WIDTH, texels);
+    uploadPoses(gl, this._poses, texels, segments);
     impostor.bake((camera, eye) => {
       const even = { camera, eye, sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0 };
       this._begin(bark, false, { ...even, picked: [-2, -2] });
@@ -316,7 +314,7 @@ export class Scene {
   _place() {
     const { detail, _coordinates: values, _texels: texels } = this;
     const turns = beyond(values, this.description?.nCoordinates ?? 0);
-    detail?.trees.forEach(({ kind, firstCoordinate, firstKey, place }, t) => {
+    detail.trees.forEach(({ kind, firstCoordinate, firstKey, place }, t) => {
       const { drawn, placer } = this._kinds[kind];
       const start = detail.start[t];
       const { branches } = detail.levelOf(t) ?? {};
@@ -341,13 +339,13 @@ export class Scene {
    * @param {number} time [s] @param {boolean} isPaused nothing of the picture changes then
    * @param {View[]} [views] of a headset, in place of the picture's own */
   draw(coordinates, time, isPaused, views) {
-    const { camera: own, canvas } = this;
+    const { gl, camera: own, canvas, detail: { segments } } = this;
     if (views) this.camera = /** @type {Camera} */ (views[0].camera);
     else this.resize();
     if (this._frame % CHOOSE_EVERY === 0) this._chooseDetail();
     if (coordinates && coordinates.length >= (this.description?.nCoordinates ?? Infinity)) this._coordinates = coordinates;
     this._place();
-    this._upload();
+    if (segments) uploadPoses(gl, this._texture, this._texels, segments);
     const passed = Math.min(0.1, Math.abs(time - this._time));
     this._time = time;
     for (const c of [0, 1]) this._calmWind[c] += (passed / CALM) * (this.wind[c] - this._calmWind[c]);
@@ -376,31 +374,21 @@ export class Scene {
     else this._backdrop.paint(...under);
     if (!isOwn) this._drawShadow();
     gl.enable(gl.DEPTH_TEST);
-    if (!this.detail) return;
     this._drawTrees(false);
     this._drawSolids(false);
   }
 
   /** Whether so many trees are drawn with leaves that some may be left out; far ones are pictures. */
   get _hasCards() {
-    const drawn = this.detail?.level.filter((level) => level > 0).length ?? 0;
+    const drawn = this.detail.level.filter((level) => level > 0).length;
     return this.hasLeaves && this.leavesShown && (drawn > 1 || !this.isCrowd);
   }
 
   /** The ground of the scene, and one over how far one sees [1/m]. */
   get _ground() {
-    const kind = this._potSize > 0 || !this.detail ? GROUNDS.terrace : GROUNDS.meadow;
-    const haze = 1 / (this._potSize > 0 ? 30 * this.height : Math.max(1500, 30 * this._extent));
-    return { kind, ground: this.ground, haze };
-  }
-
-  _upload() {
-    const { gl } = this;
-    const rows = rowsOf(this.detail?.segments ?? 0);
-    if (!rows) return;
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, this._texture);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, shaders.TEXTURE_WIDTH, rows, gl.RGBA, gl.FLOAT, this._texels);
+    const isTerrace = this._potSize > 0;
+    const haze = 1 / (isTerrace ? 30 * this.height : Math.max(1500, 30 * this._extent));
+    return { kind: isTerrace ? GROUNDS.terrace : GROUNDS.meadow, ground: this.ground, haze };
   }
 
   _castShadow() {
@@ -417,14 +405,14 @@ export class Scene {
   /** @param {Program} used @param {boolean} isShadow @param {Record<string, any>} [own] what it is given
    * beside the usual */
   _begin(used, isShadow, own = {}) {
-    const { camera: { matrix: camera, eye }, _poses: poses } = this;
-    const shadowArea = [...this._shadowMiddle, 1 / this._shadowHalf, Number(isShadow)];
+    const { camera: { matrix: camera, eye }, _poses: poses, _shadowArea: [x, y, half] } = this;
+    const shadowArea = [x, y, 1 / half, Number(isShadow)];
     use(this.gl, used, {
       ...this.day, ...this._ground, camera, eye, isShadow: Number(isShadow), shadowArea, poses: [0, poses], ...own,
     });
   }
 
-  /** Where the shadow falls, with room to sway. */
+  /** Find where the shadow falls, with room to sway. */
   _frameShadow() {
     const { day: { light }, _low: low, _high: high } = this;
     const room = 0.06 * this._extent;
@@ -432,13 +420,8 @@ export class Scene {
       const lean = (-light[c] / light[2]) * (high[2] - this.ground);
       return [low[c] + Math.min(0, lean) - room, high[c] + Math.max(0, lean) + room];
     });
-    this._shadowMiddle = ends.map(([from, to]) => (from + to) / 2);
-    this._shadowHalf = Math.max(...ends.map(([from, to]) => to - from)) / 2;
-  }
-
-  /** What of the picture is left out so that frames come in time; null if nothing is. */
-  get leftOut() {
-    return this.isSlow ? this.quality.leftOut : null;
+    const half = Math.max(...ends.map(([from, to]) => to - from)) / 2;
+    this._shadowArea = [...ends.map(([from, to]) => (from + to) / 2), half];
   }
 
   /** @param {boolean} isShadow */
@@ -452,7 +435,7 @@ export class Scene {
         isBaked: 0, time: this._time % 1000, speed: Math.hypot(...this.wind),
         law: [this.flutters ? law.gain : 0, law.largest_angle],
       });
-      const density = this.isSlow ? this.quality.density * (isShadow ? SHADOW_LEAVES : 1) : 1;
+      const density = this.quality.density * (this.isSlow && isShadow ? SHADOW_LEAVES : 1);
       this._eachLevel((level, kind) => this._drawLeaves(kind, level, density));
     }
     this._begin(impostor, isShadow);
@@ -466,24 +449,24 @@ export class Scene {
 
   /** @param {DrawnKind} kind @param {DrawnLevel} level */
   _drawBark({ kind: { species } }, { bark, starts }) {
-    if (!bark) return;
     const { bark: barkColor, twig: twigColor, pattern } = lookOf(species);
-    const relief = this._picture(`bark ${pattern}`, this.gl.REPEAT, () => barkPicture(pattern));
-    this._drawEach(bark, this._programs.bark, starts, { barkColor, twigColor, relief: [2, relief] });
+    this._drawEach(bark, this._programs.bark, starts, { barkColor, twigColor, ...barkPattern(pattern) });
   }
 
   /** @param {DrawnKind} kind @param {DrawnLevel} level @param {number} density share of them */
   _drawLeaves({ kind: { species } }, { leaf, starts, across }, density) {
     if (!leaf) return;
-    const leaves = this._picture(`leaves ${species} ${across}`, this.gl.CLAMP_TO_EDGE,
-      () => leafPicture(species, across, this.isAutumn));
+    const name = `${species} ${across}`;
+    const leaves = this._pictures.get(name) ?? pictureTexture(this.gl, leafPicture(species, across, this.isAutumn), this.isSlow);
+    this._pictures.set(name, leaves);
     this._drawEach(leaf, this._programs.leaf, starts, { leaves: [2, leaves] }, density);
   }
 
-  /** Draw a part of each tree of a level. @param {Drawable} part @param {Program} used
+  /** Draw a part of each tree of a level, if it has it. @param {Drawable | null} part @param {Program} used
    * @param {number[]} starts rows of their first segments @param {Record<string, any>} values that the
    * program is given @param {number} [share] of its triangles */
   _drawEach(part, used, starts, values, share = 1) {
+    if (!part) return;
     use(this.gl, used, values);
     for (const start of starts) {
       used.uniforms.start(start);
@@ -491,26 +474,17 @@ export class Scene {
     }
   }
 
-  /** A picture that is painted when it is first used. @param {string} name @param {number} wrap
-   * @param {() => ImageData[]} paint */
-  _picture(name, wrap, paint) {
-    const known = this._pictures.get(name) ?? pictureTexture(this.gl, paint(), wrap, this.isSlow);
-    this._pictures.set(name, known);
-    return known;
-  }
-
   /** Rows of the first and the last segment of the branch that is picked. */
   _pickedRows() {
-    const { watchedKind, picked } = this;
-    if (!watchedKind || picked < 0) return [-2, -2];
-    const { branch_first: first } = watchedKind.arrays;
-    return [this._row(first[picked]), this._row(first[picked + 1] - 1)];
+    if (this.picked < 0) return [-2, -2];
+    const { branch_first: first } = this.watched.kind.arrays;
+    return [this._row(first[this.picked]), this._row(first[this.picked + 1] - 1)];
   }
 
   /** The pot, somebody beside the tree, and the arrow of the wind. @param {boolean} isShadow */
   _drawSolids(isShadow) {
     const { gl, height, ground, _low: low, _high: high, _parts: parts } = this;
-    const [x, y, z] = this.detail?.trees[0].place ?? AT_ORIGIN;
+    const [x, y, z] = this.detail.trees[0]?.place ?? AT_ORIGIN;
     const used = this._programs.solid;
     this._begin(used, isShadow);
     const draw = (/** @type {Drawable} */ part, /** @type {number[]} */ placed, c = 1, s = 0) => {
@@ -535,13 +509,13 @@ export class Scene {
 
   /** Whether the trees are a wood. */
   get isCrowd() {
-    return (this.detail?.trees.length ?? 0) > CROWD;
+    return this.detail.trees.length > CROWD;
   }
 
   _drawShadow() {
     const { gl, _shadow: { texture, width } } = this;
     use(gl, this._programs.shadow, {
-      camera: this.camera.matrix, area: [...this._shadowMiddle, this._shadowHalf, this.ground],
+      camera: this.camera.matrix, area: [...this._shadowArea, this.ground],
       softness: this.isSlow ? 0 : 1.5 / width, depth: 0.5, shadow: [1, texture],
     });
     gl.enable(gl.BLEND);
@@ -549,23 +523,16 @@ export class Scene {
     gl.disable(gl.DEPTH_TEST);
     drawPart(gl, this._parts.shadow);
     gl.disable(gl.BLEND);
-    gl.activeTexture(gl.TEXTURE0);
   }
 
   /** Forget the trees. */
   _free() {
     this._eachLevel(({ impostor, bark, leaf }) => {
       impostor?.free();
-      for (const part of [bark, leaf]) if (part) discard(this.gl, part);
+      for (const part of [bark, leaf]) discard(this.gl, part);
     });
     for (const texture of this._pictures.values()) this.gl.deleteTexture(texture);
     this._pictures.clear();
     this._kinds = [];
   }
 }
-
-/** Rows of a texture with the poses of segments, of two texels each. @param {number} segments */
-const rowsOf = (segments) => Math.ceil((2 * segments) / shaders.TEXTURE_WIDTH);
-
-/** Room for them. @param {number} segments */
-const texelsOf = (segments) => new Float32Array(4 * shaders.TEXTURE_WIDTH * rowsOf(segments));

@@ -30,9 +30,30 @@ in float segment; // of its tree
 uint rowOf() { return 2u * uint(start + segment); }
 vec4 texel(uint at) { return texelFetch(poses, ivec2(int(at & 1023u), int(at >> 10)), 0); }
 
-#part lit
-// What is lit; the shadow is its outline.
+#part noise
 precision highp float;
+float hash(vec2 p) {
+  uvec2 q = uvec2(ivec2(p)) * uvec2(1597334673u, 3812015801u);
+  uint n = (q.x ^ q.y) * 1597334673u;
+  return float(n >> 8) / 16777216.0;
+}
+// Smooth, 0 to 1; it repeats after a number of cells each way.
+float tiled(vec2 p, vec2 cells) {
+  vec2 i = mod(floor(p), cells);
+  vec2 j = mod(i + 1.0, cells);
+  vec2 f = fract(p);
+  f = f * f * (3.0 - 2.0 * f);
+  return mix(mix(hash(i), hash(vec2(j.x, i.y)), f.x), mix(hash(vec2(i.x, j.y)), hash(j), f.x), f.y);
+}
+float noise(vec2 p) { return tiled(p, vec2(65536.0)); }
+// Noise of a cell size [m], that vanishes where a pixel is larger.
+float grain(vec2 p, float size, float pixel) {
+  float shown = 1.0 - smoothstep(0.25, 0.8, pixel / size);
+  return shown > 0.0 ? shown * (noise(p / size) - 0.5) : 0.0;
+}
+
+#part lit noise
+// What is lit; the shadow is its outline.
 uniform float isShadow;
 uniform vec3 horizon;
 out vec4 color;
@@ -82,11 +103,21 @@ uniform vec3 sun;
 uniform vec3 sky;
 uniform vec3 barkColor;
 uniform vec3 twigColor;
-uniform sampler2D relief;
+uniform vec2 cells; // of the relief, around and up a tile
+uniform float ridge; // how steep furrows are
+uniform float spot; // share without dark spots
+uniform float depth; // of the shade
+uniform float rough;
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
-  float deep = texture(relief, at).r * 1.28;
+  float deep = 1.1 - 0.4 * depth;
+  float shown = 1.0 - smoothstep(0.4, 1.2, length(fwidth(at) * cells));
+  if (shown > 0.0) {
+    float shape = tiled((at + vec2(0.08 * tiled(4.0 * at, vec2(4.0)), 0.0)) * cells, cells);
+    float raised = ridge > 0.0 ? min(1.0, ridge * abs(2.0 * shape - 1.0)) : spot > 0.0 ? step(shape, spot) : shape;
+    deep += shown * (depth * (raised - 0.6) + rough * (tiled(at * vec2(32.0, 16.0), vec2(32.0, 16.0)) - 0.5));
+  }
   vec3 base = mix(twigColor, barkColor * mix(1.0, deep, 0.9), tone.x);
   float open = 0.3 + 0.7 * tone.y;
   vec3 lit = open * (sky * (0.72 + 0.28 * n.z) + sun * tone.y * max(dot(n, light), 0.0));
@@ -254,8 +285,7 @@ void main() {
   gl_Position = vec4(corner, 0.99999, 1.0);
 }
 
-#part backdrop.fragment
-precision highp float;
+#part backdrop.fragment noise
 in vec3 ray;
 uniform vec3 eye;
 uniform float ground;
@@ -267,23 +297,6 @@ uniform vec3 zenith;
 uniform vec3 horizon;
 uniform float dimmed;
 out vec4 color;
-float hash(vec2 p) {
-  uvec2 q = uvec2(ivec2(p)) * uvec2(1597334673u, 3812015801u);
-  uint n = (q.x ^ q.y) * 1597334673u;
-  return float(n >> 8) / 16777216.0;
-}
-float noise(vec2 p) {
-  vec2 i = floor(p);
-  vec2 f = fract(p);
-  f = f * f * (3.0 - 2.0 * f);
-  return mix(mix(hash(i), hash(i + vec2(1, 0)), f.x),
-    mix(hash(i + vec2(0, 1)), hash(i + vec2(1, 1)), f.x), f.y);
-}
-// Noise of a cell size [m], that vanishes where a pixel is larger.
-float grain(vec2 p, float size, float pixel) {
-  float shown = 1.0 - smoothstep(0.25, 0.8, pixel / size);
-  return shown > 0.0 ? shown * (noise(p / size) - 0.5) : 0.0;
-}
 vec3 heaven(vec3 way) {
   float high = max(way.z, 0.0);
   vec3 c = mix(horizon, zenith, 1.0 - exp(-3.2 * high));

@@ -1,13 +1,12 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Pictures painted by code: sprays of leaves, cut out by their alpha, and the relief of bark. */
+/** Pictures painted by code: sprays of leaves, cut out by their alpha. */
 
-import { barkPattern, hasNeedles, lookOf, outlineOf, seeded } from "./species.js";
+import { hasNeedles, lookOf, outlineOf, seeded } from "./species.js";
 
 /** Leaves across a picture: a leaf alone, sprays of more and more. */
 const ACROSS = [1, 3, 6, 12, 24];
 const LEAF_PIXELS = 256;
-const BARK_PIXELS = 128;
 /** Length of a compound leaf in leaflets. */
 const RACHIS = 3.4;
 
@@ -28,9 +27,9 @@ export function leafPicture(species, across, isAutumn) {
   const brush = new Brush(look, base, isAutumn && look.autumn ? base.map((c) => 1.15 * c) : look.fresh,
     across === 1 ? LEAF_PIXELS / 2 : LEAF_PIXELS, seeded(97 + across));
   const long = 1 / across;
-  if (across === 1) brush.leaf(0.01, 0.5, 0, 0.98);
-  else if (hasNeedles(species)) brush.shoot(0, 0.5, 0, 0.98 - 0.3 * long, long, 0);
-  else if (across <= 6) brush.spray(0, 0.5, 0, long);
+  if (across === 1) brush.leaf(0.99);
+  else if (hasNeedles(species)) brush.shoot(0.98 - 0.3 * long, long);
+  else if (across <= 6) brush.spray(long);
   else brush.cloud(long);
   return mipsOf(brush.context, base.map((c) => 255 * c));
 }
@@ -40,20 +39,24 @@ const css = (color) => `rgb(${color.map((c) => Math.round(255 * Math.min(1, Math
 
 /** A square canvas. @param {number} size [px] */
 function canvasOf(size) {
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = size;
+  const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
   return /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { willReadFrequently: true }));
 }
 
-/** Paints leaves and twigs of a species on the unit square. */
+/** Paints leaves and twigs of a species on a unit square, from the middle of its left side on. */
 class Brush {
   /** @param {Look} look @param {number[]} base colour of its leaves @param {number[]} fresh of some
    * @param {number} size [px] @param {() => number} random */
   constructor(look, base, fresh, size, random) {
     this.look = look;
     this.random = random;
+    this.unit = look.form === "compound" ? RACHIS : 1;
+    const half = outlineOf(look);
+    const other = half.map(([x, y]) => [x, -y]).reverse();
+    this.blade = new Path2D(`M${[...half, ...other].join("L")}Z`);
     this.context = canvasOf(size);
     this.context.scale(size, size);
+    this.context.translate(0, 0.5);
     this.context.lineCap = "round";
     this._color = () => {
       const [light, mixed] = [0.78 + 0.44 * random(), 0.35 * random()];
@@ -61,117 +64,100 @@ class Brush {
     };
   }
 
-  /** A straight line; where it ends. @param {number} x @param {number} y @param {number} turn
-   * @param {number} long @param {number} width @param {string} color */
-  line(x, y, turn, long, width, color) {
+  /** Paint something elsewhere, turned and scaled. @param {number} x @param {number} y @param {number} turn
+   * @param {number} scale @param {() => void} paint */
+  at(x, y, turn, scale, paint) {
     const { context } = this;
-    const end = [x + long * Math.cos(turn), y + long * Math.sin(turn)];
-    [context.strokeStyle, context.lineWidth] = [color, width];
-    context.beginPath();
-    context.moveTo(x, y);
-    context.lineTo(end[0], end[1]);
-    context.stroke();
-    return end;
+    context.save();
+    context.translate(x, y);
+    context.rotate(turn);
+    context.scale(scale, scale);
+    paint();
+    context.restore();
   }
 
-  /** A twig with side twigs, leaves in turn on both sides. @param {number} x @param {number} y
-   * @param {number} turn @param {number} leaf length of one @param {number} [length] of the twig; of the
-   * main one if left out */
-  spray(x, y, turn, leaf, length) {
+  /** A straight line. @param {number} long @param {number} width @param {string} color */
+  line(long, width, color) {
+    const { context } = this;
+    [context.strokeStyle, context.lineWidth] = [color, width];
+    context.stroke(new Path2D(`M0 0H${long}`));
+  }
+
+  /** A twig with side twigs, leaves in turn on both sides. @param {number} leaf length of one
+   * @param {number} [length] of the twig; of the main one if left out */
+  spray(leaf, length) {
     const { look, random } = this;
-    const unit = look.form === "compound" ? RACHIS * leaf : leaf;
+    const unit = this.unit * leaf;
     const long = length ?? Math.max(0.25, 1 - 1.05 * unit);
-    const end = this.line(x, y, turn, long, (length ? 0.06 : 0.1) * leaf, css(look.twig));
-    const step = look.form === "compound" ? 0.3 * unit : 0.4 * unit;
+    this.line(long, (length ? 0.06 : 0.1) * leaf, css(look.twig));
+    const step = (look.form === "compound" ? 0.3 : 0.4) * unit;
     let side = 1;
     for (let at = length ? step : 0.15 * long; at < long; at += step, side = -side) {
       const lean = side * (0.65 + 0.5 * random());
-      const [px, py] = [x + at * Math.cos(turn), y + at * Math.sin(turn)];
       if (!length && leaf < 0.3 && at < 0.8 * long) {
-        this.spray(px, py, turn + 0.9 * lean, leaf, 0.42 * (1 - (0.4 * at) / long));
+        this.at(at, 0, 0.9 * lean, 1, () => this.spray(leaf, 0.42 * (1 - (0.4 * at) / long)));
       }
-      this.leaf(px, py, turn + lean, unit * (0.75 + 0.35 * random()));
+      this.at(at, 0, lean, 1, () => this.leaf(unit * (0.75 + 0.35 * random())));
     }
-    this.leaf(end[0], end[1], turn, unit);
+    this.at(long, 0, 0, 1, () => this.leaf(unit));
   }
 
   /** Leaves without order in a disc. @param {number} leaf length of one */
   cloud(leaf) {
     const { look, random } = this;
-    const isCompound = look.form === "compound";
-    const unit = isCompound ? RACHIS * leaf : leaf;
-    const count = (isCompound ? 5 : 2.1) / (unit * unit) / Math.max(0.6, 2 * look.slender);
+    const unit = this.unit * leaf;
+    const count = (look.form === "compound" ? 5 : 2.1) / (unit * unit) / Math.max(0.6, 2 * look.slender);
     for (let i = 0; i < count; i++) {
       const far = (0.5 - 0.55 * unit) * Math.sqrt(random());
       const at = 2 * Math.PI * random();
       const turn = at + 2.4 * (random() - 0.5);
-      this.leaf(0.5 + far * Math.cos(at) - 0.4 * unit * Math.cos(turn),
-        0.5 + far * Math.sin(at) - 0.4 * unit * Math.sin(turn), turn, unit * (0.75 + 0.4 * random()));
+      const [x, y] = [Math.cos, Math.sin].map((of) => far * of(at) - 0.4 * unit * of(turn));
+      this.at(0.5 + x, y, turn, 1, () => this.leaf(unit * (0.75 + 0.4 * random())));
     }
   }
 
   /** A twig of a conifer: side shoots that grow shorter to its tip, needles on all of them.
-   * @param {number} x @param {number} y @param {number} turn @param {number} length @param {number} unit
-   * length of a shoot @param {number} depth */
-  shoot(x, y, turn, length, unit, depth) {
+   * @param {number} length @param {number} unit length of a shoot @param {number} [depth] */
+  shoot(length, unit, depth = 0) {
     const { look, random } = this;
     const isTuft = look.form === "tufts";
-    this.line(x, y, turn, length, 0.06 * unit, css(look.twig));
+    this.line(length, 0.06 * unit, css(look.twig));
     const from = isTuft ? Math.max(0, 1 - (0.6 * unit) / length) : 0;
     const count = Math.ceil(((isTuft ? 60 : 36) * (1 - from) * length) / unit);
     const width = Math.max(0.005, (look.form === "fronds" ? 0.1 : 0.055) * unit);
     for (let i = 0; i < count; i++) {
-      const at = length * (from + (1 - from) * (i / count));
       const lean = (i % 2 ? 1 : -1) * (isTuft ? 0.2 + 0.9 * random() : 0.5 + 0.4 * random());
       const long = (isTuft ? 0.55 : 0.29) * unit * (0.7 + 0.5 * random());
-      this.line(x + at * Math.cos(turn), y + at * Math.sin(turn), turn + lean, long, width, this._color());
+      this.at(length * (from + (1 - from) * (i / count)), 0, lean, 1, () => this.line(long, width, this._color()));
     }
     if (length < 0.9 * unit || depth > 2) return;
-    const step = Math.max(0.42 * unit, 0.04);
     let side = 1;
-    for (let at = 0.1 * length; at < 0.94 * length; at += step, side = -side) {
+    for (let at = 0.1 * length; at < 0.94 * length; at += Math.max(0.42 * unit, 0.04), side = -side) {
       const reach = Math.max(0.6 * unit, 0.46 * (length - at)) * (0.75 + 0.4 * random());
-      this.shoot(x + at * Math.cos(turn), y + at * Math.sin(turn), turn + side * (0.8 + 0.2 * random()), reach, unit, depth + 1);
+      this.at(at, 0, side * (0.8 + 0.2 * random()), 1, () => this.shoot(reach, unit, depth + 1));
     }
   }
 
-  /** One leaf from its stalk on. @param {number} x @param {number} y @param {number} turn
-   * @param {number} long */
-  leaf(x, y, turn, long) {
+  /** One leaf from its stalk on. @param {number} long */
+  leaf(long) {
     const { context, look, random } = this;
     const color = this._color();
-    context.save();
-    context.translate(x, y);
-    context.rotate(turn);
-    context.scale(long, long);
+    const pairs = look.slender < 0.35 ? 5 : 4;
     context.fillStyle = color;
-    if (look.form === "compound") {
-      this.line(0, 0, 0, 0.75, 0.02, color);
-      const pairs = look.slender < 0.35 ? 5 : 4;
+    this.at(0, 0, 0, long, () => {
+      if (look.form !== "compound") {
+        context.fill(this.blade);
+        this.line(0.9, 0.03, "rgb(255 255 220 / 22%)");
+        return;
+      }
+      this.line(0.75, 0.02, color);
       for (let i = 0; i <= 2 * pairs; i++) {
         const pair = Math.floor(i / 2);
         const lean = pair === pairs ? 0 : (i % 2 ? 1 : -1) * (0.95 - 0.06 * pair) + 0.15 * (random() - 0.5);
-        context.save();
-        context.translate(0.14 + 0.58 * (pair / (pairs - 1 + (pair === pairs ? 1 : 0))), 0);
-        context.rotate(lean);
-        context.scale(1 / RACHIS, 1 / RACHIS);
-        this._blade();
-        context.restore();
+        const along = 0.14 + 0.58 * Math.min(1, pair / (pairs - 1));
+        this.at(along, 0, lean, 1 / RACHIS, () => context.fill(this.blade));
       }
-    } else {
-      this._blade();
-      this.line(-0.06, 0, 0, 0.96, 0.03, "rgb(255 255 220 / 22%)");
-    }
-    context.restore();
-  }
-
-  /** The blade of a leaf of unit length along x. */
-  _blade() {
-    const half = outlineOf(this.look);
-    this.context.beginPath();
-    for (const [x, y] of half) this.context.lineTo(x, -y);
-    for (const [x, y] of [...half].reverse()) this.context.lineTo(x, y);
-    this.context.fill();
+    });
   }
 }
 
@@ -196,32 +182,4 @@ function mipsOf(context, mean) {
     context = half;
   }
   return mips;
-}
-
-/** Relief of bark, dark in its furrows; it repeats both ways, and runs up the stem.
- * @param {Look["pattern"]} name */
-export function barkPicture(name) {
-  const { cells: [wide, high], ridge, spot, depth, grain } = barkPattern(name);
-  const picture = new ImageData(BARK_PIXELS, BARK_PIXELS);
-  for (let i = 0; i < BARK_PIXELS ** 2; i++) {
-    const [u, v] = [(i % BARK_PIXELS) / BARK_PIXELS, Math.floor(i / BARK_PIXELS) / BARK_PIXELS];
-    const shape = noise(u + 0.08 * noise(u, v, 4, 4), v, wide, high);
-    const raised = ridge ? Math.min(1, ridge * Math.abs(2 * shape - 1)) : spot ? Number(shape < spot) : shape;
-    const tone = 1.1 - depth * (1 - raised) + grain * (noise(u, v, 32, 16) - 0.5);
-    picture.data.fill(200 * tone, 4 * i, 4 * i + 3);
-    picture.data[4 * i + 3] = 255;
-  }
-  return [picture];
-}
-
-/** Smooth noise from 0 to 1 that repeats on the unit square. @param {number} u @param {number} v
- * @param {number} nx cells across @param {number} ny and up */
-function noise(u, v, nx, ny) {
-  const hash = (/** @type {number} */ x, /** @type {number} */ y) =>
-    seeded(Math.imul((x % nx) + 17 * nx, 374761393) ^ Math.imul((y % ny) + 29 * ny, 668265263))();
-  const [x, y] = [(u - Math.floor(u)) * nx, (v - Math.floor(v)) * ny];
-  const [i, j] = [Math.floor(x), Math.floor(y)];
-  const [a, b] = [x - i, y - j].map((t) => t * t * (3 - 2 * t));
-  const mix = (/** @type {number} */ p, /** @type {number} */ q, /** @type {number} */ t) => p + t * (q - p);
-  return mix(mix(hash(i, j), hash(i + 1, j), a), mix(hash(i, j + 1), hash(i + 1, j + 1), a), b);
 }
