@@ -33,6 +33,8 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
         root = np.sqrt(bank.modal.stiffness)
         own['state'] = state.astype(np.float32)
         own['correction'] = (np.linalg.pinv(state / root[:, None]) / root).astype(np.float32)
+        own['branch_compliance'] = bank.compliance[0].astype(np.float32)
+        own['shape_compliance'] = (state.T @ bank.compliance[1] @ state).astype(np.float32)
         arrays |= {f'{number}/{name}': array for name, array in own.items()}
         entries.append({**numbers, 'drag_law': list(model.drag_law)})
     count = sum(len(kind.numbers) for kind in kinds)
