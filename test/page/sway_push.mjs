@@ -14,7 +14,6 @@ const read = (name) => {
 const description = decodeDescription(read("description.bin"));
 const stand = new Stand(decodeTables(read("tables.bin")), description);
 const placer = new Placer(description);
-const coordinates = new Float32Array(description.nCoordinates);
 const { push, wind, steps, steps_pushed } = JSON.parse(new TextDecoder().decode(read("push.json")));
 const places = [];
 for (let step = 0; step < steps; step++) {
@@ -22,7 +21,7 @@ for (let step = 0; step < steps; step++) {
   if (step === steps_pushed) stand.push({ segment: push.segment, to: [0, 0, 0], stiffness: 0 });
   stand.step(...wind);
   const from = STRIDE * push.segment;
-  places.push(Array.from(placer.place(stand.write(coordinates)).subarray(from, from + 3)));
+  places.push(Array.from(placer.place(stand.state()).subarray(from, from + 3)));
 }
 const refused = [{ segment: -1, force: [1, 0, 0] }, { segment: 1e9, force: [1, 0, 0] }, { segment: 1, force: [NaN, 0, 0] },
   { segment: 1, to: [0, 0, 0], stiffness: Infinity }, { segment: 1, force: [1, 0] }, { segment: 0.5, force: [1, 0, 0] }];

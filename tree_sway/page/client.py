@@ -20,6 +20,7 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit, urlunsplit
 
 import aiohttp
+import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError, ParameterError, TransportError
@@ -286,6 +287,7 @@ class StreamClient:
         is_whole = values is not None and len(values) == len(description.scale)
         with self._more:
             if values is not None and is_whole:
+                values = values if solver else np.concatenate([values, frame.beyond])
                 moment = Moment(1e-9 * frame.stamp, values, frame.wind, frame.flags)
                 self.playout.push(moment, arrival)
             self.received += is_whole or self._wants_wind == 'only'

@@ -112,11 +112,8 @@ class ControlPanel:
     ) -> None:
         self._controls = {control.name: control for control in controls}
         self._apply, self._pull = apply, pull
-
-    @property
-    def can_pull(self) -> bool:
+        self.can_pull = pull is not None
         """Whether a branch can be pulled."""
-        return self._pull is not None
 
     def entries(self) -> list[dict[str, object]]:
         """All controls as JSON has them."""

@@ -59,19 +59,24 @@ class Placer:
 
     def place(self, coordinates: Floats) -> Floats:
         """
-        Poses (n, 7) of coordinates (m,) in their own unit, as of `Description.coordinates`.
+        Poses (n, 7) of coordinates in their own unit, and then what is ``beyond``, as of a frame.
 
         They are x y z in [m] and the quaternion's x y z w.
         """
-        poses, row, first = np.empty((self.n_segments, 7)), 0, 0
+        poses, row, first, key = np.empty((self.n_segments, 7)), 0, 0, 0
+        number, turn = coordinates[len(self.description.scale) :].reshape(-1, 2).T
+        # Between frames of other keys there is none.
+        number = np.where(np.abs(number - np.rint(number)) < 1e-6, np.rint(number), -1.0)
         for (x, y, z, yaw, scale), kind in self._trees:
             last, end = first + kind.matrix.shape[1], row + kind.n_segments
             c, s = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
             keys = kind.matrix @ coordinates[first:last]
+            own = (number >= key) & (number < key + len(keys))
+            keys[number[own].astype(np.int64) - key] += turn[own]
             origin = np.array([x, y, z])
             room, (segments, heads, bases) = room_for(len(keys)), kind.records
             place(*GIVEN, segments, heads, bases, c, s, scale, room, keys, origin, poses[row:end])
-            row, first = end, last
+            row, first, key = end, last, key + len(keys)
         return poses
 
 

@@ -83,6 +83,9 @@ class Frame(NamedTuple):
         Coordinates as int16, (m,): full scale is `FULL_SCALE`. A frame of wind alone has none.
     first
         Number of the first of them.
+    beyond
+        What branches that are pulled turn by beyond them, as pairs of the number of a key rotation
+        among those of all trees and a turn [rad], (2 k,).
 
     """
 
@@ -93,6 +96,7 @@ class Frame(NamedTuple):
     wind: Floats
     coordinates: Array
     first: int = 0
+    beyond: Floats = np.zeros(0)
 
 
 @dataclass(frozen=True)
@@ -303,7 +307,7 @@ def encode_frame(frame: Frame) -> bytes:
             FRAME_KIND, FRAME_VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF,
             frame.stamp, x, y, z, len(coordinates),
         )
-        + coordinates.tobytes()
+        + coordinates.tobytes() + np.asarray(frame.beyond, dtype='<f4').tobytes()
     )  # fmt: skip
 
 
@@ -315,10 +319,11 @@ def encode_state(
     coordinates: ArrayLike,
     flags: int = 0,
 ) -> bytes:
-    """Write the frame of coordinates (m,) in their own unit; the rest is as of `Frame`."""
-    steps, is_cut = quantised(coordinates, description.scale)
-    flags |= BEYOND_SCALE * is_cut
-    return encode_frame(Frame(description.short_identity, sequence, stamp, flags, wind, steps))
+    """Write the frame of `SceneState.coordinates`; the rest is as of `Frame`."""
+    own, beyond = np.split(np.asarray(coordinates), [len(description.scale)])
+    steps, is_cut = quantised(own, description.scale)
+    head = description.short_identity, sequence, stamp, flags | BEYOND_SCALE * is_cut, wind
+    return encode_frame(Frame(*head, steps, beyond=beyond))
 
 
 def decode_frame(data: bytes) -> Frame:
@@ -337,20 +342,24 @@ def decode_frame(data: bytes) -> Frame:
         )
     _, version, flags, identity, sequence, stamp, x, y, z, count = _FRAME.unpack_from(data)
     begin = _FRAME.size + 2 * bool(flags & PART)
-    if version != FRAME_VERSION or len(data) != begin + 2 * count:
+    size = begin + 2 * count
+    if version != FRAME_VERSION or len(data) < size or (len(data) - size) % 8:
         what = f'a frame of version {version}, {count} coordinates and {len(data)} bytes'
         cure = f'send version {FRAME_VERSION}, {begin} bytes and 2 per coordinate'
         raise FormatError(what, where='tree state', cure=cure)
-    coordinates = np.frombuffer(data, dtype='<i2', offset=begin)
+    coordinates = np.frombuffer(data, dtype='<i2', count=count, offset=begin)
+    beyond = np.frombuffer(data, dtype='<f4', offset=size).astype(np.float64)
+    if not np.isfinite(beyond).all():
+        raise FormatError('a frame that is not finite', where='tree state')
     first = int.from_bytes(data[begin - 2 : begin], 'little') if flags & PART else 0
     wind = WIND_UNIT * np.array([x, y, z])
-    return Frame(identity, sequence, stamp, flags, wind, coordinates, first)
+    return Frame(identity, sequence, stamp, flags, wind, coordinates, first, beyond)
 
 
 def part_of_frame(frame: bytes, first: int, count: int) -> bytes:
     """Return a frame of some of the coordinates of one; of the wind alone if the count is 0."""
     head, size = bytearray(frame[: _FRAME.size]), _FRAME.size
-    count = min(count, (len(frame) - size) // 2 - first)
+    count = min(count, int.from_bytes(head[-2:], 'little') - first)
     head[-2:] = count.to_bytes(2, 'little')
     if count == 0:
         return bytes(head)

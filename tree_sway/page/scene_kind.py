@@ -85,7 +85,7 @@ def _alone(number: int, simulator: SwaySimulator, is_running: bool) -> SceneKind
     x, y, z = simulator.tree.start[0].tolist()
 
     def found() -> Floats:
-        return np.asarray(basis.projection @ simulator.rotations())[None]
+        return np.asarray(basis.projection @ simulator.bank.oscillators.rotations())[None]
 
     return SceneKind(simulator, basis, found, [number], [(x, y, z, 0.0, 1.0)])
 

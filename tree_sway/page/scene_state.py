@@ -72,13 +72,11 @@ class SceneState:
             name, self.kinds, self.names, frame_id=frame_id, leaves=self.leaves
         )
         self._described = decode_description(self.description)
+        self.identity = self._described.identity
+        kinds, trees = self._described.kinds, self._described.header['trees']
+        self._matrices: list[Floats] = [kinds[tree['kind']]['basis_matrix'] for tree in trees]
         self._framed = -1, 0.0  # together, as they are read from another thread
         self._tables: bytes | None = None
-
-    @property
-    def identity(self) -> str:
-        """Return the identity of the description."""
-        return self._described.identity
 
     def tables(self) -> bytes | None:
         """Return what a receiver solves the scene by, as `tables_of`; made at the first call."""
@@ -114,11 +112,17 @@ class SceneState:
         ]
 
     def coordinates(self) -> Floats:
-        """Coordinates of all trees now, (m,)."""
+        """Coordinates of all trees now, (m,), and what is ``beyond`` them, as of `Frame`."""
         whole = np.empty(sum(self._sizes))
         for kind, rows in zip(self.kinds, self._rows, strict=True):
             whole[rows] = kind.coordinates()
-        return whole
+        parts = [whole]
+        for number, one in self.simulator.pushed.items():
+            own = whole[sum(self._sizes[:number]) :][: self._sizes[number]]
+            before = sum(map(len, self._matrices[:number])), 0.0
+            if one.touch is not None:
+                parts += [(one.touch.beyond(self._matrices[number] @ own) + before).ravel()]
+        return np.concatenate(parts)
 
     def frame(self, stamp: int, *, is_paused: bool = False, has_restarted: bool = False) -> bytes:
         """

@@ -139,7 +139,7 @@ class _Client:
         self.next_state = now + STATE_PERIOD
         part = part_of_frame(frame, self.first, MOST_IN_STATE)
         self.first += MOST_IN_STATE
-        if 2 * self.first >= len(frame) - FRAME_SIZE:
+        if self.first >= int.from_bytes(frame[FRAME_SIZE - 2 : FRAME_SIZE], 'little'):
             self.first = 0
         return part
 

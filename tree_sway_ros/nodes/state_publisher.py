@@ -8,6 +8,8 @@ import math
 import threading
 from typing import Any
 
+import numpy as np
+
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import TreeSwayError
 from tree_sway.page.scene_state import SceneState
@@ -46,9 +48,12 @@ class StatePublisher:
             return
         if self._scene is None or self._publisher.get_subscription_count() == 0:
             return
-        block = self._template.blocks[0]
-        block[:3] = self._simulator.wind
-        block[3:] = self._scene.coordinates()
+        state = np.concatenate([self._simulator.wind, self._scene.coordinates()])
+        if len(state) != len(self._template.blocks[0]):
+            names = self._scene.coordinate_names
+            names += [f'pulled{k}' for k in range(len(state) - 3 - len(names))]
+            self._template = state_template(names, self._node.values['frame_id'])
+        self._template.blocks[0][:] = state
         self._publisher.publish(self._template.to_bytes(stamp))
 
     def _find(self) -> None:

@@ -93,7 +93,7 @@ class ViewerNode(TreeSwayNode):
             return
         wind, coordinates = read_state(message)
         count = len(description.scale)
-        if len(coordinates) != count:
+        if len(coordinates) < count or (len(coordinates) - count) % 2:
             what = f'{len(coordinates)} coordinates of a tree with {count}'
             raise FormatError(what, where='tree_state')
         stamp = stamp_to_ns(message.header.stamp)

@@ -89,7 +89,7 @@ def test_compliance_is_the_answer_to_a_unit_of_force(fork):
         wd = w * np.sqrt(1 - z**2)
         rate = np.exp(-z * w * half) * np.sin(wd * half) / wd * force
         total += moment @ (shapes @ rate)
-    assert bank._loads['compliance'][0, b] == pytest.approx(total / 2.0, rel=1e-9)
+    assert bank.loads['compliance'][0, b] == pytest.approx(total / 2.0, rel=1e-9)
 
 
 def test_reset_forgets_everything(fork):

@@ -24,7 +24,6 @@ from numpy.polynomial import Polynomial
 from numpy.polynomial.legendre import leggauss
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.kernel import kernel
 
 N_POINTS = 5
 
@@ -39,8 +38,10 @@ _LAGRANGE = [Polynomial.fromroots(rest) / np.prod(node - rest) for node, rest in
 _PRIMITIVES = np.stack([basis.integ().coef for basis in _LAGRANGE])
 
 
-_TO_POINTS: Floats = _POINTS[:, None] ** np.arange(N_POINTS + 1) @ _PRIMITIVES.T
-"""Weights w of the integral of f from 0 to each point, ``w . f(points)``."""
+_INTEGRALS: Floats = np.vstack([
+    _POINTS[:, None] ** np.arange(N_POINTS + 1) @ _PRIMITIVES.T, _WEIGHTS
+])  # fmt: skip
+"""Weights w of the integral of f from 0 to each point, and to 1, ``w . f(points)``."""
 
 
 @dataclass(frozen=True)
@@ -150,9 +151,11 @@ class BranchBeam:
             ...).
 
         """
-        flat = np.ascontiguousarray(values.reshape(*values.shape[:2], -1))
-        points, nodes = np.empty(flat.shape), np.empty((len(flat) + 1, flat.shape[2]))
-        _integrate(flat, self.length, self.weight, _TO_POINTS, points, nodes)
+        flat = values.reshape(*values.shape[:2], -1)
+        within = (_INTEGRALS @ flat) * self.length[:, None, None]
+        nodes = np.zeros((len(flat) + 1, flat.shape[2]))
+        np.cumsum(within[:, N_POINTS], axis=0, out=nodes[1:])
+        points = within[:, :N_POINTS] + nodes[:-1, None]
         at_nodes = nodes.reshape(-1, *values.shape[2:])
         return points.reshape(values.shape), at_nodes, at_nodes[self.foot]
 
@@ -307,27 +310,6 @@ class RotationField:
     def about(cls, shape: SlopeShape, axis: Floats) -> RotationField:
         """Turn about one axis, (3,), by the slope of a shape."""
         return cls(shape.beam, shape.curvature[..., None] * axis)
-
-
-@kernel
-def _integrate(
-    values: Floats, length: Floats, weight: Floats,
-    to_points: Floats, points: Floats, nodes: Floats,
-) -> None:  # fmt: skip
-    """Integrate values (p, 5, k) from the base up to points, of the same shape, and nodes."""
-    n_panels, n_points, n = values.shape
-    for i in range(n):
-        nodes[0, i] = 0.0
-    for p in range(n_panels):
-        for i in range(n):
-            whole = 0.0
-            for g in range(n_points):
-                whole += weight[p, g] * values[p, g, i]
-                up_to = 0.0
-                for h in range(n_points):
-                    up_to += to_points[g, h] * values[p, h, i]
-                points[p, g, i] = nodes[p, i] + length[p] * up_to
-            nodes[p + 1, i] = nodes[p, i] + whole
 
 
 def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: float) -> Floats:

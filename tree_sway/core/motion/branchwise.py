@@ -7,7 +7,6 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.errors import ParameterError
 
 
 class Tunable(NamedTuple):
@@ -36,12 +35,6 @@ class Branchwise:
 
     def stepping(self, *_: Any) -> None:
         """Return no compiled call: a step takes the limbs' winds as well."""
-
-    def push(self, moments: Floats) -> int:
-        """Refuse: branches that are solved each by itself carry no force to each other."""
-        raise ParameterError(
-            "a push on model 'branch'", cure='use a number of coordinates, auto or full'
-        )
 
     def step_outside(self) -> int:
         """Return that no load was clamped: there is no such step."""

@@ -26,6 +26,8 @@ from tree_sway.core.motion.plain.numpy_rotation import cross, quaternions_of
 from tree_sway.core.motion.response import joint_motion, levels_of, own_motion, summed_outward
 
 _ONE = np.eye(3)
+_TOGETHER = 256
+"""Branches that are summed at once."""
 
 
 class LoadSlopes:
@@ -51,8 +53,14 @@ class LoadSlopes:
     ) -> None:
         """Find what a unit of each shape does to each branch on its parent."""
         branches, self._work, self._loads = records
-        self._branches, self._parents = branches, np.maximum(branches['parent'], 0)
-        self._levels = levels_of(branches['parent'])
+        self._branches, count = branches, len(branches)
+        bearing, self._on = np.unique(np.maximum(branches['parent'], 0), return_inverse=True)
+        self._bearing, self._levels = bearing, levels_of(np.r_[-1, self._on[bearing[1:]]])
+        base = -cross_matrices(branches['base'])
+        self._free = np.concatenate([np.broadcast_to(_ONE, (count, 3, 3)), base], axis=2)
+        self._bowed = (
+            -2.0 * branches['per_arm'][:, None, None] * (self._free.swapaxes(1, 2) @ self._free)
+        )
         self._moments = moments
         shapes = shapes.astype(np.float32)
         self._joint = joint_motion(branches, shapes)
@@ -69,16 +77,20 @@ class LoadSlopes:
         """
         self._moments(x, np.zeros(len(x)), wind)
         branches, work, count = self._branches, self._work, len(self._branches)
-        parent = self._parents
+        on, parent = self._on, self._bearing[self._on]
         frame = _rotations(work['attitude'])
         below = frame[parent]
-        place = self._outward((below @ work['arm'][..., None])[..., 0])
+        place = (below @ work['arm'][..., None])[..., 0]
+        place += self._outward(place[self._bearing])[on]
         force = (frame @ work['wrench'][:, :3, None])[..., 0]
         moment = (frame @ work['wrench'][:, 3:, None])[..., 0]
 
         # Each base on its parent's: its twist by that of the joint, and by how much the force and
         # moment that it hands on load the joint more as the parent, or the joint itself, moves.
-        slide, spin = _joints(branches, work)
+        leant = -2.0 * branches['per_arm'][:, None, None] * _outer(branches['arm'], work['shift'])
+        slide, spin, curl = self._free + leant @ self._free, np.zeros((count, 3, 6)), work['turn']
+        curl = cross_matrices(curl)
+        spin[:, :, 3:] = _ONE + 0.5 * curl + curl @ curl / 6.0
         relative = np.concatenate([slide, spin], axis=1)
         twist = _blocks(below, cross_matrices(place) @ below, 0.0, below) @ relative
         pulled, bent = (np.einsum('bji,bj->bi', below, each) for each in (force, moment))
@@ -86,33 +98,53 @@ class LoadSlopes:
         about_root = cross_matrices(moment + cross(place, force))
         by_parent = twist.swapaxes(1, 2) @ _blocks(0.0, carried, carried, about_root)
         by_joint = spin.swapaxes(1, 2) @ cross_matrices(pulled) @ slide
-        by_joint += _curvature(branches, work, pulled, bent)
-        joints = twist.astype(np.float32) @ self._joint
-        bases = self._outward(joints)
-        handed_on = by_parent.astype(np.float32) @ bases[parent]
-        handed_on += by_joint.astype(np.float32) @ self._joint
+        # The second derivatives of slide and spin times both.
+        by_joint += (branches['arm'] * pulled).sum(axis=1)[:, None, None] * self._bowed
+        bent = cross_matrices(bent)
+        by_joint[:, 3:, 3:] += 0.5 * bent + (bent @ curl - 2.0 * curl @ bent) / 6.0
 
         # Each branch on its base, in its own frame as it is turned.
         own = of_lanes(self._loads['turned'], count)
         turn = frame @ _rotations(quaternions_of(own))
         back = turn.swapaxes(1, 2)
-        moves = _blocks(back, -back @ cross_matrices(place), 0.0, back).astype(np.float32) @ bases
+        moving = _blocks(back, -back @ cross_matrices(place), 0.0, back)
         own = cross_matrices(own)
-        seen = (_ONE - 0.5 * own + own @ own / 6.0).astype(np.float32) @ self._turn + moves[:, 3:]
+        seeing = _ONE - 0.5 * own + own @ own / 6.0
         air = np.einsum('bji,bj->bi', turn, (frame @ self._in_lanes('air')[..., None])[..., 0])
         drag = self._drag(air)
         push, couple = self._in_lanes('own_force'), self._in_lanes('coupling')
-        arm = couple.swapaxes(1, 2).astype(np.float32) @ moves[:, 3:] + moves[:, :3]
-        pushed = cross_matrices(push).astype(np.float32)
-        coupled = cross_matrices((couple @ push[..., None])[..., 0]).astype(np.float32)
-        borne = np.concatenate([-pushed @ seen, -coupled @ seen - pushed @ moves[:, :3]], axis=1)
-        work_at = arm + self._loaded
-        gained = (drag @ cross_matrices(air)).astype(np.float32) @ seen
-        turning = _power(handed_on, self._joint) + _power(borne, moves) + _power(gained, work_at)
-        return turning, -_power(drag.astype(np.float32) @ (arm + self._damped), work_at)
+        pushed, coupled = (
+            cross_matrices(each) for each in (push, (couple @ push[..., None])[..., 0])
+        )
+        small: list[Any] = [
+            each.astype(np.float32) for each in (
+                twist, by_parent, by_joint, moving, seeing, couple.swapaxes(1, 2), pushed, coupled,
+                drag @ cross_matrices(air), drag,
+            )
+        ]  # fmt: skip
+        bases = self._outward(small[0][self._bearing] @ self._joint[self._bearing])
+        m = bases.shape[2]
+        turning, damping = np.zeros((2, m, m), dtype=np.float32)
+        for first in range(0, count, _TOGETHER):  # what is in between stays in the cache
+            here = slice(first, first + _TOGETHER)
+            twist, by_parent, by_joint, moving, seeing, couple, pushed, coupled, gain, drag = (
+                each[here] for each in small
+            )
+            joint, parents = self._joint[here], bases[on[here]]
+            moves = moving @ (parents + twist @ joint)
+            seen = seeing @ self._turn[here] + moves[:, 3:]
+            arm = couple @ moves[:, 3:] + moves[:, :3]
+            work_at = arm + self._loaded[here]
+            turning += _power(by_parent @ parents + by_joint @ joint, joint)
+            turning -= _power(pushed @ seen, moves[:, :3])
+            turning -= _power(coupled @ seen + pushed @ moves[:, :3], moves[:, 3:])
+            turning += _power(gain @ seen, work_at)
+            damping -= _power(drag @ (arm + self._damped[here]), work_at)
+        return turning, damping
 
     def _outward(self, joints: NDArray[Any]) -> NDArray[Any]:
-        return summed_outward(self._parents, self._levels, joints)
+        """Sum what branches that bear others have on their parents from the root on."""
+        return summed_outward(self._on[self._bearing], self._levels, joints)
 
     def _in_lanes(self, name: str) -> Floats:
         return of_lanes(self._loads[name], len(self._branches))
@@ -124,35 +156,6 @@ class LoadSlopes:
         speed = np.sqrt(np.maximum((air * across).sum(axis=1), 0.0))[:, None, None]
         slope = speed * projector + _outer(across, across) / np.maximum(speed, 1e-12)
         return np.asarray(self._branches['area'][:, None, None] * slope)
-
-
-def _joints(branches: Records, work: Records) -> tuple[Floats, Floats]:
-    """
-    How each base moves, and how it spins, by displacement and turn of its joint, both (b, 3, 6).
-
-    In the frame of the parent's base: what `outward_pass` adds up.
-    """
-    shift, slide = work['shift'], np.zeros((len(branches), 3, 6))
-    slide[:, :, :3], slide[:, :, 3:] = _ONE, -cross_matrices(branches['base'])
-    slide -= 2.0 * branches['per_arm'][:, None, None] * _outer(branches['arm'], shift) @ slide
-    turn, spin = cross_matrices(work['turn']), np.zeros((len(branches), 3, 6))
-    spin[:, :, 3:] = _ONE + 0.5 * turn + turn @ turn / 6.0
-    return slide, spin
-
-
-def _curvature(branches: Records, work: Records, force: Floats, moment: Floats) -> Floats:
-    """
-    How a force and a moment, both (b, 3), load a joint by its own bend, (b, 6, 6).
-
-    By what is loaded, then what moves: the second derivatives of `_joints` times both.
-    """
-    free = np.concatenate([np.broadcast_to(_ONE, (len(branches), 3, 3)),
-                           -cross_matrices(branches['base'])], axis=2)  # fmt: skip
-    along = (branches['arm'] * force).sum(axis=1)
-    curvature = -2.0 * (branches['per_arm'] * along)[:, None, None] * free.swapaxes(1, 2) @ free
-    bent, turn = cross_matrices(moment), cross_matrices(work['turn'])
-    curvature[:, 3:, 3:] += 0.5 * bent + (bent @ turn - 2.0 * turn @ bent) / 6.0
-    return np.asarray(curvature)
 
 
 def _power(moved: Singles, loaded: Singles) -> Singles:

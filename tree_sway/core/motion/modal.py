@@ -17,7 +17,7 @@ on the key rotations, w circular frequencies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cached_property, partial
 import math
 
@@ -70,11 +70,16 @@ class ModalBank(Branchwise):
         self.limit = LOAD_MAX * made_of['diagonal']
         self.weight = made_of['weight']
         """Stiffness by gravity of each mode in [1/s^2], (m,); below 0 where weight softens it."""
+        self.compliance = made_of['branch_compliance'], made_of['mode_compliance']
+        """Of every branch by itself, (N, 9), and of the modes if branches were so, (m, m)."""
         self._momentum = made_of['momentum'].T
         self._participation = made_of['participation']
         self.work = np.zeros(len(branches), dtype=WORK)
-        self._loads = load_records(branches)
+        self.loads = load_records(branches)
+        """Records of `load_fields`."""
         self.modal = np.zeros((5, m))
+        self.swing = tuple(self.modal[:3])
+        """Displacement, rate and force of each mode, (m,)."""
         self.state = np.zeros((3, n))
         self.whole, self.half = np.zeros((2, m, 8))
         self._fastest = np.zeros(1)
@@ -86,11 +91,6 @@ class ModalBank(Branchwise):
         area = self.branches['area']
         mean: Floats = 2.0 * area @ self._participation / max(float(area.sum()), 1e-300)
         return mean
-
-    @property
-    def loads(self) -> Records:
-        """Return the records of `load_fields`."""
-        return self._loads
 
     def set_time_step(self, dt: float) -> None:
         """Refill how the modes go on in a time step [s]."""
@@ -105,7 +105,7 @@ class ModalBank(Branchwise):
         block, lane = np.divmod(np.arange(len(self.branches)), LANES)
         velocity = self.half[:, 6] + self.half[:, 7]
         compliance = np.einsum('bm,m->b', self._participation, velocity)  # not by threads
-        self._loads['compliance'][block, lane] = compliance
+        self.loads['compliance'][block, lane] = compliance
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -117,21 +117,10 @@ class ModalBank(Branchwise):
             return 0
         return int(self._compiled(wx, wy, wz, per_speed_squared))
 
-    def push(self, moments: Floats) -> int:
-        """Add what moments on the key rotations [N m] did over a step; how many were clamped."""
-        force, clamped = self.felt(moments)
-        add_force(list(self.modal[:3]), self.whole.T, force)
-        return clamped
-
-    def felt(self, moments: Floats) -> tuple[Floats, int]:
-        """Force on each mode, (m,), by moments on the key rotations; how many were clamped."""
-        clamped = np.clip(moments, -self.limit, self.limit)
-        return self._shapes @ clamped, int((clamped != moments).sum())
-
     @cached_property
     def _compiled(self) -> Callable[..., int]:
         arrays = (
-            self.branches, self.work, self._loads, self.modal, self.state, self._shapes,
+            self.branches, self.work, self.loads, self.modal, self.state, self._shapes,
             self.limit, self.whole, self.half, self._tried, self._momentum, self._fastest,
         )  # fmt: skip
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
@@ -144,7 +133,7 @@ class ModalBank(Branchwise):
     @property
     def tunable(self) -> Tunable:
         """Return what changes with stiffness, damping and gravity."""
-        others = ((self.limit, 1.0),)
+        others = (self.limit, 1.0), *((each, -1.0) for each in self.compliance)
         return Tunable(self.stiffness, self.damping, 1.0, self.weight, others, self.loss)
 
     @property
@@ -155,13 +144,13 @@ class ModalBank(Branchwise):
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of what is carried from one step to the next."""
-        return self.modal[:3], self.state[0], self._loads['drag_impulse']
+        return self.modal[:3], self.state[0], self.loads['drag_impulse']
 
     def take(self, eta: Floats, rate: Floats, force: Floats) -> None:
         """Go on from modes, rates and forces (m,)."""
         self.modal[0], self.modal[1], self.modal[2] = eta, rate, force
         self.state[0] = 0.0
-        self._loads['drag_impulse'] = 0.0
+        self.loads['drag_impulse'] = 0.0
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -183,15 +172,7 @@ class ModalBank(Branchwise):
         self.modal[:] = 0.0
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
-        self._loads['drag_impulse'] = 0.0
-
-
-def add_force(state: Sequence[Floats], whole: Floats, force: Floats) -> None:
-    """Add what a constant force, (m,), does in a step to displacement, rate, force, (3, m)."""
-    eta, rate, total = state
-    eta += (whole[2] + whole[3]) * force
-    rate += (whole[6] + whole[7]) * force
-    total += force
+        self.loads['drag_impulse'] = 0.0
 
 
 def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[str, Floats]:
@@ -205,6 +186,8 @@ def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[
         'weight': np.einsum('im,im->m', shapes.T, reduction.gravity @ shapes.T),
         'momentum': reduction.mass @ modes.shapes,
         'participation': _participation(branches, modes.shapes),
+        'branch_compliance': reduction.compliance,
+        'mode_compliance': np.linalg.inv(shapes @ (reduction.branchwise @ shapes.T)),
     }
 
 

@@ -23,6 +23,7 @@ from tree_sway.core.motion.load_slopes import LoadSlopes
 from tree_sway.core.motion.modal import wind_moments
 from tree_sway.core.motion.plain.numpy_passes import NumpyPasses
 from tree_sway.core.motion.records import WORK
+from tree_sway.core.motion.response import base_motion, own_motion
 
 _SPEEDS = (10.0, 20.0, 40.0)
 _AZIMUTHS = np.arange(8) * np.pi / 4.0
@@ -63,6 +64,19 @@ class WindMoments:
         force = passes.wind_forces(base, angles, rates, wind, 1.0, np.zeros(n), np.zeros((n, 3)))
         passes.bent_loads(base, angles, force, moments)
         return moments
+
+    def at_rest(self, winds: Floats, shapes: Floats) -> Floats:
+        """Return loads of winds (k, 3) on shapes (N, m) of a tree at rest, (k, m), at 1 kg/m^3."""
+        branches, n = self.branches, len(self.branches)
+        moved = base_motion(branches, shapes)
+        at = moved[:, :3] + branches['coupling'].swapaxes(1, 2) @ moved[:, 3:]
+        at += own_motion(branches, 'load_mode', shapes)
+        projector = branches['projector'][:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(n, 3, 3)
+        across = projector @ winds.T
+        square = np.maximum((across * winds.T).sum(axis=1), 0.0)
+        push = (branches['area'] * branches['speed'] ** 2)[:, None] * np.sqrt(square)
+        loads: Floats = (push[:, None] * across).reshape(3 * n, -1).T @ at.reshape(3 * n, -1)
+        return loads
 
     def slopes(self, shapes: Floats) -> LoadSlopes:
         """Return the slopes of the loads on some shapes (N, m)."""

@@ -20,10 +20,9 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.kernel import entry_of, fused, part
-from tree_sway.core.motion.branchwise import Tunable
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT
-from tree_sway.core.motion.modal import add_force, ModalBank
+from tree_sway.core.motion.modal import ModalBank
 from tree_sway.core.motion.placing import expand, room_for
 from tree_sway.core.motion.records import (
     Instance,
@@ -57,6 +56,8 @@ class WindBasisBank:
         """Stand at rest."""
         self.modal, self.table = modal, table
         self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
+        self.compliance, self.limit = modal.compliance, modal.limit
+        self.tunable, self.air_damping = modal.tunable, modal.air_damping
         # Rounded where they are read most, and so everywhere.
         self.all_shapes = modal.shapes.T.astype(np.float32).astype(np.float64)
         self.lay_out(modal.shapes.shape[1])
@@ -79,11 +80,6 @@ class WindBasisBank:
         self.instance = np.zeros(1, dtype=instance_layout(n_modes, count))
         filled = np.zeros((self.record['stiffness'].shape[1] - made, len(self.modal.shapes)))
         self.laid_shapes = shapes_together(np.vstack([self.all_shapes, filled]))
-
-    @property
-    def air_damping(self) -> Floats:
-        """Damping of each coordinate by the air per drag and speed, at least, (m,)."""
-        return self.modal.air_damping
 
     def show(self, shares: Floats, count: int) -> None:
         """Show coordinates by shares from 0 to 1, (m,), and let the first of them respond."""
@@ -108,16 +104,19 @@ class WindBasisBank:
         self.n_outside += 1
         return 1 if np.isfinite(self.instance['eta']).all() else -1
 
-    def push(self, moments: Floats) -> int:
-        """Add what moments on the key rotations [N m] did over a step; how many were clamped."""
+    @property
+    def swing(self) -> tuple[Floats, ...]:
+        """Displacement, rate and force of each coordinate, (m,)."""
         m = self.modal.shapes.shape[1]
-        force, clamped = self.modal.felt(moments)
-        instance, time_step = self.instance[0], self.time_step[0]
+        return tuple(self.instance[name][0, :m] for name in CARRIED[:3])
+
+    @property
+    def whole(self) -> Floats:
+        """Coefficients of a force that is added to a step, (m, 8), as of `fill_propagator`."""
+        time_step, m = self.time_step[0], self.modal.shapes.shape[1]
         # The step was implicit in the damping of each coordinate.
-        force = force / (1.0 - instance['diagonal'][:m] * time_step['half'][5, :m])
-        state = [instance[name][:m] for name in ('eta', 'rate', 'force')]
-        add_force(state, time_step['whole'][:, :m], force)
-        return clamped
+        implicit = 1.0 - self.instance['diagonal'][0, :m] * time_step['half'][5, :m]
+        return np.asarray((time_step['whole'][:, :m] / implicit).T)
 
     @cached_property
     def _step(self) -> Callable[..., int]:
@@ -139,11 +138,6 @@ class WindBasisBank:
     @cached_property
     def _expand(self) -> Callable[[], None]:
         return partial(entry_of(expand, *self.to_place), *self.to_place)
-
-    @property
-    def tunable(self) -> Tunable:
-        """Return what changes with stiffness, damping and gravity."""
-        return self.modal.tunable
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of what is carried from one step to the next."""

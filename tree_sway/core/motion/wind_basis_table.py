@@ -119,10 +119,10 @@ class WindBasisTable:
         directions = direction(azimuth.ravel(), elevation.ravel())
         weight = np.sqrt(np.exp(-0.5 * (elevation.ravel() / _ELEVATION_SPREAD) ** 2) + 0.02)
         weight *= np.sqrt(np.maximum(np.cos(elevation.ravel()), 1.0 / N_AZIMUTHS))
-        loads = [self._moments(self._still, self._still, d) @ self._shapes for d in directions]
+        loads = self._moments.at_rest(directions, self._shapes)
         values = harmonics_at(directions, degree) * weight[:, None]
         table['limit'][: table['n_modes']] = np.abs(loads).max(axis=0)
-        fitted = np.linalg.lstsq(values, np.array(loads) * weight[:, None], rcond=None)[0]
+        fitted = np.linalg.lstsq(values, loads * weight[:, None], rcond=None)[0]
         table['harmonics'][:, : table['n_modes']] = fitted
 
     def _fill_standing(self, table: np.void, pressures: list[float]) -> None:
@@ -132,9 +132,9 @@ class WindBasisTable:
         standing, load = np.zeros((2, len(self._asked), N_LEVELS, m))
         amount = np.zeros((len(self._asked), m))
         turning, damping = np.zeros((2, *standing.shape, m))
-        for k, azimuth in enumerate(self._asked):
-            ahead = direction(azimuth, 0.0)
-            upright = self._moments(self._still, self._still, ahead) @ shapes
+        winds = direction(self._asked, 0.0)
+        at_rest = self._moments.at_rest(winds, shapes)
+        for k, (ahead, upright) in enumerate(zip(winds, at_rest, strict=True)):
             amount[k] = upright / max(float(upright @ (upright / stiffness)), 1e-300)
             at = np.zeros(m)
             for j, push in enumerate(pressures):

@@ -46,19 +46,25 @@ class Reduction:
     twist
         Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root,
         (b, 9, 6).
+    compliance
+        Inverse of ``branchwise``, of each row what is within its branch, (N, 9) in [rad/(N m)].
     mass, gravity
         Symmetric sparse matrices (N, N) in [kg m^2] and [N m/rad].
     elastic
         Of bending and twist, symmetric sparse (N, N) in [N m/rad]; couples the coordinates of one
         branch.
+    branchwise
+        Stiffness of every branch by itself, symmetric sparse (N, N).
 
     """
 
     first: Ints
     twist: Floats
+    compliance: Floats
     mass: Any
     gravity: Any
     elastic: Any
+    branchwise: Any
 
     @property
     def n_coordinates(self) -> int:
@@ -139,7 +145,8 @@ def reduce_tree(
     momentum = np.zeros((first[-1], 6))
     twist = np.zeros((n_branches, MAX_COORDINATES, 6))
     body = np.zeros((n_branches, 6, 6))
-    mass, weight, elastic = _Blocks(), _Blocks(), _Blocks()
+    compliance = np.zeros((first[-1], MAX_COORDINATES))
+    mass, weight, elastic, apart = _Blocks(), _Blocks(), _Blocks(), _Blocks()
     for branch in range(n_branches - 1, -1, -1):
         model = models[branch]
         own = slice(int(first[branch]), int(first[branch + 1]))
@@ -168,12 +175,15 @@ def reduce_tree(
             weight.add(own, below, gravity * tilt)
         mass.add(own, own, own_mass)
         weight.add(own, own, own_weight)
-        elastic.add(own, own, energies(model.fields, modulus, shear_modulus))
+        bent = energies(model.fields, modulus, shear_modulus)
+        elastic.add(own, own, bent)
+        apart.add(own, own, bent + own_weight)
+        compliance[own, : len(fields)] = np.linalg.inv(bent + own_weight)
         if carries:
             body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
     shape = (int(first[-1]), int(first[-1]))
-    matrices = (each.symmetric(shape) for each in (mass, weight, elastic))
-    return Reduction(first, twist, *matrices)
+    matrices = (each.symmetric(shape) for each in (mass, weight, elastic, apart))
+    return Reduction(first, twist, compliance, *matrices)
 
 
 class _Blocks:

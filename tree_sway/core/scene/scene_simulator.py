@@ -25,6 +25,7 @@ from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.harmonics import COUNT
+from tree_sway.core.motion.placing import GIVEN, place
 from tree_sway.core.motion.records import instance_layout, time_step_layout, zeros_in_lines
 from tree_sway.core.motion.standing import place_standing, STANDING, step_standing
 from tree_sway.core.motion.wind_basis import fill_time_step, WindBasisBank
@@ -106,6 +107,8 @@ class SceneSimulator:
         places = [(each.x, each.y, each.z, each.yaw, each.scale) for each in trees]
         tables = np.where(is_own, -1, np.searchsorted(used, kind))
         self._standing = standing_rows(tables, np.array(places), self._speeds())
+        self.speeds: Floats = self._standing['speed']
+        """Wind of each tree over that of its kind, (t,)."""
         self._standing['is_still'] = is_own | (counts == 0)
         self._make_tables()
         self._numbers, self._is_shared = counts, ~is_own
@@ -126,8 +129,10 @@ class SceneSimulator:
             self._standing['at'], scene.anemometer, convection_ratio=scene.convection_ratio
         )
         self._counts = Counts()
-        self._pushed: dict[int, SwaySimulator] = {}
-        self._wind, self._dt = np.zeros(3), math.nan
+        self.pushed: dict[int, SwaySimulator] = {}
+        """Trees that are pushed, or where something is left of it, by their numbers."""
+        self.wind, self._dt = np.zeros(3), math.nan
+        """Wind at the anemometer in the last step in [m/s], (3,)."""
 
     @property
     def model(self) -> str:
@@ -149,11 +154,6 @@ class SceneSimulator:
     def simulators(self) -> tuple[SwaySimulator, ...]:
         """Return the simulators of the trees that share no table."""
         return tuple(self.own.values())
-
-    @property
-    def wind(self) -> Floats:
-        """Wind at the anemometer in the last step in [m/s], (3,)."""
-        return self._wind
 
     @property
     def tree(self) -> Tree:
@@ -195,14 +195,14 @@ class SceneSimulator:
         # The history must not remember what no tree would take.
         wind = three_numbers('wind', wind_mean)
         if is_wind(*wind, self.settings.max_wind):
-            self._wind[:] = wind
+            self.wind[:] = wind
         else:
             status = WIND_REFUSED
             self._counts.refused += 1
         has_glided = [model.glide(dt) for model in self._models]
         if dt != self._dt or any(has_glided):
             self._set_step(dt)
-        felt = self.gusts.push(self._wind, dt)
+        felt = self.gusts.push(self.wind, dt)
         clamped = restarted = 0
         if self._models:
             clamped, restarted = step_standing(
@@ -210,12 +210,13 @@ class SceneSimulator:
             )
         for number, simulator in self.own.items():
             status |= simulator.step(felt[number].tolist(), dt)
-        for number, one in list(self._pushed.items()):
-            own = self._standing['time_step'][number]
-            _oscillators(one).time_step = self._time_steps[own : own + 1]
-            clamped += one.touched(dt) > 0
-            if not one.is_pushed:
-                del self._pushed[number]
+        for number, one in list(self.pushed.items()):
+            if number not in self.own:
+                own = self._standing['time_step'][number]
+                _oscillators(one).time_step = self._time_steps[own : own + 1]
+                clamped += one.touched(dt) > 0
+            if one.touch is None:
+                del self.pushed[number]
         self._counts.steps += 1
         self._counts.clamped += clamped
         self._counts.restarted += restarted
@@ -230,13 +231,13 @@ class SceneSimulator:
         try:
             row = row_of(segment, int(self._ends[-1]))
             number = int(self._ends.searchsorted(row, 'right')) - 1
-            if len(self._pushed.keys() | {number}) > MOST_PUSHES:
+            active = {t for t, one in self.pushed.items() if one.touch and one.touch.pushes}
+            if len(active | {number}) > MOST_PUSHES:
                 raise ParameterError(f'more than {MOST_PUSHES} trees at once', where='push')
-            one = self.own.get(number) or self._pushed.get(number)
-            if one is None:
-                one = self._pushed[number] = self._one_of_kind(number)
+            one = self.own.get(number) or self.pushed.get(number) or self._one_of_kind(number)
             own = force if number in self.own else self._in_kind(number, force)
             one.push(row - int(self._ends[number]), own, seconds, along=along)
+            self.pushed[number] = one
         except ParameterError:
             self._counts.refused_pushes += 1
             raise
@@ -341,12 +342,6 @@ class SceneSimulator:
         pairs = enumerate(zip(self._models, self._banks, strict=True))
         return [(model, bank, np.flatnonzero(kinds == k)) for k, (model, bank) in pairs]
 
-    @property
-    def speeds(self) -> Floats:
-        """Wind of each tree over that of its kind, (t,)."""
-        speeds: Floats = self._standing['speed']
-        return speeds
-
     def shares(self, numbers: Ints) -> Floats:
         """How much trees of one kind bend in each shape, (t, m)."""
         n_modes = self._banks[self._standing['kind'][numbers[0]]].shapes.shape[1]
@@ -362,6 +357,12 @@ class SceneSimulator:
             self._standing, self._instances, rows, bank.laid_shapes, records.segments, heads,
             bases, x, block, out,
         )  # fmt: skip
+        for number, first in rows.tolist() if self.pushed else ():
+            if number in self.pushed:
+                at, keys = self._standing[number], self.pushed[number].rotations()
+                turned = at['cosine'], at['sine'], at['scale'], x, keys, at['at']
+                bent = *GIVEN, records.segments, heads, bases, *turned
+                place(*bent, out[first : first + len(block)])
 
     @cached_property
     def _highest(self) -> tuple[int, Tree]:
@@ -388,8 +389,8 @@ class SceneSimulator:
         for simulator in self.own.values():
             simulator.reset()
         self.gusts.reset()
-        self._pushed.clear()
-        self._wind[:] = 0.0
+        self.pushed.clear()
+        self.wind[:] = 0.0
 
     def _speeds(self) -> Floats:
         """Wind of each tree over that of its kind, (t,)."""

@@ -49,9 +49,6 @@ class Oscillators(Protocol):
     ) -> Callable[[float, float, float], int] | None:
         """Return a step as one compiled call of a wind's components [m/s], if there is one."""
 
-    def push(self, moments: Floats) -> int:
-        """Add what moments on the key rotations [N m] did over a step; how many were clamped."""
-
     def step_outside(self) -> int:
         """Make the step that such a call could not make; returns as `advance`."""
 

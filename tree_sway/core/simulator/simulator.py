@@ -112,6 +112,10 @@ class SwaySimulator:
         self.settings = self.reductions.settings
         self.counts = Counts()
         self.bank: Bank = assembled(self.reductions, cache=cache)
+        self.mass = self.bank.mass
+        """Mass of wood and leaves in [kg]."""
+        self.joints: Records = self.bank.branches
+        """Records of `BRANCH` that give the key rotations their meaning, (b,)."""
         self.drag_law = self.reductions.drag_law
         self._advance = self.bank.oscillators.advance
         self._in_one_call: Callable[[float, float, float], int] | None = None
@@ -123,7 +127,8 @@ class SwaySimulator:
             loads = self.bank.oscillators.loads
             self._gusts = crown_gusts.CrownGusts(self.reductions, loads)
         self._tuning: LiveTuning | None = None
-        self._touch: Touch | None = None
+        self.touch: Touch | None = None
+        """Pushes, until nothing is left of them."""
         self._dt = math.nan
         self._wind = np.zeros(3)
         self._expected = (int(self.bank.branches['n_coordinates'].sum()),)
@@ -147,11 +152,6 @@ class SwaySimulator:
         """Wind of the last step in [m/s], (3,)."""
         return self._wind.copy()
 
-    @property
-    def mass(self) -> float:
-        """Mass of wood and leaves in [kg]."""
-        return self.bank.mass
-
     def frequencies(self, count: int = 10) -> Floats:
         """
         Lowest natural frequencies of the tree in [Hz], without air, (count,) or fewer.
@@ -163,11 +163,6 @@ class SwaySimulator:
             circular = np.sort(np.sqrt(tunable.stiffness / tunable.inertia))[:count]
             return np.asarray(circular / (2.0 * np.pi))
         return self.reductions.natural_frequencies(count)
-
-    @property
-    def joints(self) -> Records:
-        """Return the records of `BRANCH` that give the key rotations their meaning, (b,)."""
-        return self.bank.branches
 
     def digest(self) -> str:
         """Digest of tree, species, settings and what was tuned since."""
@@ -213,8 +208,9 @@ class SwaySimulator:
             first += array.size
 
     def rotations(self) -> Floats:
-        """Key rotations in [rad], (N,), in the order of `joints`; the same array each time."""
-        return self.bank.oscillators.rotations()
+        """Key rotations in [rad], (N,), in the order of `joints`; valid until the next step."""
+        shown = self.bank.oscillators.rotations()
+        return shown if self.touch is None else shown + self.touch.residual
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
@@ -256,7 +252,7 @@ class SwaySimulator:
         call = self._in_one_call
         if call is not None:
             outcome = call(x, y, z)
-            if outcome == 0 and self._touch is None:
+            if outcome == 0 and self.touch is None:
                 return OK
             counts.refused += outcome & 1
             clamped = self.bank.oscillators.step_outside() if outcome & 2 else 0
@@ -304,32 +300,29 @@ class SwaySimulator:
         from tree_sway.core.simulator.touch import Touch
 
         try:
-            touch = self._touch or Touch(self.tree, self.bank)
+            touch = self.touch or Touch(self.tree, self.bank)
             touch.add(segment, force, seconds, along)
         except ParameterError:
             self.counts.refused_pushes += 1
             raise
-        self._touch = touch
+        self.touch = touch
 
     @property
     def push_load(self) -> Floats:
         """Force [N] and moment about the root node [N m] of the last step's pushes, (6,)."""
-        return np.zeros(6) if self._touch is None else self._touch.load.copy()
+        return np.zeros(6) if self.touch is None else self.touch.load.copy()
 
     @property
-    def is_pushed(self) -> bool:
-        """Whether a push acts or has just ended."""
-        return self._touch is not None
+    def pushed(self) -> dict[int, SwaySimulator]:
+        """This tree by the number 0 if it is pushed, or something is left of that."""
+        return {} if self.touch is None else {0: self}
 
     def touched(self, dt: float) -> int:
         """Let the pushes act over the step [s] that was made; returns what `step` says of it."""
-        touch = self._touch
-        if touch is None:
+        if self.touch is None or self.touch.is_gone:
+            self.touch = None
             return OK
-        if not touch.is_active:
-            self._touch = None
-            return OK
-        return self._count(touch.step(self.place(self._poses), self._origin, dt))
+        return self._count(self.touch.step(lambda: self.place(self._poses), self._origin, dt))
 
     def _count(self, clamped: int) -> int:
         """Take what an advance returned; returns what `step` reports of it."""
@@ -364,8 +357,10 @@ class SwaySimulator:
 
         """
         out = self._to_fill(out)
-        self.bank.place_now(self._origin, out)
-        return out
+        if self.touch is None:
+            self.bank.place_now(self._origin, out)
+            return out
+        return self.place_rotations(self.rotations(), out)
 
     def _to_fill(self, out: Floats | None) -> Floats:
         if out is None:
@@ -434,7 +429,7 @@ class SwaySimulator:
         self.bank.oscillators.reset()
         if self._gusts is not None:
             self._gusts.wind.reset()
-        self._touch = None
+        self.touch = None
         self._wind[:] = 0.0
 
     def _set_step(self, dt: float) -> None:

@@ -5,19 +5,23 @@ Forces that people and machines put on a tree for a while.
 
 A force f at a place p does ``J^T f`` to the key rotations x, ``J = dp/dx`` as the tree is bent
 now. Only the branches between the place and the root move it, so that J is found by placing the
-tree once for each of their coordinates.
+tree once for each of their coordinates. By what these branches give way beyond the shapes of the
+model (`Push.residual`) they follow the force within `SETTLES`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+import math
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_read, within
+from tree_sway.core.motion.modal import FARTHEST
 from tree_sway.core.simulator.bank import Bank
 from tree_sway.core.simulator.settings import STIFFEST
 from tree_sway.core.tree.segment_frame import ends_of_poses
@@ -36,8 +40,11 @@ _RENEWED = 0.1
 _TURN = 1e-6
 """Turn in [rad] by which derivatives are found."""
 
-_LITTLE = 1e-3
-"""Force in [N] by which a step's compliance is found."""
+SETTLES = 0.05
+"""Time in [s] in which branches go over to what a force does to them beyond the model's shapes."""
+
+_GONE = 1e-3
+"""Share of that, and turn in [rad], below which it is left."""
 
 
 def row_of(segment: int, count: int) -> int:
@@ -65,8 +72,8 @@ class Push:
     A force [N] on a segment at a distance from its root side [m], for a time left [s].
 
     ``lever`` is J, (3, N), found again after the time ``renewed_in``. With a ``stiffness`` [N/m]
-    it is a spring to the place ``force`` [m], and ``compliance`` [m/N] how far a force moves the
-    segment within a step, (3, 3).
+    it is a spring to the place ``force`` [m]. ``by_mode`` is J on the model's coordinates, (3, m),
+    ``residual`` what key rotations between it and the root turn by beyond these per force, (N, 3).
     """
 
     segment: int
@@ -74,19 +81,10 @@ class Push:
     force: Floats
     left: float
     lever: Floats
+    by_mode: Floats
+    residual: Floats
     renewed_in: float = 0.0
     stiffness: float = 0.0
-    compliance: Floats = field(default_factory=lambda: np.eye(3))
-
-    def at(self, place: Floats, share: float) -> Floats:
-        """Return the force [N], (3,), at a place, for a share of the step."""
-        if not self.stiffness:
-            return share * self.force
-        # Implicit, by the force at the end of the step, and no stiffer than a step can follow.
-        k = share * min(self.stiffness, 0.5 / float(np.trace(self.compliance)))
-        matrix = np.eye(3) + k * self.compliance
-        pull: Floats = np.linalg.solve(matrix, k * (self.force - place)).astype(np.float64)
-        return pull
 
     def place(self, poses: Floats) -> Floats:
         """Return where it acts in a pose block (n, 7), in [m], (3,)."""
@@ -100,17 +98,33 @@ class Touch:
     def __init__(self, tree: Tree, bank: Bank) -> None:
         """Begin without a push; a `ParameterError` on a model that cannot be pushed."""
         self._tree, self._bank = tree, bank
-        self._pushes: dict[int, Push] = {}
+        self._oscillators: Any = bank.oscillators
+        self.pushes: dict[int, Push] = {}
+        """Those that act, by their segments."""
         self._poses = np.zeros((tree.n_segments, 7))
-        self._n_rotations = len(bank.oscillators.rotations())
-        bank.oscillators.push(np.zeros(self._n_rotations))
+        if not hasattr(bank.oscillators, 'compliance'):
+            cure = 'use a number of coordinates, auto or full'
+            raise ParameterError("a push on model 'branch'", cure=cure)
         self.load = np.zeros(6)
         """Force [N] and moment about the root node [N m] of the last step's pushes."""
+        self.residual = np.zeros(len(bank.oscillators.rotations()))
+        """What the pushed branches are turned by beyond the model's shapes [rad], (N,)."""
+        self._keys: list[int] = []
+        self._share = 0.0
 
     @property
-    def is_active(self) -> bool:
-        """Whether anybody pushes."""
-        return bool(self._pushes)
+    def is_gone(self) -> bool:
+        """Whether nothing of a push is left but the swing of the model."""
+        return not self.pushes and max(self._share, np.abs(self.residual).max()) < _GONE
+
+    def beyond(self, rotations: Floats) -> Floats:
+        """
+        Return what pushed branches turn by beyond key rotations (N,) in [rad].
+
+        Pairs of the number of a key rotation and a turn [rad], (k, 2).
+        """
+        missed = self._share * (self._oscillators.rotations() - rotations) + self.residual
+        return np.stack([self._keys, missed[self._keys]], axis=1)
 
     def add(self, segment: int, force: ArrayLike | Spring, seconds: float, along: float) -> None:
         """Begin a push, or change that on the same segment; a `ParameterError` as of `push`."""
@@ -124,60 +138,70 @@ class Touch:
             raise ParameterError(f'a force of {force!r}', where='push', cure='give x, y, z in N')
         left = within('push: seconds', seconds, 0.0, LONGEST_PUSH, 's', above=True)
         away = within('push: along', along, 0.0, 1.0) * float(self._tree.length[segment])
-        push = Push(row, away, given, left, np.zeros((3, self._n_rotations)))
-        push.stiffness = stiffness
-        before = self._pushes.get(push.segment)
-        if before is None and len(self._pushes) >= MOST_PUSHES:
+        push = self.pushes.get(row)
+        if push is None and len(self.pushes) >= MOST_PUSHES:
             raise ParameterError(f'more than {MOST_PUSHES} pushes at once', where='push')
-        is_spring = stiffness > 0.0
-        if before is not None and (before.away, before.stiffness > 0.0) == (away, is_spring):
-            push.lever, push.renewed_in = before.lever, before.renewed_in
-            push.compliance = before.compliance
-        self._pushes[push.segment] = push
+        if push is None or push.away != away:
+            lever = np.zeros((3, len(self.residual)))
+            push = Push(row, away, given, left, lever, lever, lever.T.copy())
+        self.pushes[row] = replace(push, force=given, left=left, stiffness=stiffness)
 
-    def step(self, poses: Floats, origin: Floats, dt: float) -> int:
-        """Push for a step [s] in a pose block (n, 7); how many moments were clamped."""
-        moments = np.zeros(self._n_rotations)
+    def step(self, place_all: Callable[[], Floats], origin: Floats, dt: float) -> int:
+        """Push for a step [s] in the poses (n, 7) of now; how many moments were clamped."""
+        moments = np.zeros(len(self.residual))
         self.load[:] = 0.0
-        for push in list(self._pushes.values()):
+        settled = 1.0 - math.exp(-dt / SETTLES)
+        self.residual *= 1.0 - settled
+        self._share += settled * (bool(self.pushes) - self._share)
+        poses, residual = place_all(), self.residual.copy()
+        whole, (eta, rate, total) = self._oscillators.whole, self._oscillators.swing
+        per_force = whole[:, 2:4].sum(axis=1)
+        for push in list(self.pushes.values()):
             place = push.place(poses)
             if push.renewed_in <= 0.0:
-                self._renew(push, place, origin, self._bank.oscillators.rotations().copy())
-            force = push.at(place, min(1.0, push.left / dt))
+                self._renew(push, place, origin, self._oscillators.rotations() + residual)
+            force = (share := min(1.0, push.left / dt)) * push.force
+            if push.stiffness:
+                # Implicit, by the force at the end of the step, and no stiffer than it can follow.
+                give = per_force * push.by_mode @ push.by_mode.T
+                k = share * min(push.stiffness, 0.5 / float(np.trace(give)))
+                give += settled * push.lever @ push.residual
+                force = np.linalg.solve(np.eye(3) + k * give, k * (push.force - place))
             moments += force @ push.lever
+            self.residual += settled * push.residual @ force
             self.load += [*force, *np.cross(place - origin, force)]
             push.left -= dt
             push.renewed_in -= dt
             if push.left <= 1e-9 * dt:
-                del self._pushes[push.segment]
-        return self._bank.oscillators.push(moments)
+                del self.pushes[push.segment]
+        np.clip(self.residual, -FARTHEST, FARTHEST, out=self.residual)
+        limit = self._oscillators.limit
+        felt = self._oscillators.shapes.T @ np.clip(moments, -limit, limit)
+        eta += per_force * felt
+        rate += whole[:, 6:8].sum(axis=1) * felt
+        total += felt
+        return int((np.abs(moments) > limit).sum())
 
     def _renew(self, push: Push, place: Floats, origin: Floats, x: Floats) -> None:
         """Find how a place (3,) of the tree moves as it is bent, by key rotations x (N,)."""
         branches = self._bank.branches
         # A branch that is cut has a record per piece.
         holds = (branches['first'] <= push.segment) & (push.segment < branches['end'])
-        branch = int(np.flatnonzero(holds)[0])
+        branch, keys, residual = int(np.flatnonzero(holds)[0]), list[int](), push.residual
+        by_branch, modes = self._oscillators.compliance
         while branch >= 0:
-            first = int(branches['coordinate'][branch])
-            for i in range(first, first + int(branches['n_coordinates'][branch])):
+            here = branches[branch]
+            first, count = int(here['coordinate']), int(here['n_coordinates'])
+            for i in (own := range(first, first + count)):
                 x[i] += _TURN
                 self._bank.place(x, origin, self._poses)
                 push.lever[:, i] = (push.place(self._poses) - place) / _TURN
                 x[i] -= _TURN
-            branch = int(branches['parent'][branch])
+            residual[own] = by_branch[own, :count] @ push.lever[:, own].T
+            keys += own
+            branch = int(here['parent'])
+        push.by_mode = push.lever @ (shapes := self._oscillators.shapes)
+        # Residual flexibility (MacNeal 1971), as if only the branches to the root turned.
+        residual[keys] -= shapes[keys] @ (modes @ push.by_mode.T)
         push.renewed_in = _RENEWED
-        if push.stiffness:
-            self._find_compliance(push)
-
-    def _find_compliance(self, push: Push) -> None:
-        """Find how far a force moves the segment within a step, by trying it in each direction."""
-        oscillators = self._bank.oscillators
-        memory, before = oscillators.memory(), oscillators.rotations().copy()
-        kept = [each.copy() for each in memory]
-        for axis, moments in enumerate(push.lever):
-            oscillators.push(_LITTLE * moments)
-            moved = push.lever @ (oscillators.rotations() - before)
-            push.compliance[:, axis] = moved / _LITTLE
-            for each, value in zip(memory, kept, strict=True):
-                each[...] = value
+        self._keys = list(dict.fromkeys([*self._keys, *keys]))

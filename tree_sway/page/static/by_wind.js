@@ -37,8 +37,7 @@ export class ByWind {
       if (this.corrections++) this.largest = Math.max(this.largest, change);
     }
     this._last = frame;
-    const coordinates = stand.write(new Float32Array(stand.description.nCoordinates));
-    return { ...frame, flags: flags & ~PART, coordinates };
+    return { ...frame, flags: flags & ~PART, coordinates: stand.state() };
   }
 
   /** Feel the wind that was on its way before the first frame. @param {Recent} gusts */

@@ -44,7 +44,7 @@ export class TreeStream {
       },
       onFrame: (frame, arrival, size) => {
         const whole = this.byWind ? this.byWind.take(frame) : frame;
-        if (whole?.coordinates.length === this.description?.nCoordinates && whole) this.playout.push(whole, arrival);
+        if (whole && whole.coordinates.length >= (this.description?.nCoordinates ?? Infinity)) this.playout.push(whole, arrival);
         onFrame?.(frame, arrival, size);
       },
       ...(byWind && { onTables: (tables) => {

@@ -4,7 +4,7 @@
 
 import { save } from "./keepsake.js";
 import { element } from "./panel.js";
-import { KindPlacer, STRIDE } from "./placing.js";
+import { STRIDE } from "./placing.js";
 import { chainTo, Touch } from "./touch.js";
 import { word } from "./words.js";
 
@@ -56,7 +56,6 @@ export class Pull {
     this._from = Infinity;
     this.isHeld = true;
     this._touch = /** @type {Touch | null} */ (null);
-    this._placer = /** @type {KindPlacer | null} */ (null);
     /** The newest of the record. */
     this._last = /** @type {Frame | null} */ (null);
   }
@@ -89,12 +88,11 @@ export class Pull {
     const { description, playout } = this.stream;
     if (this.isHeld || !description || this.seconds > RECORDED) return;
     this._touch ??= new Touch(description, this.scene.watched.number);
-    this._placer ??= new KindPlacer(this._touch.kind, chainTo(this._touch.kind, this.segment));
     const { firstCoordinate: first } = this._touch.tree;
     const rest = this.scene.restPosition(this.segment);
     for (const frame of playout.since(this._last?.stamp ?? this._from)) {
       const own = Float64Array.from(frame.coordinates.subarray(first, first + this._touch.kind.nCoordinates));
-      const at = this._touch.place(this._placer, this.segment, own);
+      const at = this._touch.place(this.segment, own);
       this.record.push([this._timeOf(frame), ...rest.map((each, c) => at[c] - each)]);
       this._last = frame;
     }

@@ -121,7 +121,7 @@ export class OwnLine {
     this._work += 0.05 * (performance.now() - begin - this._work);
     const flags = (this._isPaused ? PAUSED : 0) + (this._hasRestarted ? RESTARTED : 0);
     this._hasRestarted = false;
-    const coordinates = this.stand.write(new Float32Array(this.description.nCoordinates));
+    const coordinates = this.stand.state();
     const { shortIdentity: identity } = this.description;
     const frame = { identity, sequence: this._sequence++, stamp: this._time, flags, coordinates, first: 0 };
     this.listeners.onFrame({ ...frame, wind: [x, y, z] }, this._time, 0);

@@ -19,6 +19,16 @@ export function placed([x, y, z, yaw, scale], point) {
   return [x + c * point[0] - s * point[1], y + s * point[0] + c * point[1], z + scale * point[2]];
 }
 
+/** What follows the coordinates of a state: turns of pulled branches beyond them [rad], by the numbers of key
+ * rotations. @param {ArrayLike<number>} values @param {number} count of coordinates */
+export function beyond(values, count) {
+  const turns = /** @type {Map<number, number>} */ (new Map());
+  for (let i = count; i < values.length; i += 2) turns.set(values[i], values[i + 1]);
+  return turns;
+}
+
+const NONE = /** @type {Map<number, number>} */ (new Map());
+
 /** Places the segments of a described scene, all of them, tree after tree. */
 export class Placer {
   /** @param {Description} description */
@@ -31,9 +41,10 @@ export class Placer {
   /** Rebuild the poses. @param {ArrayLike<number>} coordinates @returns {Float32Array} the poses, the same
    * array each time */
   place(coordinates) {
-    for (const { kind, place, firstSegment, firstCoordinate } of this.description.trees) {
+    const turns = beyond(coordinates, this.description.nCoordinates);
+    for (const { kind, place, firstSegment, firstCoordinate, firstKey } of this.description.trees) {
       const placer = this._placers[kind];
-      placer.place(coordinates, firstCoordinate, place, placer.order.length, this.poses, firstSegment);
+      placer.place(coordinates, firstCoordinate, place, placer.order.length, this.poses, firstSegment, turns, firstKey);
     }
     return this.poses;
   }
@@ -64,6 +75,8 @@ export class KindPlacer {
     this._half = new Float64Array(3);
     this._turn = new Float64Array(4);
     this._whole = new Float64Array(4);
+    this._turns = NONE;
+    this._firstKey = 0;
   }
 
   /** Poses of the whole tree at rest, segment after segment as they are described. */
@@ -76,8 +89,11 @@ export class KindPlacer {
 
   /** Place a tree. @param {ArrayLike<number>} coordinates of all trees @param {number} from its first
    * @param {ArrayLike<number>} place as of a tree @param {number} count how many branches, in the order
-   * @param {Float32Array} poses written @param {number} to row of its first segment */
-  place(coordinates, from, place, count, poses, to) {
+   * @param {Float32Array} poses written @param {number} to row of its first segment
+   * @param {Map<number, number>} [turns] `beyond` @param {number} [firstKey] its first there */
+  place(coordinates, from, place, count, poses, to, turns = NONE, firstKey = 0) {
+    this._turns = turns;
+    this._firstKey = firstKey;
     for (let i = 0; i < count; i++) {
       this._expand(this.order[i], coordinates, from);
       this._placeBase(this.order[i], place, poses, to);
@@ -94,7 +110,7 @@ export class KindPlacer {
     const end = first + arrays.branch_keys[branch];
     let at = first * nCoordinates;
     for (let key = first; key < end; key++) {
-      let sum = 0;
+      let sum = (this._turns.size && this._turns.get(this._firstKey + key)) || 0;
       for (let c = 0; c < nCoordinates; c++) sum += matrix[at++] * coordinates[from + c];
       this._rotations[key] = sum;
     }

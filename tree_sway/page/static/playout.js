@@ -180,7 +180,10 @@ export function catmullRom(a, b, c, d, u, out) {
   const [hb, hc] = [2 * u3 - 3 * u2 + 1, 3 * u2 - 2 * u3];
   const sb = before > 0 ? ((u3 - 2 * u2 + u) * span) / before : 0;
   const sc = behind > 0 ? ((u3 - u2) * span) / behind : 0;
-  for (let i = 0; i < out.length; i++) {
+  // One may have more: what is pulled.
+  const count = Math.min(...[a, b, c, d].map(({ coordinates }) => coordinates.length));
+  for (let i = count; i < out.length; i++) out[i] = c.coordinates[i];
+  for (let i = 0; i < count; i++) {
     out[i] = hb * b.coordinates[i] + hc * c.coordinates[i]
       + sb * (c.coordinates[i] - a.coordinates[i]) + sc * (d.coordinates[i] - b.coordinates[i]);
   }

@@ -79,11 +79,12 @@ function decoded(data, inPlanes) {
   /** @type {Kind[]} */
   const kinds = parts.map((part, number) => checkedKind(header.kinds[number], part));
   checkTrees(header, kinds, own);
-  let [nSegments, nCoordinates] = [0, 0];
+  let [nSegments, nCoordinates, nKeys] = [0, 0, 0];
   const trees = header.trees.map((/** @type {Tree} */ tree, /** @type {number} */ number) => {
     const kind = kinds[tree.kind];
     const place = Array.from(own.tree_place.values.subarray(5 * number, 5 * number + 5));
-    const first = { firstSegment: nSegments, firstCoordinate: nCoordinates };
+    const first = { firstSegment: nSegments, firstCoordinate: nCoordinates, firstKey: nKeys };
+    nKeys += kind.nKeys;
     nSegments += kind.nSegments;
     nCoordinates += kind.nCoordinates;
     return { ...tree, ...first, place, height: kind.height * place[4] };
@@ -117,7 +118,8 @@ export function decodeFrame(data, description) {
   const count = view.getUint16(26, true);
   const flags = view.getUint8(2);
   const begin = flags & PART ? FRAME_SIZE + 2 : FRAME_SIZE;
-  if (view.getUint8(1) !== FRAME_VERSION || data.byteLength !== begin + 2 * count) {
+  const end = begin + 2 * count;
+  if (view.getUint8(1) !== FRAME_VERSION || data.byteLength < end || (data.byteLength - end) % 8) {
     throw new ProtocolError(`a frame of ${data.byteLength} bytes for ${count} coordinates`);
   }
   const identity = view.getUint32(4, true);
@@ -128,7 +130,10 @@ export function decodeFrame(data, description) {
     throw new ProtocolError(`a frame of ${count} coordinates, described are ${nCoordinates}`);
   }
   const steps = new Int16Array(data, begin, count);
-  const coordinates = new Float32Array(count);
+  const turns = new Float32Array(data.slice(end));
+  need(turns.every(Number.isFinite), "frame");
+  const coordinates = new Float32Array(count + turns.length);
+  coordinates.set(turns, count);
   for (let i = 0; i < count; i++) coordinates[i] = (steps[i] / FULL_SCALE) * scale[first + i];
   const [x, y, z] = [20, 22, 24].map((at) => view.getInt16(at, true) * WIND_UNIT);
   const [sequence, stamp] = [view.getUint32(8, true), Number(view.getBigInt64(12, true)) / 1e6];

@@ -12,7 +12,7 @@
  *     const description = decodeDescription(await bytesOf("oak.description"));
  *     const stand = new Stand(decodeTables(await bytesOf("oak.tables")), description);
  *     stand.step(6, 0, 0);                        // mean wind of a step [m/s], east, north, up
- *     placer.place(stand.write(coordinates));     // coordinates of the description, then poses */
+ *     placer.place(stand.state());                // coordinates of the description, then poses */
 
 import { FORMS, need, ProtocolError, sizesOf } from "./checks.js";
 import { reading, unpack } from "./protocol.js";
@@ -94,6 +94,9 @@ export class Table {
     this.crossDamping = of("cross_damping");
     this.state = of("state");
     this.correction = of("correction");
+    this.branchCompliance = of("branch_compliance");
+    this.shapeCompliance = of("shape_compliance");
+    this.nKeys = size.keys;
     // Turning and damping side by side: they are read together.
     this.slopes = this._slopes(arrays, ["turning", "damping"]);
     this.steep = this._slopes(arrays, ["steep_turning", "steep_damping"]);
@@ -420,7 +423,7 @@ export class Stand {
   constructor(tables, description, dt = STEP) {
     const { kinds, trees, identity } = description;
     need(tables.description === identity && tables.speeds.length === trees.length, "description");
-    need(tables.kinds.every((table, k) => table.n === kinds[k]?.nCoordinates), "state");
+    need(tables.kinds.every(({ n, nKeys }, k) => n === kinds[k]?.nCoordinates && nKeys === kinds[k].nKeys), "state");
     this.dt = dt;
     this.description = description;
     this._newGusts = () => new Gusts(trees.map(({ place }) => place), tables, dt);
@@ -483,6 +486,15 @@ export class Stand {
   write(out) {
     for (const { state, firstCoordinate } of this.trees) state.coordinates(out, firstCoordinate);
     return out;
+  }
+
+  /** The same, and behind it what pulled branches turn by beyond it. */
+  state() {
+    const { nCoordinates } = this.description;
+    const turns = [...this._touches.values()].flatMap((touch) => touch.beyond);
+    const out = new Float32Array(nCoordinates + turns.length);
+    out.set(turns, nCoordinates);
+    return this.write(out);
   }
 
   /** Bring coordinates of the description to values that came from elsewhere, and rates to what would

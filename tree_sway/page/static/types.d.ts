@@ -41,6 +41,7 @@ interface Tree {
   /** Among those of all trees. */
   firstSegment: number;
   firstCoordinate: number;
+  firstKey: number;
 }
 
 interface Description {
@@ -68,7 +69,7 @@ interface Frame {
   flags: number;
   /** Blowing to [m/s]. */
   wind: Vector;
-  /** In their own unit; none in a frame of the wind alone. */
+  /** In their own unit, then what `beyond` reads; none in a frame of the wind alone. */
   coordinates: Float32Array;
   /** Number of the first of them. */
   first: number;

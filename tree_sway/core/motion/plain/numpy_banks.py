@@ -106,9 +106,9 @@ class NumpyModalBank(ModalBank):
         eta, rate, force = self.modal[:3]
         moment, found = self.state[0], np.empty(self.state.shape[1])
         h, c = self.half.T, self.whole.T
-        impulse = of_lanes(self._loads['drag_impulse'], n).copy()
-        wind = np.array([wx, wy, wz]) + of_lanes(self._loads['gust'], n)
-        compliance = of_lanes(self._loads['compliance'], n)
+        impulse = of_lanes(self.loads['drag_impulse'], n).copy()
+        wind = np.array([wx, wy, wz]) + of_lanes(self.loads['gust'], n)
+        compliance = of_lanes(self.loads['compliance'], n)
         tried: list[tuple[Floats, Floats]] = []
         for trial in range(MOST_TRIALS):
             x = _summed(h[0] * eta + h[1] * rate + (h[2] + h[3]) * force, self._shapes)
@@ -141,7 +141,7 @@ class NumpyModalBank(ModalBank):
             tried.append((missing, change))
             moment[:] = np.clip(moment + change * self.limit / LOAD_MAX, -self.limit, self.limit)
             force[:] = np.einsum('mi,i->m', self._shapes, moment)
-        into_lanes(impulse, self._loads['drag_impulse'])
+        into_lanes(impulse, self.loads['drag_impulse'])
         force[:] = np.einsum('mi,i->m', self._shapes, moment)
         new_eta = c[0] * eta + c[1] * rate + (c[2] + c[3]) * force
         rate[:] = c[4] * eta + c[5] * rate + (c[6] + c[7]) * force

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Draws a described tree from its poses: bark, leaves, what is beside it, ground and sky. */
 
-import { AT_ORIGIN, placed, STRIDE } from "../placing.js";
+import { AT_ORIGIN, beyond, placed, STRIDE } from "../placing.js";
 import { between } from "../quaternions.js";
 import { Backdrop, DAYLIGHT, GROUNDS } from "./backdrop.js";
 import { Camera } from "./camera.js";
@@ -296,11 +296,12 @@ export class Scene {
 
   _place() {
     const { detail, _coordinates: values, _texels: texels } = this;
-    detail.trees.forEach(({ kind, firstCoordinate, place }, t) => {
+    const turns = beyond(values, this.description?.nCoordinates ?? 0);
+    detail.trees.forEach(({ kind, firstCoordinate, firstKey, place }, t) => {
       const { drawn, placer } = this._kinds[kind];
       const start = detail.start[t];
       const { branches } = detail.levelOf(t) ?? {};
-      if (branches) placer.place(values, firstCoordinate, place, branches, texels, start);
+      if (branches) placer.place(values, firstCoordinate, place, branches, texels, start, turns, firstKey);
       else if (branches === 0) drawn[0].impostor?.place(values, firstCoordinate, place, texels, start);
     });
   }
@@ -324,7 +325,7 @@ export class Scene {
     if (views) this.camera = /** @type {Camera} */ (views[0].camera);
     else this.resize();
     if (this._frame % CHOOSE_EVERY === 0) this._chooseDetail();
-    if (coordinates && coordinates.length === this._coordinates.length) this._coordinates = coordinates;
+    if (coordinates && coordinates.length >= (this.description?.nCoordinates ?? Infinity)) this._coordinates = coordinates;
     this._place();
     if (segments) uploadPoses(gl, this._texture, this._texels, segments);
     const passed = Math.min(0.1, Math.abs(time - this._time));
