@@ -151,7 +151,7 @@ async def look(url: str, view: View, path: Path) -> None:
 
 
 async def settled(browser: Browser) -> None:
-    """Wait until the page has had the time to choose what it draws; on a busy machine it goes on."""
+    """Wait while the page chooses what it draws; on a busy machine it never ends."""
     begun = await browser.run('treeSway.scene.quality._from')
     await browser.until(f'treeSway.scene.quality._from > {begun} + {1e3 * SETTLING}')
 
