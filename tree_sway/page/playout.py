@@ -20,9 +20,10 @@ from tree_sway.page.protocol import PAUSED, RESTARTED
 DELAY = 0.15
 """Longest playout delay, and that of the beginning [s]."""
 
-_CALMS, _DOWN, _UP = 12.0, 0.05, 0.2
+_CALMS, _FIRST, _DOWN, _UP = 12.0, 0.25, 0.05, 0.2
 """
-Time in which it is forgotten how late states were [s]; shares of the time by which the delay goes.
+Time in which it is forgotten how late states were [s], and at first; shares of the time by which
+the delay goes.
 
 """
 
@@ -101,6 +102,7 @@ class Playout:
     def __init__(self, delay: float | None = None) -> None:
         self.delay = DELAY if delay is None else delay
         self._adapts, self._spacing, self._jitter = delay is None, 0.0, 0.5 * DELAY
+        self._age = _FIRST
         self.clock = ClockOffset()
         self.received = self.late = 0
         """States that came, and those of them that came after they were to be shown."""
@@ -135,7 +137,9 @@ class Playout:
     def _adapt(self, span: float, lateness: float) -> None:
         """Go towards the delay that a state asks for that came a time after the last [s]."""
         self._spacing += 0.1 * (span - self._spacing)
-        self._jitter = max(lateness, self._jitter * math.exp(-span / _CALMS))
+        self._age += span
+        calms = min(self._age, _CALMS)  # what was taken of a line at first goes sooner
+        self._jitter = max(lateness, self._jitter * math.exp(-span / calms))
         change = min(self._spacing + self._jitter, DELAY) - self.delay
         self.delay += min(max(change, -_DOWN * span), _UP * span)
 

@@ -7,9 +7,9 @@ import { PAUSED, RESTARTED } from "./protocol.js";
 
 /** Longest playout delay, and that of the beginning [ms]. */
 export const DELAY = 150;
-/** The delay is what frames were late by, forgotten in CALMS [ms], and a frame; it goes up and down by
- * these shares of the time. */
-const CALMS = 12000;
+/** The delay is what frames were late by, forgotten in CALMS [ms], at first in FIRST and then in as long as
+ * the line is known, and a frame; it goes up and down by these shares of the time. */
+const [CALMS, FIRST] = [12000, 250];
 const [DOWN, UP] = [0.05, 0.2];
 const WINDOW = 30000;
 const LONGEST_GAP = 500;
@@ -47,6 +47,7 @@ export class Playout {
     this._adapts = delay === undefined;
     this._spacing = 0;
     this._jitter = DELAY / 2;
+    this._age = FIRST;
     this.clock = new ClockOffset();
     this._frames = /** @type {Frame[]} */ ([]);
     /** The first since the stream was cut; those before it are for looking back. */
@@ -114,7 +115,8 @@ export class Playout {
   /** @param {number} span since the frame before [ms] */
   _adapt(span) {
     this._spacing += 0.1 * (span - this._spacing);
-    this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / CALMS));
+    this._age += span;
+    this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / Math.min(this._age, CALMS)));
     const change = Math.min(this._spacing + this._jitter, DELAY) - this.delay;
     this.delay += Math.min(Math.max(change, -DOWN * span), UP * span);
   }
