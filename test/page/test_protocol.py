@@ -26,6 +26,7 @@ from tree_sway.page.protocol import (
     encode_description,
     encode_frame,
     Frame,
+    part_of_frame,
     quantised,
     WIND_UNIT,
 )
@@ -108,6 +109,51 @@ def test_frames_come_back(
     assert back[:4] == frame[:4]
     np.testing.assert_allclose(back.wind, wind, atol=0.5 * WIND_UNIT + 1e-9)
     np.testing.assert_array_equal(back.coordinates, values)
+
+
+def test_turns_of_pulled_branches_are_added_where_they_belong() -> None:
+    description = decode_description(vector('description.bin'))
+    counts = [len(description.kinds[tree['kind']]['basis_matrix']) for tree in
+              description.header['trees']]  # fmt: skip
+    rest = decode_frame(vector('frame1.bin'))
+    pairs = [2.0, 0.2, 3.0, -0.1, sum(counts[:2]) + 2.0, 0.2, 7.5, 1.0, 1e6, 1.0]
+    data = encode_frame(rest._replace(beyond=np.array(pairs)))
+    frame, placer = decode_frame(data), Placer(description)
+    np.testing.assert_allclose(frame.beyond, pairs, rtol=1e-6)
+    coordinates = description.coordinates(frame)
+    poses = placer.place(np.concatenate([coordinates, frame.beyond]))
+    before = placer.place(coordinates)
+    n = len(poses) // 3
+    moved = np.abs(poses - before).max(axis=1).reshape(3, n) > 1e-6
+    assert moved[0].any()
+    assert not moved[1].any()  # between keys, and beyond all, there is none
+    assert moved[2].any()
+    node = shutil.which('node')
+    if node is not None:
+        static = HERE.parents[1] / 'tree_sway' / 'page' / 'static'
+        program = f"""
+          import {{ Placer }} from "{(static / 'placing.js').as_uri()}";
+          import {{ decodeDescription, decodeFrame }} from "{(static / 'protocol.js').as_uri()}";
+          let text = "";
+          for await (const chunk of process.stdin) text += chunk;
+          const [described, frame] = JSON.parse(text).map((each) => Uint8Array.from(each).buffer);
+          const description = decodeDescription(described);
+          const {{ coordinates }} = decodeFrame(frame, description);
+          console.log(JSON.stringify([...new Placer(description).place(coordinates)]));
+        """
+        given = json.dumps([list(vector('description.bin')), list(data)])
+        done = subprocess.run(
+            [node, '--input-type=module', '-e', program], input=given, text=True,
+            capture_output=True, check=True, timeout=60,
+        )  # fmt: skip
+        theirs = np.array(json.loads(done.stdout)).reshape(-1, 8)
+        np.testing.assert_allclose(theirs[:, :3], poses[:, :3], atol=2e-6)
+    assert len(part_of_frame(data, 0, 10**6)) == 30 + 2 * len(coordinates)
+    assert len(part_of_frame(data, 0, 0)) == 28
+    with pytest.raises(FormatError, match='bytes'):
+        decode_frame(data[:-3])
+    with pytest.raises(FormatError, match='finite'):
+        decode_frame(encode_frame(rest._replace(beyond=np.array([1.0, np.nan]))))
 
 
 def test_what_is_cut_is_reported() -> None:

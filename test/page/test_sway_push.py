@@ -97,6 +97,22 @@ def test_a_branch_pulled_by_a_tenth_of_the_height_goes_and_swings_as_in_python(
     assert np.ptp(there[PUSHED:, 0]) > 0.5 * moved  # it swings back
 
 
+def test_a_limb_gives_way_as_in_python(tmp_path: Path) -> None:
+    simulator: Any = open_scene('goldcrest').simulator(Settings(damping_ratio=0.5), model=20)
+    tree = simulator.tree
+    first, end = tree.branch_first[133:135]
+    segment = int(first + round(0.7 * (end - first - 1)))
+    push = {'segment': segment, 'force': [0.01, 0.02, 0.03]}
+    found = pushed_in_javascript(simulator, tmp_path, push)[PUSHED - 1] - tree.start[segment]
+    simulator.reset()
+    for _ in range(PUSHED):
+        simulator.push(segment, push['force'], 0.5, along=0.0)
+        simulator.step(WIND, DT)
+    there = simulator.place()[segment, :3] - tree.start[segment]
+    assert np.linalg.norm(there) > 1e-3
+    assert np.linalg.norm(found - there) < 0.02 * np.linalg.norm(there)
+
+
 def test_a_tree_of_a_stand_is_pulled_where_it_stands(tmp_path: Path) -> None:
     one = open_scene('goldcrest').trees[0]
     places = [{'x': 0.0, 'yaw': 0.0, 'scale': 1.0}, {'x': 9.0, 'yaw': 0.5 * np.pi, 'scale': 2.0}]
