@@ -62,9 +62,11 @@ def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:
     A `ParameterError` names what is not three numbers.
     """
     try:
-        if isinstance(vector, str | bytes):
+        numbers: Any = vector
+        if isinstance(vector, np.ndarray):
+            numbers = vector.tolist()
+        elif isinstance(vector, str | bytes):
             raise ValueError
-        numbers: Any = vector.tolist() if isinstance(vector, np.ndarray) else vector
         x, y, z = numbers
         return float(x), float(y), float(z)  # lists, of a matrix, are no floats
     except (TypeError, ValueError, OverflowError):

@@ -61,7 +61,7 @@ def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
     eta, faded, shown = instance.eta, instance.faded, instance.wanted
     for k in range(len(eta)):
         shown[k] = (1.0 - faded[k]) * eta[k]
-    shown = shown[: len(eta) - instance.left_out]
+    shown = shown[: shapes.shape[1] - instance.left_out]
     for block in range(len(shapes)):
         add_shapes(shapes, block, shown, x)
 

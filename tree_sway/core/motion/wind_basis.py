@@ -70,7 +70,7 @@ class WindBasisBank:
         """Lay the table out for a number of coordinates, that of the largest tree of a stand."""
         for compiled in ('_step', '_expand'):
             self.__dict__.pop(compiled, None)
-        table_record, made = self.table.record, len(self.modal.shapes.T)
+        table_record = self.table.record
         count = COUNT[int(table_record['degree'][0])]
         self.record = np.zeros(1, dtype=table_layout(n_modes, count))
         for name in table_record.dtype.names or ():
@@ -78,8 +78,7 @@ class WindBasisBank:
             self.record[name][tuple(map(slice, values.shape))] = values
         self.time_step = np.zeros(1, dtype=time_step_layout(n_modes))
         self.instance = np.zeros(1, dtype=instance_layout(n_modes, count))
-        filled = np.zeros((self.record['stiffness'].shape[1] - made, len(self.modal.shapes)))
-        self.laid_shapes = shapes_together(np.vstack([self.all_shapes, filled]))
+        self.laid_shapes = shapes_together(self.all_shapes)
 
     def show(self, shares: Floats, count: int) -> None:
         """Show coordinates by shares from 0 to 1, (m,), and let the first of them respond."""

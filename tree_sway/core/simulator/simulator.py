@@ -246,7 +246,7 @@ class SwaySimulator:
         """
         counts = self.counts
         x, y, z = three_numbers('wind', wind_mean)
-        if dt != self._dt or self.glide(dt):
+        if dt != self._dt or (self._tuning is not None and self.glide(dt)):
             self._set_step(dt)
         counts.steps += 1
         call = self._in_one_call
