@@ -31,7 +31,7 @@ from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
 Browser = Any
 LIVE = "window.treeSway && treeSway.state === 'live' && treeSway.fps > 0"
 PULL = 'treeSway.hands.drag.pull'
-ATTEMPTS, LARGEST_GAP = 4, 0.06
+ATTEMPTS, LARGEST_GAP = 12, 0.06
 MOVED = (
     '((s) => Math.hypot(...treeSway.scene.position(s).map((x, c) => x -'
     ' treeSway.scene.restPosition(s)[c])))({})'
