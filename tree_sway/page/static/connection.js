@@ -67,8 +67,9 @@ export class Connection {
   close() {
     clearTimeout(this._retry);
     clearInterval(this._watching);
-    this._socket?.close();
+    const socket = this._socket;
     this._socket = null;
+    socket?.close();
   }
 
   /** @param {Record<string, any>} message */
@@ -86,8 +87,9 @@ export class Connection {
   }
 
   _drop() {
-    this._socket?.close();
+    const socket = this._socket;
     this._lose();
+    socket?.close();
   }
 
   _watch() {
