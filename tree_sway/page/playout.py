@@ -3,7 +3,8 @@
 """
 From frames that arrive when they will to a smooth motion, as ``static/playout.js`` does it.
 
-Shown a little late, on a curve through the states (Catmull & Rom 1974), never extrapolated.
+Shown a little late, on a curve through the states (Catmull & Rom 1974). Where they are close
+together one more is expected on the parabola of the last three, as a tree has inertia.
 """
 
 from __future__ import annotations
@@ -20,11 +21,15 @@ from tree_sway.page.protocol import PAUSED, RESTARTED
 DELAY = 0.15
 """Longest playout delay, and that of the beginning [s]."""
 
-_CALMS, _DOWN, _UP = 12.0, 0.05, 0.2
+_CALMS, _FIRST, _DOWN, _UP = 12.0, 0.25, 0.05, 0.2
 """
-Time in which it is forgotten how late states were [s]; shares of the time by which the delay goes.
+Time in which it is forgotten how late states were [s], and at first; shares of the time by which
+the delay goes.
 
 """
+
+_AHEAD = 0.03
+"""Spacing of states in [s] up to which one more is expected."""
 
 _WINDOW = 30.0
 _OTHER_CLOCK = 5.0
@@ -94,13 +99,15 @@ class Playout:
     ----------
     delay
         Time from a state's stamp to when it is shown, the quickest travel not counted [s]; if
-        None, as long as states were late within some seconds, and one more state.
+        None, as long as states were late within some seconds, and one more state where none is
+        expected.
 
     """
 
     def __init__(self, delay: float | None = None) -> None:
         self.delay = DELAY if delay is None else delay
         self._adapts, self._spacing, self._jitter = delay is None, 0.0, 0.5 * DELAY
+        self._age, self._ahead = _FIRST, 0.0
         self.clock = ClockOffset()
         self.received = self.late = 0
         """States that came, and those of them that came after they were to be shown."""
@@ -127,7 +134,7 @@ class Playout:
         self.clock.add(moment.stamp, arrival)
         self.received += 1
         lateness = arrival - moment.stamp - self.clock.value
-        self.late += lateness > self.delay
+        self.late += lateness > self.delay + self._ahead
         if self._moments and self._adapts:
             self._adapt(moment.stamp - self._moments[-1].stamp, lateness)
         self._moments.append(moment)
@@ -135,15 +142,20 @@ class Playout:
     def _adapt(self, span: float, lateness: float) -> None:
         """Go towards the delay that a state asks for that came a time after the last [s]."""
         self._spacing += 0.1 * (span - self._spacing)
-        self._jitter = max(lateness, self._jitter * math.exp(-span / _CALMS))
-        change = min(self._spacing + self._jitter, DELAY) - self.delay
+        self._age += span
+        calms = min(self._age, _CALMS)  # what was taken of a line at first goes sooner
+        self._jitter = max(lateness, self._jitter * math.exp(-span / calms))
+        self._ahead = self._spacing if self._spacing < _AHEAD else 0.0
+        change = min(self._spacing - self._ahead + self._jitter, DELAY) - self.delay
         self.delay += min(max(change, -_DOWN * span), _UP * span)
 
     def sample(self, now: float) -> Moment | None:
         """State to show at a time of the own clock [s]; None before the first."""
-        moments = self._moments
+        moments = list(self._moments)
         if not moments:
             return self._shown
+        if self._ahead and len(moments) > 2 and moments[-1].stamp - moments[-2].stamp < _AHEAD:
+            moments.append(expected(*moments[-3:]))
         time = now - self.clock.value - self.delay
         newest = len(moments) - 1
         after = next((i for i, each in enumerate(moments) if each.stamp > time), newest)
@@ -165,6 +177,16 @@ class Playout:
             self._before = None
             return coordinates
         return before + u * u * (3.0 - 2.0 * u) * (coordinates - before)
+
+
+def expected(a: Moment, b: Moment, c: Moment) -> Moment:
+    """Return what comes as long after c as that after b, on the parabola through the three."""
+    if not len(a.coordinates) == len(b.coordinates) == len(c.coordinates):
+        return c
+    span, before = c.stamp - b.stamp, b.stamp - a.stamp
+    by, slower = c.coordinates - b.coordinates, (b.coordinates - a.coordinates) * span / before
+    values = c.coordinates + by + 2.0 * span / (span + before) * (by - slower)
+    return Moment(c.stamp + span, values, c.wind, c.flags & PAUSED)
 
 
 def catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:

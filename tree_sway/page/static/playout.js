@@ -1,16 +1,19 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
 /** From frames that arrive when they will to a smooth motion: shown a little late, on a curve through the
- * states (Catmull-Rom), never extrapolated. The last minute is kept to look back at. */
+ * states (Catmull-Rom); where they are close together one more is expected on the parabola of the last three, as
+ * a tree has inertia. The last minute is kept to look back at. */
 
 import { PAUSED, RESTARTED } from "./protocol.js";
 
 /** Longest playout delay, and that of the beginning [ms]. */
 export const DELAY = 150;
-/** The delay is what frames were late by, forgotten in CALMS [ms], and a frame; it goes up and down by
- * these shares of the time. */
-const CALMS = 12000;
+/** The delay is what frames were late by, forgotten in CALMS [ms], at first in FIRST and then in as long as
+ * the line is known, and a frame; it goes up and down by these shares of the time. */
+const [CALMS, FIRST] = [12000, 250];
 const [DOWN, UP] = [0.05, 0.2];
+/** Spacing of states up to which one more is expected [ms]. */
+const AHEAD = 30;
 const WINDOW = 30000;
 const LONGEST_GAP = 500;
 const BLEND = 400;
@@ -47,6 +50,8 @@ export class Playout {
     this._adapts = delay === undefined;
     this._spacing = 0;
     this._jitter = DELAY / 2;
+    this._age = FIRST;
+    this._ahead = 0;
     this.clock = new ClockOffset();
     this._frames = /** @type {Frame[]} */ ([]);
     /** The first since the stream was cut; those before it are for looking back. */
@@ -101,7 +106,7 @@ export class Playout {
     this.received++;
     this.clock.add(frame.stamp, arrival);
     this.lateness = arrival - frame.stamp - this.clock.value;
-    if (this.lateness > this.delay) this.late++;
+    if (this.lateness > this.delay + this._ahead) this.late++;
     if (this._adapts && last && this._first < frames.length) this._adapt(frame.stamp - last.stamp);
     frames.push(frame);
     const most = Math.max(64, MOST_NUMBERS / frame.coordinates.length);
@@ -114,8 +119,10 @@ export class Playout {
   /** @param {number} span since the frame before [ms] */
   _adapt(span) {
     this._spacing += 0.1 * (span - this._spacing);
-    this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / CALMS));
-    const change = Math.min(this._spacing + this._jitter, DELAY) - this.delay;
+    this._age += span;
+    this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / Math.min(this._age, CALMS)));
+    this._ahead = this._spacing < AHEAD ? this._spacing : 0;
+    const change = Math.min(this._spacing - this._ahead + this._jitter, DELAY) - this.delay;
     this.delay += Math.min(Math.max(change, -DOWN * span), UP * span);
   }
 
@@ -139,10 +146,12 @@ export class Playout {
   /** The state to draw; null before the first frame. @param {number} now own clock [ms]
    * @returns {Float32Array | null} the same array each time */
   sample(now) {
-    const frames = this._frames;
+    let frames = this._frames;
     if (!frames.length) return this._shown;
     const time = this._back ? this._from - this._back : now - this.clock.value - this.delay;
     const first = this._back ? 0 : this._first;
+    const [x, y, z] = frames.slice(Math.max(first, frames.length - 3));
+    if (this._ahead && !this._back && z && time > y.stamp && z.stamp - y.stamp < AHEAD) frames = [...frames, expected(x, y, z)];
     let i2 = frames.length - 1;
     while (i2 > first + 1 && frames[i2 - 1].stamp > time) i2--;
     const i1 = Math.max(i2 - 1, first);
@@ -150,7 +159,7 @@ export class Playout {
     // A jump is shown as one: nothing lies between its ends.
     const isJump = Boolean(b.flags & RESTARTED) || b.stamp - a.stamp > LONGEST_GAP;
     const share = isJump ? Number(time >= b.stamp) : (time - a.stamp) / (b.stamp - a.stamp);
-    const u = i1 === i2 ? 1 : Math.min(Math.max(share, 0), 1);
+    const u = i1 === i2 || a.stamp === b.stamp ? 1 : Math.min(Math.max(share, 0), 1);
     if (this._shown?.length !== b.coordinates.length) this._shown = new Float32Array(b.coordinates.length);
     catmullRom(frames[Math.max(i1 - 1, first)], a, b, frames[Math.min(i2 + 1, frames.length - 1)], u, this._shown);
     for (let c = 0; c < 3; c++) this.wind[c] = a.wind[c] + u * (b.wind[c] - a.wind[c]);
@@ -167,6 +176,18 @@ export class Playout {
     const share = u * u * (3 - 2 * u);
     for (let i = 0; i < shown.length; i++) shown[i] = this._before[i] + share * (shown[i] - this._before[i]);
   }
+}
+
+/** What comes as long after c as that after b, on the parabola through the three. @param {Frame} a @param {Frame} b
+ * @param {Frame} c @returns {Frame} */
+function expected(a, b, c) {
+  if (new Set([a, b, c].map(({ coordinates }) => coordinates.length)).size > 1) return c;
+  const [span, before] = [c.stamp - b.stamp, b.stamp - a.stamp];
+  const coordinates = c.coordinates.map((each, i) => {
+    const [by, slower] = [each - b.coordinates[i], ((b.coordinates[i] - a.coordinates[i]) * span) / before];
+    return each + by + ((2 * span) / (span + before)) * (by - slower);
+  });
+  return { ...c, stamp: c.stamp + span, flags: c.flags & PAUSED, coordinates };
 }
 
 /** The curve through b and c whose slopes there come from the neighbours, stamps as they are.
