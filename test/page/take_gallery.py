@@ -50,6 +50,9 @@ class View:
     is_film: bool = False
 
 
+SETTLING = 15.0
+"""Until a page without a graphics unit has chosen what it leaves out [s]."""
+
 FILM, EVERY, FILM_WIDTH = 5.0, 0.1, 640
 """Length of a film and time between its pictures [s], and its width [px]."""
 
@@ -64,14 +67,16 @@ VIEWS = (
     View('oak_autumn', 'oak', script=_EVENING + _AUTUMN),
     View('birch', 'birch'),
     View('spruce', 'spruce'),
+    View('spruce_software', 'spruce', is_full=False),
     View('pine', 'pine'),
+    View('pine_near', 'pine', script='treeSway.scene.camera.zoom(0.35)'),
     View('willow', 'willow'),
     View('willow_sways', 'willow', is_film=True),
     View('walnut', 'walnut'),
     View('walnut_software', 'walnut', is_full=False),
     View('walnut_near', 'walnut', script='treeSway.scene.camera.zoom(0.35)'),
     View('walnut_far', 'walnut', script='treeSway.scene.camera.zoom(4)'),
-    View('avenue', 'avenue', script='treeSway.scene.camera.zoom(0.6)'),
+    View('avenue', 'avenue', script='treeSway.scene.camera.set([-1.55, 0.06, 62, 5, 30, 6])'),
     View('stand', str(STAND)),
     View('stand_software', str(STAND), is_full=False),
     View('stand_near', str(STAND), is_full=False, script='treeSway.scene.camera.zoom(0.3)'),
@@ -146,13 +151,9 @@ async def look(url: str, view: View, path: Path) -> None:
 
 
 async def settled(browser: Browser) -> None:
-    """Wait until the page has chosen what it draws: the same for some of its looks at the time."""
-    quality = 'JSON.stringify([treeSway.scene.quality.fineness, treeSway.scene.quality.density])'
-    before = None
-    while (now := await browser.run(quality)) != before:
-        before = now
-        begun = await browser.run('treeSway.scene.quality._from')
-        await browser.until(f'treeSway.scene.quality._from > {begun} + 3000')
+    """Wait while the page chooses what it draws; on a busy machine it never ends."""
+    begun = await browser.run('treeSway.scene.quality._from')
+    await browser.until(f'treeSway.scene.quality._from > {begun} + {1e3 * SETTLING}')
 
 
 async def film(browser: Browser, path: Path) -> None:

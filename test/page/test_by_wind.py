@@ -238,13 +238,9 @@ def test_a_client_is_sent_the_gusts_as_it_joins(stand: Stand, server: PageServer
     heard = json.loads(stand.gusts)
     server.describe(stand.state.description, stand.state.tables, lambda: heard)
     with StreamClient(server.url, rate=1000.0, by_wind=True) as client:
-        for _ in range(1500):
-            server.publish(stand.joining[0])
-            try:
-                client.wait(0.02)
-            except TransportError:  # not yet: the next frame is published
-                continue
-            break
+        # Once: each frame that comes is a step on, and a server keeps the newest for who joins.
+        server.publish(stand.joining[0])
+        client.wait(60.0)
         assert client.solver is not None
         gusts = client.solver._scene.gusts
         found = gusts.recent(gusts.time)

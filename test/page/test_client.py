@@ -33,7 +33,7 @@ from tree_sway.page.protocol import (  # noqa: E402
 )
 from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
 
-DEADLINE = 20.0
+DEADLINE = 60.0
 HERE = Path(__file__).parent
 STATIC = HERE.parents[1] / 'tree_sway' / 'page' / 'static'
 DESCRIPTION = (HERE / 'vectors' / 'description.bin').read_bytes()

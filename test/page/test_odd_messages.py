@@ -29,7 +29,7 @@ from tree_sway.page.protocol import (  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures('little_effort')
 
-DEADLINE = 20.0
+DEADLINE = 60.0
 STATIC = Path(__file__).parents[2] / 'tree_sway' / 'page' / 'static'
 VECTORS = Path(__file__).parent / 'vectors'
 DESCRIPTION = (VECTORS / 'description.bin').read_bytes()

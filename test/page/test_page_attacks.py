@@ -31,7 +31,7 @@ from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures('little_effort')
 
-DEADLINE = 10.0
+DEADLINE = 60.0
 DESCRIPTION = (Path(__file__).parent / 'vectors' / 'description.bin').read_bytes()
 TOKEN = 'confidential-words'
 

@@ -24,7 +24,7 @@ from tree_sway.page.access import is_loopback, refusal, require_token  # noqa: E
 from tree_sway.page.controls import Control, ControlPanel  # noqa: E402
 from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
 
-DEADLINE = 10.0
+DEADLINE = 60.0
 DESCRIPTION = b'TSWD' + bytes(96)
 
 

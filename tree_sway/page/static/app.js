@@ -5,7 +5,6 @@
 import { TreeStream } from "./client.js";
 import { DAYLIGHT } from "./drawing/backdrop.js";
 import { Scene } from "./drawing/scene.js";
-import { Hands, xr } from "./hands.js";
 import { readLink, recordClip, savePicture, saveTree, viewLink } from "./keepsake.js";
 import { keptScene, OwnLine } from "./own_line.js";
 import { element, made, Panel } from "./panel.js";
@@ -46,7 +45,8 @@ let lastDrawn = 0;
 let status = /** @type {Record<string, any>} */ ({});
 let controls = /** @type {any[]} */ ([]);
 let toastTimer = 0;
-let day = /** @type {keyof typeof DAYLIGHT} */ ("light");
+const days = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
+let day = days[0];
 let endClip = /** @type {(() => void) | null} */ (null);
 
 setLanguage(settings.lang ?? navigator.language.slice(0, 2));
@@ -98,7 +98,12 @@ const stream = new TreeStream(location.href, {
 }, { kept, byWind: query.has("solve") });
 
 const { connection, playout } = stream;
-const hands = new Hands(scene, stream, showButtons);
+/** What is loaded when it is asked for. */
+const hands = {
+  drag: /** @type {import("./drag.js").Drag | null} */ (null),
+  sound: /** @type {import("./sound.js").Sound | null} */ (null),
+  headset: /** @type {import("./headset.js").Headset | null} */ (null),
+};
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
 const treeName = () => connection.description?.name ?? "tree";
 
@@ -179,7 +184,7 @@ const modelName = (model) => (/^\d+$/.test(model) ? word("coordinates", model) :
 /** @param {number} now */
 function draw(now) {
   requestAnimationFrame(draw);
-  if (hands.areOn.headset) return;
+  if (hands.headset?.session) return;
   const coordinates = stream.sample();
   const isStill = playout.isPaused || playout.back > 0;
   scene.wind = playout.wind;
@@ -188,8 +193,9 @@ function draw(now) {
   scene.draw(coordinates, sceneTime, isStill);
   drawn += 1;
   if (coordinates) {
-    hands.frame();
     const [at, rest] = [scene.tip(), scene.restTip()];
+    hands.drag?.frame();
+    hands.sound?.follow(Math.hypot(...playout.wind), scene.leavesShown && scene.hasLeaves, at);
     const motion = Math.hypot(...at.map((each, c) => each - rest[c]));
     const value = { motion, ...scene.load() }[shown.value] ?? 0;
     if (stateNow()[0] === "live") {
@@ -202,31 +208,19 @@ function draw(now) {
   showFacts();
 }
 
-/** Look at what was, as far back as the time line says. */
-function lookBack() {
-  playout.back = -1000 * Number(timeLine.value);
-  for (const trace of Object.values(traces)) trace.back = -Number(timeLine.value);
-  timeLine.setAttribute("aria-valuetext", stateNow()[1]);
-  showState();
-}
-
-/** @param {keyof typeof DAYLIGHT} time of day */
+/** @param {typeof day} time of day */
 function setDay(time) {
   day = time;
   document.documentElement.dataset.theme = time === "dark" ? "dark" : "light";
   scene.setDay(DAYLIGHT[time]);
 }
 
-function nextDay() {
-  const times = /** @type {(keyof typeof DAYLIGHT)[]} */ (Object.keys(DAYLIGHT));
-  setDay(times[(times.indexOf(day) + 1) % times.length]);
-}
-
 /** Buttons say what is: a tree that was started bare has no leaves to show. */
 function showButtons() {
   const { hasLeaves, leavesShown, isAutumn: season } = scene;
-  const pressed = { leaves: hasLeaves && leavesShown, season, clip: endClip !== null, ...hands.areOn };
-  for (const [id, isSo] of Object.entries(pressed)) element(id).setAttribute("aria-pressed", String(isSo));
+  const [pull, sound, headset] = [hands.drag?.isOn, hands.sound?.isOn, hands.headset?.session];
+  const pressed = { leaves: hasLeaves && leavesShown, season, clip: endClip, pull, sound, headset };
+  for (const [id, isSo] of Object.entries(pressed)) element(id).setAttribute("aria-pressed", String(Boolean(isSo)));
   Object.assign(element("leaves"), { disabled: !hasLeaves, title: word(hasLeaves ? "leaves" : "bare") });
 }
 
@@ -252,17 +246,6 @@ async function copyLink() {
   toast(`${word("copied")}: ${location.href}`);
 }
 
-/** Begin a clip, or end and save it. */
-function toggleClip() {
-  endClip?.();
-  endClip = endClip ? null : recordClip(canvas, treeName());
-}
-
-function toggleFull() {
-  if (document.fullscreenElement) document.exitFullscreen();
-  else document.documentElement.requestFullscreen?.().catch(() => undefined);
-}
-
 /** @param {string} chosen language */
 function speak(chosen) {
   setLanguage(chosen);
@@ -278,20 +261,32 @@ function speak(chosen) {
 const actions = {
   home: () => scene.camera.home(),
   leaves: () => scene.hasLeaves && scene.dress({ leavesShown: !scene.leavesShown }),
-  theme: nextDay,
+  theme: () => setDay(days[(days.indexOf(day) + 1) % days.length]),
   season: () => scene.dress({ isAutumn: !scene.isAutumn }),
   picture: () => savePicture(scene, treeName(), () => scene.draw(null, sceneTime, true)),
-  clip: toggleClip,
+  clip: () => {
+    endClip?.();
+    endClip = endClip ? null : recordClip(canvas, treeName());
+  },
   glb: () => saveTree("glb", treeName()),
   html: () => saveTree("html", treeName()),
   link: copyLink,
-  full: toggleFull,
+  full: () => (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.()),
   help: () => help.showModal(),
   retry: () => stream.open(),
   close: () => help.close(),
-  pull: () => hands.togglePull(),
-  sound: () => hands.toggleSound(),
-  headset: () => hands.toggleHeadset(),
+  pull: async () => {
+    hands.drag ??= new (await import("./drag.js")).Drag(scene, stream);
+    hands.drag.isOn = !hands.drag.isOn;
+  },
+  sound: async () => {
+    hands.sound ??= new (await import("./sound.js")).Sound();
+    await hands.sound.toggle();
+  },
+  headset: async () => {
+    hands.headset ??= new (await import("./headset.js")).Headset(scene, stream);
+    await hands.headset.toggle(showButtons);
+  },
 };
 /** @type {Record<string, () => unknown>} */
 const keys = {
@@ -316,7 +311,7 @@ document.addEventListener("keydown", (event) => {
   if (target.closest("input, select, button, summary, dialog") || event.ctrlKey || event.metaKey) return;
   keys[event.key.toLowerCase()]?.();
 });
-xr?.isSessionSupported("immersive-vr").then((/** @type {boolean} */ isSo) => (element("headset").hidden = !isSo), () => undefined);
+navigator.xr?.isSessionSupported("immersive-vr").then((/** @type {boolean} */ isSo) => (element("headset").hidden = !isSo), () => undefined);
 let pressed = [0, 0];
 canvas.addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]));
 canvas.addEventListener("click", (event) => {
@@ -324,7 +319,12 @@ canvas.addEventListener("click", (event) => {
   if (scene.description) pick(scene.nearest(event.clientX / canvas.clientWidth, event.clientY / canvas.clientHeight).branch);
 });
 shown.addEventListener("change", () => pick(scene.picked));
-timeLine.addEventListener("input", lookBack);
+timeLine.addEventListener("input", () => {
+  playout.back = -1000 * Number(timeLine.value);
+  for (const trace of Object.values(traces)) trace.back = -Number(timeLine.value);
+  timeLine.setAttribute("aria-valuetext", stateNow()[1]);
+  showState();
+});
 element("language").addEventListener("change", ({ target }) => speak(/** @type {any} */ (target).value));
 
 document.addEventListener("dragover", (event) => event.preventDefault());
@@ -336,9 +336,9 @@ document.addEventListener("drop", (event) => {
 
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
-const asked = /** @type {keyof typeof DAYLIGHT} */ (settings.day);
-setDay(asked in DAYLIGHT ? asked : dark.matches ? "dark" : "light");
-dark.addEventListener("change", () => setDay(dark.matches ? "dark" : "light"));
+const dayOrNight = () => (dark.matches ? "dark" : "light");
+setDay(days.find((each) => each === settings.day) ?? dayOrNight());
+dark.addEventListener("change", () => setDay(dayOrNight()));
 scene.flutters = !calm.matches;
 calm.addEventListener("change", () => (scene.flutters = !calm.matches));
 scene.dress({ leavesShown: settings.leaves !== "false", isAutumn: settings.autumn === "true" });

@@ -85,7 +85,6 @@ export class Connection {
     this.listeners.onState("lost", wait);
   }
 
-  /** Close the line, and make it again. */
   _drop() {
     this._socket?.close();
     this._lose();
@@ -97,7 +96,6 @@ export class Connection {
     this.send({ ping: performance.now() });
   }
 
-  /** Ask for as many frames as may be on their way. */
   _ask() {
     const more = this._credit - this._awaited;
     if (more < GRANT_EVERY) return;

@@ -124,7 +124,6 @@ export class Pull {
   }
 }
 
-/** Drags on the canvas. */
 export class Drag {
   /** @param {import("./drawing/scene.js").Scene} scene @param {import("./client.js").TreeStream} stream */
   constructor(scene, stream) {
@@ -203,7 +202,6 @@ export class Drag {
     return true;
   }
 
-  /** Go on with what is drawn. */
   frame() {
     const { pull, scene: { camera, canvas }, _line: line, _label: label } = this;
     line.hidden = label.hidden = !pull?.isHeld;

@@ -3,7 +3,6 @@
 /** A headset: the tree in stereo at its own size, teleport by trigger, a branch pulled by the grip (WebXR). */
 
 import { Pull } from "./drag.js";
-import { xr } from "./hands.js";
 import { turned } from "./quaternions.js";
 
 /** @typedef {{from: number[], along: number[]}} Ray of a controller, in the scene */
@@ -30,7 +29,6 @@ export class Headset {
     this.stream = stream;
     this.session = /** @type {any} */ (null);
     this.frames = 0;
-    /** What each eye sees. */
     this.views = /** @type {View[]} */ ([]);
     /** Place of its floor in the scene [m], and the heading that it looks along at first [rad]. */
     this.origin = [0, 0, 0];
@@ -43,9 +41,8 @@ export class Headset {
   async toggle(onEnd) {
     if (this.session) return this.session.end();
     const { gl } = this.scene;
-    const session = await xr.requestSession("immersive-vr", { requiredFeatures: ["local-floor"] });
+    const session = await navigator.xr.requestSession("immersive-vr", { requiredFeatures: ["local-floor"] });
     await /** @type {any} */ (gl).makeXRCompatible();
-    const { XRWebGLLayer } = /** @type {any} */ (window);
     await session.updateRenderState({ baseLayer: new XRWebGLLayer(session, gl) });
     this._floor = await session.requestReferenceSpace("local-floor");
     const { target, azimuth } = this.scene.camera;
@@ -72,7 +69,6 @@ export class Headset {
     this.origin = [x, y, this.scene.ground];
     const turn = [-c, s, s, c];
     const [right, up, back] = turned(turn, this.origin.map((each) => -each));
-    const { XRRigidTransform } = /** @type {any} */ (window);
     const scene = new XRRigidTransform({ x: right, y: up, z: back }, { x: -c, y: s, z: s, w: c });
     this.space = this._floor.getOffsetReferenceSpace(scene);
   }

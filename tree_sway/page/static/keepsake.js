@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /** What people take with them: a picture, a clip, the tree, and a link that keeps the view. */
 
+import { Quality } from "./drawing/quality.js";
+
 const FRAMES_PER_SECOND = 30;
 
 /** Hand a file to whoever looks. @param {Blob} blob @param {string} name @param {string} suffix */
@@ -16,11 +18,11 @@ export function save(blob, name, suffix) {
 /** Save what is seen as PNG, in full. @param {import("./drawing/scene.js").Scene} scene
  * @param {string} name @param {() => void} draw a frame */
 export function savePicture(scene, name, draw) {
-  const { fineness, density } = scene.quality;
-  [scene.quality.fineness, scene.quality.density] = [1, 1];
+  const { quality } = scene;
+  scene.quality = new Quality();
   draw();
   scene.canvas.toBlob((blob) => blob && save(blob, name, "png"));
-  [scene.quality.fineness, scene.quality.density] = [fineness, density];
+  scene.quality = quality;
 }
 
 /** Record what is drawn from now on; what ends the clip and saves it. @param {HTMLCanvasElement} canvas

@@ -72,7 +72,6 @@ export class OwnLine {
     clearInterval(this._timer);
   }
 
-  /** Say what can be changed. */
   _hello() {
     const { mean_speed: speed, intensity, bearing_to: bearing } = this._turbulence.values;
     const controls = [control("mean_speed", speed, "m/s", 0, 40), control("intensity", intensity),

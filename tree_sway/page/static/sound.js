@@ -10,13 +10,14 @@ const FOLLOWS = 0.15;
 export class Sound {
   context = new AudioContext();
   isOn = false;
+  _tip = [0, 0, 0];
+  _at = 0;
 
   constructor() {
     const { context } = this;
     const noise = context.createBuffer(1, 4 * context.sampleRate, context.sampleRate);
     const samples = noise.getChannelData(0);
     for (let i = 0; i < samples.length; i++) samples[i] = 2 * Math.random() - 1;
-    /** What is heard. */
     this.out = context.createGain();
     this.out.connect(context.destination);
     const voice = (/** @type {BiquadFilterType} */ type, /** @type {number} */ frequency) => {
@@ -32,16 +33,17 @@ export class Sound {
     this._leaves = voice("highpass", 2500);
   }
 
-  /** On or off. */
   toggle() {
     this.isOn = !this.isOn;
     return this.isOn ? this.context.resume() : this.context.suspend();
   }
 
   /** Sound as the tree is now. @param {number} wind speed [m/s] @param {boolean} hasLeaves
-   * @param {number} motion of the tip [m/s] */
-  follow(wind, hasLeaves, motion) {
+   * @param {number[]} tip where it is [m] */
+  follow(wind, hasLeaves, tip) {
     const { currentTime: now } = this.context;
+    const motion = Math.hypot(...tip.map((each, c) => each - this._tip[c])) / Math.max(0.001, now - this._at);
+    [this._tip, this._at] = [tip, now];
     const air = Math.min(1, wind / LOUD_AIR);
     const leaves = hasLeaves ? Math.min(1, (wind + 2 * motion) / LOUD_LEAVES) : 0;
     this._air.gain.gain.setTargetAtTime(0.5 * air ** 2, now, FOLLOWS);

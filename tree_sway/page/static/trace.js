@@ -48,13 +48,11 @@ export class Trace {
     while (points[0].time < time - LOOK_BACK - SECONDS) points.shift();
   }
 
-  /** The points that are shown, and when they end. */
   get _shown() {
     const end = (this._points.at(-1)?.time ?? 0) - this.back;
     return { end, points: this._points.filter(({ time }) => time <= end && time >= end - SECONDS) };
   }
 
-  /** Mean and greatest value of what is shown. */
   get statistics() {
     const values = this._shown.points.map(({ value }) => value);
     const mean = values.reduce((a, b) => a + b, 0) / Math.max(1, values.length);

@@ -128,10 +128,20 @@ interface Control {
   is_action: boolean;
 }
 
+// Of browsers with WebXR.
+
+declare const XRWebGLLayer: any;
+declare const XRRigidTransform: any;
+interface Navigator {
+  xr?: any;
+}
+
 // What is drawn.
 
 interface Program {
   program: WebGLProgram;
+  /** Sizes and locations of its inputs, as they are declared. */
+  fields: { size: number; at: number }[];
   /** What sets each of them. */
   uniforms: Record<string, (value: any) => void>;
 }

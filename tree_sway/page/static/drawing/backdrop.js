@@ -9,7 +9,6 @@ import { canvasTexture, drawable, drawPart, program, use } from "./gl.js";
 /** Times of day. @type {Record<"light" | "evening" | "dark", Daylight>} */
 export const DAYLIGHT = JSON.parse(await textOf("drawing/daylight.json"));
 
-/** What lies under a scene. */
 export const GROUNDS = { terrace: 0, meadow: 1 };
 
 export class Backdrop {
@@ -19,7 +18,7 @@ export class Backdrop {
     this.gl = gl;
     this._program = program(gl, "backdrop");
     this._copying = program(gl, "copy");
-    this._whole = drawable(gl, this._program, { values: [-1, -1, 3, -1, -1, 3], indices: [0, 1, 2] }, [["corner", 2]]);
+    this._whole = drawable(gl, this._program, { values: [-1, -1, 3, -1, -1, 3], indices: [0, 1, 2] });
     this._isPlain = isPlain;
     /** Without the shadow, and with it. */
     this._pictures = /** @type {ReturnType<typeof canvasTexture>[]} */ ([]);

@@ -28,7 +28,6 @@ export class Camera {
     this.target = [x, y, z];
   }
 
-  /** Back to where the whole scene is seen. */
   home() {
     const [low, high] = this._box;
     const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
@@ -36,12 +35,12 @@ export class Camera {
     this._size = Math.hypot(wide, tall);
     this.azimuth = -0.6;
     // What is much wider than high is seen from higher up.
-    this.elevation = Math.min(0.32, 0.16 + 0.02 * Math.max(0, wide / tall - 3));
+    this.elevation = Math.min(0.21, 0.16 + 0.01 * Math.max(0, wide / tall - 3));
     // On a phone the lines of wind and motion lie below.
     const lower = this.aspect < 1 ? 0.15 * tall : 0;
     this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2 - lower];
     const seen = tall * Math.cos(this.elevation) + wide * Math.sin(this.elevation);
-    const half = (this.aspect < 1 ? 0.65 : 0.5) * Math.max(seen, wide / this.aspect, 0.7 * this._size);
+    const half = (this.aspect < 1 ? 0.65 : 0.54) * Math.max(seen, wide / this.aspect, 0.7 * this._size);
     this.distance = half / HALF + (wide > 3 * tall ? 0.1 : 0.4) * wide;
   }
 

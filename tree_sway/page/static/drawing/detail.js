@@ -33,7 +33,6 @@ export function levelsOf({ reached, order, slots }, highest, most) {
   return levels;
 }
 
-/** The level of every tree of a scene. */
 export class Detail {
   /** @param {Tree[]} trees @param {Level[][]} levels of each kind @param {number[]} radii of a ball about
    * the middle of each kind [m] @param {number} watched tree that is always placed */

@@ -52,6 +52,8 @@ export function program(gl, name) {
   }
   gl.linkProgram(made);
   if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(String(gl.getProgramInfoLog(made)));
+  const inputs = source(`${name}.vertex`).matchAll(/^(?:layout.*)?in (?:float|vec(\d)) (\w+);/gm);
+  const fields = Array.from(inputs, ([, size = 1, field]) => ({ size: Number(size), at: gl.getAttribLocation(made, field) }));
   const uniforms = /** @type {Program["uniforms"]} */ ({});
   for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
     const { name, type } = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(made, i));
@@ -71,7 +73,7 @@ export function program(gl, name) {
     };
     uniforms[name] = setters[type];
   }
-  return { program: made, uniforms };
+  return { program: made, fields, uniforms };
 }
 
 /** Set what a program is given: numbers, vectors and matrices; of a texture, its unit and itself.
@@ -83,9 +85,9 @@ export function use(gl, used, values) {
 }
 
 /** A vertex array of its own. @param {WebGL2RenderingContext} gl @param {Program} used
- * @param {{values: ArrayLike<number>, indices: ArrayLike<number>}} mesh vertex after vertex
- * @param {[string, number][]} fields names and sizes of what a vertex has @returns {Drawable} */
-export function drawable(gl, used, { values, indices }, fields) {
+ * @param {{values: ArrayLike<number>, indices: ArrayLike<number>}} mesh vertex after vertex, each with the
+ * inputs of the program in its order @returns {Drawable} */
+export function drawable(gl, { fields }, { values, indices }) {
   const vao = gl.createVertexArray();
   gl.bindVertexArray(vao);
   const buffers = [Float32Array.from(values), Uint32Array.from(indices)].map((data, i) => {
@@ -95,10 +97,9 @@ export function drawable(gl, used, { values, indices }, fields) {
     gl.bufferData(kind, data, gl.STATIC_DRAW);
     return buffer;
   });
-  const width = fields.reduce((sum, [, size]) => sum + size, 0);
+  const width = fields.reduce((sum, { size }) => sum + size, 0);
   let offset = 0;
-  for (const [name, size] of fields) {
-    const at = gl.getAttribLocation(used.program, name);
+  for (const { size, at } of fields) {
     if (at >= 0) {
       gl.enableVertexAttribArray(at);
       gl.vertexAttribPointer(at, size, gl.FLOAT, false, 4 * width, 4 * offset);
@@ -128,13 +129,17 @@ function sample(gl, less, more) {
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, more);
 }
 
-/** A texture of a picture. @param {WebGL2RenderingContext} gl @param {ImageData[]} mips from the finest
- * @param {boolean} isPlain the nearest point alone is looked up, which costs less */
-export function pictureTexture(gl, mips, isPlain) {
+/** A texture of a picture, its colours times its alpha: no leaf has a rim of what is around it.
+ * @param {WebGL2RenderingContext} gl @param {HTMLCanvasElement} picture @param {boolean} isPlain the nearest
+ * point alone is looked up, which costs less */
+export function pictureTexture(gl, picture, isPlain) {
   const texture = gl.createTexture();
   gl.activeTexture(gl.TEXTURE2);
   gl.bindTexture(gl.TEXTURE_2D, texture);
-  mips.forEach((mip, level) => gl.texImage2D(gl.TEXTURE_2D, level, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, mip));
+  gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, true);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+  gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false); // poses are no colours
+  gl.generateMipmap(gl.TEXTURE_2D);
   if (isPlain) sample(gl, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST);
   else sample(gl, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
   return texture;

@@ -35,7 +35,7 @@ export class Impostor {
     const indices = Array.from({ length: BANDS * most }, (_, i) =>
       [0, 1, 2, 1, 3, 2].map((corner) => CORNERS * Math.floor(i / BANDS) + 2 * (i % BANDS) + corner)).flat();
     // Not as instances: without a graphics unit each of them costs as much as a whole picture.
-    this._part = drawable(gl, used, { values: this._values, indices }, [["corner", 2], ["stand", 4], ["tree", 3]]);
+    this._part = drawable(gl, used, { values: this._values, indices });
   }
 
   /** Paint the kind from every side. @param {(camera: Float32Array, eye: number[]) => void} paint
@@ -91,7 +91,6 @@ export class Impostor {
     }
   }
 
-  /** Hand the trees to the graphics unit. */
   upload() {
     const { gl } = this;
     gl.bindBuffer(gl.ARRAY_BUFFER, this._part.buffers[0]);
@@ -121,7 +120,6 @@ export class Impostor {
     drawPart(gl, this._part, (6 * BANDS * this.count) / this._part.count);
   }
 
-  /** Give its memory back. */
   free() {
     this.gl.deleteTexture(this._atlas.texture);
     discard(this.gl, this._part);

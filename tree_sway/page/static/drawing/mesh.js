@@ -125,13 +125,14 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
   const fullest = leavesAcross(species, mean) === 1 ? ALONE : CARDS;
   const perCluster = (/** @type {number} */ all) => Math.max(1, Math.min(fullest, Math.floor(all / carrier.length)));
   const each = perCluster(cards);
-  const clusters = mixed(Array.from(carrier, (_, i) => i), 1, random).slice(0, cards);
+  const clusters = mixed(Array.from(carrier.keys()), random).slice(0, cards);
   const whole = carrier.length * perCluster(most);
   const larger = Math.min(LARGEST_CARDS, Math.sqrt(whole / (clusters.length * each)));
   const across = leavesAcross(species, larger * mean);
   // A leaf alone has its own size, whatever the cluster has.
   const unit = across === 1 ? Math.min(1, (1.4 * lookOf(species).size) / mean) : larger;
   const hung = hungOn(kind, branches);
+  const quads = [];
   for (const i of clusters) {
     const at = leafPlace(kind, rest, i);
     const [p, own] = [STRIDE * hung[carrier[i]], STRIDE * carrier[i] + 4];
@@ -151,10 +152,10 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
         mesh.values.push(placer.slots[hung[carrier[i]]], ...place.map((each, c) => each + centre[c]), ...swing, ...facing,
           ...light, phase, open, tint, ...corner.at);
       }
-      mesh.indices.push(first, first + 1, first + 2, first, first + 2, first + 3);
+      quads.push([first, first + 1, first + 2, first, first + 2, first + 3]);
     }
   }
-  mesh.indices = mixed(mesh.indices, 6, random);
+  mesh.indices = mixed(quads, random).flat();
   return { mesh, across };
 }
 
@@ -184,15 +185,9 @@ function cardCorners(species, size, number, isAlone, random) {
   });
 }
 
-/** Groups of indices in a random order (Fisher and Yates). @param {number[]} indices @param {number} size
- * of a group @param {() => number} random */
-function mixed(indices, size, random) {
-  const order = Int32Array.from({ length: indices.length / size }, (_, i) => i);
-  for (let i = order.length - 1; i > 0; i--) {
-    const j = Math.floor((i + 1) * random());
-    [order[i], order[j]] = [order[j], order[i]];
-  }
-  return Array.from(order, (i) => indices.slice(i * size, (i + 1) * size)).flat();
+/** In a random order. @template T @param {T[]} items @param {() => number} random */
+function mixed(items, random) {
+  return items.map((item) => ({ item, key: random() })).sort((a, b) => a.key - b.key).map(({ item }) => item);
 }
 
 /** The drawn segment that each segment moves with: itself, or what carries the branch left out.

@@ -37,14 +37,6 @@ const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
 const PAINTED = 260;
 
-/** @type {Record<"bark" | "leaf" | "solid" | "shadow", [string, number][]>} what a vertex has */
-const FIELDS = {
-  bark: [["segment", 1], ["ring", 4], ["skin", 3]],
-  leaf: [["segment", 1], ["place", 3], ["swing", 3], ["facing", 3], ["towards", 3], ["flutter", 4], ["corner", 2]],
-  solid: [["at", 3], ["facing", 3], ["tint", 3]],
-  shadow: [["corner", 2]],
-};
-
 export class Scene {
   /** @param {HTMLCanvasElement} canvas @param {boolean} [isFine] whether nothing is left out, however slow
    * that is */
@@ -87,10 +79,9 @@ export class Scene {
     this._texels = new Float32Array(0);
     this._coordinates = /** @type {Float32Array} */ (new Float32Array(0));
     const square = { values: [-1, -1, 1, -1, 1, 1, -1, 1], indices: [0, 1, 2, 0, 2, 3] };
-    this._parts = {
-      arrow: this._drawable("solid", arrowMesh()), pot: this._drawable("solid", propMesh("pot")),
-      person: this._drawable("solid", propMesh("person")), shadow: this._drawable("shadow", square),
-    };
+    const { solid, shadow } = this._programs;
+    const [arrow, pot, person] = [arrowMesh(), propMesh("pot"), propMesh("person")].map((mesh) => drawable(gl, solid, mesh));
+    this._parts = { arrow, pot, person, shadow: drawable(gl, shadow, square) };
     const size = this.isSlow ? 256 : 1024;
     this._shadow = canvasTexture(gl, size, size, gl.R8);
     /** Where it falls: middle x, y, and half its size [m]. */
@@ -104,7 +95,6 @@ export class Scene {
     this._potSize = 0;
   }
 
-  /** Whether any tree of the scene bears leaves. */
   get hasLeaves() {
     return Boolean(this.description?.kinds.some((kind) => kind.arrays.leaf_segment?.length));
   }
@@ -274,14 +264,8 @@ export class Scene {
     const { branches: most, pixels, cards } = levels[level];
     const branches = shape.placer.order.slice(0, most);
     const { mesh, across } = leafMesh(shape, branches, cards, levels[levels.length - 1].cards);
-    const bark = barkMesh(shape, branches, pixels, this.isSlow ? COARSEST : 1);
-    const leaf = mesh.indices.length ? this._drawable("leaf", mesh) : null;
-    return { ...none, across, bark: this._drawable("bark", bark), leaf };
-  }
-
-  /** @param {keyof typeof FIELDS} part @param {Mesh} mesh */
-  _drawable(part, mesh) {
-    return drawable(this.gl, this._programs[part], mesh, FIELDS[part]);
+    const bark = drawable(this.gl, this._programs.bark, barkMesh(shape, branches, pixels, this.isSlow ? COARSEST : 1));
+    return { ...none, across, bark, leaf: mesh.indices.length ? drawable(this.gl, this._programs.leaf, mesh) : null };
   }
 
   /** Paint the picture of a kind that far trees are drawn by: a tree at rest in even light.
@@ -310,7 +294,6 @@ export class Scene {
     return impostor;
   }
 
-  /** Place what is drawn of each tree. */
   _place() {
     const { detail, _coordinates: values, _texels: texels } = this;
     const turns = beyond(values, this.description?.nCoordinates ?? 0);
@@ -323,7 +306,6 @@ export class Scene {
     });
   }
 
-  /** Fit the picture to the element. */
   resize() {
     const { canvas, camera } = this;
     const ratio = this.isSlow ? this.quality.fineness : Math.min(window.devicePixelRatio || 1, 2);
@@ -474,7 +456,6 @@ export class Scene {
     }
   }
 
-  /** Rows of the first and the last segment of the branch that is picked. */
   _pickedRows() {
     if (this.picked < 0) return [-2, -2];
     const { branch_first: first } = this.watched.kind.arrays;
@@ -507,7 +488,6 @@ export class Scene {
     }
   }
 
-  /** Whether the trees are a wood. */
   get isCrowd() {
     return this.detail.trees.length > CROWD;
   }
@@ -525,7 +505,6 @@ export class Scene {
     gl.disable(gl.BLEND);
   }
 
-  /** Forget the trees. */
   _free() {
     this._eachLevel(({ impostor, bark, leaf }) => {
       impostor?.free();

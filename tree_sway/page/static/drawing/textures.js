@@ -31,17 +31,11 @@ export function leafPicture(species, across, isAutumn) {
   else if (hasNeedles(species)) brush.shoot(0.98 - 0.3 * long, long);
   else if (across <= 6) brush.spray(long);
   else brush.cloud(long);
-  return mipsOf(brush.context, base.map((c) => 255 * c));
+  return brush.context.canvas;
 }
 
 /** @param {number[]} color */
 const css = (color) => `rgb(${color.map((c) => Math.round(255 * Math.min(1, Math.max(0, c)))).join(" ")})`;
-
-/** A square canvas. @param {number} size [px] */
-function canvasOf(size) {
-  const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
-  return /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { willReadFrequently: true }));
-}
 
 /** Paints leaves and twigs of a species on a unit square, from the middle of its left side on. */
 class Brush {
@@ -54,7 +48,8 @@ class Brush {
     const half = outlineOf(look);
     const other = half.map(([x, y]) => [x, -y]).reverse();
     this.blade = new Path2D(`M${[...half, ...other].join("L")}Z`);
-    this.context = canvasOf(size);
+    const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     this.context.scale(size, size);
     this.context.translate(0, 0.5);
     this.context.lineCap = "round";
@@ -116,25 +111,27 @@ class Brush {
     }
   }
 
-  /** A twig of a conifer: side shoots that grow shorter to its tip, needles on all of them.
-   * @param {number} length @param {number} unit length of a shoot @param {number} [depth] */
-  shoot(length, unit, depth = 0) {
-    const { look, random } = this;
-    const isTuft = look.form === "tufts";
-    this.line(length, 0.06 * unit, css(look.twig));
-    const from = isTuft ? Math.max(0, 1 - (0.6 * unit) / length) : 0;
-    const count = Math.ceil(((isTuft ? 60 : 36) * (1 - from) * length) / unit);
-    const width = Math.max(0.005, (look.form === "fronds" ? 0.1 : 0.055) * unit);
+  /** A twig of a conifer: needles on both sides, one in the shade of the other, and side shoots that grow
+   * shorter to its tip. @param {number} length @param {number} unit length of a shoot @param {boolean} [isSide] */
+  shoot(length, unit, isSide = false) {
+    const { look: { form, twig }, random } = this;
+    const [isTuft, isFrond] = [form === "tufts", form === "fronds"];
+    const colors = [this._color(), this._color()];
+    this.line(length, 0.06 * unit, css(twig));
+    const from = isTuft ? Math.max(0, length - 0.7 * unit) : 0;
+    const long = Math.max(isTuft ? 0.75 * unit : 0.28 * unit, 0.03);
+    const width = Math.max((isTuft ? 0.04 : isFrond ? 0.2 : 0.1) * long, 0.004);
+    const count = isTuft ? 44 : (1.1 * length) / width;
     for (let i = 0; i < count; i++) {
-      const lean = (i % 2 ? 1 : -1) * (isTuft ? 0.2 + 0.9 * random() : 0.5 + 0.4 * random());
-      const long = (isTuft ? 0.55 : 0.29) * unit * (0.7 + 0.5 * random());
-      this.at(length * (from + (1 - from) * (i / count)), 0, lean, 1, () => this.line(long, width, this._color()));
+      const lean = (i % 2 ? 1 : -1) * (isTuft ? 1.4 * random() : 0.6 + 0.3 * random());
+      this.at(from + (length - from) * (i / count), 0, lean, 1, () => this.line(long * (0.7 + 0.5 * random()), width, colors[i % 2]));
     }
-    if (length < 0.9 * unit || depth > 2) return;
     let side = 1;
-    for (let at = 0.1 * length; at < 0.94 * length; at += Math.max(0.42 * unit, 0.04), side = -side) {
-      const reach = Math.max(0.6 * unit, 0.46 * (length - at)) * (0.75 + 0.4 * random());
-      this.at(at, 0, side * (0.8 + 0.2 * random()), 1, () => this.shoot(reach, unit, depth + 1));
+    for (let at = 0.08 * length; at < length - 0.5 * unit; at += Math.max(isSide ? unit : 0.42 * unit, 0.05), side = -side) {
+      const reach = isSide ? 0.7 * unit : 0.2 * unit + 0.48 * (length - at);
+      if (!isSide || length > 2 * unit) {
+        this.at(at, 0, side * (0.8 + 0.25 * random()), 1, () => this.shoot(reach * (0.75 + 0.4 * random()), unit, true));
+      }
     }
   }
 
@@ -159,27 +156,4 @@ class Brush {
       }
     });
   }
-}
-
-/** A picture halved again and again; each has the cover of the first, so that no crown thins out where it
- * is far, and what is cut away has the leaves' colour, so that no leaf has a rim.
- * @param {CanvasRenderingContext2D} context @param {number[]} mean colour */
-function mipsOf(context, mean) {
-  const mips = [];
-  let cover = 0;
-  for (let size = context.canvas.width; size >= 1; size /= 2) {
-    const mip = context.getImageData(0, 0, size, size);
-    const alphas = mip.data.filter((_, i) => i % 4 === 3).sort();
-    cover ||= alphas.filter((alpha) => alpha > 127).length / alphas.length;
-    const gain = 128 / Math.max(alphas[Math.min(alphas.length - 1, Math.floor((1 - cover) * alphas.length))], 16);
-    for (let i = 0; i < mip.data.length; i += 4) {
-      if (mip.data[i + 3] < 8) mip.data.set(mean, i);
-      mip.data[i + 3] *= gain;
-    }
-    mips.push(mip);
-    const half = canvasOf(Math.max(size / 2, 1));
-    half.drawImage(context.canvas, 0, 0, size / 2, size / 2);
-    context = half;
-  }
-  return mips;
 }
