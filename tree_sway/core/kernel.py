@@ -43,11 +43,6 @@ def fused(function: _F) -> _F:
     return _compiled(function, fastmath=_LOOSE, forceinline=True, _nrt=False)
 
 
-def inlined(function: _F) -> _F:
-    """Compile like `fused`, as lines of each caller, so that a loop of calls becomes vectors."""
-    return _compiled(function, fastmath=_LOOSE, inline='always')
-
-
 def part(function: _F) -> _F:
     """
     Let kernels call a function, which is compiled like `fused` as a part of each.

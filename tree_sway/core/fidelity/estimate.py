@@ -22,8 +22,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.motion.drag import DragLaw, pressure
-from tree_sway.core.motion.plain.numpy_passes import even_wind_moments
 from tree_sway.core.motion.response import tip_motion, turn_of_branches
+from tree_sway.core.motion.static_answers import WindMoments
 from tree_sway.core.simulator.bank import Bank, Oscillators
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import WindClimate
@@ -127,7 +127,7 @@ class ErrorEstimator:
         """Find what each coordinate does to the tips."""
         self._bank, self._law = bank, drag_law
         branches, shapes = bank.branches, bank.oscillators.shapes
-        n, m = shapes.shape
+        m = shapes.shape[1]
         self.dial = tuple(sorted({k for k in DIAL if k < m} | {m}))
         """Numbers of coordinates that are judged."""
         # A branch may be cut: its tip is that of its last piece.
@@ -135,7 +135,8 @@ class ErrorEstimator:
         tips = tip_motion(branches, shapes)[ends].reshape(-1, m)
         self._inner = tips.T @ tips / ends.sum()
         self._turns = turn_of_branches(branches, shapes)
-        self._loads = [shapes.T @ even_wind_moments(branches, n, axes) for axes in _AXES]
+        loads = WindMoments(branches).at_rest(np.concatenate(_AXES), shapes)
+        self._loads = np.hsplit(loads.T, len(_AXES))
         self._air_damping = dialled(bank).air_damping
         self._costs = [frame_cost(bank, k) for k in self.dial]
         self.refresh()

@@ -236,11 +236,13 @@ def branch_records(
     """
     layout = branch_layout(2) if places.turn.shape[1] == 2 else branch_layout()
     records = np.zeros(tree.n_branches, dtype=layout)
+    alike: dict[tuple[int, int], list[int]] = {}
     for branch, model in enumerate(models):
-        record = records[branch]
-        for i, field in enumerate(model.fields):
-            record['tip_mode'][i] = field.nodes[-1]
-        _fill_load(model, speed_profile[tree.segments_of(branch)], record)
+        alike.setdefault((len(model.beam.length), len(model.fields)), []).append(branch)
+    for branches in alike.values():
+        _fill_loads([models[branch] for branch in branches], speed_profile[
+            np.array([tree.branch_first[b] + models[b].beam.segment for b in branches])
+        ], np.array(branches), records)  # fmt: skip
     fill_places(places, records)
     records['twist'] = reduction.twist[:, : records['twist'].shape[1]]
     records['tip'] = tree.end[tree.branch_first[1:] - 1] - tree.start[0]
@@ -256,42 +258,56 @@ _STRAIGHT = 0.03
 """Share of the wind along a branch below which this is not distinguished from none."""
 
 
-def _fill_load(model: BranchModel, speed_profile: Floats, record: np.void) -> None:
-    """Fill what the wind load reads; wind speed at its segments over that at the anemometer."""
-    beam = model.beam
-    weight = model.drag_area * beam.weight
-    total = weight.sum()
-    share = weight / total
-    record['centre'] = np.einsum('sg,sgk->k', share, beam.point)
-    record['coupling'] = cross_matrix(record['centre'])
-    speed = float((share * speed_profile[beam.segment, None]).sum())
-    record['speed'] = speed
-    record['area'] = total / speed**2 if speed > 0.0 else 0.0
-    along = np.einsum('sg,si,sj->ij', share, beam.tangent, beam.tangent)
-    across = np.eye(3) - along
-    record['projector'] = across[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
-    exposed = exposure(beam)
-    exposed /= float(share.sum(axis=1) @ exposed)
+def _fill_loads(
+    models: list[BranchModel], speed_profile: Floats, rows: Ints, records: Records
+) -> None:
+    """
+    Fill what the wind load reads of branches of as many panels, p, and fields, n, as each other.
+
+    The wind speed at their panels is over that at the anemometer, (k, p).
+    """
+    beams, n = [model.beam for model in models], len(models[0].fields)
+    point, tangent = (np.array([getattr(b, name) for b in beams]) for name in ('point', 'tangent'))
+    weight = np.array([model.drag_area * model.beam.weight for model in models])
+    fields, slopes = (
+        np.array([[getattr(one, name) for one in model.fields] for model in models])
+        for name in ('points', 'slope')
+    )
+    records['tip_mode'][rows, :n] = [[one.nodes[-1] for one in model.fields] for model in models]
+    total = weight.sum(axis=(1, 2))
+    share = weight / total[:, None, None]
+    centre = np.einsum('ksg,ksgi->ki', share, point)
+    records['centre'][rows] = centre
+    records['coupling'][rows] = [cross_matrix(each) for each in centre]
+    panels = share.sum(axis=2)
+    speed = (panels * speed_profile).sum(axis=1)
+    records['speed'][rows] = speed
+    records['area'][rows] = np.divide(total, speed**2, out=np.zeros_like(speed), where=speed > 0.0)
+    across = np.eye(3) - (panels[:, None] * tangent.swapaxes(1, 2)) @ tangent
+    records['projector'][rows] = across[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    exposed = np.array([exposure(beam) for beam in beams])
+    exposed /= (panels * exposed).sum(axis=1, keepdims=True)
     amounts, axes = np.linalg.eigh(across)
-    kept = amounts > _STRAIGHT * amounts[-1]
-    into_push = axes[:, kept] / amounts[kept] @ axes[:, kept].T
-    n = len(model.fields)
-    fields = np.stack([one.points for one in model.fields])
-    own = exposed[:, None] * (share[..., None] * fields).sum(axis=2)
-    own -= (own * beam.tangent).sum(axis=-1, keepdims=True) * beam.tangent
-    mean = np.zeros_like(record['load_mode'])
-    mean[:n] = own.sum(axis=1)
-    record['load_mode'][:n] = mean[:n] @ into_push
-    along_it = (fields[:2] * beam.tangent[:, None, :]).sum(axis=-1)
-    moved = (np.square(fields[:2]).sum(axis=-1) - np.square(along_it)).sum(axis=0)
+    kept = amounts > _STRAIGHT * amounts[:, -1:]
+    amounts = np.divide(1.0, amounts, out=np.zeros_like(amounts), where=kept)
+    into_push = (axes * amounts[:, None]) @ axes.swapaxes(1, 2)
+    own = exposed[:, None, :, None] * (share[:, None, ..., None] * fields).sum(axis=3)
+    own -= (own * tangent[:, None]).sum(axis=-1, keepdims=True) * tangent[:, None]
+    mean = own.sum(axis=2)
+    records['load_mode'][rows, :n] = mean @ into_push
+    along_it = (fields[:, :2] * tangent[:, None, :, None]).sum(axis=-1)
+    moved = (np.square(fields[:, :2]).sum(axis=-1) - np.square(along_it)).sum(axis=1)
     # What moves most does most work, and it is turned most.
-    work = share * np.sqrt(np.maximum(moved, 0.0))
-    work /= work.sum() if work.sum() > 0.0 else 1.0
-    slopes = np.stack([one.slope for one in model.fields])
-    record['load_rotation'][:n] = work.ravel() @ slopes.reshape(n, -1, 3)
-    if np.abs(beam.tangent @ beam.tangent[0] - 1.0).max() > 1e-9:
-        _fit_load(model, share, record)
-    _fill_flow(record, mean, float((share * moved).sum()), float((share * _cubes(moved)).sum()))
+    work = (share * np.sqrt(np.maximum(moved, 0.0))).reshape(len(rows), 1, 1, -1)
+    whole = work.sum(axis=-1, keepdims=True)
+    work /= np.where(whole > 0.0, whole, 1.0)
+    slopes = slopes.reshape(len(rows), n, -1, 3)
+    records['load_rotation'][rows, :n] = (work @ slopes)[:, :, 0]
+    bows = np.abs((tangent * tangent[:, :1]).sum(axis=2) - 1.0).max(axis=1)
+    square, cube = ((share * each).sum(axis=(1, 2)) for each in (moved, _cubes(moved)))
+    for k in np.flatnonzero(bows > 1e-9):
+        _fit_load(models[k], share[k], records[rows[k]])
+    _fill_flow(records, rows, mean, square, cube)
 
 
 def _cubes(squares: Floats) -> Floats:
@@ -322,7 +338,7 @@ def _fit_load(model: BranchModel, share: Floats, record: np.void) -> None:
     record['load_mode'][:k] += (fit @ (pushed - force @ record['load_mode'][:k].T)).T
 
 
-def _fill_flow(record: np.void, mean: Floats, square: float, cube: float) -> None:
+def _fill_flow(records: Records, rows: Ints, mean: Floats, square: Floats, cube: Floats) -> None:
     """
     Scale the displacement across the branch to that at which drag damps as its mean square does.
 
@@ -331,12 +347,13 @@ def _fill_flow(record: np.void, mean: Floats, square: float, cube: float) -> Non
     In wind this damps as the pieces do. In still air they do so by the mean cube, which needs a
     speed of mean cube over mean square: what the flow lacks of that is the spread.
     """
-    across = float(np.square(mean[:2]).sum())
-    record['damping_mode'] = mean
-    record['damping_mode'][:2] *= square / across if across > 0.0 else 1.0
-    still = (cube / square) ** 2 if square > 0.0 else 0.0
-    record['spread'] = max(still - 0.5 * float(np.square(record['damping_mode'][:2]).sum()), 0.0)
-    record['lever'] = math.sqrt(0.5 * across)
+    across = np.square(mean[:, :2]).sum(axis=(1, 2))
+    ratio = np.divide(square, across, out=np.ones_like(square), where=across > 0.0)
+    mean[:, :2] *= ratio[:, None, None]
+    still = np.divide(cube, square, out=np.zeros_like(square), where=square > 0.0) ** 2
+    records['damping_mode'][rows, : mean.shape[1]] = mean
+    records['spread'][rows] = np.maximum(still - 0.5 * ratio**2 * across, 0.0)
+    records['lever'][rows] = np.sqrt(0.5 * across)
 
 
 class _SlantingWinds:

@@ -61,13 +61,10 @@ class UncoupledBank(Branchwise):
         self.work = np.zeros(n, dtype=WORK)
         self.state = np.zeros((2, 2 * n))
         self.x, self.v = self.state
-        self._weight = weight
-        self._banks = load_records(branches, OSCILLATORS)
-
-    @property
-    def loads(self) -> Records:
-        """Return the records of `load_fields`, and what the oscillators add."""
-        return self._banks
+        self.tunable = Tunable(stiffness, damping, inertia, weight)
+        """What changes with stiffness, damping and gravity."""
+        self.loads = load_records(branches, OSCILLATORS)
+        """Records of `load_fields`, and what the oscillators add."""
 
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
@@ -81,8 +78,8 @@ class UncoupledBank(Branchwise):
         block, lane = np.divmod(np.arange(n), LANES)
         flow = np.square(self.branches['damping_mode'][:, :2]).sum(axis=(1, 2)) / 2.0
         for name, rows in (('whole', whole), ('half', constant), ('guard', guard)):
-            self._banks[name][block, :, lane] = rows
-        self._banks['compliance'][block, lane] = flow * constant[:, 5]
+            self.loads[name][block, :, lane] = rows
+        self.loads['compliance'][block, lane] = flow * constant[:, 5]
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -94,17 +91,12 @@ class UncoupledBank(Branchwise):
 
     @cached_property
     def _compiled(self) -> Callable[..., int]:
-        arrays = self.branches, self.work, self._banks, self.state
+        arrays = self.branches, self.work, self.loads, self.state
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
-
-    @property
-    def tunable(self) -> Tunable:
-        """Return what changes with stiffness, damping and gravity."""
-        return Tunable(self.stiffness, self.damping, self.inertia, self._weight)
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of what is carried from one step to the next."""
-        return self.x, self.v, self._banks['drag_impulse'], self._banks['load']
+        return self.x, self.v, self.loads['drag_impulse'], self.loads['load']
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (2 b,)."""
@@ -123,7 +115,7 @@ class UncoupledBank(Branchwise):
         """Go back to rest."""
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
-        self._banks['drag_impulse'] = self._banks['load'] = 0.0
+        self.loads['drag_impulse'] = self.loads['load'] = 0.0
 
 
 @fused

@@ -75,15 +75,10 @@ class WindBasisTable:
 
     @classmethod
     def of_arrays(cls, kept: Mapping[str, Any]) -> WindBasisTable:
-        """Return the table whose `arrays` these are."""
+        """Return the table whose ``record`` is among arrays that were kept."""
         made = object.__new__(cls)
         made.record = kept['table']
         return made
-
-    @property
-    def arrays(self) -> dict[str, Any]:
-        """All that it consists of."""
-        return {'table': self.record}
 
     def __init__(
         self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw, degree: int

@@ -81,6 +81,8 @@ class Run:
     ) -> None:
         self.simulator, self.period = simulator, round(1e9 / rate)
         self.intake = WindIntake() if intake is None else intake
+        self.counts: GateCounts = self.intake.counts
+        """Samples that were accepted and refused, by reason."""
         self.is_paused = False
         self.clamped = 0
         """Jumps forward that were cut to `LONGEST_JUMP`."""
@@ -97,11 +99,6 @@ class Run:
     def time(self) -> int | None:
         """End of the last step in [ns]; None before the first."""
         return None if self._index is None else self._index * self.period
-
-    @property
-    def counts(self) -> GateCounts:
-        """Return what samples were accepted and refused, by reason."""
-        return self.intake.counts
 
     def warm_up(self) -> float:
         """Have kernels ready; return what a frame of the trees on ``auto`` takes in [us]."""

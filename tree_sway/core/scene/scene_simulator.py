@@ -123,6 +123,7 @@ class SceneSimulator:
                     one.placed(), one.species, where, tolerance=tolerance, cache=cache
                 )
             progress(len(self._models) + len(self.own))
+        self.simulators = tuple(self.own.values())
         sizes = np.array([each.tree.n_segments for each in scene.kinds])
         self._ends = np.concatenate([[0], np.cumsum(sizes[kind])])
         self.gusts = GustHistory(
@@ -149,11 +150,6 @@ class SceneSimulator:
             clamped=counts.clamped + sum(each.clamped for each in own),
             restarted=counts.restarted + sum(each.restarted for each in own),
         )
-
-    @property
-    def simulators(self) -> tuple[SwaySimulator, ...]:
-        """Return the simulators of the trees that share no table."""
-        return tuple(self.own.values())
 
     @property
     def tree(self) -> Tree:

@@ -89,7 +89,7 @@ def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFil
         from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
         table = _table(reductions, modal) if found is None else WindBasisTable.of_arrays(found)
-        made_of |= table.arrays
+        made_of['table'] = table.record
         oscillators = WindBasisBank(modal, table)
     if found is None and cache is not None:
         cache.write(digest, made_of)

@@ -14,7 +14,6 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.motion.plain.numpy_passes import even_wind_moments
 from tree_sway.core.motion.static_answers import WindMoments
 from tree_sway.core.simulator.simulator import LOAD_CLAMPED, SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
@@ -123,8 +122,7 @@ def test_a_number_of_coordinates_sways_alike_without_a_compiler(tree):
 
 @pytest.mark.compiled
 def test_moments_of_even_winds_are_those_that_a_tree_at_rest_bears():
-    branches = SwaySimulator(bench_tree(), model=12).bank.branches
-    load = WindMoments(branches)
-    moments, still = even_wind_moments(branches, load.n, np.eye(3)), np.zeros(load.n)
-    for wind, moment in zip(np.eye(3), moments.T, strict=True):
+    load = WindMoments(SwaySimulator(bench_tree(), model=12).bank.branches)
+    moments, still = load.at_rest(np.eye(3), np.eye(load.n)), np.zeros(load.n)
+    for wind, moment in zip(np.eye(3), moments, strict=True):
         assert moment == pytest.approx(load(still, still, wind), rel=1e-9, abs=1e-12)

@@ -35,7 +35,7 @@ class NumpyUncoupledBank(UncoupledBank):
         n = len(self.branches)
         names = ('whole', 'half', 'guard', 'compliance')
         self._whole, self._half, self._guard, self._compliance = (
-            of_lanes(self._banks[name], n) for name in names
+            of_lanes(self.loads[name], n) for name in names
         )
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
@@ -43,8 +43,8 @@ class NumpyUncoupledBank(UncoupledBank):
         passes, n = self._passes, len(self.branches)
         x, v = self.x.reshape(-1, 2), self.v.reshape(-1, 2)
         load, impulse = (
-            of_lanes(self._banks['load'], n),
-            of_lanes(self._banks['drag_impulse'], n).copy(),
+            of_lanes(self.loads['load'], n),
+            of_lanes(self.loads['drag_impulse'], n).copy(),
         )
         none = np.zeros(n)
         moment = two_axis_moment(x, v, load, none, np.inf)
@@ -52,15 +52,15 @@ class NumpyUncoupledBank(UncoupledBank):
         middle_x = within_guard(h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment)
         middle_v = h[:, 3] * x + h[:, 4] * v + h[:, 5] * moment
         base = Bases.at_rest(n)
-        wind = np.array([wx, wy, wz]) + of_lanes(self._banks['gust'], n)
+        wind = np.array([wx, wy, wz]) + of_lanes(self.loads['gust'], n)
         force = passes.wind_forces(
             base, middle_x, middle_v, wind, per_speed_squared, self._compliance, impulse
         )
         force = passes.at_bases(middle_x, force)
         load = passes.own_loads(force)
         self.work['force'] = force
-        into_lanes(impulse, self._banks['drag_impulse'])
-        into_lanes(load, self._banks['load'])
+        into_lanes(impulse, self.loads['drag_impulse'])
+        into_lanes(load, self.loads['load'])
         return self._step(x, v, load)
 
     def _step(self, x: Floats, v: Floats, load: Floats) -> int:

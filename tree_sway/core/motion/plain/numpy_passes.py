@@ -168,19 +168,6 @@ def cross_matrices(vectors: Floats) -> Floats:
     return matrices
 
 
-def even_wind_moments(branches: Records, n_coordinates: int, winds: Floats) -> Floats:
-    """Moments [N m], (N, k), at rest of even winds [m/s], (k, 3), at 1 kg/m^3."""
-    passes, n = NumpyPasses(branches), len(branches)
-    moments, none = np.zeros((len(winds), n_coordinates)), np.zeros(n)
-    at_rest = np.zeros(branches['load_mode'].shape[:2])
-    still = passes.outward(at_rest, at_rest)
-    for moment, wind in zip(moments, winds, strict=True):
-        impulse = np.zeros((n, 3))
-        force = passes.wind_forces(still, at_rest, at_rest, wind, 1.0, none, impulse)
-        passes.bent_loads(still, at_rest, force, moment)
-    return moments.T
-
-
 def of_lanes(field: Floats, count: int) -> Floats:
     """Field of records in lanes, (blocks, ..., 16), as rows of branches, (count, ...)."""
     rows = np.moveaxis(field, -1, 1)
