@@ -269,7 +269,12 @@ def test_the_last_minute_is_looked_back_at(visit: Visit) -> None:
             "{const s = document.getElementById('time'); s.value = %s;"
             " s.dispatchEvent(new Event('input'));}"
         )
-        await browser.until('treeSway.playout.newest - treeSway.playout._frames[0].stamp > 1200')
+        # A busy machine loses frames, and nothing is shown between states that are far apart.
+        await browser.until(
+            '((f) => f.at(-1).stamp - f[0].stamp > 1200 && f.every((each, i) =>'
+            ' !i || each.stamp - f[i - 1].stamp < 300 || each.stamp < f.at(-1).stamp - 1200)'
+            ')(treeSway.playout._frames)'
+        )
         await browser.run(slide % -1)
         assert await browser.run('treeSway.state') == 'paused'
         assert '1.0 s ago' in await browser.run("document.getElementById('state').textContent")
