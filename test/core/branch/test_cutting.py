@@ -6,9 +6,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.validation.crooked_trees import crooked_tree
 
-from tree_sway.core.branch.cutting import cut_tree
+from tree_sway.core.branch.cutting import CARRIED, cut_tree, pieces_by_turn
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.species import Species
 
@@ -30,3 +31,21 @@ def test_pieces_follow_each_other_and_keep_every_segment():
     assert (cut.tree.start == tree.start[cut.row]).all()
     assert np.bincount(cut.branch, cut.share) == pytest.approx(np.ones(tree.n_branches))
     assert set(cut.tree.branch_names) == set(tree.branch_names)
+
+
+def test_a_stem_of_many_limbs_is_cut_though_it_does_not_turn():
+    tree = kind_called('limbs16')
+    pieces = pieces_by_turn(tree, np.zeros(tree.n_branches))
+    assert pieces.tolist() == [-(-16 // CARRIED), *[1] * 16]
+
+
+def test_pieces_of_a_cut_branch_twist_but_the_last():
+    """A crooked branch twists as it bends; its straight pieces have a coordinate for it."""
+    reduced = SwaySimulator(kind_called('willow'), WOOD, model='branch').reductions.coupled
+    parent, twig = reduced.tree.branch_parent, reduced.branch
+    goes_on = np.isin(np.arange(len(twig)), parent[1:][twig[parent[1:]] == twig[1:]])
+    count = np.array([len(model.fields) for model in reduced.models])
+    plain = count <= 3  # the others are enriched
+    assert (plain & goes_on).any()
+    assert (count[plain & goes_on] == 3).all()
+    assert (count[plain & ~goes_on] == 2).all()

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Branches that turn far in the wind, or that run in a bow, cut into several key segments.
+Branches that turn far in the wind, run in a bow or carry many, cut into several key segments.
 
 One key segment bends as one shape and meets the wind as one body. What turns by more than some
 15 degrees takes other shapes in strong wind than in a breeze, and what runs in a bow meets the
@@ -25,7 +25,14 @@ BOW = np.deg2rad(25.0)
 """Angle in [rad] between the ends of a branch at rest that one key segment may span."""
 
 MOST_PIECES = 3
-"""Pieces of a branch; more add little."""
+"""Pieces of a branch that turns far; more add little."""
+
+CARRIED, MOST_CARRYING = 6, 6
+"""
+Branches that one key segment may carry, and the most pieces for them: limbs that swing against
+each other bend a stem between their feet, by more shapes than one key segment has.
+
+"""
 
 
 @dataclass(frozen=True)
@@ -60,16 +67,18 @@ def whole_tree(tree: Tree) -> CutTree:
 
 def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
     """
-    Count the key segments of each branch, (b,), by its turn in [rad], (b,), and its bow.
+    Count key segments of branches, (b,), by turn in [rad], (b,), bow and what they carry.
 
     A piece has two segments or more.
     """
     first, last = tree.branch_first[:-1], tree.branch_first[1:] - 1
     cosine = np.einsum('bk,bk->b', tree.direction[first], tree.direction[last])
     bow = np.arccos(np.clip(cosine, -1.0, 1.0))
-    most = np.minimum(np.diff(tree.branch_first) // 2, MOST_PIECES)
+    most = np.diff(tree.branch_first) // 2
     most_turned = np.nan_to_num(np.maximum(turn / TURN, bow / BOW), nan=1.0)
-    wanted = np.ceil(np.minimum(most_turned, MOST_PIECES)).astype(np.int64)
+    carried = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches) / CARRIED
+    wanted = np.maximum(np.minimum(most_turned, MOST_PIECES), np.minimum(carried, MOST_CARRYING))
+    wanted = np.ceil(wanted).astype(np.int64)
     pieces: Ints = np.clip(wanted, 1, np.maximum(most, 1))
     return pieces
 

@@ -24,12 +24,10 @@ from tree_sway.core.motion.drag import crown_drag, DragLaw, pressure
 from tree_sway.core.motion.fill_records import branch_records, places_of, segment_records
 from tree_sway.core.reduction.matrices import reduce_tree, Reduction
 from tree_sway.core.reduction.modes import (
-    by_importance,
+    leading_modes,
     Modes,
-    most_driven,
     natural_modes,
     solvable,
-    with_answers,
 )
 from tree_sway.core.reduction.one_thread import one_thread
 from tree_sway.core.simulator.season import in_season
@@ -43,11 +41,11 @@ if TYPE_CHECKING:
 CUT_FOR = 15.0
 """Wind in [m/s] whose turns branches are cut for."""
 
-_ONE_ADDED = 6
-"""One of this number of coordinates of a table makes up for what the modes cannot do."""
+_STEADY = 2.0
+"""Root mean square of what steady winds do over that of gusts, as of a turbulence of some 0.25."""
 
-_FEW_MODES = 6
-"""Coordinates that are static answers alone."""
+_CANDIDATES = 120
+"""Natural modes by which answers to gusts are found."""
 
 
 @dataclass(frozen=True)
@@ -112,33 +110,29 @@ class TreeReductions:
         return np.asarray(self.circular[:count] / (2.0 * np.pi))
 
     def modes(self, model: int | str) -> Modes:
-        """All modes, or of the slowest those the wind drives most and the sway that they lack."""
+        """All modes, or as many as do most of what the tree does in winds."""
         reduction = self.coupled.reduction
         n = reduction.n_coordinates
         count = n if isinstance(model, str) else min(model, n)
         if count in (0, n):
             return self.natural_modes(1 if count == 0 else None).slowest(count)
-        candidates = min(n, count + min(3 * count, 24))
-        modes = self.natural_modes(None if candidates == n else candidates)
-        from tree_sway.core.motion.plain.numpy_passes import mean_wind_moments
+        from tree_sway.core.motion.gust_answers import gust_answers
         from tree_sway.core.motion.response import tip_motion
 
+        candidates = min(n, _CANDIDATES)
+        natural = self.natural_modes(None if candidates == n else candidates)
         branches = self.coupled.branches
 
-        def moved(modes: Modes) -> Floats:
-            return np.asarray(np.square(tip_motion(branches, modes.shapes)).sum(axis=(0, 1)))
+        def moved(rotations: Floats) -> Floats:
+            return np.asarray(tip_motion(branches, rotations).reshape(-1, rotations.shape[1]))
 
-        loads = mean_wind_moments(branches, n)
-        n_added = count if count <= _FEW_MODES else count // _ONE_ADDED
-        chosen = most_driven(modes, loads, moved(modes), max(count - n_added, 1))
-        modes = with_answers(
-            chosen.slowest(count - n_added),
-            reduction,
-            self._static_answers(),
-            lambda x: tip_motion(branches, x).reshape(-1, x.shape[1]),
-            n_added,
-        )
-        return by_importance(modes, loads, moved(modes))
+        loss = self.damping_ratio * np.ones(candidates)
+        gusts = gust_answers(branches, natural, loss, self.drag_law)
+        squares, mixes = np.linalg.eigh(gusts @ gusts.T)
+        gusts = natural.shapes @ (mixes * np.sqrt(np.maximum(squares, 0.0)))
+        steady = self._static_answers()
+        steady *= _STEADY * np.linalg.norm(moved(gusts)) / np.linalg.norm(moved(steady))
+        return leading_modes(reduction, np.hstack([gusts, steady]), moved, count)
 
     def _static_answers(self) -> Floats:
         """Key rotations by which the tree answers to winds, for a pressure of 1 kg/m/s^2."""
@@ -162,7 +156,7 @@ class TreeReductions:
     def isolated(self) -> ReducedTree:
         """Every branch on its own."""
         whole = whole_tree(self.tree)
-        return self._reduced(whole, self._beams, carries=False, enriched=frozenset())
+        return self._reduced(whole, self._beams.models(carries=False), carries=False)
 
     @cached_property
     def coupled(self) -> ReducedTree:
@@ -177,9 +171,14 @@ class TreeReductions:
         if cut.tree.n_branches > self.tree.n_branches:
             same = np.where(cut.share == 1.0, cut.branch, -1)
             beams = self._beams_of(cut, (self._beams, same))
-        return self._reduced(
-            cut, beams, carries=True, enriched=beams.enriched(self.settings.enrich)
+        parent = cut.tree.branch_parent[1:]
+        goes_on = cut.branch[parent] == cut.branch[1:]
+        models = beams.models(
+            carries=True,
+            enriched=beams.enriched(self.settings.enrich),
+            twisting=frozenset(parent[goes_on].tolist() if self.settings.enrich != 'none' else ()),
         )
+        return self._reduced(cut, models, carries=True)
 
     @cached_property
     def _speed(self) -> Floats:
@@ -210,11 +209,8 @@ class TreeReductions:
         )
 
     @one_thread()
-    def _reduced(
-        self, cut: CutTree, beams: TreeBeams, *, carries: bool, enriched: frozenset[int]
-    ) -> ReducedTree:
+    def _reduced(self, cut: CutTree, models: list[BranchModel], *, carries: bool) -> ReducedTree:
         tree, species = cut.tree, self.species
-        models = beams.models(carries=carries, enriched=enriched)
         shear = species.shear_ratio * species.modulus
         reduction = reduce_tree(
             tree, models, species.modulus, shear, self.settings.gravity, carries=carries
