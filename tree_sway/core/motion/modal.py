@@ -24,11 +24,11 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.branch.beam import cross_matrix
 from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.records import Branches, LANES, Loads, WORK, Works
+from tree_sway.core.motion.response import centre_motion
 from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
@@ -185,28 +185,11 @@ def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[
         'diagonal': np.asarray(reduction.stiffness.diagonal()),
         'weight': np.einsum('im,im->m', shapes.T, reduction.gravity @ shapes.T),
         'momentum': reduction.mass @ modes.shapes,
-        'participation': _participation(branches, modes.shapes),
+        # Mean squared motion of each load centre, over three directions, (b, m).
+        'participation': np.square(centre_motion(branches, modes.shapes)).sum(axis=1) / 2.0,
         'branch_compliance': reduction.compliance,
         'mode_compliance': np.linalg.inv(shapes @ (reduction.branchwise @ shapes.T)),
     }
-
-
-def _participation(branches: Records, shapes: Floats) -> Floats:
-    """Mean squared motion of each load centre in each mode, over three directions, (b, m)."""
-    m = shapes.shape[1]
-    motion = np.zeros((len(branches), 6, m))
-    out = np.zeros((len(branches), m))
-    for b, branch in enumerate(branches):
-        own = slice(branch['coordinate'], branch['coordinate'] + branch['n_coordinates'])
-        if b > 0:
-            parent = branches[branch['parent']]
-            k = parent['n_coordinates']
-            moved = shapes[parent['coordinate'] : parent['coordinate'] + k]
-            motion[b] = motion[branch['parent']] + branch['twist'][:k].T @ moved
-        at = motion[b, :3] - cross_matrix(branch['centre']) @ motion[b, 3:]
-        at += branch['damping_mode'][: branch['n_coordinates']].T @ shapes[own]
-        out[b] = np.square(at).sum(axis=0) / 2.0
-    return out
 
 
 @fused

@@ -20,6 +20,12 @@ def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     return carried_to(bases, branches['tip']) + own_motion(branches, 'tip_mode', rotations)
 
 
+def centre_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
+    """Displacement of the load centres of branches by small rotations (N, ...), (b, 3, ...)."""
+    bases = base_motion(branches, rotations)
+    return carried_to(bases, branches['centre']) + own_motion(branches, 'damping_mode', rotations)
+
+
 def turn_of_branches(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Rotation vectors (b, 3, ...) in [rad] of branches by small rotations (N, ...)."""
     bases = base_motion(branches, rotations)

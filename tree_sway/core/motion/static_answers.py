@@ -3,9 +3,9 @@
 """
 How a tree gives way to steady winds: the loads on it, and where it comes to rest in them.
 
-A step of wind meets every branch, and what the slow modes of a tree cannot do is lost unless the
-coordinates can. So the answers to winds of all directions and speeds are found once; what is
-missing of them makes further coordinates (`reduction.modes.with_answers`).
+A step of wind meets every branch, and what the coordinates cannot do is lost. So the answers to
+winds of all directions and speeds are found once, and the coordinates made of these and of the
+answers to gusts (`gust_answers`, `reduction.modes.leading_modes`).
 """
 
 from __future__ import annotations

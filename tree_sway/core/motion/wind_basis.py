@@ -3,8 +3,8 @@
 """
 Model `wind_basis`: a tree as a few oscillators, driven by a table of all even winds.
 
-What a step costs does not depend on the tree's size. The coordinates are natural modes and what
-these lack of the tree's answers to wind (`reduction.basis`); each has its inertia, so that nothing
+What a step costs does not depend on the tree's size. The coordinates do most of what the tree does
+in steady winds and gusts (`reduction.modes.leading_modes`); each has its inertia, so that nothing
 follows a wind at once. The load is that of the state half a step on. It comes from a table
 (`wind_basis_table`) and not from the branches. A wind or a lean beyond the table is
 clamped to its limit, and counted as ``outside``.

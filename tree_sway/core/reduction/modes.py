@@ -35,8 +35,8 @@ _DENSE_UP_TO = 400
 _ENOUGH = 1e-6
 """Relative error at which Lanczos iteration ends: that of a ratio is far less."""
 
-_NEW = 1e-9
-"""Share of the squared motion of the tips that an added shape must bring."""
+_NEW = 1e-12
+"""Share of the largest squared motion of the tips that a shape must bring."""
 
 
 @dataclass(frozen=True)
@@ -118,80 +118,49 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
     return Modes(circular, np.ascontiguousarray(shapes[:, slowest_first] * circular))
 
 
-def most_driven(modes: Modes, loads: Floats, moved: Floats, count: int) -> Modes:
-    """Keep a number of the modes by which turbulence moves the tips most, the slowest first."""
-    chosen = np.sort(np.argsort(-_driven(modes, loads, moved), kind='stable')[:count])
-    return Modes(modes.circular[chosen], np.ascontiguousarray(modes.shapes[:, chosen]))
-
-
-def by_importance(modes: Modes, loads: Floats, moved: Floats) -> Modes:
-    """Sort modes by how far turbulence moves the tips by each, the farthest first."""
-    order = np.argsort(-_driven(modes, loads, moved), kind='stable')
-    return Modes(modes.circular[order], np.ascontiguousarray(modes.shapes[:, order]))
-
-
-def _driven(modes: Modes, loads: Floats, moved: Floats) -> Floats:
-    """
-    Mean square by which turbulence moves the tips in each mode, (m,), up to one factor.
-
-    At its own frequency a mode goes ``phi . q / (2 zeta w^2)`` under a load q, of moments (N,
-    any); turbulence there has a power of ``w^(-5/3)``, over a band as wide as w. Of modes that
-    loads do not reach, as branches that swing against each other, nothing is lost. ``moved`` is
-    the sum over the tips of the square of what a unit of each mode moves them, (m,).
-    """
-    driven: Floats = moved * np.square(modes.shapes.T @ loads).sum(axis=1)
-    return driven / modes.circular ** (14.0 / 3.0)
-
-
-def with_answers(
-    modes: Modes,
-    reduction: Reduction,
-    answers: Floats,
-    moved: Callable[[Floats], Floats],
-    count: int,
+def leading_modes(
+    reduction: Reduction, answers: Floats, moved: Callable[[Floats], Floats], count: int
 ) -> Modes:
     """
-    Add to modes the shapes that they lack most of a tree's answers to winds.
+    Find the coordinates that do most of what a tree does in winds.
+
+    Proper orthogonal decomposition of what the tips do (Berkooz, Holmes & Lumley, 1993), and the
+    modes of the tree as far as the shapes that it finds allow any (Rayleigh-Ritz).
 
     Parameters
     ----------
-    modes, reduction
+    reduction
         Of the tree.
     answers
-        Key rotations [rad], (N, k), all of one size.
+        Key rotations [rad], (N, k), each weighed by what it counts.
     moved
-        Motion of the tips, (any, k), by key rotations (N, k): what is lacking is seen there.
+        Motion of the tips, (any, k), by key rotations (N, k).
     count
-        How many shapes there are to be at most.
+        How many coordinates there are to be at most.
 
     Returns
     -------
     Modes
-        Shapes are orthogonal in mass and stiffness; the frequencies of those added are
-        Rayleigh's quotients.
+        Orthogonal in mass and stiffness, by how far they move the tips, the farthest first; their
+        frequencies are Rayleigh's quotients.
 
     """
     from scipy import linalg
 
     stiffness, mass = reduction.stiffness, reduction.mass
-    lacking = answers.copy()
-    for _ in range(2):
-        lacking -= modes.shapes @ (modes.shapes.T @ (mass @ lacking))
-    tips = moved(lacking)
+    tips = moved(answers)
     squares, mixes = np.linalg.eigh(tips.T @ tips)
-    order = [i for i in np.argsort(-squares)[:count] if squares[i] > _NEW * squares[-1]]
-    if not order:
-        return modes
-    shapes = lacking @ mixes[:, order]
+    chosen = [i for i in np.argsort(-squares)[:count] if squares[i] > _NEW * squares[-1]]
+    shapes = answers @ mixes[:, chosen]
     shapes /= np.sqrt(np.einsum('nl,nl->l', shapes, stiffness @ shapes))
     inverse_squares, mixes = linalg.eigh(
         shapes.T @ (mass @ shapes), shapes.T @ (stiffness @ shapes)
     )
     circular = 1.0 / np.sqrt(np.maximum(inverse_squares, 1e-12 * inverse_squares.max()))
-    whole = np.concatenate([modes.circular, circular])
-    slowest_first = np.argsort(whole, kind='stable')
-    both = np.hstack([modes.shapes, (shapes @ mixes) * circular])
-    return Modes(whole[slowest_first], np.ascontiguousarray(both[:, slowest_first]))
+    shapes = (shapes @ mixes) * circular
+    amounts = np.square(shapes.T @ (mass @ answers)).sum(axis=1)
+    order = np.argsort(-amounts * np.square(moved(shapes)).sum(axis=0), kind='stable')
+    return Modes(circular[order], np.ascontiguousarray(shapes[:, order]))
 
 
 def buckling_factor(reduction: Reduction) -> tuple[float, int]:

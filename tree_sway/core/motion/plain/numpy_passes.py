@@ -178,29 +178,3 @@ def into_lanes(rows: NDArray[Any], field: NDArray[Any]) -> None:
     """Write rows of branches, (b, ...), into a field of records in lanes."""
     block, lane = np.divmod(np.arange(len(rows)), LANES)
     field[block, ..., lane] = rows
-
-
-def mean_wind_moments(branches: Records, n_coordinates: int) -> Floats:
-    """
-    Moments (N, 3) [N m] of winds from all sides, as far as they are linear in the wind.
-
-    Those along x and y then serve for any between. Per 1 m/s along x, y and z in level winds of 1
-    m/s and 1 kg/m^3.
-    """
-    xx, yy, zz, xy, xz, yz = branches['projector'].T
-    level, slant = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
-    sides = np.cos((np.arange(8) + 0.5) * np.pi / 8.0)
-    across = np.sqrt(np.maximum(level[:, None] + slant[:, None] * sides, 0.0)).mean(axis=1)
-    force = np.stack([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 1, 0)
-    force = force * (branches['area'] * branches['speed'] ** 2 * across)[:, None, None]
-    wrench = np.concatenate([force, branches['coupling'] @ force], axis=1)
-    moments = np.zeros((n_coordinates, 3))
-    for b in range(len(branches) - 1, -1, -1):
-        i, k = int(branches['coordinate'][b]), int(branches['n_coordinates'][b])
-        moments[i : i + k] += branches['load_mode'][b, :k] @ force[b]
-        below = int(branches['parent'][b])
-        if below >= 0:
-            wrench[below] += wrench[b]
-            i, k = int(branches['coordinate'][below]), int(branches['n_coordinates'][below])
-            moments[i : i + k] += branches['twist'][b, :k] @ wrench[b]
-    return moments

@@ -1,0 +1,87 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+How a tree answers to gusts: linear motion of its modes in turbulence, in the damping of the air.
+
+Branches that swing alike are driven together, and the air couples them: a few patterns hold what
+many modes do. Static answers hold what is slower or faster (`static_answers`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.motion.drag import DragLaw, pressure
+from tree_sway.core.motion.response import base_motion, own_motion, tip_motion
+from tree_sway.core.reduction.modes import Modes
+
+_SPEEDS = (3.0, 12.0)
+_AZIMUTHS = (0.3, 0.3 + np.pi / 2.0)
+"""The opposite ones have the same slopes."""
+
+_COUNT, _BEYOND = 20, 1.5
+"""Frequencies, from and to so many times those of the modes."""
+
+
+def gust_answers(branches: Records, modes: Modes, damping_ratio: Floats, law: DragLaw) -> Floats:
+    """
+    Find how turbulence of several speeds and directions moves a tree, whose tips all move alike.
+
+    Parameters
+    ----------
+    branches
+        Of the tree.
+    modes, damping_ratio
+        Natural modes, and the damping ratio of the wood in each, (m,).
+    law
+        Drag law of the whole tree.
+
+    Returns
+    -------
+    numpy.ndarray
+        Amounts of the modes, (m, k): the real and imaginary parts at each frequency.
+
+    """
+    circular = modes.circular
+    swept = np.geomspace(circular[0] / _BEYOND, _BEYOND * circular[-1], _COUNT)[:, None]
+    # The root of turbulence's w^(-5/3) over bands as wide as w; flat below the slowest mode.
+    gusts = np.maximum(swept, circular[0])[:, :, None] ** (-1.0 / 3.0)
+    free = circular**2 - swept**2 + 2j * damping_ratio * circular * swept
+    tips = tip_motion(branches, modes.shapes).reshape(-1, len(circular))
+    found = []
+    for azimuth in _AZIMUTHS:
+        ahead = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+        load, air = gust_slopes(branches, modes.shapes, ahead)
+        for speed in _SPEEDS:
+            system = 1j * swept[:, :, None] * (pressure(speed, *law) * speed * air)
+            system += free[:, :, None] * np.eye(len(circular))
+            answers = gusts * np.linalg.solve(system, load)
+            parts = np.concatenate([answers.real, answers.imag]).swapaxes(0, 1)
+            flat = parts.reshape(len(circular), -1)
+            found.append(flat / np.linalg.norm(tips @ flat))
+    return np.hstack(found)
+
+
+def gust_slopes(branches: Records, shapes: Floats, ahead: Floats) -> tuple[Floats, Floats]:
+    """
+    Slopes of the load on shapes (N, m) in a wind (3,) of 1 kg/m^3, the tree at rest.
+
+    By the wind, (m, 3), and, with the opposite sign, by the rates of the shapes, (m, m).
+    """
+    m, bases = shapes.shape[1], base_motion(branches, shapes)
+    at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
+    pushed = (at + own_motion(branches, 'load_mode', shapes)).reshape(-1, m).T
+    slope = _drag_slopes(branches, ahead)
+    load = pushed @ (branches['speed'][:, None, None] * slope).reshape(-1, 3)
+    slowed = slope @ (at + own_motion(branches, 'damping_mode', shapes))
+    return load, pushed @ slowed.reshape(-1, m)
+
+
+def _drag_slopes(branches: Records, ahead: Floats) -> Floats:
+    """Slopes of drag by the velocity of the air in a wind of 1 kg/m^3, (b, 3, 3)."""
+    projector = branches['projector'][:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+    across = projector @ ahead
+    speed = np.sqrt(np.maximum(across @ ahead, 1e-12))[:, None, None]
+    slope = speed * projector + across[:, :, None] * across[:, None, :] / speed
+    return np.asarray((branches['area'] * branches['speed'])[:, None, None] * slope)
