@@ -47,6 +47,13 @@ _SLOPE_AT = 0.35
 _MOST_ENERGY = 3.0
 _STEPS, _FARTHEST, _AT_REST, _NEAR_REST = 20, 0.3, 0.01, 0.05
 
+_BREEZE, _FLUTTER = 10.0, 3.0
+"""
+Norm of what feeds sways over what damping takes from them, in winds above these [m/s]: from some
+three on trees of hanging twigs flutter, as eigenvalues of their tables say.
+
+"""
+
 _LARGE = 2000
 """Branches of a tree above which fewer azimuths suffice."""
 
@@ -87,7 +94,7 @@ class WindBasisTable:
         self._shapes, self._moments = bank.shapes, wind_moments
         self._slopes = wind_moments.slopes(bank.shapes)
         n, m = bank.shapes.shape
-        self._root = np.sqrt(bank.stiffness)
+        self._root, self._damping = np.sqrt(bank.stiffness), bank.damping
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m, COUNT[degree]))
         table = self.record[0]
@@ -133,11 +140,17 @@ class WindBasisTable:
             amount[k] = upright / max(float(upright @ (upright / stiffness)), 1e-300)
             at = np.zeros(m)
             for j, push in enumerate(pressures):
-                at = self._held(at, push, ahead, turning[k, j - 1]) if j > 0 else at
+                weaker, at = at, self._held(at, push, ahead, turning[k, j - 1]) if j > 0 else at
                 x = shapes @ at
                 standing[k, j] = at
                 load[k, j] = self._moments(x, self._still, ahead) @ shapes
+                if j > 0 and at is weaker:
+                    turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
+                    continue
                 turning[k, j], damping[k, j] = self._slopes(x, ahead)
+                if SPEEDS[j] > _BREEZE:
+                    air = self._damping - push / SPEEDS[j] * np.diag(damping[k, j])
+                    turning[k, j] -= self._feeding(push * turning[k, j], air) / push
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
         load -= load[:, :1]
         for name, values in (('standing', standing), ('amount', amount), ('load', load)):
@@ -149,6 +162,20 @@ class WindBasisTable:
         levels = np.einsum('ajm,am->aj', table['standing'], table['amount'])
         least = 1e-6 * np.abs(levels).max() * np.arange(N_LEVELS)
         table['levels'] = np.maximum.accumulate(levels, axis=1) + least
+
+    def _feeding(self, slopes: Floats, damping: Floats) -> Floats:
+        """
+        Find by how much slopes (m, m) [1/s^2] feed sways that damping (m,) [1/s] cannot stop.
+
+        The part of slopes that no potential has feeds a sway by what it has of two coordinates,
+        and damping takes from both. Hanging twigs would flutter in gales.
+        """
+        circulating = 0.5 * (slopes - slopes.T)
+        scale = 1.0 / np.sqrt(damping * self._root)
+        scaled = circulating * scale * scale[:, None]
+        if float(np.linalg.norm(scaled)) <= _FLUTTER:  # no less than the norm that counts
+            return np.zeros_like(slopes)
+        return circulating * max(0.0, 1.0 - _FLUTTER / float(np.linalg.norm(scaled, 2)))
 
     def _held(self, at: Floats, push: float, ahead: Floats, turning: Floats) -> Floats:
         """
