@@ -7,7 +7,7 @@ numba's own cache looks at the file of a function alone, so that after an edit t
 changed function run the old code. Here the key is a digest of all modules of the core, and of the
 package that a function belongs to if that is another, beside signature, processor, compiler
 version and flags. A kernel that cannot be read from disk is compiled again; one that cannot be
-written is kept in memory.
+written is stored in memory.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ class KernelCache:
         try:
             write_own(path, self._dumps(self._codec.reduce(None, data)))
         except OSError as error:
-            complain(f'compiled kernels cannot be kept: {error}')
+            complain(f'compiled kernels cannot be stored: {error}')
 
     def _path(self, sig: Any, codegen: Any) -> Path | None:
         folder = kernel_folder() if self._enabled else None

@@ -48,7 +48,7 @@ def kernel_folder() -> Path | None:
                 if not folder.is_dir():
                     folder.mkdir(mode=0o700, exist_ok=True)
             if unsafe := why_unsafe(place):
-                complain(f'compiled kernels are not kept in {place}: {unsafe}')
+                complain(f'compiled kernels are not stored in {place}: {unsafe}')
                 continue
             with tempfile.TemporaryFile(dir=place) as probe:
                 probe.write(b'\0' * 4096)

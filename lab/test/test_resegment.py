@@ -149,7 +149,7 @@ def test_children_sit_on_the_segment_beside_them():
         again = resegment(tree, cut)
         first = again.branch_first[1:-1]
         seat = again.segment_parent[first]
-        # Their start lies within the seat's length, a kept node at either end of it included.
+        # Their start lies within the seat's length, a stored node at either end of it included.
         along = np.einsum(
             'ij,ij->i', again.start[first] - again.start[seat], again.end[seat] - again.start[seat]
         )

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The one way a hot function is compiled: cached on disk, IEEE division, types kept for the checker.
+The one way a hot function is compiled: cached on disk, IEEE division, typed for the checker.
 
 Where numba is missing (`WHY_PLAIN`) functions stay as they are: those of numbers run as plain
 Python, and `motion` takes the numpy form of what runs over a tree.
@@ -27,7 +27,7 @@ def kernel(function: _F) -> _F:
     Compile a function of numbers and arrays to machine code at its first call.
 
     Division by zero gives an infinity as in numpy, so that loops vectorise; the lock is released;
-    the code is kept on disk (`kernel_cache`). The plain function stays reachable as ``py_func``.
+    the code is stored on disk (`kernel_cache`). The plain function stays reachable as ``py_func``.
     """
     return _compiled(function)
 

@@ -119,7 +119,7 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
     first = np.concatenate([[0], np.cumsum(sizes)])
     owner = np.repeat(np.arange(len(branches)), sizes)
     at = branches['block'][owner] + np.arange(len(owner)) - first[owner]
-    lane = branches['lane'][owner]
+    slot = branches['slot'][owner]
     indices = {
         'branch_parent': branches['parent'],
         'branch_base_segment': branches['base_segment'],
@@ -133,10 +133,10 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
         'branch_frame': branches['frame'],
         'branch_skew': np.stack([branches['skew'], branches['tip_skew']], axis=1),
         'branch_offset': np.where(branches['parent'][:, None] < 0, 0.0, branches['offset']),
-        'segment_slope': segments['slope'][at, lane],
-        'segment_tip_slope': segments['tip_slope'][at, lane],
-        'segment_chord': segments['chord'][at, :, lane],
-        'segment_rest': segments['rest'][at, :, lane],
+        'segment_slope': segments['slope'][at, slot],
+        'segment_tip_slope': segments['tip_slope'][at, slot],
+        'segment_chord': segments['chord'][at, :, slot],
+        'segment_rest': segments['rest'][at, :, slot],
         'segment_length': tree.length,
         'segment_radius': 0.5 * diameter,
         'turn': np.concatenate(turns),

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats
 from tree_sway.core.branch.shapes import MAX_COORDINATES
 from tree_sway.core.motion.fill_records import (
-    assign_lanes,
+    assign_slots,
     fill_places,
     head_records,
     Places,
@@ -65,7 +65,7 @@ class Placer:
         """
         poses, row, first, key = np.empty((self.n_segments, 7)), 0, 0, 0
         number, turn = coordinates[len(self.description.scale) :].reshape(-1, 2).T
-        # Between frames of other keys there is none.
+        # Between frames of other keys there there is not one.
         number = np.where(np.abs(number - np.rint(number)) < 1e-6, np.rint(number), -1.0)
         for (x, y, z, yaw, scale), kind in self._trees:
             last, end = first + kind.matrix.shape[1], row + kind.n_segments
@@ -95,7 +95,7 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     base_turn, own_turn = (arrays[f'branch_{name}'].astype(np.int64) for name in _TURNS)
     matrix, turns = arrays['basis_matrix'].astype(np.float64), arrays['turn']
     slope, tip_slope = arrays['segment_slope'], arrays['segment_tip_slope']
-    block, _, n_records = assign_lanes(first, parent)
+    block, _, n_records = assign_slots(first, parent)
     sizes = len(parent), n_records, len(np.unique(block)) + 1
     memory = sum(
         count * layout.itemsize

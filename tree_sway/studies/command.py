@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('study', metavar='STUDY.yaml', help='trees, winds and settings')
     parser.add_argument(
         '-o', '--output', default='study.csv', metavar='FILE',
-        help='table, .csv or .parquet; cases are kept beside it, and reused (%(default)s)',
+        help='table, .csv or .parquet; cases are stored beside it, and reused (%(default)s)',
     )  # fmt: skip
     parser.add_argument(
         '--workers', type=int, metavar='N', help='processes; one per core if left out'

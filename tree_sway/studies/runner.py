@@ -41,7 +41,7 @@ def run_study(cases: list[Case], folder: Path, *, workers: int | None = None) ->
     cases
         What to compute.
     folder
-        Where finished cases are kept.
+        Where finished cases are stored.
     workers
         Processes; one per core if None.
 
@@ -53,7 +53,7 @@ def run_study(cases: list[Case], folder: Path, *, workers: int | None = None) ->
     Raises
     ------
     TreeSwayError
-        The first case that cannot be computed, by its name; the others are kept.
+        The first case that cannot be computed, by its name; the others are stored.
     TransportError
         Workers that die again and again.
     ModuleNotFoundError

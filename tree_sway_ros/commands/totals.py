@@ -12,7 +12,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 
 _LATEST = 36_000
-"""Number of latencies kept: those of ten minutes at 60 Hz."""
+"""Number of latencies stored: those of ten minutes at 60 Hz."""
 
 
 class Series:

@@ -35,7 +35,7 @@ from tree_sway.parameters.parameter import (
 
 class ParameterValues:
     """
-    The values of a node's parameters, kept in step with ROS.
+    The values of a node's parameters, in step with ROS.
 
     Parameters
     ----------

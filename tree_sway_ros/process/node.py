@@ -105,7 +105,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         return TransitionCallbackReturn.SUCCESS
 
     def _succeeds(self, stage: Callable[[], None]) -> bool:
-        """Whether a stage of the start succeeds; what it raises is kept, and logged."""
+        """Whether a stage of the start succeeds; what it raises is stored, and logged."""
         self._refusal = None
         try:
             stage()

@@ -18,7 +18,7 @@ class Topic:
     One topic: its relative name, remapped by launch files, and its type ``package/msg/Name``.
 
     ``reliable``: a sample that was lost is sent again; ``latched``: a late subscriber receives the
-    last one (TRANSIENT_LOCAL); ``depth``: samples kept; ``any_input``: our own subscriptions take
+    last one (TRANSIENT_LOCAL); ``depth``: samples stored; ``any_input``: our subscriptions take
     best effort as well, which is all that drivers of sensors offer.
     """
 

@@ -45,7 +45,7 @@ class Tick(NamedTuple):
 
 class Timing(NamedTuple):
     """
-    How well the rate was kept: rate [Hz], lateness [s], work [s], and counts since the start.
+    How steady the rate was: rate [Hz], lateness [s], work [s], and counts since the start.
 
     `skipped` are frames on the grid that never came, however many at once; `clamped` are jumps of
     the clock forward, `restarts` jumps back, `silence` is the time since the last tick [s].
@@ -121,7 +121,7 @@ class Pacer(Worker):
         return bool(self.clock.ros_time_is_active)
 
     def timing(self) -> Timing:
-        """How well the rate was kept over the last 600 ticks."""
+        """How steady the rate was over the last 600 ticks."""
         silence = 1e-9 * (time.monotonic_ns() - self._last_steady) if self._last_steady else 0.0
         counts = (self._ticks, self._skipped, self._clamped, self._restarts, silence)
         begin, late, work = np.array(list(self._recent) or [(0.0, 0, 0.0)]).T

@@ -19,7 +19,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway_ros.process.topics import TF, TF_STATIC
 
 _MOST = 4096
-"""Frames that are kept and reported: whoever may publish can make up any number."""
+"""Frames that are stored and reported: whoever may publish can make up any number."""
 _LONGEST = 255
 """Longer names [letters] are no frame's."""
 _SHOWN = 60

@@ -23,19 +23,19 @@ ROWS = [Measured('solve', 2.0, 'ms'), Measured('place', 3.0, 'ms'), Measured('lo
 
 
 def test_figures_are_read_back_and_reported_as_ratios(tmp_path):
-    kept = tmp_path / 'kept.json'
-    kept.write_text(as_json([Measured('solve', 4.0, 'ms'), ROWS[2]]), encoding='utf-8')
-    solve, place, lost = table(ROWS, read_baseline(kept)).splitlines()
+    stored = tmp_path / 'stored.json'
+    stored.write_text(as_json([Measured('solve', 4.0, 'ms'), ROWS[2]]), encoding='utf-8')
+    solve, place, lost = table(ROWS, read_baseline(stored)).splitlines()
     assert '0.50 of the baseline' in solve
     assert 'baseline' not in place + lost
 
 
 @pytest.mark.parametrize('text', ['', '{}', '[]', '{"measured": [{"name": "a"}]}', '\x00'])
 def test_a_file_without_figures_is_no_baseline(tmp_path, text):
-    kept = tmp_path / 'kept.json'
-    kept.write_text(text, encoding='utf-8')
+    stored = tmp_path / 'stored.json'
+    stored.write_text(text, encoding='utf-8')
     with pytest.raises(FormatError):
-        read_baseline(kept)
+        read_baseline(stored)
 
 
 def test_a_stand_is_timed(stem):

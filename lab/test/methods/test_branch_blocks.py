@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from tree_sway_lab.methods.branch_bank import guards, step_bank
-from tree_sway_lab.methods.branch_blocks import BranchBlocks, LANES
+from tree_sway_lab.methods.branch_blocks import BranchBlocks, WIDTH
 
 from tree_sway.core.oscillators.propagator import propagator
 
@@ -26,7 +26,7 @@ def bank(n, seed=0, dt=1 / 60):
     )
 
 
-@pytest.mark.parametrize('n', [1, LANES, 3 * LANES + 5])
+@pytest.mark.parametrize('n', [1, WIDTH, 3 * WIDTH + 5])
 @pytest.mark.parametrize(('kind', 'slack'), [(np.float64, 1e-12), (np.float32, 3e-5)])
 def test_blocks_step_as_the_bank_does(n, kind, slack):
     state, load, rows, guard = bank(n)
@@ -39,7 +39,7 @@ def test_blocks_step_as_the_bank_does(n, kind, slack):
     assert blocks.load == pytest.approx(load, rel=1e-6)
 
 
-def test_the_lanes_without_a_branch_stay_at_rest():
+def test_the_slots_without_a_branch_stay_at_rest():
     _, load, rows, guard = bank(3)
     blocks = BranchBlocks(rows, guard)
     blocks.load = load * np.nan

@@ -73,10 +73,10 @@ def test_cells_run_one_after_the_other_as_the_script_does(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize('name', EXAMPLES)
 def test_the_examples_are_the_notebooks(name: str) -> None:
-    kept = (FOLDER / f'{name}.ipynb').read_text(encoding='utf-8')
-    assert kept == notebook(FOLDER / f'{name}.py')
-    assert 'main()' in cells(kept, 'code')[-2:]
-    outputs = outputs_of_main(kept)
+    stored = (FOLDER / f'{name}.ipynb').read_text(encoding='utf-8')
+    assert stored == notebook(FOLDER / f'{name}.py')
+    assert 'main()' in cells(stored, 'code')[-2:]
+    outputs = outputs_of_main(stored)
     assert any(output['output_type'] == 'stream' for output in outputs)
     assert any('image/png' in output.get('data', {}) for output in outputs)
 
@@ -101,10 +101,10 @@ def printed(text: str) -> tuple[list[str], list[float]]:
     ],
 )
 def test_what_they_show_is_what_they_print(name: str) -> None:
-    kept = (FOLDER / f'{name}.ipynb').read_text(encoding='utf-8')
-    words, numbers = printed(with_outputs(kept))
-    assert words == printed(kept)[0]
-    assert numbers == pytest.approx(printed(kept)[1], rel=0.02, abs=0.01)
+    stored = (FOLDER / f'{name}.ipynb').read_text(encoding='utf-8')
+    words, numbers = printed(with_outputs(stored))
+    assert words == printed(stored)[0]
+    assert numbers == pytest.approx(printed(stored)[1], rel=0.02, abs=0.01)
 
 
 def test_a_notebook_keeps_its_outputs_until_its_cells_change(tmp_path: Path) -> None:

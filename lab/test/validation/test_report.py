@@ -48,11 +48,11 @@ def test_what_was_measured_stays_when_a_later_section_fails(
     monkeypatch.setattr(report, 'measured', measured)
     with pytest.raises(RuntimeError):
         write_validation(tmp_path)
-    kept = sections_of((tmp_path / PAGE).read_text(encoding='utf-8'))
-    assert list(kept) == ['kinds', 'models', 'estimates', 'table', 'steady_sway']
+    stored = sections_of((tmp_path / PAGE).read_text(encoding='utf-8'))
+    assert list(stored) == ['kinds', 'models', 'estimates', 'table', 'steady_sway']
     assert write_validation(tmp_path, ['slopes']) == ['slopes: x']
-    kept = sections_of((tmp_path / PAGE).read_text(encoding='utf-8'))
-    assert list(kept) == ['kinds', 'models', 'estimates', 'table', 'steady_sway', 'slopes']
+    stored = sections_of((tmp_path / PAGE).read_text(encoding='utf-8'))
+    assert list(stored) == ['kinds', 'models', 'estimates', 'table', 'steady_sway', 'slopes']
 
 
 def test_a_section_that_is_none_is_refused(tmp_path: Path) -> None:

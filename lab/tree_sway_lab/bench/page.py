@@ -95,7 +95,7 @@ async def _counted(url: str, seconds: float) -> list[Measured]:
         left = await browser.run('treeSway.scene.quality.leftOut')
         left = left or {'leaves': 100, 'pixels': 100}
         memory = [await _memory(browser)]
-        # Twice: what is kept of a minute is there after the first.
+        # Twice: what is stored of a minute is there after the first.
         for _ in range(2):
             await browser.run(f'({_PUSH})({_HOUR}, {_RATE})')
             memory.append(await _memory(browser))

@@ -3,9 +3,9 @@
 """
 Many two-axis branches in blocks of sixteen, so that one instruction steps several of them.
 
-Everything a branch needs is in one array: block, row, lane. Rows are x, y, vx, vy; wb, w1, w2;
-the eight coefficients; the three guards. Distances between the rows of a lane are then constants
-that the compiler knows, which lets it turn the loop over lanes into vector instructions.
+Everything a branch needs is in one array: block, row, slot. Rows are x, y, vx, vy; wb, w1, w2;
+the eight coefficients; the three guards. Distances between the rows of a slot are then constants
+that the compiler knows, which lets it turn the loop over slots into vector instructions.
 
 """
 
@@ -20,7 +20,7 @@ from tree_sway.core.kernel import fused
 from tree_sway.core.oscillators.two_axis import step_branch
 from tree_sway_lab.methods.branch_bank import single_precision
 
-LANES = 16
+WIDTH = 16
 ROWS = 18
 _LOAD, _COEFFICIENT = slice(4, 7), slice(7, 15)
 
@@ -44,9 +44,9 @@ class BranchBlocks:
 
     def __init__(self, coefficients: Array, guard: Array, dtype: DTypeLike = np.float32) -> None:
         self._n = len(coefficients)
-        blocks = -(-self._n // LANES)
+        blocks = -(-self._n // WIDTH)
         rows = single_precision(coefficients) if dtype == np.float32 else coefficients
-        self._data = np.zeros((blocks, ROWS, LANES), dtype)
+        self._data = np.zeros((blocks, ROWS, WIDTH), dtype)
         self._put(_COEFFICIENT, rows.T)
         self._put(slice(15, 18), guard.T)
         self._limit = np.square(guard[:, 1])
@@ -81,9 +81,9 @@ class BranchBlocks:
         return self._held
 
     def _put(self, rows: slice, values: Array) -> None:
-        padded = np.zeros((len(values), len(self._data) * LANES), self._data.dtype)
+        padded = np.zeros((len(values), len(self._data) * WIDTH), self._data.dtype)
         padded[:, : self._n] = values
-        self._data[:, rows] = padded.reshape(len(values), -1, LANES).swapaxes(0, 1)
+        self._data[:, rows] = padded.reshape(len(values), -1, WIDTH).swapaxes(0, 1)
 
     def _get(self, rows: slice) -> Array:
         return (
@@ -96,16 +96,16 @@ class BranchBlocks:
 
 @fused
 def _step(d: Array, blocks: int) -> None:
-    """Step the lanes of each block; d is the flat array."""
+    """Step the slots of each block; d is the flat array."""
     for block in range(blocks):
-        first = block * ROWS * LANES
-        for lane in range(LANES):
-            k = first + lane
+        first = block * ROWS * WIDTH
+        for slot in range(WIDTH):
+            k = first + slot
             x, y, vx, vy, _ = step_branch(
-                d[k], d[k + LANES], d[k + 2 * LANES], d[k + 3 * LANES],
-                d[k + 4 * LANES], d[k + 5 * LANES], d[k + 6 * LANES],
-                d[k + 7 * LANES], d[k + 8 * LANES], d[k + 9 * LANES], d[k + 10 * LANES],
-                d[k + 11 * LANES], d[k + 12 * LANES], d[k + 13 * LANES], d[k + 14 * LANES],
-                d[k + 15 * LANES], d[k + 16 * LANES], d[k + 17 * LANES],
+                d[k], d[k + WIDTH], d[k + 2 * WIDTH], d[k + 3 * WIDTH],
+                d[k + 4 * WIDTH], d[k + 5 * WIDTH], d[k + 6 * WIDTH],
+                d[k + 7 * WIDTH], d[k + 8 * WIDTH], d[k + 9 * WIDTH], d[k + 10 * WIDTH],
+                d[k + 11 * WIDTH], d[k + 12 * WIDTH], d[k + 13 * WIDTH], d[k + 14 * WIDTH],
+                d[k + 15 * WIDTH], d[k + 16 * WIDTH], d[k + 17 * WIDTH],
             )  # fmt: skip
-            d[k], d[k + LANES], d[k + 2 * LANES], d[k + 3 * LANES] = x, y, vx, vy
+            d[k], d[k + WIDTH], d[k + 2 * WIDTH], d[k + 3 * WIDTH] = x, y, vx, vy

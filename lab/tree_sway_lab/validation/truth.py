@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The truth about a tree in a wind: every segment solved in pieces, computed once and kept on disk.
+The truth about a tree in a wind: every segment solved in pieces, computed once and stored on disk.
 
 A truth is found again by a digest of the tree, the wind, the wood, the pieces and the code that
-solves them. It is kept in the folder ``tree_sway_lab`` of the user's cache.
+solves them. It is stored in the folder ``tree_sway_lab`` of the user's cache.
 
 """
 

@@ -43,9 +43,9 @@ def test_pieces_of_a_cut_branch_twist_but_the_last():
     """A crooked branch twists as it bends; its straight pieces have a coordinate for it."""
     reduced = SwaySimulator(kind_called('willow'), WOOD, model='branch').reductions.coupled
     parent, twig = reduced.tree.branch_parent, reduced.branch
-    goes_on = np.isin(np.arange(len(twig)), parent[1:][twig[parent[1:]] == twig[1:]])
+    continued = np.isin(np.arange(len(twig)), parent[1:][twig[parent[1:]] == twig[1:]])
     count = np.array([len(model.fields) for model in reduced.models])
     plain = count <= 3  # the others are enriched
-    assert (plain & goes_on).any()
-    assert (count[plain & goes_on] == 3).all()
-    assert (count[plain & ~goes_on] == 2).all()
+    assert (plain & continued).any()
+    assert (count[plain & continued] == 3).all()
+    assert (count[plain & ~continued] == 2).all()

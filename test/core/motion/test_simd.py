@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Test that lanes come to their rows and back."""
+"""Test that slots come to their rows and back."""
 
 import numpy as np
 import pytest
@@ -17,25 +17,25 @@ from tree_sway.core.motion.simd import (
 
 
 @fused
-def _there(lanes, row, lane, rows, which, first):
-    put_four(lanes, row, lane, rows, which[0], which[1], which[2], which[3], first)
+def _there(slots, row, slot, rows, which, first):
+    put_four(slots, row, slot, rows, which[0], which[1], which[2], which[3], first)
 
 
 @fused
-def _back(rows, which, first, lanes, row, lane):
-    take_four(rows, which[0], which[1], which[2], which[3], first, lanes, row, lane)
+def _back(rows, which, first, slots, row, slot):
+    take_four(rows, which[0], which[1], which[2], which[3], first, slots, row, slot)
 
 
-def test_four_lanes_go_to_four_rows_and_back_compiled_and_plain() -> None:
-    lanes = np.arange(7 * 16.0).reshape(7, 16)
+def test_four_slots_go_to_four_rows_and_back_compiled_and_plain() -> None:
+    slots = np.arange(7 * 16.0).reshape(7, 16)
     which = np.array([5, 0, 3, 8])
     for there, back in ((_there, _back), (_there.py_func, _back.py_func)):
         rows, found = np.full((9, 7), -1.0), np.full((7, 16), -1.0)
-        there(lanes, 2, 9, rows, which, 1)
-        assert (rows[which, 1:5] == lanes[2:6, 9:13].T).all()
+        there(slots, 2, 9, rows, which, 1)
+        assert (rows[which, 1:5] == slots[2:6, 9:13].T).all()
         assert (rows == -1.0).sum() == rows.size - 16
         back(rows, which, 1, found, 3, 4)
-        assert (found[3:7, 4:8] == lanes[2:6, 9:13]).all()
+        assert (found[3:7, 4:8] == slots[2:6, 9:13]).all()
         assert (found == -1.0).sum() == found.size - 16
 
 

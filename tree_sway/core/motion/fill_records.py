@@ -5,7 +5,7 @@ The one place where records are filled: what stepping and placing know of a tree
 
 `Places` says how a tree is joined and drawn; whoever has one can place it, as a receiver of the
 stream. `branch_records` adds what the wind does; `head_records` and `load_records` lay it out in
-lanes.
+slots.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from tree_sway.core.branch.shapes import across, exposure, MAX_COORDINATES
 from tree_sway.core.motion.records import (
     branch_layout,
     head_layout,
-    LANES,
     load_layout,
     segment_layout,
+    WIDTH,
     zeros_in_lines,
 )
 from tree_sway.core.reduction.matrices import Reduction
@@ -66,17 +66,17 @@ class Places(NamedTuple):
 
 def segment_records(places: Places) -> Records:
     """Fill what placing needs of each segment: records of `segment_layout`, in blocks."""
-    block, lane, n_records = assign_lanes(places.first, places.parent, places.n_coordinates)
+    block, slot, n_records = assign_slots(places.first, places.parent, places.n_coordinates)
     is_plain = places.turn.shape[1] == 2
     records = zeros_in_lines(n_records, segment_layout(2) if is_plain else segment_layout())
     records['rest'][:, 0] = 1.0
     size = np.diff(places.first)
     rows = np.arange(len(places.slope)) + np.repeat(block - places.first[:-1], size)
-    own = np.repeat(lane, size)
+    own = np.repeat(slot, size)
     records['chord'][rows, :, own] = places.chord
     records['rest'][rows, :, own] = places.rest
     records['slope'][rows, own], records['tip_slope'][rows, own] = places.slope, places.tip_slope
-    np.maximum.at(records['n_lanes'], rows, own + 1)
+    np.maximum.at(records['n_slots'], rows, own + 1)
     if not is_plain:
         records['turn'][rows, : places.turn.shape[1], :, own] = places.turn
     return records
@@ -84,7 +84,7 @@ def segment_records(places: Places) -> Records:
 
 def fill_places(places: Places, records: Records) -> None:
     """Fill what placing needs of each branch, in records of `branch_layout`, (b,)."""
-    records['block'], records['lane'], _ = assign_lanes(
+    records['block'], records['slot'], _ = assign_slots(
         places.first, places.parent, places.n_coordinates
     )
     records['parent'], records['base_segment'] = places.parent, places.base_segment
@@ -106,9 +106,9 @@ def turns_of_segments(branch: np.void, segments: Records) -> Floats:
     first, count = int(branch['block']), int(branch['n_coordinates'])
     rows = slice(first, first + int(branch['end'] - branch['first']))
     if branch['load_mode'].shape[0] > 2:
-        turns: Floats = segments['turn'][rows, :count, :, branch['lane']]
+        turns: Floats = segments['turn'][rows, :count, :, branch['slot']]
         return turns
-    slope, (_, e1, e2) = segments['slope'][rows, branch['lane']], branch['frame']
+    slope, (_, e1, e2) = segments['slope'][rows, branch['slot']], branch['frame']
     return np.multiply.outer(slope, np.stack([e2, -e1]))
 
 
@@ -116,30 +116,30 @@ def head_records(branches: Records, segments: Records) -> Records:
     """
     Lay out what placing needs to know of `BRANCH` records, whose coordinates are set.
 
-    Records of `head_layout`, one per block of `assign_lanes` and one to work in.
+    Records of `head_layout`, one per block of `assign_slots` and one to work in.
     """
     first, block = np.unique(branches['block'], return_inverse=True)
-    lane, parent = branches['lane'], branches['parent']
+    slot, parent = branches['slot'], branches['parent']
     heads = zeros_in_lines(len(first) + 1, head_layout(branches.dtype['load_mode'].shape[0]))
     heads['block'] = [*first, len(segments)]
     heads['n_records'][:-1] = np.diff(heads['block'])
-    heads['n_lanes'][:-1] = segments['n_lanes'][first]
-    heads['n_eights'] = -(-heads['n_lanes'] // 8)
-    np.maximum.at(heads['n_bearing'], block[parent[1:]], lane[parent[1:]] + 1)
+    heads['n_slots'][:-1] = segments['n_slots'][first]
+    heads['n_eights'] = -(-heads['n_slots'] // 8)
+    np.maximum.at(heads['n_bearing'], block[parent[1:]], slot[parent[1:]] + 1)
     np.maximum.at(heads['n_rows'], block, branches['n_coordinates'])
-    heads['branch'][block, lane] = np.arange(len(branches))
+    heads['branch'][block, slot] = np.arange(len(branches))
     heads['is_joined'][:-1] = np.logical_and.reduceat(_joined(segments), first)
     np.maximum.at(heads['n_parent_rows'], block, branches['n_coordinates'][parent])
     for name in ('parent', 'coordinate', 'base_segment', 'first'):
-        heads[name][block, lane] = branches[name]
+        heads[name][block, slot] = branches[name]
     for name in ('frame', 'skew', 'tip_skew', 'offset', 'steepest'):
-        heads[name][block, ..., lane] = branches[name]
-    heads['last'][block, lane] = branches['n_coordinates'] - 1
-    heads['parent_coordinate'][block, lane] = branches['coordinate'][parent]
+        heads[name][block, ..., slot] = branches[name]
+    heads['last'][block, slot] = branches['n_coordinates'] - 1
+    heads['parent_coordinate'][block, slot] = branches['coordinate'][parent]
     heads['is_at_axes'] = (np.abs(heads['offset'][:, 1:]) <= _AS_ONE * heads['offset'][:, :1]).all(
         axis=(1, 2)
     )
-    heads['base_turn'][block, ..., lane] = branches['twist'][..., 3:]
+    heads['base_turn'][block, ..., slot] = branches['twist'][..., 3:]
     return heads
 
 
@@ -156,18 +156,18 @@ def _joined(segments: Records) -> NDArray[np.bool_]:
     return (np.hypot(reach[1], reach[2]) <= _AS_ONE * reach[0]).all(axis=1)
 
 
-def assign_lanes(
+def assign_slots(
     first: Ints, branch_parent: Ints, fields: Ints | None = None
 ) -> tuple[Ints, Ints, int]:
     """
-    Give each branch a lane of a block: parents first, long branches together, few lanes empty.
+    Give each branch a slot of a block: parents first, long branches together, few slots empty.
 
     Those of many ``fields`` (b,), if they are given, are together as well.
 
     Returns
     -------
     tuple
-        First record (b,) and lane (b,) of each branch; how many records there are.
+        First record (b,) and slot (b,) of each branch; how many records there are.
 
     """
     size = np.diff(first)
@@ -176,20 +176,20 @@ def assign_lanes(
     for branch in range(len(size) - 1, 0, -1):
         children[branch_parent[branch]].insert(0, branch)
         carried[branch_parent[branch]] += carried[branch]
-    block, lane = np.zeros((2, len(size)), dtype=np.int64)
+    block, slot = np.zeros((2, len(size)), dtype=np.int64)
     # Sixteen branches take as long to place as the one with most fields.
     rich = (-fields if fields is not None else 0 * size).tolist()
     begin, ready = 0, [(rich[0], -int(size[0]), -int(carried[0]), 0)]
     while ready:
-        together = [heappop(ready)[-1] for _ in range(min(LANES, len(ready)))]
-        # Records have segments of the first lanes alone.
+        together = [heappop(ready)[-1] for _ in range(min(WIDTH, len(ready)))]
+        # Records have segments of the first slots alone.
         together.sort(key=lambda branch: -int(size[branch]))
-        block[together], lane[together] = begin, np.arange(len(together))
+        block[together], slot[together] = begin, np.arange(len(together))
         begin += int(size[together[0]])
         for branch in together:
             for child in children[branch]:
                 heappush(ready, (rich[child], -int(size[child]), -int(carried[child]), child))
-    return block, lane, begin
+    return block, slot, begin
 
 
 def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Places:
@@ -288,8 +288,8 @@ def _fill_loads(
     exposed = np.array([exposure(beam) for beam in beams])
     exposed /= (panels * exposed).sum(axis=1, keepdims=True)
     amounts, axes = np.linalg.eigh(across)
-    kept = amounts > _STRAIGHT * amounts[:, -1:]
-    amounts = np.divide(1.0, amounts, out=np.zeros_like(amounts), where=kept)
+    stored = amounts > _STRAIGHT * amounts[:, -1:]
+    amounts = np.divide(1.0, amounts, out=np.zeros_like(amounts), where=stored)
     into_push = (axes * amounts[:, None]) @ axes.swapaxes(1, 2)
     own = exposed[:, None, :, None] * (share[:, None, ..., None] * fields).sum(axis=3)
     own -= (own * tangent[:, None]).sum(axis=-1, keepdims=True) * tangent[:, None]
@@ -426,15 +426,15 @@ def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> 
     """
     if layout is None:
         layout = load_layout(branches.dtype['load_mode'].shape[0])
-    records = zeros_in_lines(-(-len(branches) // LANES), layout)
-    block, lane = np.divmod(np.arange(len(branches)), LANES)
+    records = zeros_in_lines(-(-len(branches) // WIDTH), layout)
+    block, slot = np.divmod(np.arange(len(branches)), WIDTH)
     for name in ('speed', 'area', 'spread', 'projector'):
-        records[name][block, ..., lane] = branches[name]
+        records[name][block, ..., slot] = branches[name]
     for name in ('damping_mode', 'load_rotation', 'load_mode'):
         rows = records.dtype[name].shape[0]
-        records[name][block, ..., lane] = branches[name][:, :rows]
-    records['along'][block, :, lane] = branches['lever'][:, None] * branches['frame'][:, 0]
+        records[name][block, ..., slot] = branches[name][:, :rows]
+    records['along'][block, :, slot] = branches['lever'][:, None] * branches['frame'][:, 0]
     at_base = cross(branches['base'][:, None], np.eye(3)).swapaxes(1, 2)
-    records['coupling'][block, ..., lane] = branches['coupling'] - at_base
+    records['coupling'][block, ..., slot] = branches['coupling'] - at_base
     np.maximum.at(records['n_rows'], block, branches['n_coordinates'])
     return records

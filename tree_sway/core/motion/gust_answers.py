@@ -21,7 +21,7 @@ _AZIMUTHS = (0.3, 0.3 + np.pi / 2.0)
 """The opposite ones have the same slopes."""
 
 _COUNT, _BEYOND = 20, 1.5
-"""Frequencies, from and to so many times those of the modes."""
+"""How many frequencies, and from and to what multiple of those of the modes."""
 
 
 def gust_answers(branches: Records, modes: Modes, damping_ratio: Floats, law: DragLaw) -> Floats:

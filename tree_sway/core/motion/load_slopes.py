@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records, Singles
-from tree_sway.core.motion.plain.numpy_passes import cross_matrices, of_lanes
+from tree_sway.core.motion.plain.numpy_passes import cross_matrices, of_slots
 from tree_sway.core.motion.plain.numpy_rotation import cross, quaternions_of
 from tree_sway.core.motion.response import joint_motion, levels_of, own_motion, summed_outward
 
@@ -104,15 +104,15 @@ class LoadSlopes:
         by_joint[:, 3:, 3:] += 0.5 * bent + (bent @ curl - 2.0 * curl @ bent) / 6.0
 
         # Each branch on its base, in its own frame as it is turned.
-        own = of_lanes(self._loads['turned'], count)
+        own = of_slots(self._loads['turned'], count)
         turn = frame @ _rotations(quaternions_of(own))
         back = turn.swapaxes(1, 2)
         moving = _blocks(back, -back @ cross_matrices(place), 0.0, back)
         own = cross_matrices(own)
         seeing = _ONE - 0.5 * own + own @ own / 6.0
-        air = np.einsum('bji,bj->bi', turn, (frame @ self._in_lanes('air')[..., None])[..., 0])
+        air = np.einsum('bji,bj->bi', turn, (frame @ self._in_slots('air')[..., None])[..., 0])
         drag = self._drag(air)
-        push, couple = self._in_lanes('own_force'), self._in_lanes('coupling')
+        push, couple = self._in_slots('own_force'), self._in_slots('coupling')
         pushed, coupled = (
             cross_matrices(each) for each in (push, (couple @ push[..., None])[..., 0])
         )
@@ -146,12 +146,12 @@ class LoadSlopes:
         """Sum what branches that bear others have on their parents from the root on."""
         return summed_outward(self._on[self._bearing], self._levels, joints)
 
-    def _in_lanes(self, name: str) -> Floats:
-        return of_lanes(self._loads[name], len(self._branches))
+    def _in_slots(self, name: str) -> Floats:
+        return of_slots(self._loads[name], len(self._branches))
 
     def _drag(self, air: Floats) -> Floats:
         """Slope of `drag` by the wind on each branch, (b, 3), in its own frame, (b, 3, 3)."""
-        projector = self._in_lanes('projector')[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+        projector = self._in_slots('projector')[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
         across = (projector @ air[..., None])[..., 0]
         speed = np.sqrt(np.maximum((air * across).sum(axis=1), 0.0))[:, None, None]
         slope = speed * projector + _outer(across, across) / np.maximum(speed, 1e-12)

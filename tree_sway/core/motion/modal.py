@@ -27,7 +27,7 @@ from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
-from tree_sway.core.motion.records import Branches, LANES, Loads, WORK, Works
+from tree_sway.core.motion.records import Branches, Loads, WIDTH, WORK, Works
 from tree_sway.core.motion.response import centre_motion
 from tree_sway.core.motion.tree_passes import bent_loads, outward_pass, set_air, wind_forces
 from tree_sway.core.oscillators.propagator import fill_propagator
@@ -102,10 +102,10 @@ class ModalBank(Branchwise):
     def set_step(self, dt: float) -> None:
         """Refill what depends on the time step [s]."""
         self.set_time_step(dt)
-        block, lane = np.divmod(np.arange(len(self.branches)), LANES)
+        block, slot = np.divmod(np.arange(len(self.branches)), WIDTH)
         velocity = self.half[:, 6] + self.half[:, 7]
         compliance = np.einsum('bm,m->b', self._participation, velocity)  # not by threads
-        self.loads['compliance'][block, lane] = compliance
+        self.loads['compliance'][block, slot] = compliance
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -176,7 +176,7 @@ class ModalBank(Branchwise):
 
 
 def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[str, Floats]:
-    """Find what a `ModalBank` is made of, all of it arrays that can be kept."""
+    """Find what a `ModalBank` is made of, all of it arrays that can be stored."""
     # One mode after another, so that a loop over coordinates is one of vectors.
     shapes = np.ascontiguousarray(modes.shapes.T)
     return {
@@ -232,7 +232,7 @@ def wind_moments(
     """
     outward_pass(branches, work, x, v)
     for b in range(len(branches)):
-        here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
+        here, j, i = loads[b // WIDTH], b % WIDTH, branches[b].coordinate
         for c in range(branches[b].n_coordinates):
             here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
     set_air(work, loads, wx, wy, wz)

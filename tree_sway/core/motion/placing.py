@@ -6,7 +6,7 @@ Key rotations to poses: segments follow the key of their branch, branches join f
 A segment turns by its slope times the branch's rotation vector, so a branch bends as one smooth
 curve and keeps its length. The chord of the bent chain turns by a little less than the coordinate
 says (third cumulant of the slope along the branch); the coordinate is stretched by that much, so
-that the chord angle is kept. Beyond 30 degrees a tapered branch goes over to the slope of a load
+that the chord angle stays. Beyond 30 degrees a tapered branch goes over to the slope of a load
 at the tip.
 
 Sixteen branches at a time, parents before their children: how the bases are turned and where they
@@ -124,7 +124,7 @@ def place(
             else:
                 _bend(segment, scratch, head.n_rows, farthest, head.n_eights)
                 _join(segment, scratch, scale, head.is_joined, head.n_eights)
-            _write_poses(head, scratch, rank, segment.n_lanes, out)
+            _write_poses(head, scratch, rank, segment.n_slots, out)
 
 
 @part
@@ -136,7 +136,7 @@ def _read_parents(
     key, parent_key, carrier = scratch.key, scratch.parent_key, scratch.carrier
     base, parents, on = scratch.parent_base, head.parent, head.base_segment
     own = head.coordinate
-    for j in range(8 * head.n_eights):  # lanes that are empty have the keys of the stem
+    for j in range(8 * head.n_eights):  # slots that are empty have the keys of the stem
         i = np.uintp(own[j])
         key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
     if parents[0] < 0:  # the stem, alone
@@ -146,7 +146,7 @@ def _read_parents(
             base[0, j], base[3, j], carrier[5, j], carrier[6, j] = cosine, sine, sine, cosine
             carrier[0, j], carrier[1, j], carrier[2, j] = origin[0], origin[1], origin[2]
         return
-    for j in range(0, head.n_lanes, 4):  # what is read of lanes that are empty is of no account
+    for j in range(0, head.n_slots, 4):  # what is read of slots that are empty is of no account
         a, b, c, d = on[j], on[j + 1], on[j + 2], on[j + 3]
         take_four(out, a, b, c, d, 0, carrier, 0, j)
         take_four(out, a, b, c, d, 3, carrier, 3, j)
@@ -159,7 +159,7 @@ def _read_parents(
 
 @part
 def _take_further(x: Floats, first: Ints, keys: Floats, j: int) -> None:
-    """Read further coordinates of four lanes, and what lies behind those of who has fewer."""
+    """Read further coordinates of four slots, and what lies behind those of who has fewer."""
     for c in range(2, keys.shape[0], 4):
         row = min(c, keys.shape[0] - 4)
         take_four(x, first[j], first[j + 1], first[j + 2], first[j + 3], row, keys, row, j)
@@ -279,15 +279,15 @@ def _write_bases(head: Head, scratch: Head, bases: Floats) -> None:
 
 
 @part
-def _write_poses(head: Head, scratch: Head, rank: int, n_lanes: int, out: Floats) -> None:
+def _write_poses(head: Head, scratch: Head, rank: int, n_slots: int, out: Floats) -> None:
     """Write the poses of sixteen segments, each behind the one before it on its branch."""
     pose, first = scratch.pose, head.first
-    whole = n_lanes - n_lanes % 4
+    whole = n_slots - n_slots % 4
     for j in range(0, whole, 4):
         a, b, c, d = first[j] + rank, first[j + 1] + rank, first[j + 2] + rank, first[j + 3] + rank
         put_four(pose, 0, j, out, a, b, c, d, 0)
         put_four(pose, 3, j, out, a, b, c, d, 3)
-    for j in range(whole, n_lanes):
+    for j in range(whole, n_slots):
         for row in range(7):
             out[first[j] + rank, row] = pose[row, j]
 
@@ -361,7 +361,7 @@ def _bend(segment: Segment, scratch: Head, n_rows: int, farthest: float, n_eight
             half[0, j], half[1, j], half[2, j] = hx, hy, hz
             angle[j] = hx * hx + hy * hy + hz * hz
     else:
-        # All rows that there is room for: a count known when compiled lets the lanes be a vector.
+        # All rows that there is room for: a count known when compiled lets the slots be a vector.
         for j in range(8 * n_eights):
             slope = blend[j] * (segment.tip_slope[j] - segment.slope[j])
             hx, hy, hz = slope * half_turn[0, j], slope * half_turn[1, j], slope * half_turn[2, j]

@@ -8,7 +8,7 @@ together; a kernel takes a record array as one argument, where each plain array 
 0.2 us. `fill_records` is the one that writes what stays.
 
 Segments follow their branch and not each other, so those at the same place in sixteen branches are
-computed at once: a record holds sixteen lanes, one per branch, and distances within it are
+computed at once: a record holds sixteen slots, one per branch, and distances within it are
 constants that let the compiler use vectors. The records of sixteen branches, from base to tip,
 make a block; parents are in earlier blocks than their children. The wind load is found for sixteen
 branches at once too, in the order of the branches.
@@ -29,7 +29,7 @@ import numpy as np
 from tree_sway.core.arrays import fields_of, Floats, Ints, Records, RecordsOf, Singles
 from tree_sway.core.branch.shapes import MAX_COORDINATES
 
-LANES = 16
+WIDTH = 16
 
 N_AZIMUTHS, N_LEVELS = 24, 7
 """Azimuths of the wind and levels of the lean in the table."""
@@ -62,7 +62,7 @@ class Branch:
     coupling: Annotated[Floats, 3, 3]  # its moment about the root of the tree per force [m]
     projector: Annotated[Floats, 6]  # mean of 1 - t t^T: xx, yy, zz, xy, xz, yz
     block: int  # record of its first segment
-    lane: int  # of all its segments
+    slot: int  # of all its segments
     steepest: Annotated[Floats, 'rows']  # square of the most a unit of each turns it by
     skew: float  # third cumulant of its slope shape, over 6
     tip_skew: float  # the same of the tip-load shape
@@ -75,13 +75,13 @@ class Branch:
 class Segment:
     """All that placing needs to know of one segment of each of sixteen branches."""
 
-    slope: Annotated[Floats, LANES]  # by which a plain branch is drawn
-    tip_slope: Annotated[Floats, LANES]  # of the shape under a load at the tip
-    chord: Annotated[Floats, 3, LANES]  # from its start to the next one's start, at rest
-    reach: Annotated[Floats, 3, LANES]  # the same in its own frame
-    rest: Annotated[Floats, 4, LANES]  # orientation at rest, w x y z
-    turn: Annotated[Floats, 'rows', 'axes', LANES]  # rotation vector per unit of each coordinate
-    n_lanes: int  # how many of the sixteen have a segment here, the first ones
+    slope: Annotated[Floats, WIDTH]  # by which a plain branch is drawn
+    tip_slope: Annotated[Floats, WIDTH]  # of the shape under a load at the tip
+    chord: Annotated[Floats, 3, WIDTH]  # from its start to the next one's start, at rest
+    reach: Annotated[Floats, 3, WIDTH]  # the same in its own frame
+    rest: Annotated[Floats, 4, WIDTH]  # orientation at rest, w x y z
+    turn: Annotated[Floats, 'rows', 'axes', WIDTH]  # rotation vector per unit of each coordinate
+    n_slots: int  # how many of the sixteen have a segment here, the first ones
 
 
 class Head:
@@ -89,51 +89,51 @@ class Head:
 
     block: int  # first record of their segments
     n_records: int
-    n_lanes: int
-    n_eights: int  # of lanes, the last ones with empty ones
-    n_bearing: int  # lanes up to the last that others sit on
+    n_slots: int
+    n_eights: int  # of slots, the last ones with empty ones
+    n_bearing: int  # slots up to the last that others sit on
     n_rows: int  # most coordinates that one of them has; 2 where all are plain
     n_parent_rows: int  # the same of their parents
     is_joined: int  # whether each segment starts where the one before ends
     is_at_axes: int  # whether they sit on the axes of their base segments
     # As in `BRANCH`:
-    branch: Annotated[Ints, LANES]
-    parent: Annotated[Ints, LANES]
-    coordinate: Annotated[Ints, LANES]
-    base_segment: Annotated[Ints, LANES]
-    first: Annotated[Ints, LANES]
-    frame: Annotated[Floats, 3, 3, LANES]
-    skew: Annotated[Floats, LANES]
-    tip_skew: Annotated[Floats, LANES]
-    steepest: Annotated[Floats, 'rows', LANES]
-    last: Annotated[Floats, LANES]  # of its coordinates, from its first
-    parent_coordinate: Annotated[Ints, LANES]
+    branch: Annotated[Ints, WIDTH]
+    parent: Annotated[Ints, WIDTH]
+    coordinate: Annotated[Ints, WIDTH]
+    base_segment: Annotated[Ints, WIDTH]
+    first: Annotated[Ints, WIDTH]
+    frame: Annotated[Floats, 3, 3, WIDTH]
+    skew: Annotated[Floats, WIDTH]
+    tip_skew: Annotated[Floats, WIDTH]
+    steepest: Annotated[Floats, 'rows', WIDTH]
+    last: Annotated[Floats, WIDTH]  # of its coordinates, from its first
+    parent_coordinate: Annotated[Ints, WIDTH]
     # Rotation of its base per unit of each of its parent's coordinates:
-    base_turn: Annotated[Floats, 'rows', 3, LANES]
-    offset: Annotated[Floats, 3, LANES]
+    base_turn: Annotated[Floats, 'rows', 3, WIDTH]
+    offset: Annotated[Floats, 3, WIDTH]
     # Scratch:
-    key: Annotated[Floats, 2, LANES]  # key rotation
-    parent_key: Annotated[Floats, 'rows', LANES]  # half of each parent's further ones
-    parent_base: Annotated[Floats, 8, LANES]  # bases of `place`
-    carrier: Annotated[Floats, 7, LANES]  # pose of the base segment
-    carrier_turn: Annotated[Floats, 3, LANES]  # half the rotation vector from the parent's base
-    base: Annotated[Floats, 8, LANES]  # the same of its own
-    blend: Annotated[Floats, LANES]  # how far it has gone over to the tip's slope
-    half_turn: Annotated[Floats, 3, LANES]  # half the rotation vector per unit of slope
-    half_key: Annotated[Floats, 'rows', LANES]  # half of each coordinate, stretched
-    square: Annotated[Floats, LANES]  # of the length of half_turn
-    swing: Annotated[Floats, 4, LANES]  # half_turn, then the base: what a sine is multiplied by
-    bound: Annotated[Floats, LANES]  # on the squared half turn of any segment
-    half: Annotated[Floats, 3, LANES]  # half the rotation vector of the segment
-    angle: Annotated[Floats, LANES]  # square of half an angle, its cosine, and its sine over it
-    cosine: Annotated[Floats, LANES]
-    sinc: Annotated[Floats, LANES]
-    next: Annotated[Floats, 3, LANES]  # where the segment after this one starts
-    pose: Annotated[Floats, 7, LANES]  # of the segment, in message order
+    key: Annotated[Floats, 2, WIDTH]  # key rotation
+    parent_key: Annotated[Floats, 'rows', WIDTH]  # half of each parent's further ones
+    parent_base: Annotated[Floats, 8, WIDTH]  # bases of `place`
+    carrier: Annotated[Floats, 7, WIDTH]  # pose of the base segment
+    carrier_turn: Annotated[Floats, 3, WIDTH]  # half the rotation vector from the parent's base
+    base: Annotated[Floats, 8, WIDTH]  # the same of its own
+    blend: Annotated[Floats, WIDTH]  # how far it has gone over to the tip's slope
+    half_turn: Annotated[Floats, 3, WIDTH]  # half the rotation vector per unit of slope
+    half_key: Annotated[Floats, 'rows', WIDTH]  # half of each coordinate, stretched
+    square: Annotated[Floats, WIDTH]  # of the length of half_turn
+    swing: Annotated[Floats, 4, WIDTH]  # half_turn, then the base: what a sine is multiplied by
+    bound: Annotated[Floats, WIDTH]  # on the squared half turn of any segment
+    half: Annotated[Floats, 3, WIDTH]  # half the rotation vector of the segment
+    angle: Annotated[Floats, WIDTH]  # square of half an angle, its cosine, and its sine over it
+    cosine: Annotated[Floats, WIDTH]
+    sinc: Annotated[Floats, WIDTH]
+    next: Annotated[Floats, 3, WIDTH]  # where the segment after this one starts
+    pose: Annotated[Floats, 7, WIDTH]  # of the segment, in message order
 
 
 class Work:
-    """What a step computes of a branch in between, kept from one step to the next."""
+    """What a step computes of a branch in between, stored from one step to the next."""
 
     # Of the base, in its own frame as it is turned:
     velocity: Annotated[Floats, 6]  # of its place, then its spin
@@ -154,41 +154,41 @@ class Load:
 
     n_rows: int  # the most coordinates that one of them has
     # As in `BRANCH`:
-    speed: Annotated[Floats, LANES]
-    area: Annotated[Floats, LANES]
-    spread: Annotated[Floats, LANES]
-    projector: Annotated[Floats, 6, LANES]
-    damping_mode: Annotated[Floats, 'rows', 3, LANES]
-    load_rotation: Annotated[Floats, 'rows', 3, LANES]
-    load_mode: Annotated[Floats, 'rows', 3, LANES]
-    along: Annotated[Floats, 3, LANES]  # its chord times its lever
-    coupling: Annotated[Floats, 3, 3, LANES]  # its moment about its base per force [m]
+    speed: Annotated[Floats, WIDTH]
+    area: Annotated[Floats, WIDTH]
+    spread: Annotated[Floats, WIDTH]
+    projector: Annotated[Floats, 6, WIDTH]
+    damping_mode: Annotated[Floats, 'rows', 3, WIDTH]
+    load_rotation: Annotated[Floats, 'rows', 3, WIDTH]
+    load_mode: Annotated[Floats, 'rows', 3, WIDTH]
+    along: Annotated[Floats, 3, WIDTH]  # its chord times its lever
+    coupling: Annotated[Floats, 3, 3, WIDTH]  # its moment about its base per force [m]
     # Set with the time step:
-    compliance: Annotated[Floats, LANES]  # velocity half a step after a unit of force [s/kg]
+    compliance: Annotated[Floats, WIDTH]  # velocity half a step after a unit of force [s/kg]
     # Set with the wind:
-    gust: Annotated[Floats, 3, LANES]  # by which its own wind differs from the tree's [m/s]
+    gust: Annotated[Floats, 3, WIDTH]  # by which its own wind differs from the tree's [m/s]
     # State half a step on, and what follows from it:
-    x: Annotated[Floats, 'rows', LANES]
-    v: Annotated[Floats, 'rows', LANES]
-    velocity: Annotated[Floats, 6, LANES]  # of the base, in its own frame as it is turned
-    air: Annotated[Floats, 3, LANES]  # its wind in that frame [m/s]
-    turned: Annotated[Floats, 3, LANES]  # rotation of what the wind sees from there
+    x: Annotated[Floats, 'rows', WIDTH]
+    v: Annotated[Floats, 'rows', WIDTH]
+    velocity: Annotated[Floats, 6, WIDTH]  # of the base, in its own frame as it is turned
+    air: Annotated[Floats, 3, WIDTH]  # its wind in that frame [m/s]
+    turned: Annotated[Floats, 3, WIDTH]  # rotation of what the wind sees from there
     # What the last force took off the relative wind, over the compliance [N]:
-    drag_impulse: Annotated[Floats, 3, LANES]
-    own_force: Annotated[Floats, 3, LANES]  # in the frame of the branch as it is turned
-    force: Annotated[Floats, 3, LANES]  # the same in that of its base
-    moment: Annotated[Floats, 3, LANES]  # about the base, in its frame [N m]
-    load: Annotated[Floats, 'loads', LANES]  # along b, then on each coordinate [N m]
+    drag_impulse: Annotated[Floats, 3, WIDTH]
+    own_force: Annotated[Floats, 3, WIDTH]  # in the frame of the branch as it is turned
+    force: Annotated[Floats, 3, WIDTH]  # the same in that of its base
+    moment: Annotated[Floats, 3, WIDTH]  # about the base, in its frame [N m]
+    load: Annotated[Floats, 'loads', WIDTH]  # along b, then on each coordinate [N m]
 
 
 class Oscillators(Load):
     """Oscillators of sixteen branches that follow each other, and the wind load on them."""
 
-    now_x: Annotated[Floats, 2, LANES]
-    now_v: Annotated[Floats, 2, LANES]
-    whole: Annotated[Floats, 8, LANES]  # rows of the propagator of a step
-    half: Annotated[Floats, 6, LANES]  # of half a step under a constant load
-    guard: Annotated[Floats, 3, LANES]  # rows of `two_axis.guards`
+    now_x: Annotated[Floats, 2, WIDTH]
+    now_v: Annotated[Floats, 2, WIDTH]
+    whole: Annotated[Floats, 8, WIDTH]  # rows of the propagator of a step
+    half: Annotated[Floats, 6, WIDTH]  # of half a step under a constant load
+    guard: Annotated[Floats, 3, WIDTH]  # rows of `two_axis.guards`
 
 
 class Table:

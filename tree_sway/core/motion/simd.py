@@ -3,9 +3,9 @@
 """
 What compilers do not make vectors of by themselves.
 
-A branch's pose lies in one row, sixteen branches are computed in lanes: number by number, carrying
+A branch's pose lies in one row, sixteen branches are computed in slots: number by number, carrying
 them over takes longer than computing them. And the shapes of a tree of many branches are its
-largest table: each is read once, kept in single precision and summed in double.
+largest table: each is read once, stored in single precision and summed in double.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ TOGETHER = 64
 
 
 def put_four(
-    lanes: Any, row: int, lane: int, array: Any, a: int, b: int, c: int, d: int, first: int
+    slots: Any, row: int, slot: int, array: Any, a: int, b: int, c: int, d: int, first: int
 ) -> None:
     """
-    Write four rows of four lanes, from a row and lane on, to rows a to d from an element on.
+    Write four rows of four slots, from a row and slot on, to rows a to d from an element on.
 
     All lie in one piece.
     """
-    for to, j in ((a, lane), (b, lane + 1), (c, lane + 2), (d, lane + 3)):
-        array[to, first : first + 4] = lanes[row : row + 4, j]
+    for to, j in ((a, slot), (b, slot + 1), (c, slot + 2), (d, slot + 3)):
+        array[to, first : first + 4] = slots[row : row + 4, j]
 
 
 def take_four(
-    array: Any, a: int, b: int, c: int, d: int, first: int, lanes: Any, row: int, lane: int
+    array: Any, a: int, b: int, c: int, d: int, first: int, slots: Any, row: int, slot: int
 ) -> None:
     """Read what `put_four` writes, or four numbers each of an array (n,) from an element on."""
-    for of, j in ((a, lane), (b, lane + 1), (c, lane + 2), (d, lane + 3)):
+    for of, j in ((a, slot), (b, slot + 1), (c, slot + 2), (d, slot + 3)):
         rows = array[of] if array.ndim == 2 else array[of:]
-        lanes[row : row + 4, j] = rows[first : first + 4]
+        slots[row : row + 4, j] = rows[first : first + 4]
 
 
 def write_past_caches(of: Any, into: Any) -> None:
@@ -103,14 +103,14 @@ if not WHY_PLAIN:
         return mixed(ab, cd, low), mixed(ba, dc, low), mixed(ab, cd, high), mixed(ba, dc, high)
 
     def _carried(is_put: bool) -> Any:
-        def carry(typing, lanes, row, lane, array, a, b, c, d, first):  # type: ignore[no-untyped-def]  # noqa: E501
+        def carry(typing, slots, row, slot, array, a, b, c, d, first):  # type: ignore[no-untyped-def]  # noqa: E501
             def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
                 kinds = signature.args
-                lanes, row, lane, array, *rows, first = values
+                slots, row, slot, array, *rows, first = values
                 of = [
                     _place(
-                        context, builder, kinds[0], lanes,
-                        builder.add(row, row.type(k)), lane,
+                        context, builder, kinds[0], slots,
+                        builder.add(row, row.type(k)), slot,
                     )
                     for k in range(4)
                 ]  # fmt: skip
@@ -126,7 +126,7 @@ if not WHY_PLAIN:
                 return context.get_dummy_value()
 
             whole = types.intp
-            given = (lanes, whole, whole, array, whole, whole, whole, whole, whole)
+            given = (slots, whole, whole, array, whole, whole, whole, whole, whole)
             return types.none(*given), generate
 
         return intrinsic(carry)
@@ -134,15 +134,15 @@ if not WHY_PLAIN:
     _put, _take = _carried(True), _carried(False)
 
     @overload(put_four, inline='always')
-    def _put_four(lanes, row, lane, array, a, b, c, d, first):  # type: ignore[no-untyped-def]
-        return lambda lanes, row, lane, array, a, b, c, d, first: _put(
-            lanes, row, lane, array, a, b, c, d, first
+    def _put_four(slots, row, slot, array, a, b, c, d, first):  # type: ignore[no-untyped-def]
+        return lambda slots, row, slot, array, a, b, c, d, first: _put(
+            slots, row, slot, array, a, b, c, d, first
         )
 
     @overload(take_four, inline='always')
-    def _take_four(array, a, b, c, d, first, lanes, row, lane):  # type: ignore[no-untyped-def]
-        return lambda array, a, b, c, d, first, lanes, row, lane: _take(
-            lanes, row, lane, array, a, b, c, d, first
+    def _take_four(array, a, b, c, d, first, slots, row, slot):  # type: ignore[no-untyped-def]
+        return lambda array, a, b, c, d, first, slots, row, slot: _take(
+            slots, row, slot, array, a, b, c, d, first
         )
 
     _LINE = ir.VectorType(ir.DoubleType(), 8)

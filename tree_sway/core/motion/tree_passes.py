@@ -16,7 +16,7 @@ from __future__ import annotations
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import part
 from tree_sway.core.motion.drag import drag
-from tree_sway.core.motion.records import Branches, LANES, Load, Loads, Works
+from tree_sway.core.motion.records import Branches, Load, Loads, WIDTH, Works
 from tree_sway.core.rotation import product, quaternion, rotated, turned
 
 
@@ -80,7 +80,7 @@ def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
 def set_air(work: Works, loads: Loads, wx: float, wy: float, wz: float) -> None:
     """Give every branch the wind [m/s] that blows at it, as its turned base sees it."""
     for b in range(len(work)):
-        here, j, q = loads[b // LANES], b % LANES, work[b].attitude
+        here, j, q = loads[b // WIDTH], b % WIDTH, work[b].attitude
         speed = here.speed[j]
         here.air[0, j], here.air[1, j], here.air[2, j] = rotated(
             q[0], -q[1], -q[2], -q[3], speed * (wx + here.gust[0, j]),
@@ -114,16 +114,16 @@ def wind_forces(loads: Loads, per_speed_squared: float) -> None:
             here.damping_mode, here.load_rotation, here.projector, here.x, here.v,
         )  # fmt: skip
         force, own_force, free = here.force, here.own_force, here.moment
-        for j in range(LANES):
+        for j in range(WIDTH):
             for k in range(3):
                 turn[k, j] = lean[0, k, j] * x[0, j] + lean[1, k, j] * x[1, j]
                 free[k, j] = flow[0, k, j] * v[0, j] + flow[1, k, j] * v[1, j]
         for c in range(2, here.n_rows):
             for k in range(3):
-                for j in range(LANES):
+                for j in range(WIDTH):
                     turn[k, j] += lean[c, k, j] * x[c, j]
                     free[k, j] += flow[c, k, j] * v[c, j]
-        for j in range(LANES):
+        for j in range(WIDTH):
             tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
             ux, uy, uz = air[0, j] - speed[0, j], air[1, j] - speed[1, j], air[2, j] - speed[2, j]
             ux, uy, uz = turned(-tx, -ty, -tz, ux, uy, uz)
@@ -165,7 +165,7 @@ def own_loads(loads: Loads) -> None:
     for block in range(len(loads)):
         here = loads[block]
         force, push, along, load = here.force, here.load_mode, here.along, here.load
-        for j in range(LANES):
+        for j in range(WIDTH):
             fx, fy, fz = force[0, j], force[1, j], force[2, j]
             load[0, j] = along[0, j] * fx + along[1, j] * fy + along[2, j] * fz
             load[1, j] = push[0, 0, j] * fx + push[0, 1, j] * fy + push[0, 2, j] * fz
@@ -192,7 +192,7 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
     for block in range(len(loads)):
         _turned_loads(loads[block])
     for b in range(len(branches)):
-        here, j, i = loads[b // LANES], b % LANES, branches[b].coordinate
+        here, j, i = loads[b // WIDTH], b % WIDTH, branches[b].coordinate
         for c in range(branches[b].n_coordinates):
             moment[i + c] = here.load[1 + c, j]
         wrench = work[b].wrench
@@ -235,7 +235,7 @@ def _turned_loads(loads: Load) -> None:
     """Turn the wind's forces on sixteen branches into loads and moments about their bases."""
     force, push, load, couple = loads.own_force, loads.load_mode, loads.load, loads.coupling
     turn, moment = loads.turned, loads.moment
-    for j in range(LANES):
+    for j in range(WIDTH):
         fx, fy, fz = force[0, j], force[1, j], force[2, j]
         load[1, j] = push[0, 0, j] * fx + push[0, 1, j] * fy + push[0, 2, j] * fz
         load[2, j] = push[1, 0, j] * fx + push[1, 1, j] * fy + push[1, 2, j] * fz
@@ -246,6 +246,6 @@ def _turned_loads(loads: Load) -> None:
             couple[2, 0, j] * fx + couple[2, 1, j] * fy + couple[2, 2, j] * fz,
         )  # fmt: skip
     for c in range(2, loads.n_rows):
-        for j in range(LANES):
+        for j in range(WIDTH):
             fx, fy, fz = force[0, j], force[1, j], force[2, j]
             load[1 + c, j] = push[c, 0, j] * fx + push[c, 1, j] * fy + push[c, 2, j] * fz

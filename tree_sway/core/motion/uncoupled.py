@@ -24,9 +24,9 @@ from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.records import (
     Banks,
     Branches,
-    LANES,
     OSCILLATORS,
     Oscillators,
+    WIDTH,
     WORK,
     Works,
 )
@@ -75,11 +75,11 @@ class UncoupledBank(Branchwise):
         fill_guards(self.inertia, self.stiffness, dt, LOAD_MAX, guard)
         constant = half[:, [0, 1, 2, 4, 5, 6]]
         constant[:, [2, 5]] += half[:, [3, 7]]
-        block, lane = np.divmod(np.arange(n), LANES)
+        block, slot = np.divmod(np.arange(n), WIDTH)
         flow = np.square(self.branches['damping_mode'][:, :2]).sum(axis=(1, 2)) / 2.0
         for name, rows in (('whole', whole), ('half', constant), ('guard', guard)):
-            self.loads[name][block, :, lane] = rows
-        self.loads['compliance'][block, lane] = flow * constant[:, 5]
+            self.loads[name][block, :, slot] = rows
+        self.loads['compliance'][block, slot] = flow * constant[:, 5]
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -126,7 +126,7 @@ def _advance(
     x, v = state[0], state[1]
     n = len(branches)
     for b in range(n):
-        here, j = banks[b // LANES], b % LANES
+        here, j = banks[b // WIDTH], b % WIDTH
         for k in range(2):
             here.now_x[k, j], here.now_v[k, j] = x[2 * b + k], v[2 * b + k]
     for block in range(len(banks)):
@@ -138,7 +138,7 @@ def _advance(
     for block in range(len(banks)):
         clamped += _step(banks[block])
     for b in range(n):
-        here, j = banks[b // LANES], b % LANES
+        here, j = banks[b // WIDTH], b % WIDTH
         for k in range(3):
             work[b].force[k] = here.force[k, j]
         for k in range(2):
@@ -152,7 +152,7 @@ def _to_middle(bank: Oscillators) -> None:
     """State of sixteen branches half a step on, under the last step's load."""
     x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
     middle_x, middle_v = bank.x, bank.v
-    for j in range(LANES):
+    for j in range(WIDTH):
         mx, my = true_force(x[0, j], x[1, j], load[0, j], load[1, j], load[2, j])
         middle_x[0, j], middle_x[1, j], _ = within_guard(
             h[0, j] * x[0, j] + h[1, j] * v[0, j] + h[2, j] * mx,
@@ -167,7 +167,7 @@ def _step(bank: Oscillators) -> int:
     """Step sixteen branches; return how many loads were clamped."""
     x, v, load, c, g = bank.now_x, bank.now_v, bank.load, bank.whole, bank.guard
     clamped = 0
-    for j in range(LANES):
+    for j in range(WIDTH):
         x[0, j], x[1, j], v[0, j], v[1, j], over = step_branch(
             x[0, j], x[1, j], v[0, j], v[1, j], load[0, j], load[1, j], load[2, j],
             c[0, j], c[1, j], c[2, j], c[3, j], c[4, j], c[5, j], c[6, j], c[7, j],

@@ -270,7 +270,7 @@ def _advance(
 
 @fused
 def step_in_wind(
-    tables: Tables, time_steps: TimeSteps, instances: Instances, limits: Floats, kept: Floats,
+    tables: Tables, time_steps: TimeSteps, instances: Instances, limits: Floats, stored: Floats,
     x: float, y: float, z: float,
 ) -> int:  # fmt: skip
     """
@@ -282,7 +282,7 @@ def step_in_wind(
         As of `step_instance`.
     limits
         Speed above which a wind is refused in [m/s], then C, N and C0 of a `DragLaw`, (4,).
-    kept
+    stored
         The wind of the last step in [m/s], (3,); written unless the new one is refused.
     x, y, z
         The wind in [m/s].
@@ -295,8 +295,8 @@ def step_in_wind(
     """
     refused = 1
     if math.sqrt(x * x + y * y + z * z) <= limits[0]:
-        refused, kept[0], kept[1], kept[2] = 0, x, y, z
-    x, y, z = kept[0], kept[1], kept[2]
+        refused, stored[0], stored[1], stored[2] = 0, x, y, z
+    x, y, z = stored[0], stored[1], stored[2]
     load = pressure(math.sqrt(x * x + y * y + z * z), limits[1], limits[2], limits[3])
     return refused + 2 * step_instance(
         tables[0], time_steps[0], instances[0], False, x, y, z, load

@@ -81,10 +81,10 @@ class WindBasisTable:
     """
 
     @classmethod
-    def of_arrays(cls, kept: Mapping[str, Any]) -> WindBasisTable:
-        """Return the table whose ``record`` is among arrays that were kept."""
+    def of_arrays(cls, stored: Mapping[str, Any]) -> WindBasisTable:
+        """Return the table whose ``record`` is among arrays that were stored."""
         made = object.__new__(cls)
-        made.record = kept['table']
+        made.record = stored['table']
         return made
 
     def __init__(

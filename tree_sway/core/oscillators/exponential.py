@@ -5,7 +5,7 @@ Divided differences of the exponential at 0, 0 and a pair of eigenvalues, withou
 
 The pair is mu = -alpha +- sqrt(delta), delta = alpha^2 - kappa, real or complex. Three ways, each
 where it loses no digits: the Taylor series of small pairs, differences of phi functions for real
-pairs far apart, closed forms for the rest. The phase of a lightly damped pair is kept in
+pairs far apart, closed forms for the rest. The phase of a lightly damped pair stays in
 double-double, so that a thousand turns in one step are as exact as one (Dekker 1971, A
 floating-point technique for extending the available precision).
 """

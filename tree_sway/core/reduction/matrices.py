@@ -207,7 +207,7 @@ class _Blocks:
             self.values.append(values.ravel())
 
     def symmetric(self, shape: tuple[int, int]) -> Any:
-        from scipy import sparse  # it takes long to load, and a set-up that is kept needs none
+        from scipy import sparse  # it takes long to load, and a set-up that is stored needs none
 
         entries = np.concatenate(self.values)
         where = np.concatenate(self.rows), np.concatenate(self.columns)

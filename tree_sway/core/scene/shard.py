@@ -16,7 +16,7 @@ def dealt(scene: Scene, shard: int = 0, shards: int = 1) -> Scene:
     """
     Return the trees of one shard, from 0 on: a run of the scene's, as many in each.
 
-    Names and order are kept, so that the pose blocks of all shards, one after another, are that of
+    Names and order stay, so that the pose blocks of all shards, one after another, are that of
     the whole. All time gusts from one place: the anemometer, or the first tree of the scene.
 
     Raises

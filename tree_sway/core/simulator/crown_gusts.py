@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.motion.plain.numpy_passes import into_lanes
+from tree_sway.core.motion.plain.numpy_passes import into_slots
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind
@@ -47,7 +47,7 @@ class CrownGusts:
         """
         apart = self.wind.push(x, y, z, dt)
         if self._loads is not None:
-            into_lanes(apart[self._delays.of_branch], self._loads['gust'])
+            into_slots(apart[self._delays.of_branch], self._loads['gust'])
             return x, y, z
         ax, ay, az = (self._delays.share @ apart).tolist()
         return x + ax, y + ay, z + az

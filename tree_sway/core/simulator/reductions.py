@@ -172,11 +172,11 @@ class TreeReductions:
             same = np.where(cut.share == 1.0, cut.branch, -1)
             beams = self._beams_of(cut, (self._beams, same))
         parent = cut.tree.branch_parent[1:]
-        goes_on = cut.branch[parent] == cut.branch[1:]
+        continued = cut.branch[parent] == cut.branch[1:]
         models = beams.models(
             carries=True,
             enriched=beams.enriched(self.settings.enrich),
-            twisting=frozenset(parent[goes_on].tolist() if self.settings.enrich != 'none' else ()),
+            twisting=frozenset(parent[continued & (self.settings.enrich != 'none')].tolist()),
         )
         return self._reduced(cut, models, carries=True)
 

@@ -43,7 +43,7 @@ class Counts:
     """
     What became of the steps since the start.
 
-    ``refused``: the wind was not finite or faster than the limit, and the one before was kept;
+    ``refused``: the wind was not finite or faster than the limit, and the last one goes on;
     ``clamped``: loads at the limit of the model; ``restarted``: the motion was not finite, and the
     tree continued from rest; ``refused_pushes``: calls of `SwaySimulator.push` that were refused.
     """
@@ -234,7 +234,7 @@ class SwaySimulator:
         Returns
         -------
         int
-            0, or the sum of `WIND_REFUSED` (not finite or too fast: the wind before is kept),
+            0, or the sum of `WIND_REFUSED` (not finite or too fast: the last wind goes on),
             `LOAD_CLAMPED` (a load beyond what the model follows was clamped) and
             `RESTARTED` (the motion was not finite: the tree goes on from rest).
 

@@ -3,5 +3,5 @@
 """
 What a tree is at one moment, as few numbers.
 
-They are coordinates in a basis of the key rotations; states of them are kept and set.
+They are coordinates in a basis of the key rotations; states of them are stored and set.
 """

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-All that a simulator carries from one step to the next, to be kept and set again.
+All that a simulator carries from one step to the next, to be stored and set again.
 
 A simulator that is set to a state goes on bit for bit as the one that gave it. A state says which
 tree, settings and model it belongs to, by a digest of all of them, and is refused by any other.

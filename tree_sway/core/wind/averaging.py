@@ -9,7 +9,7 @@ arrive after the solver has passed their stamp. The solver gets the exact mean o
 its step, which keeps second order where a sample of it would not.
 
 What the solver has been given is never redrawn, so that nothing jumps, whatever comes late, early
-or not at all: over a short dropout the last wind is kept; a long one decays to calm; after either,
+or not at all: over a short dropout the last wind goes on; a long one decays to calm; after either,
 what was given fades over into the new samples. Every mean is one of samples and of calm, and never
 beyond them.
 Times are those of one clock, handed in by the caller; it may jump ahead, and begins again with

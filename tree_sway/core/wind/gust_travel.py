@@ -8,7 +8,7 @@ at x feels ``U(t - x . w / Uc)``: w is the direction of the mean wind and Uc the
 gusts travel, the mean speed itself over open ground and up to 1.8 of it over a closed canopy
 (Raupach, Finnigan & Brunet 1996). Waves that run through a stand follow from that alone.
 
-The wind is kept as its run, the displacement of the air since the start, at the end of every step:
+The wind is stored as its run, the displacement of the air from the start to the end of a step:
 the mean over any span is then the difference of two runs over the span. As the mean wind turns or
 freshens, delays follow so slowly that for every tree time goes on.
 """
@@ -59,8 +59,8 @@ class GustHistory:
     memory
         Longest delay in [s].
     capacity
-        Times kept. Steps shorter than a part of ``memory`` are joined, so that the history is that
-        long whatever the rate: the default keeps every step of 60 s at up to 500 steps per second.
+        Times stored. Steps shorter than a part of ``memory`` are joined, so that the history is as
+        long at any rate: the default keeps every step of 60 s at up to 500 steps per second.
 
     Raises
     ------

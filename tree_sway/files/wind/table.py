@@ -73,10 +73,10 @@ def read_table_wind(
 def _toa5(lines: list[str], source: str) -> TextTable:
     """Table below the four header lines of a logger."""
     split = partial(split_row, separator=',')
-    kept = [number for number, line in enumerate(lines[4:], start=5) if line.strip()]
-    texts = [lines[number - 1] for number in kept]
+    stored = [number for number, line in enumerate(lines[4:], start=5) if line.strip()]
+    texts = [lines[number - 1] for number in stored]
     names, units = tuple(split(lines[1])), tuple(split(lines[2]))
-    return TextTable(names, kept, texts, split, source, 2, 3, units)
+    return TextTable(names, stored, texts, split, source, 2, 3, units)
 
 
 def _wind(
@@ -124,13 +124,13 @@ def _wind(
         against = 1.0 if convention == 'to' else -1.0
         velocity = against * (speed * np.array([np.sin(bearing), np.cos(bearing), 0.0 * speed])).T
         convention, yaw = 'to', 0.0
-    kept = np.flatnonzero(good)
-    seconds, epoch = table.seconds(_stamps(table, clock, kept.tolist()), clock.factor)
-    rows.number = array('q', [table.numbers[row] for row in kept.tolist()])
-    rows.velocity, rows.time = array('d', velocity[kept].ravel()), array('d', seconds)
+    stored = np.flatnonzero(good)
+    seconds, epoch = table.seconds(_stamps(table, clock, stored.tolist()), clock.factor)
+    rows.number = array('q', [table.numbers[row] for row in stored.tolist()])
+    rows.velocity, rows.time = array('d', velocity[stored].ravel()), array('d', seconds)
     gust = table.find('gust')
     if gust is not None:
-        rows.gust = table.values([gust.index])[kept, 0] * gust.factor
+        rows.gust = table.values([gust.index])[stored, 0] * gust.factor
     record = rows.record(epoch=epoch, yaw=yaw, direction_convention=convention or 'to')
     return filled_means(record, turbulence, seed)
 

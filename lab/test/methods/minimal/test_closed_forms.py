@@ -55,8 +55,8 @@ def free(name, dt, steps=300):
 )
 def test_a_free_oscillator_keeps_the_energy_of_the_method(name, energy):
     h = 0.4
-    kept = energy(*free(name, h), h)
-    assert kept == pytest.approx(np.full(301, kept[0]), rel=1e-9)
+    stored = energy(*free(name, h), h)
+    assert stored == pytest.approx(np.full(301, stored[0]), rel=1e-9)
 
 
 @pytest.mark.parametrize('name', ['rk4', 'tr_bdf2', 'bdf2'])

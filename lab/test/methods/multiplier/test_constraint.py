@@ -97,9 +97,9 @@ def test_projection_is_the_shortest_way_in_the_mass_metric():
     project_velocity(CHAIN.table, state)
     assert g @ state[1] == pytest.approx(0.0, abs=1e-13)
     assert free @ (MASS * (state[1] - before[1])) == pytest.approx(0.0, abs=1e-13)
-    kept = state.copy()
+    stored = state.copy()
     project_velocity(CHAIN.table, state)
-    assert state == pytest.approx(kept, abs=1e-13), 'once there, it stays'
+    assert state == pytest.approx(stored, abs=1e-13), 'once there, it stays'
 
 
 def test_index_3_solution_satisfies_its_equations():

@@ -59,7 +59,7 @@ class GeneralizedAlpha(MultiplierMethod):
     rho
         Spectral radius at infinite frequency [-], 0 to 1: 0.8 keeps slow motion nearly undamped.
     from_old_acceleration
-        Start Newton's iteration from the old acceleration: kept to show why not.
+        Start Newton's iteration from the old acceleration: here to show why not.
 
     """
 

@@ -3,7 +3,7 @@
 """
 Banks of oscillators in plain numpy, for machines without a compiler: some 100 times slower.
 
-Each keeps the state of its compiled counterpart, in the same arrays, so that a state kept by one
+Each keeps the state of its compiled counterpart, in the same arrays, so that a state stored by one
 is taken by the other; they agree to rounding. They are the oracle of the kernels as well.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.motion.modal import ENOUGH, FARTHEST, ModalBank, MOST_TRIALS, MOST_TURN
-from tree_sway.core.motion.plain.numpy_passes import Bases, into_lanes, NumpyPasses, of_lanes
+from tree_sway.core.motion.plain.numpy_passes import Bases, into_slots, NumpyPasses, of_slots
 from tree_sway.core.motion.plain.numpy_rotation import two_axis_moment, within_guard
 from tree_sway.core.motion.uncoupled import UncoupledBank
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
@@ -35,7 +35,7 @@ class NumpyUncoupledBank(UncoupledBank):
         n = len(self.branches)
         names = ('whole', 'half', 'guard', 'compliance')
         self._whole, self._half, self._guard, self._compliance = (
-            of_lanes(self.loads[name], n) for name in names
+            of_slots(self.loads[name], n) for name in names
         )
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
@@ -43,8 +43,8 @@ class NumpyUncoupledBank(UncoupledBank):
         passes, n = self._passes, len(self.branches)
         x, v = self.x.reshape(-1, 2), self.v.reshape(-1, 2)
         load, impulse = (
-            of_lanes(self.loads['load'], n),
-            of_lanes(self.loads['drag_impulse'], n).copy(),
+            of_slots(self.loads['load'], n),
+            of_slots(self.loads['drag_impulse'], n).copy(),
         )
         none = np.zeros(n)
         moment = two_axis_moment(x, v, load, none, np.inf)
@@ -52,15 +52,15 @@ class NumpyUncoupledBank(UncoupledBank):
         middle_x = within_guard(h[:, 0] * x + h[:, 1] * v + h[:, 2] * moment)
         middle_v = h[:, 3] * x + h[:, 4] * v + h[:, 5] * moment
         base = Bases.at_rest(n)
-        wind = np.array([wx, wy, wz]) + of_lanes(self.loads['gust'], n)
+        wind = np.array([wx, wy, wz]) + of_slots(self.loads['gust'], n)
         force = passes.wind_forces(
             base, middle_x, middle_v, wind, per_speed_squared, self._compliance, impulse
         )
         force = passes.at_bases(middle_x, force)
         load = passes.own_loads(force)
         self.work['force'] = force
-        into_lanes(impulse, self.loads['drag_impulse'])
-        into_lanes(load, self.loads['load'])
+        into_slots(impulse, self.loads['drag_impulse'])
+        into_slots(load, self.loads['load'])
         return self._step(x, v, load)
 
     def _step(self, x: Floats, v: Floats, load: Floats) -> int:
@@ -106,9 +106,9 @@ class NumpyModalBank(ModalBank):
         eta, rate, force = self.modal[:3]
         moment, found = self.state[0], np.empty(self.state.shape[1])
         h, c = self.half.T, self.whole.T
-        impulse = of_lanes(self.loads['drag_impulse'], n).copy()
-        wind = np.array([wx, wy, wz]) + of_lanes(self.loads['gust'], n)
-        compliance = of_lanes(self.loads['compliance'], n)
+        impulse = of_slots(self.loads['drag_impulse'], n).copy()
+        wind = np.array([wx, wy, wz]) + of_slots(self.loads['gust'], n)
+        compliance = of_slots(self.loads['compliance'], n)
         tried: list[tuple[Floats, Floats]] = []
         for trial in range(MOST_TRIALS):
             x = _summed(h[0] * eta + h[1] * rate + (h[2] + h[3]) * force, self._shapes)
@@ -141,7 +141,7 @@ class NumpyModalBank(ModalBank):
             tried.append((missing, change))
             moment[:] = np.clip(moment + change * self.limit / LOAD_MAX, -self.limit, self.limit)
             force[:] = np.einsum('mi,i->m', self._shapes, moment)
-        into_lanes(impulse, self.loads['drag_impulse'])
+        into_slots(impulse, self.loads['drag_impulse'])
         force[:] = np.einsum('mi,i->m', self._shapes, moment)
         new_eta = c[0] * eta + c[1] * rate + (c[2] + c[3]) * force
         rate[:] = c[4] * eta + c[5] * rate + (c[6] + c[7]) * force

@@ -21,7 +21,7 @@ from tree_sway.core.motion.plain.numpy_rotation import (
     quaternions_of,
     turned_by,
 )
-from tree_sway.core.motion.records import LANES
+from tree_sway.core.motion.records import WIDTH
 from tree_sway.core.motion.response import levels_of
 
 
@@ -168,13 +168,13 @@ def cross_matrices(vectors: Floats) -> Floats:
     return matrices
 
 
-def of_lanes(field: Floats, count: int) -> Floats:
-    """Field of records in lanes, (blocks, ..., 16), as rows of branches, (count, ...)."""
+def of_slots(field: Floats, count: int) -> Floats:
+    """Field of records in slots, (blocks, ..., 16), as rows of branches, (count, ...)."""
     rows = np.moveaxis(field, -1, 1)
     return rows.reshape(-1, *rows.shape[2:])[:count]
 
 
-def into_lanes(rows: NDArray[Any], field: NDArray[Any]) -> None:
-    """Write rows of branches, (b, ...), into a field of records in lanes."""
-    block, lane = np.divmod(np.arange(len(rows)), LANES)
-    field[block, ..., lane] = rows
+def into_slots(rows: NDArray[Any], field: NDArray[Any]) -> None:
+    """Write rows of branches, (b, ...), into a field of records in slots."""
+    block, slot = np.divmod(np.arange(len(rows)), WIDTH)
+    field[block, ..., slot] = rows

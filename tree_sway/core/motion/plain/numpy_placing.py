@@ -39,16 +39,16 @@ class NumpyPlacing:
         begin = np.cumsum(counts) - counts
         rank = np.arange(int(counts.sum())) - begin[self._owner]
         self._begin, self._rows = begin, branches['first'][self._owner] + rank
-        at, lane = branches['block'][self._owner] + rank, branches['lane'][self._owner]
+        at, slot = branches['block'][self._owner] + rank, branches['slot'][self._owner]
         self._segment: dict[str, NDArray[Any]] = {
-            name: segments[name][at, ..., lane] for name in ('slope', 'tip_slope', 'chord', 'rest')
+            name: segments[name][at, ..., slot] for name in ('slope', 'tip_slope', 'chord', 'rest')
         }
         # x turns about e2 and y about -e1.
         e1, e2 = branches['frame'][self._owner, 1], branches['frame'][self._owner, 2]
         self._pair = np.stack([e2, -e1], axis=1)
         self._turn = self._segment['slope'][:, None, None] * self._pair
         if branches['load_mode'].shape[1] > 2:
-            self._turn = segments['turn'][at, ..., lane]
+            self._turn = segments['turn'][at, ..., slot]
         place = np.zeros(int(self._rows.max()) + 1, dtype=np.int64)
         place[self._rows] = np.arange(len(self._rows))
         self._on = place[np.maximum(branches['base_segment'], 0)]

@@ -30,7 +30,7 @@ def without_zero_length(cylinders: Cylinders, order: Ints) -> Cylinders:
     for index in order.tolist():
         above = parent[index]
         if above >= 0 and not keep[above]:
-            parent[index] = parent[above]  # which is one that is kept, as it came before
+            parent[index] = parent[above]  # which is one that stays, as it came before
             if continues is not None:
                 continues[index] &= continues[above]
     roots = np.flatnonzero(keep & (parent < 0))
