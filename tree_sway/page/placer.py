@@ -65,7 +65,7 @@ class Placer:
         """
         poses, row, first, key = np.empty((self.n_segments, 7)), 0, 0, 0
         number, turn = coordinates[len(self.description.scale) :].reshape(-1, 2).T
-        # Between frames of other keys there there is not one.
+        # Between frames of other keys nothing is pulled.
         number = np.where(np.abs(number - np.rint(number)) < 1e-6, np.rint(number), -1.0)
         for (x, y, z, yaw, scale), kind in self._trees:
             last, end = first + kind.matrix.shape[1], row + kind.n_segments
