@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.motion.exported_table import exported_table
+from tree_sway.core.motion.exported_table import exported_table, rounded
 from tree_sway.core.motion.wind_basis import WindBasisBank
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.simulator import SwaySimulator
@@ -36,8 +36,7 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
         branches, modes = bank.compliance
         for part, exact in (('branch', branches), ('shape', state.T @ modes @ state)):
             # To a share of 0.002, so that files are smaller.
-            rounded = exact.astype(np.float32).view(np.uint32) + 0x8000 & 0xFFFF0000
-            own[f'{part}_compliance'] = rounded.astype(np.uint32).view(np.float32)
+            own[f'{part}_compliance'] = rounded(exact, 16)
         arrays |= {f'{number}/{name}': array for name, array in own.items()}
         entries.append({**numbers, 'drag_law': list(model.drag_law)})
     count = sum(len(kind.numbers) for kind in kinds)

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.records import table_layout
 from tree_sway.core.motion.wind_basis import WindBasisBank
@@ -39,6 +39,9 @@ PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'standing', 'amo
 
 NUMBERS = ('degree', 'most_pressure', 'most_energy')
 
+_ROUNDED = {'standing': 8, 'load': 8, 'rows': 8, 'cross_damping': 16}
+"""Last bits that some are exported without: to 1.5e-5, and a bound to 0.4 %."""
+
 _LARGEST_STEP = 32767
 _QUANTISED = 12.0**-0.5
 """Root mean square of what rounding leaves out, over its step."""
@@ -58,7 +61,7 @@ def exported_table(bank: WindBasisBank) -> tuple[dict[str, float], dict[str, NDA
         name: np.asarray(table[name][..., :m] if table[name].shape[-1] == width else table[name])
         for name in PLAIN
     }
-    arrays = {name: array.astype(np.float32) for name, array in arrays.items()}
+    arrays = {name: rounded(array, _ROUNDED.get(name, 0)) for name, array in arrays.items()}
     arrays['own_damping'] = bank.modal.damping.astype(np.float32)
     root = np.sqrt(arrays['stiffness'].astype(np.float64))
     for name in SLOPES:
@@ -92,6 +95,13 @@ def table_of(
     return record
 
 
+def rounded(values: Floats, bits: int) -> Singles:
+    """Round to single precision without its last bits, at most 16, which then compress away."""
+    single = values.astype(np.float32).view(np.uint32).astype(np.uint64)
+    single += (1 << bits) >> 1
+    return (single >> bits << bits).astype(np.uint32).view(np.float32)
+
+
 def _factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
     """Rows (k, r) and shapes (r, m^2) whose product is the slopes (k, m^2) but for `LEFT_OUT`."""
     rows, sizes, shapes = np.linalg.svd(slopes, full_matrices=False)
@@ -100,4 +110,4 @@ def _factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
     scaled = sizes[:rank, None] * shapes[:rank]
     step = LEFT_OUT / 2.0 * float(np.linalg.norm(sizes)) / (_QUANTISED * scaled.size**0.5)
     step = max(step, float(np.abs(scaled).max()) / _LARGEST_STEP, 1e-300)
-    return (step * rows[:, :rank]).astype(np.float32), np.rint(scaled / step).astype('<i2')
+    return rounded(step * rows[:, :rank], _ROUNDED['rows']), np.rint(scaled / step).astype('<i2')
