@@ -18,7 +18,7 @@ os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
 PROFILE = Path(tree_sway_ros.__file__).parent / 'process' / 'discovery.xml'
 os.environ.setdefault('FASTRTPS_DEFAULT_PROFILES_FILE', str(PROFILE))
 
-DEADLINE = 10.0
+DEADLINE = 60.0
 
 TREE = """\
 segment,parent,branch,x0,y0,z0,x1,y1,z1,d0,d1

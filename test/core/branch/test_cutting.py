@@ -37,15 +37,3 @@ def test_a_stem_of_many_limbs_is_cut_though_it_does_not_turn():
     tree = kind_called('limbs16')
     pieces = pieces_by_turn(tree, np.zeros(tree.n_branches))
     assert pieces.tolist() == [-(-16 // CARRIED), *[1] * 16]
-
-
-def test_pieces_of_a_cut_branch_twist_but_the_last():
-    """A crooked branch twists as it bends; its straight pieces have a coordinate for it."""
-    reduced = SwaySimulator(kind_called('willow'), WOOD, model='branch').reductions.coupled
-    parent, twig = reduced.tree.branch_parent, reduced.branch
-    continued = np.isin(np.arange(len(twig)), parent[1:][twig[parent[1:]] == twig[1:]])
-    count = np.array([len(model.fields) for model in reduced.models])
-    plain = count <= 3  # the others are enriched
-    assert (plain & continued).any()
-    assert (count[plain & continued] == 3).all()
-    assert (count[plain & ~continued] == 2).all()

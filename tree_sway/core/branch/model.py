@@ -213,11 +213,7 @@ class TreeBeams:
         return self._blown[key]
 
     def models(
-        self,
-        *,
-        carries: bool,
-        enriched: frozenset[int] = frozenset(),
-        twisting: frozenset[int] = frozenset(),
+        self, *, carries: bool, enriched: frozenset[int] = frozenset()
     ) -> list[BranchModel]:
         """
         Model each branch; where two models of the sway do not differ, it is the same.
@@ -229,9 +225,6 @@ class TreeBeams:
             paper).
         enriched
             Branches that get further shapes and twists.
-        twisting
-            Branches that get a twist if they are not enriched: pieces of one that is cut. What
-            is crooked twists as it bends, its pieces are straight.
 
         Returns
         -------
@@ -240,11 +233,7 @@ class TreeBeams:
 
         """
         return [
-            self._model(
-                branch,
-                len(bare[3]) if carries else 0,
-                *(self._richness(branch) if branch in enriched else (1, int(branch in twisting))),
-            )
+            self._model(branch, len(bare[3]) if carries else 0, *self._richness(branch, enriched))
             for branch, bare in enumerate(self._bare)
         ]
 
@@ -295,8 +284,10 @@ class TreeBeams:
             self._known[key] = BranchModel(beam, drag_area, mass, shape, fields, children)
         return self._known[key]
 
-    def _richness(self, branch: int) -> tuple[int, int]:
-        """Pairs of an enriched branch, and further fields by what turns about its chord."""
+    def _richness(self, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
+        """Pairs of a branch, and further fields by what turns about its chord."""
+        if branch not in enriched:
+            return 1, 0
         return N_PAIRS, N_TURNS if self._tree.branch_parent[branch] < 0 else FEWER_TURNS
 
 

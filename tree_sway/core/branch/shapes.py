@@ -233,7 +233,7 @@ def _further(
         new = [[one for one in part if one is not None] for part in bent]
         found += [*new[0], *new[1]]
         sources, turning = [*new[0]], [*new[1]]
-    if n_pairs > 1 and len(carried.area) > 1:
+    if len(carried.area) > 1:
         apart = np.moveaxis(beam.curvature_in_space(_apart(beam, carried), shear_ratio), 2, 0)
         left = np.array([_energy_vector(beam, each, shear_ratio) for each in apart])
         whole = float(np.square(left).sum())

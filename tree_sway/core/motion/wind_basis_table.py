@@ -171,7 +171,7 @@ class WindBasisTable:
         and damping takes from both. Hanging twigs would flutter in gales.
         """
         circulating = 0.5 * (slopes - slopes.T)
-        scale = 1.0 / np.sqrt(damping * self._root)
+        scale = 1.0 / np.sqrt(np.maximum(damping, 1e-6 * self._root) * self._root)
         scaled = circulating * scale * scale[:, None]
         if float(np.linalg.norm(scaled)) <= _FLUTTER:  # no less than the norm that counts
             return np.zeros_like(slopes)

@@ -171,13 +171,8 @@ class TreeReductions:
         if cut.tree.n_branches > self.tree.n_branches:
             same = np.where(cut.share == 1.0, cut.branch, -1)
             beams = self._beams_of(cut, (self._beams, same))
-        parent = cut.tree.branch_parent[1:]
-        continued = cut.branch[parent] == cut.branch[1:]
-        models = beams.models(
-            carries=True,
-            enriched=beams.enriched(self.settings.enrich),
-            twisting=frozenset(parent[continued & (self.settings.enrich != 'none')].tolist()),
-        )
+        enriched = beams.enriched(self.settings.enrich)
+        models = beams.models(carries=True, enriched=enriched)
         return self._reduced(cut, models, carries=True)
 
     @cached_property
