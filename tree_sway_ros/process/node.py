@@ -233,7 +233,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
             self._closers.pop()()
 
     def destroy_node(self) -> None:
-        """Leave the graph at once; the state machine of rclpy would hold on until it is collected."""
+        """Leave the graph at once, and not when rclpy's state machine is collected."""
         super().destroy_node()
         if (machine := getattr(self, '_state_machine', None)) is not None:
             machine.destroy_when_not_in_use()
