@@ -6,11 +6,13 @@ import contextlib
 import faulthandler
 import functools
 import hashlib
+import importlib
 import os
 from pathlib import Path
 import random
 import sys
 import tempfile
+import threading
 import time
 
 # Before a participant is made: the profile counts for the whole process.
@@ -28,7 +30,7 @@ from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
 from tree_sway.core.simulator.simulator import SwaySimulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
 from tree_sway.errors import MissingDependencyError  # noqa: E402
-from tree_sway.set_up_files import SetUpFiles  # noqa: E402
+from tree_sway.set_up_files import SET_UPS, SetUpFiles  # noqa: E402
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)
@@ -39,6 +41,8 @@ settings.load_profile(os.environ.get('HYPOTHESIS_PROFILE', 'repeatable'))
 LAST_DOMAIN = 101
 """Of those whose ports are not handed out by the system."""
 
+
+CORE = Path(__file__).parent / 'test' / 'core'
 
 LONGEST, LONGEST_LONG = 300.0, 1500.0
 """Time that a test may take with its fixtures, and one that is marked `long` [s]."""
@@ -59,8 +63,37 @@ def pytest_runtest_protocol(item):
     """
     longest = LONGEST_LONG if item.get_closest_marker('long') else LONGEST
     faulthandler.dump_traceback_later(longest, exit=True, file=_errors)
-    yield
+    with contextlib.nullcontext() if CORE in item.path.parents else untraced():
+        yield
     faulthandler.cancel_dump_traceback_later()
+
+
+@contextlib.contextmanager
+def untraced():
+    """
+    Leave out the tracer of coverage, which makes all Python slower by a half.
+
+    The core is to be covered by its own tests.
+    """
+    tracer, of_threads = sys.gettrace(), threading.gettrace()
+    sys.settrace(None)
+    threading.settrace(None)
+    try:
+        yield
+    finally:
+        sys.settrace(tracer)
+        threading.settrace(of_threads)
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_collection():
+    """Collect untraced, but for what runs where modules of the core are imported."""
+    for path in sorted((Path(__file__).parent / 'tree_sway' / 'core').rglob('*.py')):
+        importlib.import_module(
+            '.'.join(path.relative_to(Path(__file__).parent).with_suffix('').parts)
+        )
+    with untraced():
+        yield
 
 
 @contextlib.contextmanager
@@ -89,17 +122,36 @@ def _claimed_domain():
     pytest.fail('all ROS domains are taken by other tests on this machine')
 
 
+class _SetUpsOfTests:
+    """More set-ups than the few that one folder holds."""
+
+    def __init__(self, folder):
+        self._folder = folder
+
+    def _files(self, digest):
+        place = self._folder / digest[:2]
+        place.mkdir(parents=True, exist_ok=True)
+        return SetUpFiles(place)
+
+    def read(self, digest):
+        return self._files(digest).read(digest)
+
+    def write(self, digest, arrays):
+        self._files(digest).write(digest, arrays)
+
+
 @pytest.fixture(scope='session', autouse=True)
 def set_ups_are_made_once(tmp_path_factory):
     """Keep the set-ups of trees for the tests that make the same ones, of all workers of a run."""
     base = tmp_path_factory.getbasetemp()
     folder = (base.parent if 'PYTEST_XDIST_WORKER' in os.environ else base) / 'set_ups'
-    folder.mkdir(exist_ok=True)
-    make, cache = SwaySimulator.__init__, SetUpFiles(folder)
+    make, cache = SwaySimulator.__init__, _SetUpsOfTests(folder)
 
     @functools.wraps(make)
     def make_from_cache(self, *arguments, **options):
-        make(self, *arguments, **{'cache': cache} | options)
+        if options.get('cache', SET_UPS) is SET_UPS:
+            options['cache'] = cache
+        make(self, *arguments, **options)
 
     SwaySimulator.__init__ = make_from_cache
     yield
@@ -144,13 +196,8 @@ def kernels_are_compiled_once(tmp_path_factory):
 
     @functools.wraps(compile_kernel)
     def compile_alone(self, signature):
-        tracer = sys.gettrace()
-        sys.settrace(None)
-        try:
-            with global_compiler_lock, alone(self, signature):
-                return compile_kernel(self, signature)
-        finally:
-            sys.settrace(tracer)
+        with untraced(), global_compiler_lock, alone(self, signature):
+            return compile_kernel(self, signature)
 
     Dispatcher.compile = compile_alone
     yield

@@ -60,9 +60,14 @@ class Chromium:
 
 
 class Browser:
-    """One page, with storage and cache of its own, in a given browser or one of its own."""
+    """
+    One page, with storage and cache of its own, in a given browser or one of its own.
 
-    def __init__(self, shared: Chromium | None = None) -> None:
+    A scale below 1 draws fewer pixels in the same layout.
+    """
+
+    def __init__(self, shared: Chromium | None = None, scale: float = 1.0) -> None:
+        self.scale = scale
         self._own = None if shared else Chromium()
         self._chromium = shared or self._own
         self._number = 0
@@ -128,15 +133,20 @@ class Browser:
             self.messages.append(json.dumps(details)[:600])
 
     async def open(  # noqa: A003
-        self, url: str, width: int = 1280, height: int = 800, dark: bool = False
+        self,
+        url: str,
+        width: int = 1280,
+        height: int = 800,
+        dark: bool = False,
+        scale: float | None = None,
     ) -> None:
-        """Open a page at a size and a colour scheme."""
+        """Open a page at a size, a colour scheme and a scale, which is the browser's if None."""
         self.requests = []
         scheme = {'name': 'prefers-color-scheme', 'value': 'dark' if dark else 'light'}
         await self.call('Emulation.setEmulatedMedia', features=[scheme])
         await self.call(
             'Emulation.setDeviceMetricsOverride',
-            width=width, height=height, deviceScaleFactor=1, mobile=width < 700,
+            width=width, height=height, deviceScaleFactor=scale or self.scale, mobile=width < 700,
         )  # fmt: skip
         await self.call('Page.navigate', url=url)
 

@@ -23,5 +23,5 @@ def one_chromium() -> Iterator[Chromium]:
 
 @pytest.fixture
 def browser_class(one_chromium: Chromium) -> Callable[[], Browser]:
-    """`Browser`, where there is a Chromium."""
-    return functools.partial(Browser, one_chromium)
+    """`Browser`, where there is a Chromium; without a graphics card every pixel costs time."""
+    return functools.partial(Browser, one_chromium, scale=0.5)

@@ -119,7 +119,8 @@ def test_three_draws_a_tree_that_sways(
 
     async def look() -> None:
         async with browser_class() as browser:
-            await browser.open(f'{files}/examples/web/{kind}.html?page={page.url}{more}', 640, 480)
+            address = f'{files}/examples/web/{kind}.html?page={page.url}{more}'
+            await browser.open(address, 640, 480, scale=1.0)
             await browser.until('window.example && example.stream.playout.received > 10')
             before = await browser.run('example.tip()')
             await browser.until(

@@ -112,7 +112,7 @@ def test_the_tree_is_drawn_where_it_projects(visit: Visit) -> None:
             assert (np.abs(near - beside).sum(axis=1) > 60).any(), (x, y)
         await browser.run("document.getElementById('control-pause').click()")
 
-    visit(script)
+    visit(script, scale=1.0)
 
 
 def test_it_moves_in_wind_and_is_still_when_paused(visit: Visit) -> None:
@@ -133,7 +133,7 @@ def test_it_moves_in_wind_and_is_still_when_paused(visit: Visit) -> None:
         await browser.run("document.getElementById('control-pause').click()")
         await browser.until("treeSway.state === 'live'")
 
-    visit(script)
+    visit(script, scale=1.0)
 
 
 def test_the_slider_moves_the_wind(live: Live, visit: Visit) -> None:
@@ -400,7 +400,7 @@ def test_a_stand_of_a_thousand_trees_is_drawn_and_moves(browser_class: Any) -> N
 
     async def whole(url: str) -> None:
         async with browser_class() as browser:
-            await browser.open(url)
+            await browser.open(url, scale=1.0)
             await browser.until("window.treeSway && treeSway.state === 'live' && treeSway.fps > 0")
             assert await browser.run('treeSway.scene.detail.trees.length') == 1000
             assert await browser.run('treeSway.scene.description.nSegments') > 1_000_000
@@ -449,4 +449,4 @@ def test_it_fits_a_phone(visit: Visit, dark: bool) -> None:
         back = picture(await browser.screenshot())[200, 5].mean()
         assert (back < 80) == dark
 
-    visit(script, width=390, height=844, dark=dark)
+    visit(script, width=390, height=844, dark=dark, scale=1.0)
