@@ -12,8 +12,7 @@ import { Stand } from "./sway.js";
 
 /** Playout delay of a scene that is solved here [ms]. */
 const OWN_DELAY = 40;
-/** Hosts whose line is no longer than this machine; a scene of fewer coordinates than these comes from them as
- * often as it is drawn. */
+/** This machine, from which scenes of fewer coordinates come as often as they are drawn. */
 const [HERE, FEW] = [/^(localhost|127[.]|\[::1\])/, 1000];
 
 export class TreeStream {

@@ -21,8 +21,7 @@ const LARGEST_TEXT = 2 ** 20;
 
 /** One line to a server, kept from `open` to `close`. */
 export class Connection {
-  /** @param {string} url of the stream @param {Listeners} listeners @param {number} [rate] frames per
-   * second that are asked for */
+  /** @param {string} url of the stream @param {Listeners} listeners @param {number} [rate] of frames [1/s] */
   constructor(url, listeners, rate = 30) {
     this.url = url;
     this.listeners = listeners;
@@ -37,17 +36,19 @@ export class Connection {
     this._awaited = 0;
     this._credit = MOST_CREDIT;
     this._heard = 0;
-    this._retry = /** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined);
-    this._watching = setInterval(() => this._watch(), PING_EVERY);
+    this._retry = this._watching = /** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined);
   }
 
   /** Open the line now, whatever the wait. */
   open() {
-    clearTimeout(this._retry);
-    this._socket?.close();
-    const socket = new WebSocket(this.url);
+    this.close();
+    const socket = this._socket = new WebSocket(this.url);
     socket.binaryType = "arraybuffer";
-    this._socket = socket;
+    this._watching = setInterval(() => {
+      const isSilent = performance.now() - this._heard > SILENCE;
+      if (isSilent && socket.readyState === WebSocket.OPEN) this._lose();
+      else this.send({ ping: performance.now() });
+    }, PING_EVERY);
     this._heard = performance.now();
     this.listeners.onState("connecting", 0);
     socket.onopen = () => {
@@ -77,25 +78,14 @@ export class Connection {
     if (this._socket?.readyState === WebSocket.OPEN) this._socket.send(JSON.stringify(message));
   }
 
+  /** Lose the line, and make it again. */
   _lose() {
-    this._socket = null;
+    this.close();
     // Many pages that lose one server do not come back in one instant.
     const wait = this._wait * (0.75 + 0.5 * Math.random());
     this._wait = Math.min(2 * this._wait, LONGEST_WAIT);
     this._retry = setTimeout(() => this.open(), wait);
     this.listeners.onState("lost", wait);
-  }
-
-  _drop() {
-    const socket = this._socket;
-    this._lose();
-    socket?.close();
-  }
-
-  _watch() {
-    if (this._socket?.readyState !== WebSocket.OPEN) return;
-    if (performance.now() - this._heard > SILENCE) return this._drop();
-    this.send({ ping: performance.now() });
   }
 
   _ask() {
@@ -115,7 +105,7 @@ export class Connection {
     } catch (error) {
       this.unreadable += 1;
       const why = error instanceof ProtocolError ? error.message : String(error);
-      this._drop();
+      this._lose();
       deliver = () => this.listeners.onMessage({ unreadable: why.slice(0, 400) });
     }
     deliver();

@@ -11,8 +11,7 @@ import { readWind, Recorded, Turbulence } from "./wind.js";
 const LATEST = 250;
 const STATUS_EVERY = 500;
 
-/** What the page itself holds; null on one that is served. An `Error` if it is damaged.
- * @returns {Promise<Kept | null>} */
+/** What the page holds; null on one that is served, an `Error` if damaged. @returns {Promise<Kept | null>} */
 export async function keptScene() {
   const text = document.getElementById("scene")?.textContent ?? null;
   if (text === null) return null;
@@ -26,8 +25,7 @@ export async function keptScene() {
 
 /** Used as a `Connection`: the same listeners, messages and frames. */
 export class OwnLine {
-  /** @param {Kept} kept @param {Listeners} listeners @param {string | null} [address] of a live wind,
-   * `wss://...` */
+  /** @param {Kept} kept @param {Listeners} listeners @param {string | null} [address] of a live wind */
   constructor({ description, stand }, listeners, address = null) {
     this.description = description;
     this.stand = stand;
@@ -45,17 +43,18 @@ export class OwnLine {
     this._reported = 0;
     this._work = 0;
     this._timer = /** @type {ReturnType<typeof setInterval> | undefined} */ (undefined);
-    const unheard = () => this.listeners.onMessage({ unreadable: `no live wind from ${address}: the simulated one blows `
-      + "until it comes. See whether tree-sway show runs there, with --origin null if this page is a file." });
-    const onState = (/** @type {string} */ state) => {
-      if (state !== "lost") return;
-      if (this._live || this._line?.description === null) unheard();
-      this._live = null;
+    const unreadable = `no live wind from ${address}: the simulated one blows until it comes. `
+      + "See whether tree-sway show runs there, with --origin null if this page is a file.";
+    /** @type {Listeners} */
+    const following = {
+      onState: (state) => {
+        if (state !== "lost") return;
+        if (this._live || this._line?.description === null) listeners.onMessage({ unreadable });
+        this._live = null;
+      },
+      onFrame: (frame) => (this._live = frame), onDescription: () => undefined, onMessage: () => undefined,
     };
-    const ignore = () => undefined;
-    const onFrame = (/** @type {Frame} */ frame) => (this._live = frame);
-    this._line = address === null ? null
-      : new Connection(address, { onState, onDescription: ignore, onFrame, onMessage: ignore }, 60);
+    this._line = address === null ? null : new Connection(address, following, 60);
   }
 
   open() {
@@ -91,8 +90,7 @@ export class OwnLine {
     } else if (name === "pause") this._isPaused = value;
     else if (this._wind instanceof Recorded && name === "record_time") this._wind.seek(value);
     else [this._turbulence.values[name], this._wind] = [value, this._turbulence];
-    const values = { ...this._turbulence.values, pause: this._isPaused };
-    this.listeners.onMessage({ values });
+    this.listeners.onMessage({ values: { ...this._turbulence.values, pause: this._isPaused } });
   }
 
   /** Let a recorded wind blow; a `ProtocolError` if the file is none. @param {File} file */
@@ -121,10 +119,10 @@ export class OwnLine {
     this._work += 0.05 * (performance.now() - begin - this._work);
     const flags = (this._isPaused ? PAUSED : 0) + (this._hasRestarted ? RESTARTED : 0);
     this._hasRestarted = false;
-    const coordinates = this.stand.state();
-    const { shortIdentity: identity } = this.description;
-    const frame = { identity, sequence: this._sequence++, stamp: this._time, flags, coordinates, first: 0 };
-    this.listeners.onFrame({ ...frame, wind: [x, y, z] }, this._time, 0);
+    this.listeners.onFrame({
+      identity: this.description.shortIdentity, sequence: this._sequence++, stamp: this._time, flags,
+      wind: [x, y, z], coordinates: this.stand.state(), first: 0,
+    }, this._time, 0);
   }
 }
 

@@ -25,7 +25,7 @@ const nameOf = ({ name, label }) => (hasWord(name) ? word(name) : label);
 
 /** A number as people read it. @param {Control} control @param {number} value */
 function textOf({ name, unit }, value) {
-  if (name === "bearing_to") return windFrom(Math.sin(value), Math.cos(value));
+  if (name === "bearing_to") return windFrom([Math.sin(value), Math.cos(value)]);
   if (unit === "rad") return `${Math.round((value * 180) / Math.PI)}°`;
   if (unit === "m" && value < 0.1) return `${Number((1000 * value).toPrecision(2))} mm`;
   return `${Number(value.toPrecision(unit === "s" ? 4 : 2))} ${unit}`.trim();
@@ -52,8 +52,7 @@ export class Panel {
     for (const { name, value } of controls) this._show.get(name)?.(value);
   }
 
-  /** Show values that hold now. @param {Record<string, any>} values @param {boolean} [isRefusal] whether
-   * also those in hand are put back */
+  /** Show values. @param {Record<string, any>} values @param {boolean} [isRefusal] also of what is in hand */
   update(values, isRefusal = false) {
     for (const [name, value] of Object.entries(values)) {
       if (isRefusal || name !== this._inHand) this._show.get(name)?.(value);

@@ -138,6 +138,11 @@ interface Navigator {
 
 // What is drawn.
 
+type GL = WebGL2RenderingContext;
+type Camera = import("./drawing/camera.js").Camera;
+type Scene = import("./drawing/scene.js").Scene;
+type TreeStream = import("./client.js").TreeStream;
+
 interface Program {
   program: WebGLProgram;
   /** Sizes and locations of its inputs, as they are declared. */
@@ -229,6 +234,18 @@ interface Look {
   autumn: number[] | null;
 }
 
+/** The average broadleaf whole; what is other of the average conifer, and of each species than of its group. */
+interface Looks {
+  broadleaf: Look;
+  conifer: Partial<Look>;
+  broadleaves: Record<string, Partial<Look>>;
+  conifers: Record<string, Partial<Look>>;
+  /** Of bark. */
+  patterns: Record<string, Pattern>;
+  /** Halves of blades from the stalk to the tip. */
+  outlines: Record<string, [number, number][]>;
+}
+
 /** The relief of bark, as its shader has it. */
 type Pattern = Record<"ridge" | "spot" | "depth" | "rough", number> & { cells: [number, number] };
 
@@ -258,6 +275,13 @@ interface Unit {
   factor: number;
   unit: string;
   digits: number;
+}
+
+/** What is loaded when it is asked for. */
+interface Hands {
+  drag: import("./drag.js").Drag | null;
+  sound: import("./sound.js").Sound | null;
+  headset: import("./headset.js").Headset | null;
 }
 
 /** What one eye sees. */

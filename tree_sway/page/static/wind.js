@@ -4,8 +4,7 @@
 
 import { ProtocolError } from "./checks.js";
 
-/** Of the wind along, across and up: standard deviation over that along, and integral scale [m] at a
- * height of 10 m (IEC 61400-1, Kaimal). */
+/** Of wind along, across and up: relative standard deviation, scale [m] at 10 m (IEC 61400-1, Kaimal). */
 const SPREAD = [1, 0.8, 0.5];
 const LENGTH = [56.7, 18.9, 4.6];
 /** Processes that make up a component; each is so much quicker than the one before. */
@@ -20,9 +19,8 @@ const FASTEST = 150;
 /** A number of the standard normal distribution (Box and Muller 1958). */
 const normal = () => Math.sqrt(-2 * Math.log(1 - Math.random())) * Math.cos(2 * Math.PI * Math.random());
 
-/** Turbulence whose mean can be changed while it blows. Each component is a sum of first-order processes;
- * variances that go with their time scales to 2/3 give the slope of -5/3 of the inertial range (Kolmogorov
- * 1941). */
+/** Turbulence whose mean may change: each component is a sum of first-order processes; variances that go with
+ * their time scales to 2/3 give the slope of -5/3 of the inertial range (Kolmogorov 1941). */
 export class Turbulence {
   /** Mean [m/s], standard deviation over it, and where it blows to, clockwise from north [rad].
    * @type {Record<string, number>} */

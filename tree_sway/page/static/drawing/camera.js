@@ -88,20 +88,24 @@ export class Camera {
     return this.matrix;
   }
 
-  /** Where a point is seen, 0 to 1 from the left and from the top. @param {ArrayLike<number>} p
-   * @returns {[number, number]} */
+  /** Where a point is seen, 0 to 1 from the left and from the top. @param {ArrayLike<number>} p */
   project(p) {
     const m = this.matrix;
     const [x, y, w] = [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
     return [0.5 + (0.5 * x) / w, 0.5 - (0.5 * y) / w];
   }
 
-  /** The point under a place of the picture that is as deep in it as another point. @param {number} x 0 to
-   * 1 from the left @param {number} y from the top @param {number[]} p */
-  under(x, y, p) {
+  /** From the eye to a place of the picture, one deep. @param {number[]} at 0 to 1 from left and top */
+  ray([x, y]) {
     const { right, up, back } = this.axes();
+    return right.map((each, c) => (2 * x - 1) * each + (1 - 2 * y) * up[c] - back[c]);
+  }
+
+  /** The point under a place of the picture as deep as another. @param {number[]} at @param {number[]} p */
+  under(at, p) {
+    const { back } = this.axes();
     const depth = this.eye.reduce((sum, each, c) => sum + (each - p[c]) * back[c], 0);
-    return this.eye.map((each, c) => each + depth * ((2 * x - 1) * right[c] + (1 - 2 * y) * up[c] - back[c]));
+    return this.ray(at).map((each, c) => this.eye[c] + depth * each);
   }
 
   /** Let mouse, touch and keys move the camera. @param {HTMLElement} element */

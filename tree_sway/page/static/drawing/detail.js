@@ -72,8 +72,7 @@ export class Detail {
     }
   }
 
-  /** The level of a tree; none of one that is out of sight. @param {number} tree its number
-   * @returns {Level} */
+  /** The level of a tree; none of one that is out of sight. @param {number} tree its number */
   levelOf(tree) {
     return this.levels[this.trees[tree].kind][this.level[tree]];
   }

@@ -14,7 +14,7 @@ const [CORNERS, PER_CORNER] = [2 * (BANDS + 1), 9];
 const LEAST_SEEN = 0.35 * 255;
 
 export class Impostor {
-  /** @param {WebGL2RenderingContext} gl @param {Program} used @param {Shape} shape @param {number} most
+  /** @param {GL} gl @param {Program} used @param {Shape} shape @param {number} most
    * how many trees @param {boolean} isPlain the nearest point alone is looked up, which costs less */
   constructor(gl, used, shape, most, isPlain) {
     const { kind, low, high, rest, highest } = shape;
@@ -63,7 +63,6 @@ export class Impostor {
     });
     this._measure();
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    this._atlas.release();
   }
 
   /** Find how wide the pictures are that were painted. */
@@ -79,8 +78,7 @@ export class Impostor {
     }
   }
 
-  /** Draw a tree, too. @param {number[]} place x, y, z, turn, scale @param {number} row of its highest
-   * node @param {number} number among all trees */
+  /** Draw a tree, too. @param {number[]} place @param {number} row of its top @param {number} number */
   add(place, row, number) {
     const tint = 0.86 + 0.28 * ((number * 0.618034) % 1);
     const from = CORNERS * PER_CORNER * this.count++;
@@ -97,19 +95,14 @@ export class Impostor {
     gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, CORNERS * PER_CORNER * this.count);
   }
 
-  /** Place the top of a tree, which is linear in the coordinates of what is far.
-   * @param {ArrayLike<number>} coordinates @param {number} from its first @param {number[]} place
-   * @param {Float32Array} poses @param {number} row */
-  place(coordinates, from, [x, y, z, yaw, scale], poses, row) {
-    let [u, v, w] = this.tip;
-    const moves = this._moves;
-    for (let k = 0, at = 0; at < moves.length; k++, at += 3) {
-      const by = coordinates[from + k];
-      u += by * moves[at];
-      v += by * moves[at + 1];
-      w += by * moves[at + 2];
+  /** Place the top of a far tree, linear in its coordinates. @param {ArrayLike<number>} coordinates
+   * @param {number} from its first @param {number[]} place @param {Float32Array} poses @param {number} row */
+  place(coordinates, from, place, poses, row) {
+    const at = this.tip.slice();
+    for (let k = from, i = 0; i < this._moves.length; k++) {
+      for (let c = 0; c < 3; c++) at[c] += coordinates[k] * this._moves[i++];
     }
-    poses.set(placed([x, y, z, yaw, scale], [u, v, w]), STRIDE * row);
+    poses.set(placed(place, at), STRIDE * row);
   }
 
   /** @param {Program} used @param {number} shade of the foot of a tree among others */
@@ -121,13 +114,12 @@ export class Impostor {
   }
 
   free() {
-    this.gl.deleteTexture(this._atlas.texture);
+    this._atlas.release();
     discard(this.gl, this._part);
   }
 }
 
-/** How far the highest node moves per unit of each coordinate, three numbers each. @param {Shape} shape
- * @param {number[]} tip the node at rest */
+/** How far the top moves per unit of coordinates, three numbers each. @param {Shape} shape @param {number[]} tip */
 function movesOf({ kind, placer, highest }, tip) {
   const row = STRIDE * placer.slots[highest];
   const branches = placer.reached.findIndex((reached) => reached > placer.slots[highest]);

@@ -19,14 +19,16 @@ const LARGEST_CARDS = 4;
 /** Height of the picture of bark on a stem [m]. */
 const BARK_TILE = 0.6;
 
-/** A kind at rest: poses as they are described, its box, its highest segment, how open its crown is.
- * @param {Kind} kind */
+/** The lowest and the highest corner of a box of points. @param {ArrayLike<number>[]} points */
+export const boxOf = (points) => [Math.min, Math.max].map((of) =>
+  [0, 1, 2].map((c) => points.reduce((most, each) => of(most, each[c]), points[0][c])));
+
+/** A kind at rest: its poses, its box, its highest segment, how open its crown is. @param {Kind} kind */
 export function shapeOf(kind) {
   const rest = new KindPlacer(kind).rest();
-  const [xs, ys, zs] = [0, 1, 2].map((c) => rest.filter((_, i) => i % STRIDE === c));
-  const [low, high] = [-1, 1].map((sign) =>
-    [xs, ys, zs].map((all) => sign * all.reduce((most, each) => Math.max(most, sign * each), -Infinity)));
-  const highest = zs.indexOf(high[2]);
+  const nodes = Array.from({ length: kind.nSegments }, (_, s) => rest.subarray(STRIDE * s));
+  const [low, high] = boxOf(nodes);
+  const highest = nodes.findIndex((node) => node[2] === high[2]);
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
   const places = Array.from(carrier ?? [], (_, i) => leafPlace(kind, rest, i));
   const shade = crownShade(places, Array.from(sizes ?? [], (size) => 0.25 * Math.PI * size * size), low, high);
@@ -159,10 +161,9 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
   return { mesh, across };
 }
 
-/** Corners of a card: its place, how it moves with the flutter and its normal, in the frame of the
- * cluster; and the place in the picture. @param {string} species @param {number} size of the card [m]
- * @param {number} number in its cluster @param {boolean} isAlone whether the picture is of one leaf
- * @param {() => number} random */
+/** Corners of a card: place, motion with the flutter, normal, in the frame of the cluster; place in the picture.
+ * @param {string} species @param {number} size of the card [m] @param {number} number in its cluster
+ * @param {boolean} isAlone whether the picture is of one leaf @param {() => number} random */
 function cardCorners(species, size, number, isAlone, random) {
   const { form, slender } = lookOf(species);
   const isConifer = hasNeedles(species);

@@ -16,12 +16,11 @@ export function propMesh(name) {
       profile.forEach(([r, z, color], i) => {
         const [r0, z0] = profile[Math.max(i - 1, 0)];
         const [r1, z1] = profile[Math.min(i + 1, profile.length - 1)];
-        const size = Math.hypot(r1 - r0, z1 - z0) || 1;
         const first = values.length / 9;
         for (let k = 0; k < sides; k++) {
-          const [c, s] = [Math.cos((2 * Math.PI * k) / sides), Math.sin((2 * Math.PI * k) / sides)];
-          values.push(r * c, middle + wide * r * s, z, (c * (z1 - z0)) / size, (s * (z1 - z0)) / size, (r0 - r1) / size,
-            ...colours[color]);
+          const [c, s] = [Math.cos, Math.sin].map((of) => of((2 * Math.PI * k) / sides));
+          const facing = [c * (z1 - z0), s * (z1 - z0), r0 - r1];
+          values.push(r * c, middle + wide * r * s, z, ...facing, ...colours[color]);
           const [a, b] = [first + k - sides, first + ((k + 1) % sides) - sides];
           if (i > 0) indices.push(a, b, a + sides, b, b + sides, a + sides);
         }

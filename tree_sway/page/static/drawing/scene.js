@@ -3,15 +3,16 @@
 /** Draws a described tree from its poses: bark, leaves, what is beside it, ground and sky. */
 
 import { AT_ORIGIN, beyond, placed, STRIDE } from "../placing.js";
-import { between } from "../quaternions.js";
+import { between, distance } from "../quaternions.js";
 import { Backdrop, DAYLIGHT, GROUNDS } from "./backdrop.js";
 import { Camera } from "./camera.js";
 import { Detail, levelsOf } from "./detail.js";
 import {
-  canvasTexture, contextOf, discard, drawable, drawPart, pictureTexture, program, texelsOf, uploadPoses, use,
+  canvasTexture, contextOf, discard, drawable, drawPart, pictureTexture, program, texelsOf, textureOf,
+  uploadPoses, use,
 } from "./gl.js";
 import { Impostor } from "./impostors.js";
-import { barkMesh, leafMesh, shapeOf } from "./mesh.js";
+import { barkMesh, boxOf, leafMesh, shapeOf } from "./mesh.js";
 import { arrowLength, arrowMesh, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
 import { barkPattern, isPotted, lookOf } from "./species.js";
@@ -22,14 +23,16 @@ const SHADOW_EVERY = 8;
 /** Share of the leaves that cast it then. */
 const SHADOW_LEAVES = 0.4;
 const CROWD = 50;
-/** Segments of all trees and cards of leaves of one, at most, and height of far trees [px]: with a graphics
- * unit, without one, and of a crowd without one. */
+/** Segments of all trees and cards of leaves of one, at most, and height of far trees [px]. */
 const MOST = { segments: 40000, cards: 3000, far: 90 };
-const MOST_SLOW = { segments: 12000, cards: 3000, far: 150 };
-const MOST_CROWD = { segments: 5000, cards: 3000, far: 220 };
+/** Without a graphics unit: of a few trees, and of a crowd. */
+const MOST_SLOW = { ...MOST, segments: 12000, far: 150 };
+const MOST_CROWD = { ...MOST, segments: 5000, far: 220 };
 /** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
 const CHOOSE_EVERY = 6;
 const POT_HEIGHT = 0.17;
+/** A branch is near that is within this angle of where one points [rad]. */
+const REACH = 0.017;
 /** Height of a tree from which a person is beside it [m]. */
 const WITH_PERSON = 2.5;
 /** The arrow follows the mean of the wind over this time [s]. */
@@ -38,8 +41,7 @@ const CALM = 4;
 const PAINTED = 260;
 
 export class Scene {
-  /** @param {HTMLCanvasElement} canvas @param {boolean} [isFine] whether nothing is left out, however slow
-   * that is */
+  /** @param {HTMLCanvasElement} canvas @param {boolean} [isFine] nothing is left out, however slow that is */
   constructor(canvas, isFine = false) {
     const { gl, isSoftware } = contextOf(canvas);
     /** Without a graphics unit: fewer points, fewer shadows. */
@@ -72,7 +74,7 @@ export class Scene {
     this._backdrop = new Backdrop(gl, this.isSlow);
     /** Of leaves, painted when they are first used. */
     this._pictures = /** @type {Map<string, WebGLTexture>} */ (new Map());
-    this._texture = gl.createTexture();
+    this._texture = textureOf(gl, gl.NEAREST, gl.NEAREST);
     /** Where the shaders look poses up. */
     this._poses = this._texture;
     /** Poses of the segments that are drawn, tree after tree. */
@@ -99,13 +101,6 @@ export class Scene {
     return Boolean(this.description?.kinds.some((kind) => kind.arrays.leaf_segment?.length));
   }
 
-  /** Another time of day. @param {Daylight} day */
-  setDay(day) {
-    this.day = day;
-    this._frameShadow();
-    this._frame = 0;
-  }
-
   /** @param {{leavesShown?: boolean, isAutumn?: boolean}} leaves whether they are drawn, and whether those
    * that fall have the colours of autumn; far trees and pictures of leaves are painted again */
   dress(leaves) {
@@ -118,7 +113,12 @@ export class Scene {
     const { kinds, trees } = description;
     const isSame = this.description?.name === description.name;
     const most = !this.isSlow ? MOST : trees.length > CROWD ? MOST_CROWD : MOST_SLOW;
-    this._free();
+    this._eachLevel(({ impostor, bark, leaf }) => {
+      impostor?.free();
+      for (const part of [bark, leaf]) discard(this.gl, part);
+    });
+    for (const texture of this._pictures.values()) this.gl.deleteTexture(texture);
+    this._pictures.clear();
     this.resize();
     this.description = description;
     this._coordinates = new Float32Array(description.nCoordinates);
@@ -132,15 +132,13 @@ export class Scene {
       const { low, high } = this._kinds[kind];
       return placed(place, low.map((each, c) => (corner & (1 << c) ? high[c] : each)));
     }));
-    [this._low, this._high] = [Math.min, Math.max].map((of) =>
-      [0, 1, 2].map((c) => corners.reduce((best, at) => of(best, at[c]), corners[0][c])));
+    [this._low, this._high] = boxOf(corners);
     const [wide, deep, tall] = this._high.map((each, c) => each - this._low[c]);
     this._extent = Math.max(wide, deep, tall, 0.05);
     this.height = Math.max(tall, 0.2 * wide, 0.2 * deep, 0.05);
     const { place: root } = trees[0];
     this._potSize = trees.length === 1 && isPotted(kinds[0].species) ? POT_HEIGHT * this.height : 0;
     this.ground = this._potSize ? root[2] - this._potSize : Math.min(this._low[2], root[2]);
-    this._frameShadow();
     if (!isSame) {
       this.picked = -1;
       this.camera.frame([this._low[0], this._low[1], this.ground], this._high);
@@ -151,35 +149,20 @@ export class Scene {
     this._place();
   }
 
-  /** The tree that is followed, the highest: its number, where it is, and its kind at rest. */
+  /** The tree that is followed, the highest: its number, where it is, and its kind, once there is one. */
   get watched() {
     const { trees, watched: number } = this.detail;
-    return { ...trees[number], ...this._kinds[trees[number].kind], number };
+    return { ...trees[number], ...this._kinds[trees[number]?.kind], number };
   }
 
-  /** The kind of the watched tree. @returns {Kind | null} */
-  get watchedKind() {
-    return this.description && this.watched.kind;
-  }
-
-  /** Where the tip of the branch that is picked is now, or the top of the tallest tree. */
-  tip() {
-    return this.position(this.followed);
-  }
-
-  /** The same at rest. */
-  restTip() {
-    return this.restPosition(this.followed);
-  }
-
-  /** Where a segment's root-side node is at rest. @param {number} segment */
-  restPosition(segment) {
+  /** Where the root-side node of a segment of the watched tree is at rest. @param {number} segment */
+  restPosition(segment = this.followed) {
     const { rest, place } = this.watched;
     return placed(place, rest.subarray(STRIDE * segment));
   }
 
-  /** Where a segment's root-side node is now; of the tallest tree, if it is drawn. @param {number} segment */
-  position(segment) {
+  /** Where it is now, if it is drawn. @param {number} segment */
+  position(segment = this.followed) {
     const from = STRIDE * this._row(segment);
     return Array.from(this._texels.subarray(from, from + 3));
   }
@@ -189,20 +172,30 @@ export class Scene {
     return this.detail.start[this.detail.watched] + this.watched.placer.slots[segment];
   }
 
-  /** The branch of the watched tree nearest to a place of the picture, and its segment; -1 if none is
-   * near. @param {number} x 0 to 1 from the left @param {number} y from the top @param {number} [reach]
-   * share of the height */
-  nearest(x, y, reach = 0.03) {
-    let [best, found] = [reach, { branch: -1, segment: -1 }];
+  /** Where a pointer is in the picture, 0 to 1 from the left and from the top. @param {MouseEvent} event */
+  placeOf({ clientX, clientY }) {
+    return [clientX / this.canvas.clientWidth, clientY / this.canvas.clientHeight];
+  }
+
+  /** The branch of the watched tree nearest to a ray, its segment and how far away that is [m]; -1 if none
+   * is near. @param {number[]} from @param {number[]} along @param {number} [most] angle [rad] */
+  nearest(from, along, most = REACH) {
+    let [best, found] = [Math.cos(most) * Math.hypot(...along), { branch: -1, segment: -1, far: 0 }];
     const { placer: { order }, number, kind: { arrays: { branch_first: first } } } = this.watched;
     for (const branch of order.subarray(0, this.detail.levelOf(number).branches)) {
-      for (let s = first[branch]; s < first[branch + 1]; s++) {
-        const [px, py] = this.camera.project(this.position(s));
-        const away = Math.hypot((px - x) * this.camera.aspect, py - y);
-        if (away < best) [best, found] = [away, { branch, segment: s }];
+      for (let segment = first[branch]; segment < first[branch + 1]; segment++) {
+        const at = this.position(segment);
+        const far = distance(at, from);
+        const cosine = at.reduce((sum, each, c) => sum + (each - from[c]) * along[c], 0) / far;
+        if (cosine > best) [best, found] = [cosine, { branch, segment, far }];
       }
     }
     return found;
+  }
+
+  /** The same under a pointer. @param {MouseEvent} event */
+  under(event) {
+    return this.nearest(this.camera.eye, this.camera.ray(this.placeOf(event)));
   }
 
   /** The last segment of the branch that is picked, if it is drawn, or the highest. */
@@ -237,10 +230,7 @@ export class Scene {
     if (wanted === this._chosenFor) return;
     this._chosenFor = wanted;
     detail.choose(camera.matrix, high, this._budget);
-    this._eachLevel((level) => {
-      level.starts.length = 0;
-      if (level.impostor) level.impostor.count = 0;
-    });
+    this._eachLevel((level) => Object.assign(level.impostor ?? {}, { count: level.starts.length = 0 }));
     // Near trees first: what they hide costs less then.
     for (const t of detail.order) {
       if (detail.level[t] < 0) continue;
@@ -280,7 +270,7 @@ export class Scene {
     const { segments, branches } = levels[finest];
     const texels = texelsOf(segments);
     shape.placer.place(new Float32Array(shape.kind.nCoordinates), 0, AT_ORIGIN, branches, texels, 0);
-    this._poses = gl.createTexture();
+    this._poses = textureOf(gl, gl.NEAREST, gl.NEAREST);
     uploadPoses(gl, this._poses, texels, segments);
     impostor.bake((camera, eye) => {
       const even = { camera, eye, sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0 };
@@ -375,6 +365,7 @@ export class Scene {
 
   _castShadow() {
     const { gl, _shadow: { target, width, height } } = this;
+    this._frameShadow();
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 1);
@@ -384,8 +375,7 @@ export class Scene {
     this._drawSolids(true);
   }
 
-  /** @param {Program} used @param {boolean} isShadow @param {Record<string, any>} [own] what it is given
-   * beside the usual */
+  /** @param {Program} used @param {boolean} isShadow @param {Record<string, any>} [own] beside the usual */
   _begin(used, isShadow, own = {}) {
     const { camera: { matrix: camera, eye }, _poses: poses, _shadowArea: [x, y, half] } = this;
     const shadowArea = [x, y, 1 / half, Number(isShadow)];
@@ -503,15 +493,5 @@ export class Scene {
     gl.disable(gl.DEPTH_TEST);
     drawPart(gl, this._parts.shadow);
     gl.disable(gl.BLEND);
-  }
-
-  _free() {
-    this._eachLevel(({ impostor, bark, leaf }) => {
-      impostor?.free();
-      for (const part of [bark, leaf]) discard(this.gl, part);
-    });
-    for (const texture of this._pictures.values()) this.gl.deleteTexture(texture);
-    this._pictures.clear();
-    this._kinds = [];
   }
 }

@@ -4,14 +4,10 @@
 
 import { textOf } from "../files.js";
 
-/** The average broadleaf whole; what is other of the average conifer, and of each species than of its
- * group. Patterns of bark, and halves of outlines of blades from the stalk to the tip.
- * @type {{broadleaf: Look, conifer: Partial<Look>, broadleaves: Record<string, Partial<Look>>, conifers: Record<string, Partial<Look>>, patterns: Record<string, Pattern>, outlines: Record<string, [number, number][]>}}
- */
+/** @type {Looks} */
 const { broadleaf, conifer, broadleaves, conifers, patterns, outlines } = JSON.parse(await textOf("species.json"));
 
-/** The look of a species; that of an average broadleaf where it is unknown. @param {string} species
- * @returns {Look} */
+/** The look of a species, or of an average broadleaf. @param {string} species @returns {Look} */
 export function lookOf(species) {
   const group = hasNeedles(species) ? conifer : {};
   return { ...broadleaf, ...group, ...(conifers[species] ?? broadleaves[species]) };

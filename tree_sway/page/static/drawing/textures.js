@@ -19,8 +19,7 @@ export function leavesAcross(species, size) {
   return ACROSS.find((across) => across >= wanted && across >= least) ?? ACROSS[ACROSS.length - 1];
 }
 
-/** Paint leaves: the twig comes in at the left. @param {string} species @param {number} across how many
- * leaves the picture is wide @param {boolean} isAutumn */
+/** Paint leaves of a twig. @param {string} species @param {number} across @param {boolean} isAutumn */
 export function leafPicture(species, across, isAutumn) {
   const look = lookOf(species);
   const base = isAutumn && look.autumn ? look.autumn : look.leaf;
@@ -50,8 +49,7 @@ class Brush {
     this.blade = new Path2D(`M${[...half, ...other].join("L")}Z`);
     const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-    this.context.scale(size, size);
-    this.context.translate(0, 0.5);
+    this.context.setTransform(size, 0, 0, size, 0, size / 2);
     this.context.lineCap = "round";
     this._color = () => {
       const [light, mixed] = [0.78 + 0.44 * random(), 0.35 * random()];
@@ -59,23 +57,20 @@ class Brush {
     };
   }
 
-  /** Paint something elsewhere, turned and scaled. @param {number} x @param {number} y @param {number} turn
-   * @param {number} scale @param {() => void} paint */
+  /** Paint elsewhere. @param {number} x @param {number} y @param {number} turn @param {number} scale
+   * @param {() => void} paint */
   at(x, y, turn, scale, paint) {
-    const { context } = this;
-    context.save();
-    context.translate(x, y);
-    context.rotate(turn);
-    context.scale(scale, scale);
+    const [c, s] = [scale * Math.cos(turn), scale * Math.sin(turn)];
+    this.context.save();
+    this.context.transform(c, s, -s, c, x, y);
     paint();
-    context.restore();
+    this.context.restore();
   }
 
   /** A straight line. @param {number} long @param {number} width @param {string} color */
   line(long, width, color) {
-    const { context } = this;
-    [context.strokeStyle, context.lineWidth] = [color, width];
-    context.stroke(new Path2D(`M0 0H${long}`));
+    Object.assign(this.context, { strokeStyle: color, lineWidth: width });
+    this.context.stroke(new Path2D(`M0 0H${long}`));
   }
 
   /** A twig with side twigs, leaves in turn on both sides. @param {number} leaf length of one
