@@ -50,9 +50,12 @@ export class TreeStream {
         if (this.description) this.byWind = new ByWind(new Stand(tables, this.description));
       } }),
     };
+    const url = new URL("stream", page);
+    url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+    url.search = new URL(page).search;
     this.connection = kept
       ? new OwnLine(kept, taking, new URL(page).searchParams.get("wind"))
-      : new Connection(streamUrl(page), taking, options.rate ?? (byWind ? 60 : undefined));
+      : new Connection(url.href, taking, options.rate ?? (byWind ? 60 : undefined));
   }
 
   /** Open the line now, whatever the wait. */
@@ -95,12 +98,4 @@ export class TreeStream {
     this.placer ??= new Placer(this.description);
     return this.placer.place(coordinates);
   }
-}
-
-/** Where the stream of a page is. @param {string} page */
-export function streamUrl(page) {
-  const url = new URL("stream", page);
-  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
-  url.search = new URL(page).search;
-  return url.href;
 }

@@ -101,7 +101,7 @@ export class Connection {
     this._heard = performance.now();
     let deliver;
     try {
-      deliver = typeof data === "string" ? this._text(data) : this._binary(data, arrival);
+      deliver = this._read(data, arrival);
     } catch (error) {
       this.unreadable += 1;
       const why = error instanceof ProtocolError ? error.message : String(error);
@@ -111,19 +111,17 @@ export class Connection {
     deliver();
   }
 
-  /** Read a text. @param {string} data @returns {() => void} what is left to do: give it to the listener */
-  _text(data) {
-    if (data.length > LARGEST_TEXT) throw new ProtocolError(`a text of ${data.length} characters`);
-    const message = checkMessage(JSON.parse(data));
-    if ("pong" in message) this.roundTrip = performance.now() - message.pong;
-    return () => this.listeners.onMessage(message);
-  }
-
-  /** Read a description, its tables or a frame. @param {ArrayBuffer} data @param {number} arrival [ms]
-   * @returns {() => void} */
-  _binary(data, arrival) {
-    const size = data.byteLength;
-    if (size > LARGEST_DESCRIPTION) throw new ProtocolError(`a message of ${size} bytes`);
+  /** Read a text, a description, its tables or a frame. @param {string | ArrayBuffer} data
+   * @param {number} arrival [ms] @returns {() => void} what is left to do: give it to the listener */
+  _read(data, arrival) {
+    const isText = typeof data === "string";
+    const size = isText ? data.length : data.byteLength;
+    if (size > (isText ? LARGEST_TEXT : LARGEST_DESCRIPTION)) throw new ProtocolError(`a message of ${size} bytes`);
+    if (isText) {
+      const message = checkMessage(JSON.parse(data));
+      if ("pong" in message) this.roundTrip = performance.now() - message.pong;
+      return () => this.listeners.onMessage(message);
+    }
     if (isTables(data)) {
       const tables = decodeTables(data);
       return () => this.listeners.onTables?.(tables);

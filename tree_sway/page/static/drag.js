@@ -92,17 +92,14 @@ export class Pull {
     for (const frame of playout.since(this._last?.stamp ?? this._from)) {
       const own = Float64Array.from(frame.coordinates.subarray(first, first + this._touch.kind.nCoordinates));
       const at = this._touch.place(this.segment, own);
-      this.record.push([this._timeOf(frame), ...rest.map((each, c) => at[c] - each)]);
+      const last = this._last ?? frame;
+      const count = Math.max(1, (frame.sequence - last.sequence) >>> 0);
+      let span = (frame.stamp - last.stamp) / 1000;
+      // The tree waited where a busy machine let the solver wait.
+      if (span > WAITED * count) span = (count * this.seconds) / this.record.length;
+      this.record.push([this.seconds + span, ...rest.map((each, c) => at[c] - each)]);
       this._last = frame;
     }
-  }
-
-  /** Time of a frame [s]; the tree waited where a busy machine let the solver wait. @param {Frame} frame */
-  _timeOf({ stamp, sequence }) {
-    if (!this._last) return 0;
-    const count = Math.max(1, (sequence - this._last.sequence) >>> 0);
-    const span = (stamp - this._last.stamp) / 1000;
-    return this.seconds + (span > WAITED * count ? (count * this.seconds) / this.record.length : span);
   }
 
   /** How long the record is [s]. */

@@ -13,11 +13,8 @@ const STATUS_EVERY = 500;
 
 /** What the page holds; null on one that is served, an `Error` if damaged. @returns {Promise<Kept | null>} */
 export async function keptScene() {
-  const text = document.getElementById("scene")?.textContent ?? null;
-  if (text === null) return null;
-  const packed = new Blob([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))]);
-  const stream = packed.stream().pipeThrough(new DecompressionStream("gzip"));
-  const data = await new Response(stream).arrayBuffer();
+  const data = await /** @type {any} */ (window).treeSwayScene?.();
+  if (!data) return null;
   const from = 4 + new DataView(data).getUint32(0, true);
   const description = decodeDescription(data.slice(4, from), true);
   return { description, stand: new Stand(decodeTables(data.slice(from), true), description) };

@@ -102,23 +102,20 @@ export class Playout {
     this.clock.add(frame.stamp, arrival);
     this.lateness = arrival - frame.stamp - this.clock.value;
     if (this.lateness > this.delay + this._ahead) this.late++;
-    if (this._adapts && last && this._first < frames.length) this._adapt(span);
+    if (this._adapts && last && this._first < frames.length) {
+      this._spacing += 0.1 * (span - this._spacing);
+      this._age += span;
+      this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / Math.min(this._age, CALMS)));
+      this._ahead = this._spacing < AHEAD ? this._spacing : 0;
+      const change = Math.min(this._spacing - this._ahead + this._jitter, DELAY) - this.delay;
+      this.delay += Math.min(Math.max(change, -DOWN * span), UP * span);
+    }
     frames.push(frame);
     const most = Math.max(64, MOST_NUMBERS / frame.coordinates.length);
     while (frames[0].stamp < frame.stamp - KEPT || frames.length > most) {
       frames.shift();
       this._first = Math.max(this._first - 1, 0);
     }
-  }
-
-  /** @param {number} span since the frame before [ms] */
-  _adapt(span) {
-    this._spacing += 0.1 * (span - this._spacing);
-    this._age += span;
-    this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / Math.min(this._age, CALMS)));
-    this._ahead = this._spacing < AHEAD ? this._spacing : 0;
-    const change = Math.min(this._spacing - this._ahead + this._jitter, DELAY) - this.delay;
-    this.delay += Math.min(Math.max(change, -DOWN * span), UP * span);
   }
 
   /** Stamp of the newest frame [ms]; 0 before the first. */

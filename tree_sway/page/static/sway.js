@@ -4,15 +4,8 @@
  *
  * A tree is m coordinates; a table has what every even wind does to them; each goes on by its exact
  * propagator. Outside of the table the load of its edge is used, which `Stand.outside` counts. The law is
- * that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it.
- *
- *     import { decodeDescription } from "./protocol.js";
- *     import { decodeTables, Stand } from "./sway.js";
- *
- *     const description = decodeDescription(await bytesOf("oak.description"));
- *     const stand = new Stand(decodeTables(await bytesOf("oak.tables")), description);
- *     stand.step(6, 0, 0);                        // mean wind of a step [m/s], east, north, up
- *     placer.place(stand.state());                // coordinates of the description, then poses */
+ * that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it. How to use it:
+ * doc/tree_as_a_file.md. */
 
 import { FORMS, need, ProtocolError, sizesOf } from "./checks.js";
 import { reader } from "./protocol.js";

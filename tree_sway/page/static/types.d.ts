@@ -183,11 +183,12 @@ type Shape = ReturnType<typeof import("./drawing/mesh.js").shapeOf>;
 interface DrawnLevel {
   /** Rows of their first segments. */
   starts: number[];
-  bark: Drawable | null;
-  leaf: Drawable | null;
-  /** Leaves in the picture of a card. */
-  across: number;
-  impostor: import("./drawing/impostors.js").Impostor | null;
+  /** Parts, and what their programs are given; none of a picture. */
+  bark?: Drawable;
+  skin?: Record<string, any>;
+  leaf?: Drawable;
+  foliage?: Record<string, any>;
+  impostor?: import("./drawing/impostors.js").Impostor;
 }
 
 /** A kind with the levels that have been used. */
@@ -195,7 +196,7 @@ type DrawnKind = Shape & { drawn: DrawnLevel[] };
 
 /** What is below the trees. */
 interface Ground {
-  /** Number of how it looks. */
+  /** How it looks: 0 a terrace, 1 a meadow. */
   kind: number;
   /** Its height [m]. */
   ground: number;
@@ -232,6 +233,8 @@ interface Look {
   fresh: number[];
   /** Colour of a leaf before it falls; null of an evergreen. */
   autumn: number[] | null;
+  /** Whether one alone stands in a pot. */
+  isPotted?: boolean;
 }
 
 /** The average broadleaf whole; what is other of the average conifer, and of each species than of its group. */

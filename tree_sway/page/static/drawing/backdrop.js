@@ -8,8 +8,6 @@ import { canvasTexture, drawable, drawPart, program, use } from "./gl.js";
 /** Times of day. @type {Record<"light" | "evening" | "dark", Daylight>} */
 export const DAYLIGHT = JSON.parse(await textOf("drawing/daylight.json"));
 
-export const GROUNDS = { terrace: 0, meadow: 1 };
-
 export class Backdrop {
   /** @param {GL} gl @param {boolean} isPlain whether the shadow is kept, too, as every pixel costs much */
   constructor(gl, isPlain) {

@@ -16,20 +16,15 @@ export class Camera {
   _size = 1;
   _box = /** @type {number[][]} */ ([[0, 0, 0], [1, 1, 1]]);
 
-  /** Frame a scene. @param {number[]} low corner of its box @param {number[]} high */
-  frame(low, high) {
-    this._box = [low, high];
-    this.home();
-  }
-
   /** Where a link looked from. @param {number[]} view azimuth, elevation, distance, target */
   set([azimuth, elevation, distance, x, y, z]) {
     [this.azimuth, this.elevation, this.distance] = [azimuth, elevation, distance];
     this.target = [x, y, z];
   }
 
-  home() {
-    const [low, high] = this._box;
+  /** See all of a scene. @param {number[][]} box its lowest and its highest corner */
+  home([low, high] = this._box) {
+    this._box = [low, high];
     const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
     const tall = high[2] - low[2];
     this._size = Math.hypot(wide, tall);

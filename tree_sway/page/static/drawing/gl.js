@@ -109,7 +109,7 @@ export function drawable(gl, { fields }, { values, indices }) {
   return { vao, count: indices.length, buffers };
 }
 
-/** @param {GL} gl @param {Drawable | null} part */
+/** @param {GL} gl @param {Drawable | undefined} part */
 export function discard(gl, part) {
   for (const buffer of part?.buffers ?? []) gl.deleteBuffer(buffer);
   gl.deleteVertexArray(part?.vao ?? null);

@@ -134,7 +134,7 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
   // A leaf alone has its own size, whatever the cluster has.
   const unit = across === 1 ? Math.min(1, (1.4 * lookOf(species).size) / mean) : larger;
   const hung = hungOn(kind, branches);
-  const quads = [];
+  const triangles = [];
   for (const i of clusters) {
     const at = leafPlace(kind, rest, i);
     const [p, own] = [STRIDE * hung[carrier[i]], STRIDE * carrier[i] + 4];
@@ -154,10 +154,10 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
         mesh.values.push(placer.slots[hung[carrier[i]]], ...place.map((each, c) => each + centre[c]), ...swing, ...facing,
           ...light, phase, open, tint, ...corner.at);
       }
-      quads.push([first, first + 1, first + 2, first, first + 2, first + 3]);
+      triangles.push([first, first + 1, first + 2]);
     }
   }
-  mesh.indices = mixed(quads, random).flat();
+  mesh.indices = mixed(triangles, random).flat();
   return { mesh, across };
 }
 
@@ -176,9 +176,9 @@ function cardCorners(species, size, number, isAlone, random) {
   const around = [0, 0, Math.sin(fan / 2), Math.cos(fan / 2)];
   multiply(around, 0, [0, Math.sin(hang / 2), 0, Math.cos(hang / 2)], 0, around);
   multiply(around, 0, [Math.sin(roll / 2), 0, 0, Math.cos(roll / 2)], 0, around);
-  // A leaf alone fills its card: what would be cut away costs time.
-  const half = isAlone ? Math.min(0.5, 0.56 * slender) : isConifer ? 0.36 : 0.5;
-  return [[0, -half], [1, -half], [1, half], [0, half]].map(([u, v]) => {
+  // A triangle about a blade or a disc of leaves: what would be cut away costs time.
+  const half = 0.875 * (isAlone ? Math.min(1, slender) : isConifer ? 0.72 : 1);
+  return [[0, -half], [1.45, 0], [0, half]].map(([u, v]) => {
     const place = turned(around, [u * long, v * long, 0]);
     place[0] -= 0.5 * long;
     place[2] -= 0.1 * long * u;

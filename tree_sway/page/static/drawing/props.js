@@ -4,8 +4,8 @@
 
 import { textOf } from "../files.js";
 
-/** @type {{colours: Record<string, number[]>, pot: Turned[], person: Turned[]}} */
-const { colours, ...PROPS } = JSON.parse(await textOf("drawing/props.json"));
+/** @type {{colours: Record<string, number[]>, arrow: Mesh, pot: Turned[], person: Turned[]}} */
+export const { arrow, colours, ...PROPS } = JSON.parse(await textOf("drawing/props.json"));
 
 /** A pot of height 1 below the root, or somebody 1.75 m tall. @param {"pot" | "person"} name */
 export function propMesh(name) {
@@ -32,10 +32,3 @@ export function propMesh(name) {
 
 /** Length of the wind's arrow: never more than a sixth of the tree. @param {number} height @param {number} speed */
 export const arrowLength = (height, speed) => 0.16 * height * Math.tanh(speed / 7);
-
-/** An arrow of length 1 along x, lying flat. */
-export function arrowMesh() {
-  const corners = [[0, 0.045], [0, -0.045], [0.66, -0.045], [0.66, 0.045], [0.62, 0.17], [0.62, -0.17], [1, 0]];
-  const values = corners.flatMap(([x, y]) => [x, y, 0, 0, 0, 1, ...colours.blue]);
-  return { values, indices: [0, 1, 2, 0, 2, 3, 4, 5, 6] };
-}

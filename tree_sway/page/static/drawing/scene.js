@@ -4,7 +4,7 @@
 
 import { AT_ORIGIN, beyond, placed, STRIDE } from "../placing.js";
 import { between, distance } from "../quaternions.js";
-import { Backdrop, DAYLIGHT, GROUNDS } from "./backdrop.js";
+import { Backdrop, DAYLIGHT } from "./backdrop.js";
 import { Camera } from "./camera.js";
 import { Detail, levelsOf } from "./detail.js";
 import {
@@ -13,9 +13,9 @@ import {
 } from "./gl.js";
 import { Impostor } from "./impostors.js";
 import { barkMesh, boxOf, leafMesh, shapeOf } from "./mesh.js";
-import { arrowLength, arrowMesh, propMesh } from "./props.js";
+import { arrow, arrowLength, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
-import { barkPattern, isPotted, lookOf } from "./species.js";
+import { lookOf, patterns } from "./species.js";
 import { leafPicture } from "./textures.js";
 
 /** A shadow is drawn again after this number of frames without a graphics unit, of a crowd less often. */
@@ -39,6 +39,8 @@ const WITH_PERSON = 2.5;
 const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
 const PAINTED = 260;
+/** Rows that no branch has. */
+const NONE = [-2, -2];
 
 export class Scene {
   /** @param {HTMLCanvasElement} canvas @param {boolean} [isFine] nothing is left out, however slow that is */
@@ -82,8 +84,8 @@ export class Scene {
     this._coordinates = /** @type {Float32Array} */ (new Float32Array(0));
     const square = { values: [-1, -1, 1, -1, 1, 1, -1, 1], indices: [0, 1, 2, 0, 2, 3] };
     const { solid, shadow } = this._programs;
-    const [arrow, pot, person] = [arrowMesh(), propMesh("pot"), propMesh("person")].map((mesh) => drawable(gl, solid, mesh));
-    this._parts = { arrow, pot, person, shadow: drawable(gl, shadow, square) };
+    const [pot, person] = [propMesh("pot"), propMesh("person")].map((mesh) => drawable(gl, solid, mesh));
+    this._parts = { arrow: drawable(gl, solid, arrow), pot, person, shadow: drawable(gl, shadow, square) };
     const size = this.isSlow ? 256 : 1024;
     this._shadow = canvasTexture(gl, size, size, gl.R8);
     /** Where it falls: middle x, y, and half its size [m]. */
@@ -95,6 +97,7 @@ export class Scene {
     this._high = [1, 1, 1];
     this._extent = 1;
     this._potSize = 0;
+    this._under = /** @type {Ground} */ ({ kind: 0, ground: 0, haze: 0 });
   }
 
   get hasLeaves() {
@@ -113,10 +116,10 @@ export class Scene {
     const { kinds, trees } = description;
     const isSame = this.description?.name === description.name;
     const most = !this.isSlow ? MOST : trees.length > CROWD ? MOST_CROWD : MOST_SLOW;
-    this._eachLevel(({ impostor, bark, leaf }) => {
+    for (const { impostor, bark, leaf } of this._levels) {
       impostor?.free();
       for (const part of [bark, leaf]) discard(this.gl, part);
-    });
+    }
     for (const texture of this._pictures.values()) this.gl.deleteTexture(texture);
     this._pictures.clear();
     this.resize();
@@ -137,11 +140,13 @@ export class Scene {
     this._extent = Math.max(wide, deep, tall, 0.05);
     this.height = Math.max(tall, 0.2 * wide, 0.2 * deep, 0.05);
     const { place: root } = trees[0];
-    this._potSize = trees.length === 1 && isPotted(kinds[0].species) ? POT_HEIGHT * this.height : 0;
+    this._potSize = trees.length === 1 && lookOf(kinds[0].species).isPotted ? POT_HEIGHT * this.height : 0;
     this.ground = this._potSize ? root[2] - this._potSize : Math.min(this._low[2], root[2]);
+    this._under = this._potSize ? { kind: 0, ground: this.ground, haze: 1 / (30 * this.height) }
+      : { kind: 1, ground: this.ground, haze: 1 / Math.max(1500, 30 * this._extent) };
     if (!isSame) {
       this.picked = -1;
-      this.camera.frame([this._low[0], this._low[1], this.ground], this._high);
+      this.camera.home([[this._low[0], this._low[1], this.ground], this._high]);
     }
     this._frame = 0;
     this._chosenFor = "";
@@ -230,7 +235,7 @@ export class Scene {
     if (wanted === this._chosenFor) return;
     this._chosenFor = wanted;
     detail.choose(camera.matrix, high, this._budget);
-    this._eachLevel((level) => Object.assign(level.impostor ?? {}, { count: level.starts.length = 0 }));
+    for (const { starts, impostor } of this._levels) Object.assign(impostor ?? {}, { count: starts.length = 0 });
     // Near trees first: what they hide costs less then.
     for (const t of detail.order) {
       if (detail.level[t] < 0) continue;
@@ -239,31 +244,37 @@ export class Scene {
       level.starts.push(detail.start[t]);
       level.impostor?.add(place, detail.start[t], t);
     }
-    this._eachLevel((level) => level.impostor?.upload());
+    for (const { impostor } of this._levels) impostor?.upload();
     if (STRIDE * detail.segments > this._texels.length) this._texels = texelsOf(1.25 * detail.segments);
   }
 
   /** A level of a kind, when it is first used. @param {number} number of the kind @param {number} level
    * @returns {DrawnLevel} */
   _drawnLevel(number, level) {
-    const { levels: { [number]: levels }, trees } = this.detail;
+    const { gl, _programs: programs, _pictures: pictures, detail: { levels: { [number]: levels } } } = this;
     const shape = this._kinds[number];
-    const none = { starts: [], bark: null, leaf: null, across: 1, impostor: null };
-    const count = trees.filter(({ kind }) => kind === number).length;
-    if (level === 0) return { ...none, impostor: this._bake(number, count) };
-    const { branches: most, pixels, cards } = levels[level];
-    const branches = shape.placer.order.slice(0, most);
-    const { mesh, across } = leafMesh(shape, branches, cards, levels[levels.length - 1].cards);
-    const bark = drawable(this.gl, this._programs.bark, barkMesh(shape, branches, pixels, this.isSlow ? COARSEST : 1));
-    return { ...none, across, bark, leaf: mesh.indices.length ? drawable(this.gl, this._programs.leaf, mesh) : null };
+    if (level === 0) return { starts: [], impostor: this._bake(number) };
+    const { species } = shape.kind;
+    const { bark: barkColor, twig: twigColor, pattern } = lookOf(species);
+    const branches = shape.placer.order.slice(0, levels[level].branches);
+    const { mesh, across } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards);
+    const bark = barkMesh(shape, branches, levels[level].pixels, this.isSlow ? COARSEST : 1);
+    const name = `${species} ${across}`;
+    if (!pictures.has(name)) {
+      pictures.set(name, pictureTexture(gl, leafPicture(species, across, this.isAutumn), this.isSlow));
+    }
+    return {
+      starts: [], bark: drawable(gl, programs.bark, bark), skin: { barkColor, twigColor, ...patterns[pattern] },
+      leaf: drawable(gl, programs.leaf, mesh), foliage: { leaves: [2, pictures.get(name)] },
+    };
   }
 
   /** Paint the picture of a kind that far trees are drawn by: a tree at rest in even light.
-   * @param {number} number of the kind @param {number} most how many trees */
-  _bake(number, most) {
-    const { gl, _programs: { bark, leaf } } = this;
+   * @param {number} number of the kind */
+  _bake(number) {
+    const { gl, detail: { levels: { [number]: levels }, trees } } = this;
     const shape = this._kinds[number];
-    const levels = this.detail.levels[number];
+    const most = trees.filter(({ kind }) => kind === number).length;
     const finest = Math.max(1, levels.findIndex(({ pixels }) => pixels >= PAINTED));
     const level = { ...(shape.drawn[finest] ??= this._drawnLevel(number, finest)), starts: [0] };
     const impostor = new Impostor(gl, this._programs.impostor, shape, most, this.isSlow);
@@ -272,13 +283,9 @@ export class Scene {
     shape.placer.place(new Float32Array(shape.kind.nCoordinates), 0, AT_ORIGIN, branches, texels, 0);
     this._poses = textureOf(gl, gl.NEAREST, gl.NEAREST);
     uploadPoses(gl, this._poses, texels, segments);
-    impostor.bake((camera, eye) => {
-      const even = { camera, eye, sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0 };
-      this._begin(bark, false, { ...even, picked: [-2, -2] });
-      this._drawBark(shape, level);
-      this._begin(leaf, false, { ...even, isBaked: 1, speed: 0, law: [0, 1] });
-      if (this.leavesShown) this._drawLeaves(shape, level, 1);
-    }, lookOf(shape.kind.species).leaf);
+    const even = { sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0, picked: NONE, isBaked: 1, speed: 0, law: [0, 1] };
+    impostor.bake((camera, eye) => this._drawMeshes([level], false, { camera, eye, ...even }, 1),
+      lookOf(shape.kind.species).leaf);
     gl.deleteTexture(this._poses);
     this._poses = this._texture;
     return impostor;
@@ -325,7 +332,10 @@ export class Scene {
     const every = this.isSlow ? (this.isCrowd ? 3 : 1) * SHADOW_EVERY : 1;
     const isShadowNew = this._frame % every === 0;
     if (isShadowNew) this._castShadow();
-    if (this.isSlow && !isPaused) this.quality.count(performance.now(), this._hasCards);
+    // Whether so many trees are drawn with leaves that some may be left out; far ones are pictures.
+    const hasCards = !this.isCrowd || this.detail.level.filter((level) => level > 0).length > 1;
+    const mayThin = this.hasLeaves && this.leavesShown && hasCards;
+    if (this.isSlow && !isPaused) this.quality.count(performance.now(), mayThin);
     this._frame++;
     const whole = { camera: own, target: null, area: [0, 0, canvas.width, canvas.height] };
     for (const view of views ?? [whole]) this._paint(view, !views, isShadowNew);
@@ -341,7 +351,7 @@ export class Scene {
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     gl.viewport(x, y, width, height);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    const under = /** @type {const} */ ([this.camera, this.day, this._ground]);
+    const under = /** @type {const} */ ([this.camera, this.day, this._under]);
     if (isOwn) this._backdrop.show(...under, () => this._drawShadow(), isShadowNew);
     else this._backdrop.paint(...under);
     if (!isOwn) this._drawShadow();
@@ -350,22 +360,17 @@ export class Scene {
     this._drawSolids(false);
   }
 
-  /** Whether so many trees are drawn with leaves that some may be left out; far ones are pictures. */
-  get _hasCards() {
-    const drawn = this.detail.level.filter((level) => level > 0).length;
-    return this.hasLeaves && this.leavesShown && (drawn > 1 || !this.isCrowd);
-  }
-
-  /** The ground of the scene, and one over how far one sees [1/m]. */
-  get _ground() {
-    const isTerrace = this._potSize > 0;
-    const haze = 1 / (isTerrace ? 30 * this.height : Math.max(1500, 30 * this._extent));
-    return { kind: isTerrace ? GROUNDS.terrace : GROUNDS.meadow, ground: this.ground, haze };
-  }
-
   _castShadow() {
     const { gl, _shadow: { target, width, height } } = this;
-    this._frameShadow();
+    const { day: { light }, _low: low, _high: high } = this;
+    // Where it falls, with room to sway.
+    const room = 0.06 * this._extent;
+    const ends = [0, 1].map((c) => {
+      const lean = (-light[c] / light[2]) * (high[2] - this.ground);
+      return [low[c] + Math.min(0, lean) - room, high[c] + Math.max(0, lean) + room];
+    });
+    const half = Math.max(...ends.map(([from, to]) => to - from)) / 2;
+    this._shadowArea = [...ends.map(([from, to]) => (from + to) / 2), half];
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 1);
@@ -380,64 +385,44 @@ export class Scene {
     const { camera: { matrix: camera, eye }, _poses: poses, _shadowArea: [x, y, half] } = this;
     const shadowArea = [x, y, 1 / half, Number(isShadow)];
     use(this.gl, used, {
-      ...this.day, ...this._ground, camera, eye, isShadow: Number(isShadow), shadowArea, poses: [0, poses], ...own,
+      ...this.day, ...this._under, camera, eye, isShadow: Number(isShadow), shadowArea, poses: [0, poses], ...own,
     });
-  }
-
-  /** Find where the shadow falls, with room to sway. */
-  _frameShadow() {
-    const { day: { light }, _low: low, _high: high } = this;
-    const room = 0.06 * this._extent;
-    const ends = [0, 1].map((c) => {
-      const lean = (-light[c] / light[2]) * (high[2] - this.ground);
-      return [low[c] + Math.min(0, lean) - room, high[c] + Math.max(0, lean) + room];
-    });
-    const half = Math.max(...ends.map(([from, to]) => to - from)) / 2;
-    this._shadowArea = [...ends.map(([from, to]) => (from + to) / 2), half];
   }
 
   /** @param {boolean} isShadow */
   _drawTrees(isShadow) {
-    const law = this.description?.flutter ?? { gain: 0, largest_angle: 1 };
-    const { bark, leaf, impostor } = this._programs;
-    this._begin(bark, isShadow, { picked: this._pickedRows() });
-    this._eachLevel((level, kind) => this._drawBark(kind, level));
-    if (this.leavesShown) {
-      this._begin(leaf, isShadow, {
-        isBaked: 0, time: this._time % 1000, speed: Math.hypot(...this.wind),
-        law: [this.flutters ? law.gain : 0, law.largest_angle],
-      });
-      const density = this.quality.density * (this.isSlow && isShadow ? SHADOW_LEAVES : 1);
-      this._eachLevel((level, kind) => this._drawLeaves(kind, level, density));
-    }
+    const { description, picked, watched, _programs: { impostor } } = this;
+    const { gain, largest_angle: most } = description?.flutter ?? { gain: 0, largest_angle: 1 };
+    const [first, next] = watched.kind?.arrays.branch_first.subarray(picked, picked + 2) ?? [];
+    this._drawMeshes(this._levels, isShadow, {
+      picked: picked < 0 ? NONE : [this._row(first), this._row(next - 1)], isBaked: 0, time: this._time % 1000,
+      speed: Math.hypot(...this.wind), law: [this.flutters ? gain : 0, most],
+    }, this.quality.density * (this.isSlow && isShadow ? SHADOW_LEAVES : 1));
     this._begin(impostor, isShadow);
-    this._eachLevel((level) => level.impostor?.draw(impostor, this.isCrowd ? 0.35 : 0.9));
+    for (const level of this._levels) level.impostor?.draw(impostor, this.isCrowd ? 0.35 : 0.9);
   }
 
-  /** @param {(level: DrawnLevel, kind: DrawnKind) => void} draw */
-  _eachLevel(draw) {
-    for (const kind of this._kinds) kind.drawn.forEach((level) => draw(level, kind));
+  /** The levels that are drawn of all kinds. */
+  get _levels() {
+    return this._kinds.flatMap(({ drawn }) => drawn.flat());
   }
 
-  /** @param {DrawnKind} kind @param {DrawnLevel} level */
-  _drawBark({ kind: { species } }, { bark, starts }) {
-    const { bark: barkColor, twig: twigColor, pattern } = lookOf(species);
-    this._drawEach(bark, this._programs.bark, starts, { barkColor, twigColor, ...barkPattern(pattern) });
+  /** Bark, then leaves. @param {DrawnLevel[]} levels @param {boolean} isShadow @param {Record<string, any>} own
+   * values of their programs @param {number} density share of the leaves */
+  _drawMeshes(levels, isShadow, own, density) {
+    const { gl, _programs: { bark, leaf } } = this;
+    this._begin(bark, isShadow, own);
+    gl.enable(gl.CULL_FACE);
+    for (const level of levels) this._drawEach(level.bark, bark, level.starts, level.skin, 1);
+    gl.disable(gl.CULL_FACE);
+    if (!this.leavesShown) return;
+    this._begin(leaf, isShadow, own);
+    for (const level of levels) this._drawEach(level.leaf, leaf, level.starts, level.foliage, density);
   }
 
-  /** @param {DrawnKind} kind @param {DrawnLevel} level @param {number} density share of them */
-  _drawLeaves({ kind: { species } }, { leaf, starts, across }, density) {
-    if (!leaf) return;
-    const name = `${species} ${across}`;
-    const leaves = this._pictures.get(name) ?? pictureTexture(this.gl, leafPicture(species, across, this.isAutumn), this.isSlow);
-    this._pictures.set(name, leaves);
-    this._drawEach(leaf, this._programs.leaf, starts, { leaves: [2, leaves] }, density);
-  }
-
-  /** Draw a part of each tree of a level, if it has it. @param {Drawable | null} part @param {Program} used
-   * @param {number[]} starts rows of their first segments @param {Record<string, any>} values that the
-   * program is given @param {number} [share] of its triangles */
-  _drawEach(part, used, starts, values, share = 1) {
+  /** A part of each tree of a level. @param {Drawable | undefined} part @param {Program} used
+   * @param {number[]} starts @param {Record<string, any>} values @param {number} share of its triangles */
+  _drawEach(part, used, starts, values = {}, share) {
     if (!part) return;
     use(this.gl, used, values);
     for (const start of starts) {
@@ -446,23 +431,16 @@ export class Scene {
     }
   }
 
-  _pickedRows() {
-    if (this.picked < 0) return [-2, -2];
-    const { branch_first: first } = this.watched.kind.arrays;
-    return [this._row(first[this.picked]), this._row(first[this.picked + 1] - 1)];
-  }
-
   /** The pot, somebody beside the tree, and the arrow of the wind. @param {boolean} isShadow */
   _drawSolids(isShadow) {
-    const { gl, height, ground, _low: low, _high: high, _parts: parts } = this;
+    const { gl, height, ground, _low: low, _high: high, _parts: parts, _programs: { solid } } = this;
     const [x, y, z] = this.detail.trees[0]?.place ?? AT_ORIGIN;
-    const used = this._programs.solid;
-    this._begin(used, isShadow);
-    const draw = (/** @type {Drawable} */ part, /** @type {number[]} */ placed, c = 1, s = 0) => {
-      use(gl, used, { placed, heading: [c, s] });
+    this._begin(solid, isShadow);
+    const draw = (/** @type {Drawable} */ part, /** @type {number[]} */ placed, /** @type {number[]} */ ...heading) => {
+      use(gl, solid, { placed, heading });
       drawPart(gl, part);
     };
-    if (this._potSize > 0) draw(parts.pot, [x, y, z, this._potSize]);
+    if (this._potSize > 0) draw(parts.pot, [x, y, z, this._potSize], 1, 0);
     if (this.hasPerson && height > WITH_PERSON && !this._potSize) {
       // Beside it, as the camera first sees it.
       const away = 0.5 * Math.max(high[0] - low[0], high[1] - low[1]) + 0.5;

@@ -5,7 +5,7 @@
 import { textOf } from "../files.js";
 
 /** @type {Looks} */
-const { broadleaf, conifer, broadleaves, conifers, patterns, outlines } = JSON.parse(await textOf("species.json"));
+export const { broadleaf, conifer, broadleaves, conifers, patterns, outlines } = JSON.parse(await textOf("species.json"));
 
 /** The look of a species, or of an average broadleaf. @param {string} species @returns {Look} */
 export function lookOf(species) {
@@ -19,14 +19,8 @@ export function outlineOf({ form, slender }) {
   return half.map(([x, y]) => [x, 0.5 * slender * y]);
 }
 
-/** @param {Look["pattern"]} name */
-export const barkPattern = (name) => patterns[name];
-
 /** @param {string} species */
 export const hasNeedles = (species) => species in conifers;
-
-/** @param {string} species */
-export const isPotted = (species) => species === "benjamina" || species === "goldcrest";
 
 /** Numbers from 0 to 1 that are the same on every page. */
 export function seeded(state = 12345) {
