@@ -12,10 +12,8 @@ import { distance } from "./quaternions.js";
 import { QUANTITIES, Trace, unitOf } from "./trace.js";
 import { language, setLanguage, windFrom, word } from "./words.js";
 
-/** The newest state may be so old before the page says that it is behind [ms]. */
-const BEHIND = 1000;
-/** Numbers are written again after this time [ms]. */
-const FACTS_EVERY = 400;
+/** Age of the newest state from which on it is behind, and time until numbers are written again [ms]. */
+const [BEHIND, FACTS_EVERY] = [1000, 400];
 /** How far a pointer may move in a click [px]. */
 const STILL = 4;
 

@@ -4,7 +4,7 @@
 
 import { checkMessage } from "./checks.js";
 import {
-  decodeDescription, decodeFrame, frameSize, isFrame, isTables, LARGEST_DESCRIPTION, ProtocolError,
+  decodeDescription, decodeFrame, FRAME_SIZE, isFrame, isTables, LARGEST_DESCRIPTION, ProtocolError,
 } from "./protocol.js";
 import { decodeTables } from "./sway.js";
 
@@ -116,7 +116,8 @@ export class Connection {
   _read(data, arrival) {
     const isText = typeof data === "string";
     const size = isText ? data.length : data.byteLength;
-    if (size > (isText ? LARGEST_TEXT : LARGEST_DESCRIPTION)) throw new ProtocolError(`a message of ${size} bytes`);
+    const isTooLarge = size > (isText ? LARGEST_TEXT : LARGEST_DESCRIPTION);
+    if (isTooLarge) throw new ProtocolError(`a message of ${size} bytes`);
     if (isText) {
       const message = checkMessage(JSON.parse(data));
       if ("pong" in message) this.roundTrip = performance.now() - message.pong;
@@ -128,7 +129,7 @@ export class Connection {
     }
     if (!isFrame(data)) {
       const description = (this.description = decodeDescription(data));
-      const fitting = Math.floor(ON_THE_WAY / frameSize(description));
+      const fitting = Math.floor(ON_THE_WAY / (FRAME_SIZE + 2 * description.nCoordinates));
       this._credit = Math.max(LEAST_CREDIT, Math.min(MOST_CREDIT, fitting));
       this._ask();
       return () => this.listeners.onDescription(description);

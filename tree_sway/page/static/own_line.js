@@ -85,7 +85,7 @@ export class OwnLine {
       this.stand.reset();
       this._hasRestarted = true;
     } else if (name === "pause") this._isPaused = value;
-    else if (this._wind instanceof Recorded && name === "record_time") this._wind.seek(value);
+    else if (this._wind instanceof Recorded && name === "record_time") this._wind.time = value;
     else [this._turbulence.values[name], this._wind] = [value, this._turbulence];
     this.listeners.onMessage({ values: { ...this._turbulence.values, pause: this._isPaused } });
   }
@@ -99,7 +99,18 @@ export class OwnLine {
   _go() {
     const [now, step] = [Date.now(), 1000 * this.stand.dt];
     if (now - this._time > LATEST) this._time = now - step;
-    for (; this._time + step <= now; this._time += step) this._step();
+    for (; this._time + step <= now; this._time += step) {
+      const begin = performance.now();
+      const [x, y, z] = this._live?.wind ?? this._wind.next(this.stand.dt);
+      if (!this._isPaused) this.stand.step(x, y, z);
+      this._work += 0.05 * (performance.now() - begin - this._work);
+      const flags = (this._isPaused ? PAUSED : 0) + (this._hasRestarted ? RESTARTED : 0);
+      this._hasRestarted = false;
+      this.listeners.onFrame({
+        identity: this.description.shortIdentity, sequence: this._sequence++, stamp: this._time, flags,
+        wind: [x, y, z], coordinates: this.stand.state(), first: 0,
+      }, this._time, 0);
+    }
     if (now - this._reported < STATUS_EVERY) return;
     this._reported = now;
     const { trees, outside, dt } = this.stand;
@@ -107,19 +118,6 @@ export class OwnLine {
       model: trees[0].state.table.m.toString(), trees: trees.length, rate: 1 / dt, work_us: 1000 * this._work, outside,
       ...(this._wind instanceof Recorded && { record_time: this._wind.time }),
     } });
-  }
-
-  _step() {
-    const begin = performance.now();
-    const [x, y, z] = this._live?.wind ?? this._wind.next(this.stand.dt);
-    if (!this._isPaused) this.stand.step(x, y, z);
-    this._work += 0.05 * (performance.now() - begin - this._work);
-    const flags = (this._isPaused ? PAUSED : 0) + (this._hasRestarted ? RESTARTED : 0);
-    this._hasRestarted = false;
-    this.listeners.onFrame({
-      identity: this.description.shortIdentity, sequence: this._sequence++, stamp: this._time, flags,
-      wind: [x, y, z], coordinates: this.stand.state(), first: 0,
-    }, this._time, 0);
   }
 }
 

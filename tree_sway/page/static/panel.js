@@ -22,6 +22,8 @@ export function made(tag, properties, ...within) {
 
 /** @param {Control} control */
 const nameOf = ({ name, label }) => (hasWord(name) ? word(name) : label);
+/** @param {Control} control */
+const named = ({ name, description: title }) => ({ id: `control-${name}`, title });
 
 /** A number as people read it. @param {Control} control @param {number} value */
 function textOf({ name, unit }, value) {
@@ -59,11 +61,6 @@ export class Panel {
     }
   }
 
-  /** What every control has. @param {Control} control */
-  _named({ name, description: title }) {
-    return { id: `control-${name}`, title };
-  }
-
   /** @param {Control} control @param {HTMLElement} input @param {Node} [shown] its value as text */
   _field(control, input, shown = made("span", {})) {
     return made("div", { className: "field" }, made("label", { htmlFor: input.id }, nameOf(control), shown), input);
@@ -75,7 +72,7 @@ export class Panel {
     const [low, high] = [minimum ?? 0, maximum ?? 1];
     const isWide = low > 0 && high / low > WIDE;
     const [min, max] = isWide ? [0, Math.log(high / low)] : [low, high];
-    const input = made("input", { ...this._named(control), type: "range", min, max, step: (max - min) / STEPS });
+    const input = made("input", { ...named(control), type: "range", min, max, step: (max - min) / STEPS });
     const valueOf = () => Math.min(high, isWide ? low * Math.exp(Number(input.value)) : Number(input.value));
     const shown = made("span", {});
     const show = (/** @type {number} */ value) => {
@@ -100,7 +97,7 @@ export class Panel {
   /** @param {Control} control */
   _choice(control) {
     const options = control.choices.map((each) => made("option", { value: each }, each));
-    const input = made("select", this._named(control), ...options);
+    const input = made("select", named(control), ...options);
     input.addEventListener("change", () => this.send(control.name, input.value));
     this._show.set(control.name, (value) => (input.value = value));
     return this._field(control, input);
@@ -108,7 +105,7 @@ export class Panel {
 
   /** @param {Control} control */
   _button(control) {
-    const button = made("button", { ...this._named(control), type: "button" }, nameOf(control));
+    const button = made("button", { ...named(control), type: "button" }, nameOf(control));
     const next = () => (control.is_action ? null : button.getAttribute("aria-pressed") !== "true");
     button.addEventListener("click", () => this.send(control.name, next()));
     const show = (/** @type {any} */ value) => button.setAttribute("aria-pressed", String(Boolean(value)));

@@ -76,14 +76,6 @@ export class KindPlacer {
     this._bases = new Float64Array(4 * nBranches);
   }
 
-  /** Poses of the whole tree at rest, segment after segment as they are described. */
-  rest() {
-    const poses = new Float32Array(STRIDE * this.kind.nSegments);
-    const still = new Float32Array(this.kind.nCoordinates);
-    new KindPlacer(this.kind).place(still, 0, AT_ORIGIN, this.kind.nBranches, poses, 0);
-    return poses;
-  }
-
   /** Place a tree. @param {ArrayLike<number>} coordinates of all trees @param {number} from its first
    * @param {ArrayLike<number>} place as of a tree @param {number} count how many branches, in the order
    * @param {Float32Array} poses written @param {number} to row of its first segment

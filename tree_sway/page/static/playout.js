@@ -14,12 +14,10 @@ const [CALMS, FIRST] = [12000, 250];
 const [DOWN, UP] = [0.05, 0.2];
 /** Spacing of states up to which one more is expected [ms]. */
 const AHEAD = 30;
-const WINDOW = 30000;
-const LONGEST_GAP = 500;
-const BLEND = 400;
+/** Of the clocks, the longest gap, of the blend after one [ms]. */
+const [WINDOW, LONGEST_GAP, BLEND] = [30000, 500, 400];
 /** How long states are kept [ms], and how many numbers of theirs at most. */
-const KEPT = 62000;
-const MOST_NUMBERS = 8e6;
+const [KEPT, MOST_NUMBERS] = [62000, 8e6];
 
 /** Difference of two clocks from one-way times: arrival less stamp is offset plus travel, so the least of
  * the last half minute is the offset and the quickest travel. */

@@ -21,7 +21,7 @@ export const PART = 8;
 /** First bytes of what is sent once. */
 const MAGIC = { description: "TSWD", tables: "TSWT" };
 const FRAME_KIND = 0x46;
-const FRAME_SIZE = 28;
+export const FRAME_SIZE = 28;
 
 /** Largest message with a description, and header in it [bytes]. */
 export const LARGEST_DESCRIPTION = 64 * 2 ** 20;
@@ -29,7 +29,8 @@ const LARGEST_HEADER = 8 * 2 ** 20;
 
 /** A reader of a message of a header and arrays; whatever goes wrong is a `ProtocolError`. Arrays in planes
  * have their first bytes together, then their second: they pack better. Own arrays are those of no kind.
- * @template T @param {keyof typeof MAGIC} what @param {(head: any, kinds: Arrays[], own: Arrays) => T} read */
+ * @template T @param {keyof typeof MAGIC} what @param {(head: any, kinds: Arrays[], own: Arrays) => T} read *
+ */
 export const reader = (what, read) => (/** @type {ArrayBuffer} */ data, inPlanes = false) => {
   try {
     const { header, kinds, own } = unpack(data, what, inPlanes);
@@ -99,9 +100,6 @@ export const isTables = (data) => begins(data, "tables");
 
 /** Whether a message is a frame. @param {ArrayBuffer} data */
 export const isFrame = (data) => data.byteLength >= FRAME_SIZE && new Uint8Array(data)[0] === FRAME_KIND;
-
-/** Size of a frame [bytes]. @param {Description} description */
-export const frameSize = (description) => FRAME_SIZE + 2 * description.nCoordinates;
 
 /** Read a frame; null if it belongs to another description, which is to come. @param {ArrayBuffer} data
  * @param {Description | null} description @returns {Frame | null} */

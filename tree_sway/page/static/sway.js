@@ -4,8 +4,8 @@
  *
  * A tree is m coordinates; a table has what every even wind does to them; each goes on by its exact
  * propagator. Outside of the table the load of its edge is used, which `Stand.outside` counts. The law is
- * that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it. How to use it:
- * doc/tree_as_a_file.md. */
+ * that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it;
+ * doc/tree_as_a_file.md is for its users. */
 
 import { FORMS, need, ProtocolError, sizesOf } from "./checks.js";
 import { reader } from "./protocol.js";
@@ -185,8 +185,8 @@ export class TreeState {
     if (!(energy <= most)) {
       // No wind takes it further; from rest again where it is not a number.
       const share = energy < Infinity ? Math.sqrt(most / energy) : 0;
-      for (const each of share ? [eta, rate] : [eta, rate, force]) {
-        for (let i = 0; i < m; i++) each[i] = share ? share * each[i] : 0;
+      for (const all of share ? [eta, rate] : [eta, rate, force]) {
+        all.forEach((each, i) => (all[i] = share ? share * each : 0));
       }
       isOutside = true;
     }

@@ -121,7 +121,7 @@ export function drawPart(gl, part, share = 1) {
   gl.drawElements(gl.TRIANGLES, 3 * Math.round((share * part.count) / 3), gl.UNSIGNED_INT, 0);
 }
 
-/** A texture, which is bound. @param {GL} gl @param {number} less filter where it is small @param {number} more */
+/** A texture, now bound. @param {GL} gl @param {number} less filter where it is small @param {number} more */
 export function textureOf(gl, less, more) {
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -132,7 +132,7 @@ export function textureOf(gl, less, more) {
 }
 
 /** A texture of a picture, its colours times its alpha: no leaf has a rim of what is around it.
- * @param {GL} gl @param {HTMLCanvasElement} picture @param {boolean} isPlain one point is looked up, for less */
+ * @param {GL} gl @param {HTMLCanvasElement} picture @param {boolean} isPlain one point is looked up */
 export function pictureTexture(gl, picture, isPlain) {
   gl.activeTexture(gl.TEXTURE2);
   const texture = isPlain ? textureOf(gl, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST)

@@ -3,21 +3,17 @@
 /** Meshes of a kind at rest: bark as tubes, leaves as cards. Each vertex hangs on a segment, whose row is
  * its first number, and moves with it. A branch is one tube: a ring between two segments is of both. */
 
-import { KindPlacer, STRIDE } from "../placing.js";
+import { AT_ORIGIN, KindPlacer, STRIDE } from "../placing.js";
 import { between, multiply, turned } from "../quaternions.js";
 import { crownShade } from "./shade.js";
 import { hasNeedles, lookOf, seeded } from "./species.js";
 import { leavesAcross } from "./textures.js";
 
-/** Rings of bark are no nearer to each other on the screen [px]. */
-const RING_SPACING = 6;
-/** Cards of leaves per cluster, at most: of leaves alone, and of sprays. */
-const ALONE = 2;
-const CARDS = 3;
-/** Cards are at most so much larger where few of them are drawn; they show more leaves then. */
-const LARGEST_CARDS = 4;
-/** Height of the picture of bark on a stem [m]. */
-const BARK_TILE = 0.6;
+/** Least spacing of rings of bark on the screen [px], height of the picture of bark on a stem [m]. */
+const [RING_SPACING, BARK_TILE] = [6, 0.6];
+/** Cards of leaves per cluster, at most: of leaves alone, of sprays; and how much larger they are, at most,
+ * where few are drawn, which show more leaves then. */
+const [ALONE, CARDS, LARGEST_CARDS] = [2, 3, 4];
 
 /** The lowest and the highest corner of a box of points. @param {ArrayLike<number>[]} points */
 export const boxOf = (points) => [Math.min, Math.max].map((of) =>
@@ -25,7 +21,9 @@ export const boxOf = (points) => [Math.min, Math.max].map((of) =>
 
 /** A kind at rest: its poses, its box, its highest segment, how open its crown is. @param {Kind} kind */
 export function shapeOf(kind) {
-  const rest = new KindPlacer(kind).rest();
+  const rest = new Float32Array(STRIDE * kind.nSegments);
+  const still = new Float32Array(kind.nCoordinates);
+  new KindPlacer(kind).place(still, 0, AT_ORIGIN, kind.nBranches, rest, 0);
   const nodes = Array.from({ length: kind.nSegments }, (_, s) => rest.subarray(STRIDE * s));
   const [low, high] = boxOf(nodes);
   const highest = nodes.findIndex((node) => node[2] === high[2]);
@@ -161,7 +159,7 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
   return { mesh, across };
 }
 
-/** Corners of a card: place, motion with the flutter, normal, in the frame of the cluster; place in the picture.
+/** Corners of a card: place, motion with the flutter, normal, in the frame of the cluster; in the picture.
  * @param {string} species @param {number} size of the card [m] @param {number} number in its cluster
  * @param {boolean} isAlone whether the picture is of one leaf @param {() => number} random */
 function cardCorners(species, size, number, isAlone, random) {

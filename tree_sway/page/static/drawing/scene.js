@@ -18,10 +18,8 @@ import { COARSEST, Quality } from "./quality.js";
 import { lookOf, patterns } from "./species.js";
 import { leafPicture } from "./textures.js";
 
-/** A shadow is drawn again after this number of frames without a graphics unit, of a crowd less often. */
-const SHADOW_EVERY = 8;
-/** Share of the leaves that cast it then. */
-const SHADOW_LEAVES = 0.4;
+/** Without a graphics unit a shadow is drawn again after so many frames, by a share of the leaves. */
+const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
 const CROWD = 50;
 /** Segments of all trees and cards of leaves of one, at most, and height of far trees [px]. */
 const MOST = { segments: 40000, cards: 3000, far: 90 };
@@ -30,11 +28,10 @@ const MOST_SLOW = { ...MOST, segments: 12000, far: 150 };
 const MOST_CROWD = { ...MOST, segments: 5000, far: 220 };
 /** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
 const CHOOSE_EVERY = 6;
-const POT_HEIGHT = 0.17;
 /** A branch is near that is within this angle of where one points [rad]. */
 const REACH = 0.017;
-/** Height of a tree from which a person is beside it [m]. */
-const WITH_PERSON = 2.5;
+/** Height of a pot over that of its tree, and that of a tree with a person beside it [m]. */
+const [POT_HEIGHT, WITH_PERSON] = [0.17, 2.5];
 /** The arrow follows the mean of the wind over this time [s]. */
 const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
@@ -235,7 +232,10 @@ export class Scene {
     if (wanted === this._chosenFor) return;
     this._chosenFor = wanted;
     detail.choose(camera.matrix, high, this._budget);
-    for (const { starts, impostor } of this._levels) Object.assign(impostor ?? {}, { count: starts.length = 0 });
+    for (const { starts, impostor } of this._levels) {
+      starts.length = 0;
+      if (impostor) impostor.count = 0;
+    }
     // Near trees first: what they hide costs less then.
     for (const t of detail.order) {
       if (detail.level[t] < 0) continue;
@@ -264,8 +264,8 @@ export class Scene {
       pictures.set(name, pictureTexture(gl, leafPicture(species, across, this.isAutumn), this.isSlow));
     }
     return {
-      starts: [], bark: drawable(gl, programs.bark, bark), skin: { barkColor, twigColor, ...patterns[pattern] },
-      leaf: drawable(gl, programs.leaf, mesh), foliage: { leaves: [2, pictures.get(name)] },
+      starts: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
+      skin: { barkColor, twigColor, ...patterns[pattern] }, foliage: { leaves: [2, pictures.get(name)] },
     };
   }
 
@@ -283,7 +283,7 @@ export class Scene {
     shape.placer.place(new Float32Array(shape.kind.nCoordinates), 0, AT_ORIGIN, branches, texels, 0);
     this._poses = textureOf(gl, gl.NEAREST, gl.NEAREST);
     uploadPoses(gl, this._poses, texels, segments);
-    const even = { sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0, picked: NONE, isBaked: 1, speed: 0, law: [0, 1] };
+    const even = { sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0, picked: NONE, isBaked: 1, law: [0, 1] };
     impostor.bake((camera, eye) => this._drawMeshes([level], false, { camera, eye, ...even }, 1),
       lookOf(shape.kind.species).leaf);
     gl.deleteTexture(this._poses);
@@ -383,10 +383,9 @@ export class Scene {
   /** @param {Program} used @param {boolean} isShadow @param {Record<string, any>} [own] beside the usual */
   _begin(used, isShadow, own = {}) {
     const { camera: { matrix: camera, eye }, _poses: poses, _shadowArea: [x, y, half] } = this;
-    const shadowArea = [x, y, 1 / half, Number(isShadow)];
-    use(this.gl, used, {
-      ...this.day, ...this._under, camera, eye, isShadow: Number(isShadow), shadowArea, poses: [0, poses], ...own,
-    });
+    const lit = { ...this.day, ...this._under, camera, eye, isShadow: Number(isShadow) };
+    const shadowArea = [x, y, 1 / half, lit.isShadow];
+    use(this.gl, used, { ...lit, shadowArea, poses: [0, poses], ...own });
   }
 
   /** @param {boolean} isShadow */
@@ -394,9 +393,10 @@ export class Scene {
     const { description, picked, watched, _programs: { impostor } } = this;
     const { gain, largest_angle: most } = description?.flutter ?? { gain: 0, largest_angle: 1 };
     const [first, next] = watched.kind?.arrays.branch_first.subarray(picked, picked + 2) ?? [];
+    const rows = picked < 0 ? NONE : [this._row(first), this._row(next - 1)];
     this._drawMeshes(this._levels, isShadow, {
-      picked: picked < 0 ? NONE : [this._row(first), this._row(next - 1)], isBaked: 0, time: this._time % 1000,
-      speed: Math.hypot(...this.wind), law: [this.flutters ? gain : 0, most],
+      picked: rows, isBaked: 0, time: this._time % 1000, speed: Math.hypot(...this.wind),
+      law: [this.flutters ? gain : 0, most],
     }, this.quality.density * (this.isSlow && isShadow ? SHADOW_LEAVES : 1));
     this._begin(impostor, isShadow);
     for (const level of this._levels) level.impostor?.draw(impostor, this.isCrowd ? 0.35 : 0.9);
@@ -407,8 +407,8 @@ export class Scene {
     return this._kinds.flatMap(({ drawn }) => drawn.flat());
   }
 
-  /** Bark, then leaves. @param {DrawnLevel[]} levels @param {boolean} isShadow @param {Record<string, any>} own
-   * values of their programs @param {number} density share of the leaves */
+  /** Bark, then leaves. @param {DrawnLevel[]} levels @param {boolean} isShadow
+   * @param {Record<string, any>} own values of their programs @param {number} density share of the leaves */
   _drawMeshes(levels, isShadow, own, density) {
     const { gl, _programs: { bark, leaf } } = this;
     this._begin(bark, isShadow, own);
@@ -436,23 +436,24 @@ export class Scene {
     const { gl, height, ground, _low: low, _high: high, _parts: parts, _programs: { solid } } = this;
     const [x, y, z] = this.detail.trees[0]?.place ?? AT_ORIGIN;
     this._begin(solid, isShadow);
-    const draw = (/** @type {Drawable} */ part, /** @type {number[]} */ placed, /** @type {number[]} */ ...heading) => {
+    /** @param {Drawable} part @param {number[]} placed @param {number[]} heading */
+    const draw = (part, placed, heading) => {
       use(gl, solid, { placed, heading });
       drawPart(gl, part);
     };
-    if (this._potSize > 0) draw(parts.pot, [x, y, z, this._potSize], 1, 0);
+    if (this._potSize > 0) draw(parts.pot, [x, y, z, this._potSize], [1, 0]);
     if (this.hasPerson && height > WITH_PERSON && !this._potSize) {
       // Beside it, as the camera first sees it.
       const away = 0.5 * Math.max(high[0] - low[0], high[1] - low[1]) + 0.5;
       const at = this.isCrowd ? [high[0] + 3, low[1] - 3] : [x + 0.8 * away, y + 0.66 * away];
-      draw(parts.person, [...at, ground, 1], Math.cos(-0.9), Math.sin(-0.9));
+      draw(parts.person, [...at, ground, 1], [Math.cos(-0.9), Math.sin(-0.9)]);
     }
     const speed = Math.hypot(...this._calmWind);
     if (speed > 0.2 && !isShadow) {
       const long = arrowLength(height, speed);
-      const [u, v] = this._calmWind.map((each) => each / speed);
-      const [right, up] = [u, v].map((way, c) => 0.5 * (low[c] + high[c]) - way * (0.42 * this._extent + long));
-      draw(parts.arrow, [right, up, ground + 0.01 * height, long], u, v);
+      const to = this._calmWind.map((each) => each / speed);
+      const at = to.map((way, c) => 0.5 * (low[c] + high[c]) - way * (0.42 * this._extent + long));
+      draw(parts.arrow, [...at, ground + 0.01 * height, long], to);
     }
   }
 

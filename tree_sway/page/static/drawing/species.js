@@ -5,18 +5,13 @@
 import { textOf } from "../files.js";
 
 /** @type {Looks} */
-export const { broadleaf, conifer, broadleaves, conifers, patterns, outlines } = JSON.parse(await textOf("species.json"));
+const looks = JSON.parse(await textOf("species.json"));
+export const { broadleaf, conifer, broadleaves, conifers, patterns, outlines } = looks;
 
 /** The look of a species, or of an average broadleaf. @param {string} species @returns {Look} */
 export function lookOf(species) {
   const group = hasNeedles(species) ? conifer : {};
   return { ...broadleaf, ...group, ...(conifers[species] ?? broadleaves[species]) };
-}
-
-/** Points of a blade above its middle, of unit length. @param {Look} look */
-export function outlineOf({ form, slender }) {
-  const half = outlines[form] ?? outlines.ovate;
-  return half.map(([x, y]) => [x, 0.5 * slender * y]);
 }
 
 /** @param {string} species */

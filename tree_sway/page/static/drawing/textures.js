@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Pictures painted by code: sprays of leaves, cut out by their alpha. */
 
-import { hasNeedles, lookOf, outlineOf, seeded } from "./species.js";
+import { hasNeedles, lookOf, outlines, seeded } from "./species.js";
 
 /** Leaves across a picture: a leaf alone, sprays of more and more. */
 const ACROSS = [1, 3, 6, 12, 24];
@@ -21,10 +21,8 @@ export function leavesAcross(species, size) {
 
 /** Paint leaves of a twig. @param {string} species @param {number} across @param {boolean} isAutumn */
 export function leafPicture(species, across, isAutumn) {
-  const look = lookOf(species);
-  const base = isAutumn && look.autumn ? look.autumn : look.leaf;
-  const brush = new Brush(look, base, isAutumn && look.autumn ? base.map((c) => 1.15 * c) : look.fresh,
-    across === 1 ? LEAF_PIXELS / 2 : LEAF_PIXELS, seeded(97 + across));
+  const size = across === 1 ? LEAF_PIXELS / 2 : LEAF_PIXELS;
+  const brush = new Brush(lookOf(species), isAutumn, size, seeded(97 + across));
   const long = 1 / across;
   if (across === 1) brush.leaf(0.99);
   else if (hasNeedles(species)) brush.shoot(0.98 - 0.3 * long, long);
@@ -34,17 +32,18 @@ export function leafPicture(species, across, isAutumn) {
 }
 
 /** @param {number[]} color */
-const css = (color) => `rgb(${color.map((c) => Math.round(255 * Math.min(1, Math.max(0, c)))).join(" ")})`;
+const css = (color) => `rgb(${color.map((c) => 255 * c).join(" ")})`;
 
 /** Paints leaves and twigs of a species on a unit square, from the middle of its left side on. */
 class Brush {
-  /** @param {Look} look @param {number[]} base colour of its leaves @param {number[]} fresh of some
-   * @param {number} size [px] @param {() => number} random */
-  constructor(look, base, fresh, size, random) {
+  /** @param {Look} look @param {boolean} isAutumn @param {number} size [px] @param {() => number} random */
+  constructor(look, isAutumn, size, random) {
+    const turned = isAutumn && look.autumn;
+    const [base, fresh] = turned ? [turned, turned.map((c) => 1.15 * c)] : [look.leaf, look.fresh];
     this.look = look;
     this.random = random;
     this.unit = look.form === "compound" ? RACHIS : 1;
-    const half = outlineOf(look);
+    const half = (outlines[look.form] ?? outlines.ovate).map(([x, y]) => [x, 0.5 * look.slender * y]);
     const other = half.map(([x, y]) => [x, -y]).reverse();
     this.blade = new Path2D(`M${[...half, ...other].join("L")}Z`);
     const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
