@@ -27,6 +27,7 @@ from tree_sway.errors import ParameterError
 from tree_sway.page.scene_state import SceneState
 
 _IMPORT = re.compile(r'(\bfrom\s+|\bimport[\s(]+)"(\.[^"]+)"')
+_COMMENT = re.compile(r'^ *(?://.*|/\*\*(?:[^*]|\*(?!/))*\*/ *)\n', re.MULTILINE)
 _LEAVES = 1000
 _BOOT = 'boot.js'
 _BITS = 14
@@ -121,9 +122,9 @@ def _modules(folder: Path) -> bytes:
 
 
 def _with_full_names(text: str, folder: Path) -> str:
-    """Source of a module of a folder, with the full names of what it imports."""
+    """Source of a module of a folder without comments, with the full names of what it imports."""
 
     def full(found: re.Match[str]) -> str:
         return f'{found[1]}"tree-sway/{posixpath.normpath((folder / found[2]).as_posix())}"'
 
-    return _IMPORT.sub(full, text)
+    return _IMPORT.sub(full, _COMMENT.sub('', text))
