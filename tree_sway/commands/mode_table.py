@@ -25,8 +25,8 @@ def mode_table(
     branch that bends most.
     """
     whole = TreeReductions(tree, species, settings)
-    modes = whole.natural_modes(min(count, whole.coupled.reduction.n_coordinates))
-    reduced = whole.coupled
+    modes = whole.natural_modes(min(count, whole.with_subtrees.reduction.n_coordinates))
+    reduced = whole.with_subtrees
     owner = np.repeat(reduced.branch, reduced.branches['n_coordinates'])
     rows = [
         {

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.motion.fill_records import turns_of_segments
+from tree_sway.core.motion.fill_records import rotation_modes_of
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import encode_description
@@ -114,11 +114,11 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
             count += len(turns[-1])
         if keys[branch] > 2:
             own_turn[branch] = count
-            turns.append(turns_of_segments(record, segments).reshape(-1, 3))
+            turns.append(rotation_modes_of(record, segments).reshape(-1, 3))
             count += len(turns[-1])
     first = np.concatenate([[0], np.cumsum(sizes)])
     owner = np.repeat(np.arange(len(branches)), sizes)
-    at = branches['block'][owner] + np.arange(len(owner)) - first[owner]
+    at = branches['first_record'][owner] + np.arange(len(owner)) - first[owner]
     slot = branches['slot'][owner]
     indices = {
         'branch_parent': branches['parent'],

@@ -14,13 +14,13 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.branch.shapes import MAX_COORDINATES
 from tree_sway.core.motion.fill_records import (
     assign_slots,
+    block_records,
     fill_places,
-    head_records,
     Places,
     segment_records,
 )
 from tree_sway.core.motion.placing import GIVEN, place, room_for
-from tree_sway.core.motion.records import BRANCH, head_layout, SEGMENT
+from tree_sway.core.motion.records import block_layout, BRANCH, SEGMENT
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import Description
@@ -74,8 +74,8 @@ class Placer:
             own = (number >= key) & (number < key + len(keys))
             keys[number[own].astype(np.int64) - key] += turn[own]
             origin = np.array([x, y, z])
-            room, (segments, heads, bases) = room_for(len(keys)), kind.records
-            place(*GIVEN, segments, heads, bases, c, s, scale, room, keys, origin, poses[row:end])
+            room, (segments, blocks, bases) = room_for(len(keys)), kind.records
+            place(*GIVEN, segments, blocks, bases, c, s, scale, room, keys, origin, poses[row:end])
             row, first, key = end, last, key + len(keys)
         return poses
 
@@ -99,7 +99,7 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     sizes = len(parent), n_records, len(np.unique(block)) + 1
     memory = sum(
         count * layout.itemsize
-        for count, layout in zip(sizes, (BRANCH, SEGMENT, head_layout()), strict=True)
+        for count, layout in zip(sizes, (BRANCH, SEGMENT, block_layout()), strict=True)
     )
     if memory > MOST_MEMORY:
         what = f'a kind of {memory // 2**20} MiB when laid out'
@@ -128,5 +128,5 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     )  # fmt: skip
     branches, segments = np.zeros(len(parent), BRANCH), segment_records(places)
     fill_places(places, branches)
-    heads = head_records(branches, segments)
-    return _Kind(matrix, int(first[-1]), (segments, heads, np.zeros((len(branches), 8))))
+    blocks = block_records(branches, segments)
+    return _Kind(matrix, int(first[-1]), (segments, blocks, np.zeros((len(branches), 8))))

@@ -113,7 +113,7 @@ def test_a_turned_branch_faces_the_wind_as_it_is_turned(stem):
 
 def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
     tree = crooked_tree(4)
-    reduced = TreeReductions(tree, species_named('oak'), Settings(in_leaf=False)).coupled
+    reduced = TreeReductions(tree, species_named('oak'), Settings(in_leaf=False)).with_subtrees
     for wind in np.array([[1.0, 0.0, 0.0], [0.6, -0.8, 0.0]]):
         true, fitted, centred = np.zeros((3, len(reduced.branches), 3))
         for b, (model, record) in enumerate(zip(reduced.models, reduced.branches, strict=True)):

@@ -28,12 +28,12 @@ from tree_sway.core.branch.beam import (
     SlopeShape,
 )
 from tree_sway.core.branch.shapes import (
-    Carried,
     FEWER_TURNS,
     N_PAIRS,
     N_TURNS,
     shaken_energies,
     shape_fields,
+    SubtreeSums,
     wind_loads,
 )
 from tree_sway.core.tree.tree import Tree
@@ -137,7 +137,7 @@ class TreeBeams:
         self._bare: list[tuple[BranchBeam, Floats, Floats, Ints, Floats]] = []
         self._known: dict[tuple[int, ...], BranchModel] = {}
         self._blown: dict[tuple[int, int], Floats] = {}
-        self._sums = Carried.of_none(n)
+        self._sums = SubtreeSums.zeros(n)
         children_of: list[list[int]] = [[] for _ in range(n)]
         for branch in range(1, n):
             children_of[tree.branch_parent[branch]].append(branch)
@@ -154,7 +154,7 @@ class TreeBeams:
             self._bare.append((beam, drag_area, mass, children, loads))
             point = beam.point.reshape(-1, 3)
             dm, load = beam.weight * mass, beam.weight * drag_area
-            own = Carried(
+            own = SubtreeSums(
                 area=load.sum(),
                 area_moment=load.ravel() @ point,
                 force=beam.integral(loads),
@@ -202,18 +202,18 @@ class TreeBeams:
             turns[branch] = np.sqrt(np.square(ends).sum(axis=1).max()) / beam.chord_length
         return turns / modulus
 
-    def _curvatures(self, branch: int, n_carried: int) -> Floats:
+    def _curvatures(self, branch: int, n_subtrees: int) -> Floats:
         """Curvatures (p, 5, 3, 3) by `wind_loads` of a branch and its first children."""
-        key = branch, n_carried
+        key = branch, n_subtrees
         if key not in self._blown:
             beam, _, _, children, loads = self._bare[branch]
-            carried = self._sums.of(children[:n_carried])
-            moments = beam.moment_in_space(loads, carried.force, carried.moment)
+            subtrees = self._sums.select(children[:n_subtrees])
+            moments = beam.moment_in_space(loads, subtrees.force, subtrees.moment)
             self._blown[key] = beam.curvature_in_space(moments, self._shear_ratio)
         return self._blown[key]
 
     def models(
-        self, *, carries: bool, enriched: frozenset[int] = frozenset()
+        self, *, subtrees: bool, enriched: frozenset[int] = frozenset()
     ) -> list[BranchModel]:
         """
         Model each branch; where two models of the sway do not differ, it is the same.
@@ -233,7 +233,7 @@ class TreeBeams:
 
         """
         return [
-            self._model(branch, len(bare[3]) if carries else 0, *self._richness(branch, enriched))
+            self._model(branch, len(bare[3]) if subtrees else 0, *self._richness(branch, enriched))
             for branch, bare in enumerate(self._bare)
         ]
 
@@ -269,17 +269,17 @@ class TreeBeams:
     def _shaken(self, branch: int) -> tuple[float, float]:
         beam, _, mass, children, _ = self._bare[branch]
         fields = self._model(branch, len(children), 1, 0).fields
-        return shaken_energies(beam, mass, self._sums.of(children), self._shear_ratio, fields)
+        return shaken_energies(beam, mass, self._sums.select(children), self._shear_ratio, fields)
 
-    def _model(self, branch: int, n_carried: int, n_pairs: int, n_turns: int) -> BranchModel:
+    def _model(self, branch: int, n_subtrees: int, n_pairs: int, n_turns: int) -> BranchModel:
         """Model a branch, unless that is done."""
-        key = branch, n_carried, n_pairs, n_turns
+        key = branch, n_subtrees, n_pairs, n_turns
         if key not in self._known:
             beam, drag_area, mass, children, _ = self._bare[branch]
-            carried = self._sums.of(children[:n_carried])
-            curvatures = self._curvatures(branch, n_carried)
+            subtrees = self._sums.select(children[:n_subtrees])
+            curvatures = self._curvatures(branch, n_subtrees)
             shape, fields = shape_fields(
-                beam, drag_area, mass, carried, curvatures, self._shear_ratio, n_pairs, n_turns
+                beam, drag_area, mass, subtrees, curvatures, self._shear_ratio, n_pairs, n_turns
             )
             self._known[key] = BranchModel(beam, drag_area, mass, shape, fields, children)
         return self._known[key]

@@ -51,7 +51,7 @@ _UPWARD = 0.3
 _WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
 
 
-class Carried(NamedTuple):
+class SubtreeSums(NamedTuple):
     """
     What each child of a branch hands down: sums over its subtree, about the root of the tree.
 
@@ -76,14 +76,14 @@ class Carried(NamedTuple):
     mass_second: Floats
 
     @classmethod
-    def of_none(cls, count: int) -> Carried:
+    def zeros(cls, count: int) -> SubtreeSums:
         """Make sums over a number of subtrees, all of them zero."""
         shapes: tuple[tuple[int, ...], ...] = (), (3,), (3, 3), (3, 3), (), (3,), (3, 3)
         return cls(*(np.zeros((count, *shape)) for shape in shapes))
 
-    def of(self, children: Ints) -> Carried:
+    def select(self, children: Ints) -> SubtreeSums:
         """Pick some of the subtrees."""
-        return Carried(*(sums[children] for sums in self))
+        return SubtreeSums(*(sums[children] for sums in self))
 
 
 def across(chord: Floats) -> tuple[Floats, Floats]:
@@ -102,7 +102,7 @@ def shape_fields(
     beam: BranchBeam,
     drag_area: Floats,
     mass: Floats,
-    carried: Carried,
+    subtrees: SubtreeSums,
     curvatures: Floats,
     shear_ratio: float,
     n_pairs: int = 1,
@@ -136,14 +136,14 @@ def shape_fields(
     e1, e2 = across(beam.chord)
     pair = _static_pair(beam, curvatures, e1, e2)
     if pair is None:
-        drawn = _static_shape(beam, drag_area, carried)
+        drawn = _static_shape(beam, drag_area, subtrees)
         fields = [RotationField.about(drawn, e2), RotationField.about(drawn, -e1)]
     else:
         mean = 0.5 * (pair[0] @ e2 - pair[1] @ e1)
         drawn = beam.slope_shape(mean * beam.second_moment)
         fields = [RotationField(beam, each) for each in pair]
     if n_pairs > 1 or n_turns > 0:
-        fields += _further(beam, mass, carried, shear_ratio, fields, n_pairs, n_turns)
+        fields += _further(beam, mass, subtrees, shear_ratio, fields, n_pairs, n_turns)
     return drawn, tuple(fields)
 
 
@@ -193,7 +193,7 @@ def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -
 def _further(
     beam: BranchBeam,
     mass: Floats,
-    carried: Carried,
+    subtrees: SubtreeSums,
     shear_ratio: float,
     pair: list[RotationField],
     n_pairs: int,
@@ -221,20 +221,20 @@ def _further(
         rest_of(one.curvature)
     found: list[RotationField] = []
     sources: list[RotationField | None] = list(pair)
-    turning: list[RotationField | None] = [None] if len(carried.area) else []
+    turning: list[RotationField | None] = [None] if len(subtrees.area) else []
     for block in range(1, max(n_pairs, n_turns + 1)):
         parts = (sources if block < n_pairs else []), (turning if block <= n_turns else [])
         bent = [
             [rest_of(beam.curvature_in_space(
-                inertial_moment(beam, mass, carried, one)[:, :, None], shear_ratio
+                inertial_moment(beam, mass, subtrees, one)[:, :, None], shear_ratio
             )[:, :, 0]) for one in part]
             for part in parts
         ]  # fmt: skip
         new = [[one for one in part if one is not None] for part in bent]
         found += [*new[0], *new[1]]
         sources, turning = [*new[0]], [*new[1]]
-    if len(carried.area) > 1:
-        apart = np.moveaxis(beam.curvature_in_space(_apart(beam, carried), shear_ratio), 2, 0)
+    if len(subtrees.area) > 1:
+        apart = np.moveaxis(beam.curvature_in_space(_apart(beam, subtrees), shear_ratio), 2, 0)
         left = np.array([_energy_vector(beam, each, shear_ratio) for each in apart])
         whole = float(np.square(left).sum())
         for _ in range(2):
@@ -248,7 +248,7 @@ def _further(
     return found
 
 
-def _apart(beam: BranchBeam, carried: Carried) -> Floats:
+def _apart(beam: BranchBeam, subtrees: SubtreeSums) -> Floats:
     """
     Return internal moments as what is carried swings apart, in some random cases (p, 5, k, 3).
 
@@ -256,20 +256,20 @@ def _apart(beam: BranchBeam, carried: Carried) -> Floats:
     the whole crown does (random vectors find what matters: Halko, Martinsson & Tropp 2011, SIAM
     Review 53(2), 217-288).
     """
-    places = beam.child_point[: len(carried.area)]
+    places = beam.child_point[: len(subtrees.area)]
     rng = np.random.default_rng(0)
     moved, turn = rng.choice((-1.0, 1.0), (2, len(places), _APART, 3))
-    hung = carried.mass_moment - carried.mass[:, None] * places
-    trace = np.trace(carried.mass_second, axis1=1, axis2=2)
-    square = trace - (places * (hung + carried.mass_moment)).sum(axis=1)
-    radius = np.sqrt(np.maximum(square, 1e-12) / np.maximum(carried.mass, 1e-300))
+    hung = subtrees.mass_moment - subtrees.mass[:, None] * places
+    trace = np.trace(subtrees.mass_second, axis1=1, axis2=2)
+    square = trace - (places * (hung + subtrees.mass_moment)).sum(axis=1)
+    radius = np.sqrt(np.maximum(square, 1e-12) / np.maximum(subtrees.mass, 1e-300))
     load = np.zeros((*beam.weight.shape, _APART, 3))
     turn = turn / radius[:, None, None]
-    return beam.moment_in_space(load, *_inertial_wrench(places, carried, turn, moved))
+    return beam.moment_in_space(load, *_inertial_wrench(places, subtrees, turn, moved))
 
 
 def _inertial_wrench(
-    places: Floats, carried: Carried, turn: Floats, moved: Floats
+    places: Floats, subtrees: SubtreeSums, turn: Floats, moved: Floats
 ) -> tuple[Floats, Floats]:
     """
     Force and moment by the inertia of what is carried, about the root of the tree, (c, k, 3).
@@ -277,10 +277,10 @@ def _inertial_wrench(
     Each subtree turns about its place (c, 3) and moves with it, in k cases, both (c, k, 3).
     """
     at_root = moved - cross(turn, places[:, None])
-    force = carried.mass[:, None, None] * at_root + cross(turn, carried.mass_moment[:, None])
-    trace = np.trace(carried.mass_second, axis1=1, axis2=2)[:, None, None]
-    spin = trace * turn - np.einsum('cij,ckj->cki', carried.mass_second, turn)
-    return force, cross(carried.mass_moment[:, None], at_root) + spin
+    force = subtrees.mass[:, None, None] * at_root + cross(turn, subtrees.mass_moment[:, None])
+    trace = np.trace(subtrees.mass_second, axis1=1, axis2=2)[:, None, None]
+    spin = trace * turn - np.einsum('cij,ckj->cki', subtrees.mass_second, turn)
+    return force, cross(subtrees.mass_moment[:, None], at_root) + spin
 
 
 def _energy_vector(beam: BranchBeam, curvature: Floats, shear_ratio: float) -> Floats:
@@ -308,7 +308,7 @@ def _twisted(beam: BranchBeam, curvature: Floats, scale: float) -> Floats:
 def shaken_energies(
     beam: BranchBeam,
     mass: Floats,
-    carried: Carried,
+    subtrees: SubtreeSums,
     shear_ratio: float,
     fields: Sequence[RotationField],
 ) -> tuple[float, float]:
@@ -330,8 +330,8 @@ def shaken_energies(
         fields.
 
     """
-    force = carried.mass[:, None, None] * np.eye(3)
-    moment = cross(carried.mass_moment[:, None], np.eye(3))
+    force = subtrees.mass[:, None, None] * np.eye(3)
+    moment = cross(subtrees.mass_moment[:, None], np.eye(3))
     moments = beam.moment_in_space(mass[..., None, None] * np.eye(3), force, moment)
     curvatures = beam.curvature_in_space(moments, shear_ratio)
     kinds = [*np.moveaxis(curvatures, 2, 0), *(field.curvature for field in fields)]
@@ -342,27 +342,27 @@ def shaken_energies(
 
 
 def inertial_moment(
-    beam: BranchBeam, mass: Floats, carried: Carried, field: RotationField | None
+    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, field: RotationField | None
 ) -> Floats:
     """
     Return the internal moment by the inertia of a field and of all that it carries, (p, 5, 3).
 
     Without a field all that is carried turns about the chord as one.
     """
-    places = beam.child_point[: len(carried.area)]
+    places = beam.child_point[: len(subtrees.area)]
     if field is None:
         load = np.zeros((*mass.shape, 3))
         turn, moved = np.broadcast_to(beam.chord, places.shape), np.zeros(places.shape)
     else:
         load = mass[..., None] * field.points
         turn, moved = field.child_slope[: len(places)], field.children[: len(places)]
-    wrench = _inertial_wrench(places, carried, turn[:, None], moved[:, None])
+    wrench = _inertial_wrench(places, subtrees, turn[:, None], moved[:, None])
     return beam.moment_in_space(load[:, :, None], *wrench)[:, :, 0]
 
 
-def _static_shape(beam: BranchBeam, drag_area: Floats, carried: Carried) -> SlopeShape:
+def _static_shape(beam: BranchBeam, drag_area: Floats, subtrees: SubtreeSums) -> SlopeShape:
     """Bent by an even wind on the branch and on all it carries."""
-    places = beam.child_point[: len(carried.area)]
-    lever = (carried.area_moment - carried.area[:, None] * places) @ beam.chord
-    bending = beam.bending_moment(drag_area, carried.area, np.maximum(lever, 0.0))
+    places = beam.child_point[: len(subtrees.area)]
+    lever = (subtrees.area_moment - subtrees.area[:, None] * places) @ beam.chord
+    bending = beam.bending_moment(drag_area, subtrees.area, np.maximum(lever, 0.0))
     return beam.slope_shape(bending)

@@ -22,8 +22,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.motion.drag import DragLaw, pressure
-from tree_sway.core.motion.response import tip_motion, turn_of_branches
-from tree_sway.core.motion.static_answers import WindMoments
+from tree_sway.core.motion.response import branch_rotations, tip_motion
+from tree_sway.core.motion.static_responses import WindMoments
 from tree_sway.core.simulator.bank import Bank, Oscillators
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import WindClimate
@@ -134,7 +134,7 @@ class ErrorEstimator:
         ends = np.isin(branches['end'], tree.branch_first[1:])
         tips = tip_motion(branches, shapes)[ends].reshape(-1, m)
         self._inner = tips.T @ tips / ends.sum()
-        self._turns = turn_of_branches(branches, shapes)
+        self._turns = branch_rotations(branches, shapes)
         loads = WindMoments(branches).at_rest(np.concatenate(_AXES), shapes)
         self._loads = np.hsplit(loads.T, len(_AXES))
         self._air_damping = dialled(bank).air_damping
@@ -195,10 +195,10 @@ class ErrorEstimator:
         damping = self._own_damping + pressure(speed, *self._law) * speed * self._air_damping
         circular = 2.0 * np.pi * self._frequencies[:, None]
         impedance = self._stiffness - circular**2 + 1j * damping * circular
-        answers = self._loads[bearing] / impedance[:, :, None]
+        responses = self._loads[bearing] / impedance[:, :, None]
         found = []
         for k in self.dial:
-            left = answers[:, k:] if k < self.dial[-1] else answers[:, :0]
+            left = responses[:, k:] if k < self.dial[-1] else responses[:, :0]
             moved = self._inner[k:, k:] @ left if left.size else left
             found.append(np.einsum('fmi,fmj->fij', left.conj(), moved).real.ravel())
         return np.stack(found)

@@ -171,7 +171,7 @@ class _ScaledTree:
         self, tree: Tree, species: Species, settings: Settings, branch: str | None
     ) -> None:
         self.tree, self._branch = tree, branch
-        self.reduction = TreeReductions(tree, species, settings).coupled.reduction
+        self.reduction = TreeReductions(tree, species, settings).with_subtrees.reduction
         factor, coordinate = buckling_factor(self.reduction)
         #: Scale at which the tree just holds its weight, and the branch that gives way first.
         self.least = _STANDS / factor

@@ -33,13 +33,13 @@ the table has exactly.
 SLOPES = ('turning', 'damping', 'lean', 'steep_turning', 'steep_damping')
 """Fields of a table that are exported as factors."""
 
-PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'standing', 'amount', 'load',
+PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'equilibrium', 'amount', 'load',
          'cross_damping')  # fmt: skip
 """Fields that are exported as they are, in single precision."""
 
 NUMBERS = ('degree', 'most_pressure', 'most_energy')
 
-_ROUNDED = {'standing': 8, 'load': 8, 'rows': 8, 'cross_damping': 16}
+_ROUNDED = {'equilibrium': 8, 'load': 8, 'rows': 8, 'cross_damping': 16}
 """Last bits that some are exported without: to 1.5e-5, and a bound to 0.4 %."""
 
 _LARGEST_STEP = 32767

@@ -232,9 +232,9 @@ def wind_moments(
     """
     outward_pass(branches, work, x, v)
     for b in range(len(branches)):
-        here, j, i = loads[b // WIDTH], b % WIDTH, branches[b].coordinate
+        group, j, i = loads[b // WIDTH], b % WIDTH, branches[b].coordinate
         for c in range(branches[b].n_coordinates):
-            here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
+            group.x[c, j], group.v[c, j] = x[i + c], v[i + c]
     set_air(work, loads, wx, wy, wz)
     wind_forces(loads, per_speed_squared)
     bent_loads(branches, work, loads, moment)
@@ -243,26 +243,26 @@ def wind_moments(
 @fused
 def _advance(
     branches: Branches, work: Works, loads: Loads, modal: Floats, state: Floats, shapes: Floats,
-    limit: Floats, whole: Floats, half: Floats, tried: Floats, momentum: Floats, fastest: Floats,
+    limit: Floats, whole: Floats, half: Floats, trials: Floats, momentum: Floats, fastest: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     eta, rate, force = modal[0], modal[1], modal[2]
     moment, x, v = state[0], state[1], state[2]
-    missing, found = tried[0], tried[3]
-    trial, over, total = 0, 0, 0.0
+    residual, found = trials[0], trials[3]
+    trial, clamped, total = 0, 0, 0.0
     while True:
         _to_middle(modal, state, shapes, half)
         wind_moments(branches, work, loads, x, v, found, wx, wy, wz, per_speed_squared)
         most = 0.0
         for i in range(len(moment)):
-            missing[i] = LOAD_MAX * (found[i] - moment[i]) / limit[i]
-            most = max(most, abs(missing[i]))
+            residual[i] = LOAD_MAX * (found[i] - moment[i]) / limit[i]
+            most = max(most, abs(residual[i]))
         trial += 1
         if most <= ENOUGH or trial == MOST_TRIALS:
             break
-        _try_next(tried, trial)
+        _try_next(trials, trial)
         for i in range(len(moment)):
-            moment[i] += tried[2, i] * limit[i] / LOAD_MAX
+            moment[i] += trials[2, i] * limit[i] / LOAD_MAX
             moment[i] = min(max(moment[i], -limit[i]), limit[i])
         for k in range(len(eta)):
             force[k] = 0.0
@@ -271,27 +271,27 @@ def _advance(
     for i in range(len(moment)):
         if most <= ENOUGH:
             moment[i] = found[i]
-        over += not abs(found[i]) <= limit[i]
+        clamped += not abs(found[i]) <= limit[i]
     for k in range(len(eta)):
-        pushed = 0.0
+        load = 0.0
         for i in range(len(moment)):
-            pushed += shapes[k, i] * moment[i]
-        force[k] = pushed
+            load += shapes[k, i] * moment[i]
+        force[k] = load
         c, old = whole[k], eta[k]
-        eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * pushed
-        rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * pushed
+        eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * load
+        rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * load
         total += 0.0 * eta[k] + 0.0 * rate[k]
     if total != 0.0:
         return -1
     for i in range(len(x)):
         if not (abs(x[i]) <= FARTHEST and abs(v[i]) <= fastest[0]):
-            _hold(modal, state, shapes, momentum, fastest[0])
-            return over + 1
-    return over
+            _clamp(modal, state, shapes, momentum, fastest[0])
+            return clamped + 1
+    return clamped
 
 
 @part
-def _hold(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastest: float) -> None:
+def _clamp(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastest: float) -> None:
     """Let no branch turn further or faster than a step can follow."""
     eta, rate, x, v = modal[0], modal[1], state[1], state[2]
     for i in range(len(x)):
@@ -311,45 +311,45 @@ def _hold(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastes
 
 
 @part
-def _try_next(tried: Floats, trial: int) -> None:
+def _try_next(trials: Floats, trial: int) -> None:
     """
     Find the change of the moments after which nothing should be missing, in [rad].
 
-    Rows of ``tried`` are what is missing now, what was missing before, and the last change, which
+    Rows of ``trials`` are what is missing now, what was missing before, and the last change, which
     is written; behind the next one, pairs of what a change brought, orthonormal, and that change
     (Anderson's mixing; Walker & Ni 2011, SIAM Journal on Numerical Analysis 49, 1715-1735).
     """
-    missing, before, change = tried[0], tried[1], tried[2]
+    residual, before, change = trials[0], trials[1], trials[2]
     if trial > 1:
-        brought, made = tried[2 * trial], tried[2 * trial + 1]
-        for i in range(len(missing)):
-            brought[i], made[i] = missing[i] - before[i], change[i]
+        response, step = trials[2 * trial], trials[2 * trial + 1]
+        for i in range(len(residual)):
+            response[i], step[i] = residual[i] - before[i], change[i]
         for other in range(2, trial):
-            _take_off(brought, made, tried[2 * other], tried[2 * other + 1])
+            _project_out(response, step, trials[2 * other], trials[2 * other + 1])
         square = 0.0
-        for i in range(len(missing)):
-            square += brought[i] * brought[i]
+        for i in range(len(residual)):
+            square += response[i] * response[i]
         scale = 1.0 / math.sqrt(max(square, 1e-300))
-        for i in range(len(missing)):
-            brought[i], made[i] = scale * brought[i], scale * made[i]
-    for i in range(len(missing)):
-        before[i], change[i] = missing[i], 0.0
+        for i in range(len(residual)):
+            response[i], step[i] = scale * response[i], scale * step[i]
+    for i in range(len(residual)):
+        before[i], change[i] = residual[i], 0.0
     for other in range(2, trial + 1):
-        _take_off(missing, change, tried[2 * other], tried[2 * other + 1])
+        _project_out(residual, change, trials[2 * other], trials[2 * other + 1])
     most = 0.0
-    for i in range(len(missing)):
-        change[i] += missing[i]
+    for i in range(len(residual)):
+        change[i] += residual[i]
         most = max(most, abs(change[i]))
-    for i in range(len(missing)):
+    for i in range(len(residual)):
         change[i] *= min(1.0, MOST_TURN / most)
 
 
 @part
-def _take_off(brought: Floats, made: Floats, other: Floats, by: Floats) -> None:
+def _project_out(response: Floats, step: Floats, other: Floats, by: Floats) -> None:
     """Take off what is along another unit vector, and the change that would bring it."""
     share = 0.0
-    for i in range(len(brought)):
-        share += brought[i] * other[i]
-    for i in range(len(brought)):
-        brought[i] -= share * other[i]
-        made[i] -= share * by[i]
+    for i in range(len(response)):
+        share += response[i] * other[i]
+    for i in range(len(response)):
+        response[i] -= share * other[i]
+        step[i] -= share * by[i]

@@ -17,16 +17,17 @@ from tree_sway.core.arrays import Floats, Ints, Records
 def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Join small rotations (N, ...) from the root to displacements of branch tips, (b, 3, ...)."""
     bases = base_motion(branches, rotations)
-    return carried_to(bases, branches['tip']) + own_motion(branches, 'tip_mode', rotations)
+    return displacement_at(bases, branches['tip']) + own_motion(branches, 'tip_mode', rotations)
 
 
 def centre_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Displacement of the load centres of branches by small rotations (N, ...), (b, 3, ...)."""
     bases = base_motion(branches, rotations)
-    return carried_to(bases, branches['centre']) + own_motion(branches, 'damping_mode', rotations)
+    own = own_motion(branches, 'damping_mode', rotations)
+    return displacement_at(bases, branches['centre']) + own
 
 
-def turn_of_branches(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
+def branch_rotations(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Rotation vectors (b, 3, ...) in [rad] of branches by small rotations (N, ...)."""
     bases = base_motion(branches, rotations)
     return bases[:, 3:] + own_motion(branches, 'load_rotation', rotations)
@@ -70,10 +71,10 @@ def joint_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
 def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Motion (v, w) about the root of branches' bases, (b, 6, ...), by small turns (N, ...)."""
     parents = branches['parent']
-    return summed_outward(parents, levels_of(parents), joint_motion(branches, rotations))
+    return sum_outward(parents, levels_of(parents), joint_motion(branches, rotations))
 
 
-def summed_outward(parents: Ints, levels: list[Ints], joints: NDArray[Any]) -> NDArray[Any]:
+def sum_outward(parents: Ints, levels: list[Ints], joints: NDArray[Any]) -> NDArray[Any]:
     """Add to what each branch has on its parent, (b, ...), what that one has from the root on."""
     total = joints.copy()
     for level in levels[1:]:  # children of the stem have all that is theirs
@@ -89,7 +90,7 @@ def levels_of(parent: Ints) -> list[Ints]:
     return [np.flatnonzero(depth == k) for k in range(1, int(depth.max()) + 1)]
 
 
-def carried_to(motion: NDArray[Any], points: Floats) -> NDArray[Any]:
+def displacement_at(motion: NDArray[Any], points: Floats) -> NDArray[Any]:
     """Displacement (p, 3, ...) of points (p, 3) of bodies moving by (v, w) about the root."""
     x, y, z = points.T.reshape(3, -1, *(1,) * (motion.ndim - 2))
     wx, wy, wz = motion[:, 3], motion[:, 4], motion[:, 5]

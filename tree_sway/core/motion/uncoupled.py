@@ -76,10 +76,10 @@ class UncoupledBank(Branchwise):
         constant = half[:, [0, 1, 2, 4, 5, 6]]
         constant[:, [2, 5]] += half[:, [3, 7]]
         block, slot = np.divmod(np.arange(n), WIDTH)
-        flow = np.square(self.branches['damping_mode'][:, :2]).sum(axis=(1, 2)) / 2.0
+        damping_square = np.square(self.branches['damping_mode'][:, :2]).sum(axis=(1, 2)) / 2.0
         for name, rows in (('whole', whole), ('half', constant), ('guard', guard)):
             self.loads[name][block, :, slot] = rows
-        self.loads['compliance'][block, slot] = flow * constant[:, 5]
+        self.loads['compliance'][block, slot] = damping_square * constant[:, 5]
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -126,9 +126,9 @@ def _advance(
     x, v = state[0], state[1]
     n = len(branches)
     for b in range(n):
-        here, j = banks[b // WIDTH], b % WIDTH
+        group, j = banks[b // WIDTH], b % WIDTH
         for k in range(2):
-            here.now_x[k, j], here.now_v[k, j] = x[2 * b + k], v[2 * b + k]
+            group.now_x[k, j], group.now_v[k, j] = x[2 * b + k], v[2 * b + k]
     for block in range(len(banks)):
         _to_middle(banks[block])
     set_air(work, banks, wx, wy, wz)
@@ -138,11 +138,11 @@ def _advance(
     for block in range(len(banks)):
         clamped += _step(banks[block])
     for b in range(n):
-        here, j = banks[b // WIDTH], b % WIDTH
+        group, j = banks[b // WIDTH], b % WIDTH
         for k in range(3):
-            work[b].force[k] = here.force[k, j]
+            work[b].force[k] = group.force[k, j]
         for k in range(2):
-            x[2 * b + k], v[2 * b + k] = here.now_x[k, j], here.now_v[k, j]
+            x[2 * b + k], v[2 * b + k] = group.now_x[k, j], group.now_v[k, j]
             total += 0.0 * x[2 * b + k] + 0.0 * v[2 * b + k]
     return clamped if total == 0.0 else -1
 

@@ -39,7 +39,7 @@ from tree_sway.core.motion.simd import shapes_together, TOGETHER
 from tree_sway.core.motion.wind_basis_force import wind_force
 from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
-CARRIED = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside')
+STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside')
 """Fields of an instance that a state holds."""
 
 
@@ -107,7 +107,7 @@ class WindBasisBank:
     def swing(self) -> tuple[Floats, ...]:
         """Displacement, rate and force of each coordinate, (m,)."""
         m = self.modal.shapes.shape[1]
-        return tuple(self.instance[name][0, :m] for name in CARRIED[:3])
+        return tuple(self.instance[name][0, :m] for name in STATE_FIELDS[:3])
 
     @property
     def whole(self) -> Floats:
@@ -140,7 +140,7 @@ class WindBasisBank:
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of what is carried from one step to the next."""
-        return tuple(self.instance[name] for name in CARRIED)
+        return tuple(self.instance[name] for name in STATE_FIELDS)
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -218,9 +218,9 @@ def step_instance(
     x, y, z = 1.0, 0.0, 0.0
     if speed > 0.0:
         x, y, z = wx / speed, wy / speed, wz / speed
-    push = per_speed_squared * speed * speed
-    instance.outside = 0 if is_clamped or push <= table.most_pressure else 1
-    push = min(push, table.most_pressure)
+    dynamic_pressure = per_speed_squared * speed * speed
+    instance.outside = 0 if is_clamped or dynamic_pressure <= table.most_pressure else 1
+    dynamic_pressure = min(dynamic_pressure, table.most_pressure)
     eta, rate, force = instance.eta, instance.rate, instance.force
     half, whole = time_step.half, time_step.whole
     middle, middle_rate, wanted = instance.middle, instance.middle_rate, instance.wanted
@@ -232,7 +232,7 @@ def step_instance(
         middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
     diagonal = instance.diagonal
     wind_force(
-        table, x, y, z, push, per_speed_squared, middle, middle_rate, instance.values,
+        table, x, y, z, dynamic_pressure, per_speed_squared, middle, middle_rate, instance.values,
         instance.scratch, wanted, diagonal, table.n_modes - instance.left_out,
     )  # fmt: skip
     instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz

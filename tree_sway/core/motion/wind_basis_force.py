@@ -53,9 +53,9 @@ def table_corners(
 
 @part
 def wind_force(
-    table: Table, x: float, y: float, z: float, push: float, per_speed_squared: float,
+    table: Table, x: float, y: float, z: float, dynamic_pressure: float, per_speed_squared: float,
     eta: Floats, rate: Floats, values: Floats, scratch: Singles, force: Floats, diagonal: Floats,
-    n_felt: int,
+    n_coupled: int,
 ) -> None:  # fmt: skip
     """
     Find the modal forces of an even wind.
@@ -87,12 +87,12 @@ def wind_force(
     e, f = level * (1.0 - share), level * share
     a, b, c, d = e * (1.0 - up), e * up, f * (1.0 - up), f * up
     turned, damped, off, rates = scratch[0], scratch[1], scratch[2], scratch[3]
-    moving = push / per_speed_squared if per_speed_squared > 0.0 else 0.0
+    moving = dynamic_pressure / per_speed_squared if per_speed_squared > 0.0 else 0.0
     for i in range(m):
         off[i] = eta[i] - (1.0 - share) * (
-            (1.0 - up) * table.standing[first, j, i] + up * table.standing[first, j + 1, i]
+            (1.0 - up) * table.equilibrium[first, j, i] + up * table.equilibrium[first, j + 1, i]
         ) - share * (
-            (1.0 - up) * table.standing[second, j, i] + up * table.standing[second, j + 1, i]
+            (1.0 - up) * table.equilibrium[second, j, i] + up * table.equilibrium[second, j + 1, i]
         )  # fmt: skip
         rates[i] = rate[i]
         moving += table.motion[i] * rate[i] * rate[i]
@@ -107,7 +107,7 @@ def wind_force(
             force[i] += values[k] * table.harmonics[k, i]
     a4, b4, c4, d4 = np.float32(a), np.float32(b), np.float32(c), np.float32(d)
     e4, f4 = np.float32(e * slant), np.float32(f * slant)
-    for k in range(n_felt):
+    for k in range(n_coupled):
         moved, moving_at, slow = off[k], rates[k], np.float32(eta[k])
         am, bm, cm, dm = a4 * moved, b4 * moved, c4 * moved, d4 * moved
         av, bv, cv, dv = a4 * moving_at, b4 * moving_at, c4 * moving_at, d4 * moving_at
@@ -129,7 +129,7 @@ def wind_force(
         )  # fmt: skip
     if steep > 0.0:
         s4 = np.float32(steep)
-        for k in range(n_felt):
+        for k in range(n_coupled):
             moved, moving_at = s4 * np.float32(eta[k]), s4 * rates[k]
             for i in range(m):
                 turned[i] += moved * table.steep_turning[pole, k, i]
@@ -138,8 +138,8 @@ def wind_force(
     for i in range(m):
         # Slopes hold near a pose. However far it is from there, a wind loads a tree no more.
         load = min(max(force[i] + turned[i], -table.limit[i]), table.limit[i])
-        force[i] = push * load + drag * damped[i]
-    for i in range(n_felt, m):
+        force[i] = dynamic_pressure * load + drag * damped[i]
+    for i in range(n_coupled, m):
         force[i] += diagonal[i] * rate[i]
     for i in range(m):
         diagonal[i] -= drag * (

@@ -33,7 +33,7 @@ from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway.core.motion.modal import ModalBank
 from tree_sway.core.motion.records import N_AZIMUTHS, N_LEVELS, table_layout
-from tree_sway.core.motion.static_answers import WindMoments
+from tree_sway.core.motion.static_responses import WindMoments
 
 SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
 """Steady winds in [m/s] at the levels of the table."""
@@ -100,7 +100,7 @@ class WindBasisTable:
         table = self.record[0]
         # Loads are found at some azimuths; those between follow, for loads are smooth there.
         each = 2 if len(wind_moments.branches) <= _LARGE else 3
-        self._asked = 2.0 * np.pi * np.arange(0, N_AZIMUTHS, each) / N_AZIMUTHS
+        self._azimuths = 2.0 * np.pi * np.arange(0, N_AZIMUTHS, each) / N_AZIMUTHS
         table['n_modes'], table['degree'] = m, degree
         table['stiffness'] = 1.0
         table['stiffness'][:m] = bank.stiffness
@@ -110,7 +110,7 @@ class WindBasisTable:
         self._fill_standing(table, pressures)
         self._fill_aslant(table)
         table['most_pressure'] = BEYOND * pressures[-1]
-        energy = table['standing'][:, -1] ** 2 @ table['stiffness']
+        energy = table['equilibrium'][:, -1] ** 2 @ table['stiffness']
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
 
     def _fit_harmonics(self, table: np.void, degree: int) -> None:
@@ -131,35 +131,36 @@ class WindBasisTable:
         """Find the loads of the tree, and their slopes, where winds of each speed hold it."""
         shapes, m = self._shapes, int(table['n_modes'])
         stiffness = table['stiffness'][:m]
-        standing, load = np.zeros((2, len(self._asked), N_LEVELS, m))
-        amount = np.zeros((len(self._asked), m))
-        turning, damping = np.zeros((2, *standing.shape, m))
-        winds = direction(self._asked, 0.0)
+        equilibrium, load = np.zeros((2, len(self._azimuths), N_LEVELS, m))
+        amount = np.zeros((len(self._azimuths), m))
+        turning, damping = np.zeros((2, *equilibrium.shape, m))
+        winds = direction(self._azimuths, 0.0)
         at_rest = self._moments.at_rest(winds, shapes)
         for k, (ahead, upright) in enumerate(zip(winds, at_rest, strict=True)):
             amount[k] = upright / max(float(upright @ (upright / stiffness)), 1e-300)
             at = np.zeros(m)
-            for j, push in enumerate(pressures):
-                weaker, at = at, self._held(at, push, ahead, turning[k, j - 1]) if j > 0 else at
+            for j, s in enumerate(pressures):
+                weaker = at
+                at = self._equilibrium(at, s, ahead, turning[k, j - 1]) if j > 0 else at
                 x = shapes @ at
-                standing[k, j] = at
+                equilibrium[k, j] = at
                 load[k, j] = self._moments(x, self._still, ahead) @ shapes
                 if j > 0 and at is weaker:
                     turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
                     continue
                 turning[k, j], damping[k, j] = self._slopes(x, ahead)
                 if SPEEDS[j] > _BREEZE:
-                    air = self._damping - push / SPEEDS[j] * np.diag(damping[k, j])
-                    turning[k, j] -= self._feeding(push * turning[k, j], air) / push
+                    air = self._damping - s / SPEEDS[j] * np.diag(damping[k, j])
+                    turning[k, j] -= self._feeding(s * turning[k, j], air) / s
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
         load -= load[:, :1]
-        for name, values in (('standing', standing), ('amount', amount), ('load', load)):
+        for name, values in (('equilibrium', equilibrium), ('amount', amount), ('load', load)):
             table[name][..., :m] = _between(values)
         table['turning'][..., :m, :m] = _between(turning)
         table['damping'][..., :m, :m] = _between(damping)
         table['cross_damping'] = np.abs(table['damping']).sum(axis=2)
         table['cross_damping'] -= np.abs(np.einsum('ajii->aji', table['damping']))
-        levels = np.einsum('ajm,am->aj', table['standing'], table['amount'])
+        levels = np.einsum('ajm,am->aj', table['equilibrium'], table['amount'])
         least = 1e-6 * np.abs(levels).max() * np.arange(N_LEVELS)
         table['levels'] = np.maximum.accumulate(levels, axis=1) + least
 
@@ -177,7 +178,7 @@ class WindBasisTable:
             return np.zeros_like(slopes)
         return circulating * max(0.0, 1.0 - _FLUTTER / float(np.linalg.norm(scaled, 2)))
 
-    def _held(self, at: Floats, push: float, ahead: Floats, turning: Floats) -> Floats:
+    def _equilibrium(self, at: Floats, s: float, ahead: Floats, turning: Floats) -> Floats:
         """
         Find the coordinates (m,) of a tree at rest under a dynamic pressure [kg/m/s^2].
 
@@ -190,7 +191,7 @@ class WindBasisTable:
         start, nearest, least, before, step, rest = at, at, np.inf, np.inf, at, at
         inverse: Floats = np.eye(len(at))
         for turn in range(_STEPS):
-            load = push * (self._moments(self._shapes @ at, self._still, ahead) @ self._shapes)
+            load = s * (self._moments(self._shapes @ at, self._still, ahead) @ self._shapes)
             load, missed = load / self._root, rest
             rest = self._root * at - load
             size = float(np.linalg.norm(rest)) / max(float(np.linalg.norm(load)), 1e-300)
@@ -202,7 +203,7 @@ class WindBasisTable:
                 inverse += np.outer(step - change, step @ inverse) / float(step @ change)
             else:
                 changes = self._slopes(self._shapes @ at, ahead)[0] if turn else turning
-                slope = np.eye(len(at)) - push * (changes / self._root / self._root[:, None]).T
+                slope = np.eye(len(at)) - s * (changes / self._root / self._root[:, None]).T
                 lowest = float(np.linalg.eigvalsh(0.5 * (slope + slope.T))[0])
                 inverse[:] = np.linalg.inv(slope + max(0.0, 0.1 - 1.5 * lowest) * np.eye(len(at)))
             before, step = size, -inverse @ rest
@@ -213,7 +214,7 @@ class WindBasisTable:
 
     def _fill_aslant(self, table: np.void) -> None:
         """Fill what winds aslant change in the slopes of an upright tree, and steep winds."""
-        m, azimuths = int(table['n_modes']), self._asked
+        m, azimuths = int(table['n_modes']), self._azimuths
         rising = [self._slopes(self._still, direction(a, _SLOPE_AT))[0] for a in azimuths]
         # A falling wind is the opposite of one that rises from the other side.
         falling = -np.roll(rising, len(azimuths) // 2, axis=0)
@@ -224,11 +225,11 @@ class WindBasisTable:
         table['steep_damping'][:, :m, :m] = damping
 
 
-def _between(asked: Floats) -> Floats:
+def _between(values: Floats) -> Floats:
     """Values at `N_AZIMUTHS`, first axis, of a smooth function known at every other one."""
-    waves = np.fft.rfft(asked, axis=0)
+    waves = np.fft.rfft(values, axis=0)
     waves[-1] *= 0.5
-    return np.asarray(np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(asked)))
+    return np.asarray(np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(values)))
 
 
 def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:

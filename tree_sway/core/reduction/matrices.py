@@ -116,7 +116,7 @@ def reduce_tree(
     shear_modulus: float,
     gravity: float,
     *,
-    carries: bool = True,
+    subtrees: bool = True,
 ) -> Reduction:
     """
     Assemble the matrices of the key rotations.
@@ -161,7 +161,7 @@ def reduce_tree(
         for number, child in enumerate(model.children):
             base_twists = twists[:, number]
             twist[child, : len(base_twists)] = base_twists
-            if not carries:
+            if not subtrees:
                 continue
             carried = base_twists @ body[child]
             own_mass += carried @ base_twists.T
@@ -179,7 +179,7 @@ def reduce_tree(
         elastic.add(own, own, bent)
         apart.add(own, own, bent + own_weight)
         compliance[own, : len(fields)] = np.linalg.inv(bent + own_weight)
-        if carries:
+        if subtrees:
             body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
     shape = (int(first[-1]), int(first[-1]))
     matrices = (each.symmetric(shape) for each in (mass, weight, elastic, apart))

@@ -19,10 +19,10 @@ from numpy.typing import ArrayLike, NDArray
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.motion.exported_table import table_of
 from tree_sway.core.motion.records import instance_layout, time_step_layout
-from tree_sway.core.motion.standing import step_standing
+from tree_sway.core.motion.stand import step_stand
 from tree_sway.core.motion.wind_basis import fill_time_step
 from tree_sway.core.oscillators.propagator import propagator
-from tree_sway.core.scene.standing_rows import own_steps, standing_rows
+from tree_sway.core.scene.placement_records import own_steps, placement_records
 from tree_sway.core.wind.gust_travel import GustHistory
 
 _SLOWEST = 0.3
@@ -84,8 +84,8 @@ class ReceivedScene:
             arrays = kinds[number].arrays
             law = 1.0, arrays['own_damping'], arrays['stiffness']
             fill_time_step(own, propagator(*law, own_dt), propagator(*law, 0.5 * own_dt))
-        self._standing = standing_rows(self._kind_of, places, speeds)
-        self._standing['time_step'] = step
+        self._placed = placement_records(self._kind_of, places, speeds)
+        self._placed['time_step'] = step
         self.gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
         self._states = [kind.arrays['state'].astype(np.float64) for kind in kinds]
         self._corrections = [kind.arrays['correction'].astype(np.float64) for kind in kinds]
@@ -94,9 +94,9 @@ class ReceivedScene:
 
     def step(self, wind: ArrayLike) -> int:
         """Advance by a step of mean wind (3,) in [m/s]; count trees beyond their tables' edge."""
-        felt = self.gusts.push(wind, self._dt)
-        arrays = self.tables, self._time_steps, self._standing, self.instances, self._laws
-        return step_standing(*arrays, felt)[0]
+        winds = self.gusts.push(wind, self._dt)
+        arrays = self.tables, self._time_steps, self._placed, self.instances, self._laws
+        return step_stand(*arrays, winds)[0]
 
     def coordinates(self, tree: int) -> Floats:
         """Modal coordinates of a tree, (m,)."""
@@ -123,7 +123,7 @@ class ReceivedScene:
         for tree, kind in enumerate(self._kind_of.tolist()):
             own = change[self._first[tree] : self._first[tree + 1]] @ self._corrections[kind]
             instance, size = self.instances[tree], self._sizes[kind]
-            whole = self._time_steps['whole'][self._standing['time_step'][tree], :, :size]
+            whole = self._time_steps['whole'][self._placed['time_step'][tree], :, :size]
             instance['eta'][:size] += own
             way = np.maximum(whole[1], _SLOWEST * whole[1].max())
             instance['rate'][:size] += own * whole[5] / (way * steps)

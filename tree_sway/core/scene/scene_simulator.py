@@ -27,11 +27,11 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.placing import GIVEN, place
 from tree_sway.core.motion.records import instance_layout, time_step_layout, zeros_in_lines
-from tree_sway.core.motion.standing import place_standing, STANDING, step_standing
+from tree_sway.core.motion.stand import place_stand, PLACEMENT, step_stand
 from tree_sway.core.motion.wind_basis import fill_time_step, WindBasisBank
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
-from tree_sway.core.scene.standing_rows import own_steps, standing_rows
+from tree_sway.core.scene.placement_records import own_steps, placement_records
 from tree_sway.core.simulator.live_tuning import Tuning
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import (
@@ -52,7 +52,7 @@ from tree_sway.set_up_files import SET_UPS, SetUpFiles
 if TYPE_CHECKING:
     from tree_sway.core.simulator.touch import Spring
 
-_NO_TABLES: Records = np.zeros(0, dtype=STANDING)
+_NO_TABLES: Records = np.zeros(0, dtype=PLACEMENT)
 _CROWN = 0.7
 
 
@@ -106,10 +106,10 @@ class SceneSimulator:
         self._banks: list[WindBasisBank] = [_oscillators(model) for model in self._models]
         places = [(each.x, each.y, each.z, each.yaw, each.scale) for each in trees]
         tables = np.where(is_own, -1, np.searchsorted(used, kind))
-        self._standing = standing_rows(tables, np.array(places), self._speeds())
-        self.speeds: Floats = self._standing['speed']
+        self._placed = placement_records(tables, np.array(places), self._speeds())
+        self.speeds: Floats = self._placed['speed']
         """Wind of each tree over that of its kind, (t,)."""
-        self._standing['is_still'] = is_own | (counts == 0)
+        self._placed['is_still'] = is_own | (counts == 0)
         self._make_tables()
         self._numbers, self._is_shared = counts, ~is_own
         self._show()
@@ -127,7 +127,7 @@ class SceneSimulator:
         sizes = np.array([each.tree.n_segments for each in scene.kinds])
         self._ends = np.concatenate([[0], np.cumsum(sizes[kind])])
         self.gusts = GustHistory(
-            self._standing['at'], scene.anemometer, convection_ratio=scene.convection_ratio
+            self._placed['at'], scene.anemometer, convection_ratio=scene.convection_ratio
         )
         self._counts = Counts()
         self.pushed: dict[int, SwaySimulator] = {}
@@ -198,17 +198,17 @@ class SceneSimulator:
         has_glided = [model.glide(dt) for model in self._models]
         if dt != self._dt or any(has_glided):
             self._set_step(dt)
-        felt = self.gusts.push(self.wind, dt)
+        winds = self.gusts.push(self.wind, dt)
         clamped = restarted = 0
         if self._models:
-            clamped, restarted = step_standing(
-                self._tables, self._time_steps, self._standing, self._instances, self._laws, felt
+            clamped, restarted = step_stand(
+                self._tables, self._time_steps, self._placed, self._instances, self._laws, winds
             )
         for number, simulator in self.own.items():
-            status |= simulator.step(felt[number].tolist(), dt)
+            status |= simulator.step(winds[number].tolist(), dt)
         for number, one in list(self.pushed.items()):
             if number not in self.own:
-                own = self._standing['time_step'][number]
+                own = self._placed['time_step'][number]
                 _oscillators(one).time_step = self._time_steps[own : own + 1]
                 clamped += one.touched(dt) > 0
             if one.touch is None:
@@ -240,7 +240,7 @@ class SceneSimulator:
 
     def _one_of_kind(self, number: int) -> SwaySimulator:
         """Return a simulator of a tree's kind on the tree's own state, to push at."""
-        model = self._models[self._standing['kind'][number]]
+        model = self._models[self._placed['kind'][number]]
         one, bank = copy(model), copy(_oscillators(model))
         bank.__dict__.pop('_expand', None)
         bank.instance = self._instances[number : number + 1]
@@ -256,12 +256,12 @@ class SceneSimulator:
         """
         from tree_sway.core.simulator.touch import Spring
 
-        one, k = self.scene.trees[number], float(self._standing['scale'][number])
+        one, k = self.scene.trees[number], float(self._placed['scale'][number])
         c, s = math.cos(one.yaw), math.sin(one.yaw)
         back = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
         if not isinstance(force, Spring):
             return back @ array_to_read('push', force, (3,)) / k**2
-        away = array_to_read('push', force.to, (3,)) - self._standing['at'][number]
+        away = array_to_read('push', force.to, (3,)) - self._placed['at'][number]
         return Spring(back @ away / k + one.tree.start[0], force.stiffness / k)
 
     def check_tuning(self, **changes: float) -> Tuning:
@@ -317,10 +317,10 @@ class SceneSimulator:
         self._scratch = []
         """What each kind is placed in."""
         for model, bank in zip(self._models, banks, strict=True):
-            heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
-            heads[:] = model.bank.heads
+            blocks = zeros_in_lines(len(model.bank.blocks), model.bank.blocks.dtype)
+            blocks[:] = model.bank.blocks
             block, bases = np.zeros((model.tree.n_segments, 7)), np.zeros_like(model.bank.bases)
-            self._scratch.append((heads, bases, bank.room_for_rotations(), block))
+            self._scratch.append((blocks, bases, bank.room_for_rotations(), block))
 
     def _show(self) -> None:
         """Leave out of each tree what it has fewer coordinates than the table of its kind."""
@@ -334,13 +334,13 @@ class SceneSimulator:
     @property
     def shared(self) -> list[tuple[SwaySimulator, WindBasisBank, Ints]]:
         """Each model in a frame of its own, its table, and the trees that share it."""
-        kinds = np.where(self._is_shared, self._standing['kind'], -1)
+        kinds = np.where(self._is_shared, self._placed['kind'], -1)
         pairs = enumerate(zip(self._models, self._banks, strict=True))
         return [(model, bank, np.flatnonzero(kinds == k)) for k, (model, bank) in pairs]
 
     def shares(self, numbers: Ints) -> Floats:
         """How much trees of one kind bend in each shape, (t, m)."""
-        n_modes = self._banks[self._standing['kind'][numbers[0]]].shapes.shape[1]
+        n_modes = self._banks[self._placed['kind'][numbers[0]]].shapes.shape[1]
         shown = (1.0 - self._instances['faded'][numbers]) * self._instances['eta'][numbers]
         shares: Floats = shown[:, :n_modes]
         return shares
@@ -348,22 +348,22 @@ class SceneSimulator:
     def _place_kind(self, kind: int, rows: Ints, out: Floats) -> None:
         """Place trees of one table: their numbers and first rows in a pose block, (w, 2)."""
         records, bank = self._models[kind].bank, self._banks[kind]
-        heads, bases, x, block = self._scratch[kind]
-        place_standing(
-            self._standing, self._instances, rows, bank.laid_shapes, records.segments, heads,
+        blocks, bases, x, block = self._scratch[kind]
+        place_stand(
+            self._placed, self._instances, rows, bank.laid_shapes, records.segments, blocks,
             bases, x, block, out,
         )  # fmt: skip
         for number, first in rows.tolist() if self.pushed else ():
             if number in self.pushed:
-                at, keys = self._standing[number], self.pushed[number].rotations()
+                at, keys = self._placed[number], self.pushed[number].rotations()
                 turned = at['cosine'], at['sine'], at['scale'], x, keys, at['at']
-                bent = *GIVEN, records.segments, heads, bases, *turned
+                bent = *GIVEN, records.segments, blocks, bases, *turned
                 place(*bent, out[first : first + len(block)])
 
     @cached_property
     def _highest(self) -> tuple[int, Tree]:
         """Number of the tree whose tip is the highest, and the tree where it is."""
-        tops = self._standing['at'][:, 2] + self._standing['scale'] * self._heights()
+        tops = self._placed['at'][:, 2] + self._placed['scale'] * self._heights()
         number = int(np.argmax(tops))
         return number, self.scene.trees[number].placed()
 
@@ -374,7 +374,7 @@ class SceneSimulator:
         if number in self.own:
             return self.own[number].tip_displacement
         top, poses = int(np.argmax(tree.end[:, 2])), np.empty((tree.n_segments, 7))
-        self._place_kind(int(self._standing['kind'][number]), np.array([[number, 0]]), poses)
+        self._place_kind(int(self._placed['kind'][number]), np.array([[number, 0]]), poses)
         tip: Floats = ends_of_poses(poses, tree.length)[1][top] - tree.end[top]
         return tip
 
@@ -402,13 +402,13 @@ class SceneSimulator:
     def _set_step(self, dt: float) -> None:
         """Fill the coefficients of every kind and scale that there is, to a hundredth."""
         rows = np.flatnonzero(self._is_shared)
-        found, number = own_steps(self._standing['kind'][rows], self._standing['scale'][rows], dt)
+        found, number = own_steps(self._placed['kind'][rows], self._placed['scale'][rows], dt)
         self._time_steps = np.zeros(len(found), dtype=self._time_steps.dtype)
         for time_step, (kind, own_dt) in zip(self._time_steps, found, strict=True):
             modal = self._banks[kind].modal
             modal.set_time_step(own_dt)
             fill_time_step(time_step, modal.whole, modal.half)
-        self._standing['time_step'][rows] = number
+        self._placed['time_step'][rows] = number
         self._dt = dt
 
 

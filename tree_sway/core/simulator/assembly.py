@@ -14,7 +14,7 @@ from typing import Any, TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.motion.fill_records import head_records
+from tree_sway.core.motion.fill_records import block_records
 from tree_sway.core.motion.records import in_lines
 from tree_sway.core.reduction.modes import refuse_buckling, solvable
 from tree_sway.core.reduction.one_thread import one_thread
@@ -104,7 +104,7 @@ def _modal_arrays(reductions: TreeReductions, model: int | str) -> dict[str, Any
     """Find all that modes are stepped and placed by."""
     from tree_sway.core.motion.modal import modal_arrays
 
-    reduced = reductions.coupled
+    reduced = reductions.with_subtrees
     arrays = modal_arrays(reduced.branches, reduced.reduction, reductions.modes(model))
     n_even = min(EVENLY_DAMPED, reduced.reduction.n_coordinates)
     even = reductions.natural_modes(n_even).circular
@@ -130,12 +130,12 @@ def _table(reductions: TreeReductions, modal: ModalBank) -> WindBasisTable:
 def _bank_of_branches(reductions: TreeReductions) -> Bank:
     """Each branch's own oscillator: the mean of its two axes."""
     from tree_sway.core.motion.uncoupled import UncoupledBank
-    from tree_sway.core.reduction.carried_inertia import carried_inertia
+    from tree_sway.core.reduction.subtree_inertia import subtree_inertia
 
     tree, settings, reduced = reductions.tree, reductions.settings, reductions.isolated
     matrices, branches = reduced.reduction, reduced.branches.copy()
     refuse_buckling(tree, matrices)
-    inertia = carried_inertia(tree, matrices).reshape(-1, 2).mean(axis=1)
+    inertia = subtree_inertia(tree, matrices).reshape(-1, 2).mean(axis=1)
     inertia = inertia * np.array([model.inertia_share for model in reduced.models])
     stiffness = np.asarray(matrices.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
     weight = np.asarray(matrices.gravity.diagonal()).reshape(-1, 2).mean(axis=1)
@@ -156,5 +156,5 @@ def _bank_of_branches(reductions: TreeReductions) -> Bank:
 def _laid_out(
     oscillators: Oscillators, branches: Records, segments: Records, mass: float, plain: bool
 ) -> Bank:
-    heads = head_records(branches, segments)
-    return Bank(oscillators, branches, segments, heads, mass, plain)
+    blocks = block_records(branches, segments)
+    return Bank(oscillators, branches, segments, blocks, mass, plain)

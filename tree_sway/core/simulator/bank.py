@@ -86,7 +86,7 @@ class Bank:
     oscillators: Oscillators
     branches: Records
     segments: Records
-    heads: Records
+    blocks: Records
     mass: float
     plain: bool = bool(WHY_PLAIN)
 
@@ -118,7 +118,7 @@ class Bank:
     def _placing(self, instance: Records, shapes: Singles, x: Floats) -> Callable[..., None]:
         from tree_sway.core.motion.placing import place
 
-        arrays = instance, shapes, self.segments, self.heads, self.bases
+        arrays = instance, shapes, self.segments, self.blocks, self.bases
         first = *arrays, 1.0, 0.0, 1.0, x
         given = np.zeros(1), np.zeros(3), np.zeros((1, 7))
         return partial(entry_of(place, *first, *given), *first)

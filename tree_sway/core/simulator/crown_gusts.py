@@ -39,7 +39,7 @@ class CrownGusts:
         self._delays = delays = whole._replace(of_branch=whole.of_branch[pieces])
         self.wind, self._loads = CrownWind(delays.spread, settings.crown_coherence), loads
 
-    def felt(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
+    def winds_of_step(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
         Hand the mean wind [m/s] of a step of dt [s] to the limbs; the wind to step with.
 

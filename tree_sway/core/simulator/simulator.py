@@ -266,7 +266,7 @@ class SwaySimulator:
         wx, wy, wz = self._wind.tolist()
         load = pressure(math.hypot(wx, wy, wz), *self.drag_law)
         if self._gusts is not None:
-            wx, wy, wz = self._gusts.felt(wx, wy, wz, dt)
+            wx, wy, wz = self._gusts.winds_of_step(wx, wy, wz, dt)
         return status | self._count(self._advance(wx, wy, wz, load)) | self.touched(dt)
 
     def push(
@@ -379,8 +379,8 @@ class SwaySimulator:
     @property
     def base_moment(self) -> Floats:
         """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
-        couple, force = self.bank.branches['coupling'], self.bank.oscillators.forces()
-        moment: Floats = np.einsum('bij,bj->i', couple, force)
+        coupling, force = self.bank.branches['coupling'], self.bank.oscillators.forces()
+        moment: Floats = np.einsum('bij,bj->i', coupling, force)
         return moment
 
     def motion(self) -> tuple[Floats, Floats]:

@@ -176,22 +176,22 @@ class Touch:
                 del self.pushes[push.segment]
         np.clip(self.residual, -FARTHEST, FARTHEST, out=self.residual)
         limit = self._oscillators.limit
-        felt = self._oscillators.shapes.T @ np.clip(moments, -limit, limit)
-        eta += per_force * felt
-        rate += whole[:, 6:8].sum(axis=1) * felt
-        total += felt
+        modal_force = self._oscillators.shapes.T @ np.clip(moments, -limit, limit)
+        eta += per_force * modal_force
+        rate += whole[:, 6:8].sum(axis=1) * modal_force
+        total += modal_force
         return int((np.abs(moments) > limit).sum())
 
     def _renew(self, push: Push, place: Floats, origin: Floats, x: Floats) -> None:
         """Find how a place (3,) of the tree moves as it is bent, by key rotations x (N,)."""
         branches = self._bank.branches
         # A branch that is cut has a record per piece.
-        holds = (branches['first'] <= push.segment) & (push.segment < branches['end'])
-        branch, keys, residual = int(np.flatnonzero(holds)[0]), list[int](), push.residual
+        has_segment = (branches['first'] <= push.segment) & (push.segment < branches['end'])
+        branch, keys, residual = int(np.flatnonzero(has_segment)[0]), list[int](), push.residual
         by_branch, modes = self._oscillators.compliance
         while branch >= 0:
-            here = branches[branch]
-            first, count = int(here['coordinate']), int(here['n_coordinates'])
+            record = branches[branch]
+            first, count = int(record['coordinate']), int(record['n_coordinates'])
             for i in (own := range(first, first + count)):
                 x[i] += _TURN
                 self._bank.place(x, origin, self._poses)
@@ -199,7 +199,7 @@ class Touch:
                 x[i] -= _TURN
             residual[own] = by_branch[own, :count] @ push.lever[:, own].T
             keys += own
-            branch = int(here['parent'])
+            branch = int(record['parent'])
         push.by_mode = push.lever @ (shapes := self._oscillators.shapes)
         # Residual flexibility (MacNeal 1971), as if only the branches to the root turned.
         residual[keys] -= shapes[keys] @ (modes @ push.by_mode.T)

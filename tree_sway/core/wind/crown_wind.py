@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import within
 from tree_sway.core.kernel import entry_of, kernel
-from tree_sway.core.wind.gust_travel import feel, follow_mean, remember
+from tree_sway.core.wind.gust_travel import follow_mean, past_winds, remember
 
 DECAY = 8.0
 """Davenport's C in [-], for places across the wind and over each other."""
@@ -156,7 +156,7 @@ def push_wind(crowns: Records, x: float, y: float, z: float, dt: float) -> None:
     longest = min(here['spread'] / max(math.hypot(mean[0], mean[1]), _SLOWEST), LONGEST_DELAY)
     for j in range(len(wanted)):
         wanted[j] = longest * j / (len(wanted) - 1)
-    feel(run, at, wanted, here['delay'], LONGEST_DELAY, x, y, z, dt, apart)
+    past_winds(run, at, wanted, here['delay'], LONGEST_DELAY, x, y, z, dt, apart)
     rest = 1.0 - here['coherence']
     for j in range(len(apart)):
         apart[j, 0] = rest * (apart[j, 0] - x)

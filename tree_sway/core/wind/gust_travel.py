@@ -98,7 +98,7 @@ class GustHistory:
         self._wanted = np.zeros(len(points))
         self.delay = np.zeros(len(points))
         """Age of the wind that each place feels in [s], (t,)."""
-        self._felt = np.zeros((len(points), 3))
+        self._winds = np.zeros((len(points), 3))
 
     def push(self, wind_mean: ArrayLike, dt: float) -> Floats:
         """
@@ -119,8 +119,10 @@ class GustHistory:
         self._wanted = along / (self._ratio * speed * speed)
         if self._from_first:
             self._wanted -= self._wanted.min()
-        feel(self._run, self._at, self._wanted, self.delay, self._memory, x, y, z, dt, self._felt)
-        return self._felt
+        past_winds(
+            self._run, self._at, self._wanted, self.delay, self._memory, x, y, z, dt, self._winds
+        )
+        return self._winds
 
     @property
     def time(self) -> float:
@@ -159,7 +161,7 @@ class GustHistory:
 
     def reset(self) -> None:
         """Forget the wind."""
-        for array in (self._at, self._mean, self._wanted, self.delay, self._felt):
+        for array in (self._at, self._mean, self._wanted, self.delay, self._winds):
             array[:] = 0
 
 
@@ -196,9 +198,9 @@ def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -
 
 
 @kernel
-def feel(
+def past_winds(
     run: Floats, at: NDArray[np.int64], wanted: Floats, delay: Floats, longest: float,
-    x: float, y: float, z: float, dt: float, felt: Floats,
+    x: float, y: float, z: float, dt: float, out: Floats,
 ) -> None:  # fmt: skip
     """Let delays [s], (t,), follow those wanted; average the history over the step of each."""
     now, most = run[at[0], 0], LARGEST_STRETCH * dt
@@ -209,13 +211,13 @@ def feel(
             before = goal
         delay[i] = min(max(goal, before - most), before + most)
         if before == 0.0 and delay[i] == 0.0:
-            felt[i, 0], felt[i, 1], felt[i, 2] = x, y, z
+            out[i, 0], out[i, 1], out[i, 2] = x, y, z
             continue
         begin, end = now - dt - before, now - delay[i]
         bx, by, bz = run_until(run, at, begin)
         ex, ey, ez = run_until(run, at, end)
         span = end - begin
-        felt[i, 0], felt[i, 1], felt[i, 2] = (ex - bx) / span, (ey - by) / span, (ez - bz) / span
+        out[i, 0], out[i, 1], out[i, 2] = (ex - bx) / span, (ey - by) / span, (ez - bz) / span
 
 
 @kernel

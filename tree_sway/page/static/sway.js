@@ -88,7 +88,7 @@ export class Table {
     this.motion = of("motion");
     this.levels = of("levels");
     this.harmonics = of("harmonics");
-    this.standing = of("standing");
+    this.equilibrium = of("equilibrium");
     this.amount = of("amount");
     this.load = of("load");
     this.crossDamping = of("cross_damping");
@@ -234,7 +234,7 @@ export class TreeState {
  * into the scratch of its table. @param {Table} table @param {number[]} way where the wind goes, a unit
  * vector @param {number} push dynamic pressure [kg/m/s^2] @param {number} drag the same over speed squared */
 function windForce(table, [x, y, z], push, drag) {
-  const { m, load, limit, crossDamping: cross, standing, slopes, lean, steep: poles, harmonics, values } = table;
+  const { m, load, limit, crossDamping: cross, equilibrium, slopes, lean, steep: poles, harmonics, values } = table;
   const [eta, rate, force, diagonal, off, leaning, leaned] = table.scratch;
   fillHarmonics(x, y, z, table.degree, values);
   const { first, second, level: j, share, up } = corners(table, x, y);
@@ -248,8 +248,8 @@ function windForce(table, [x, y, z], push, drag) {
   const [a4, b4, c4, d4, e4, f4] = [a, b, c, d, e * slant, f * slant].map(Math.fround);
   for (let i = 0; i < m; i++) {
     off[i] = eta[i]
-      - (1 - share) * ((1 - up) * standing[ia + i] + up * standing[ia + m + i])
-      - share * ((1 - up) * standing[ic + i] + up * standing[ic + m + i]);
+      - (1 - share) * ((1 - up) * equilibrium[ia + i] + up * equilibrium[ia + m + i])
+      - share * ((1 - up) * equilibrium[ic + i] + up * equilibrium[ic + m + i]);
     moving += table.motion[i] * rate[i] * rate[i];
     let sum = a * load[ia + i] + b * load[ia + m + i] + c * load[ic + i] + d * load[ic + m + i];
     for (let k = 0, at = i; k < values.length; k++, at += m) sum += values[k] * harmonics[at];

@@ -32,26 +32,26 @@ class NumpyPlacing:
         """Lay out the segments in the order of the branches."""
         names = ('parent', 'skew', 'tip_skew', 'offset')
         self._branch: dict[str, NDArray[Any]] = {name: branches[name].copy() for name in names}
-        self._branch['base_turn'] = branches['twist'][:, :, 3:].copy()
+        self._branch['base_rotation'] = branches['twist'][:, :, 3:].copy()
         self._passes = NumpyPasses(branches)
         counts = branches['end'] - branches['first']
         self._owner = np.repeat(np.arange(len(branches)), counts)
         begin = np.cumsum(counts) - counts
         rank = np.arange(int(counts.sum())) - begin[self._owner]
         self._begin, self._rows = begin, branches['first'][self._owner] + rank
-        at, slot = branches['block'][self._owner] + rank, branches['slot'][self._owner]
+        at, slot = branches['first_record'][self._owner] + rank, branches['slot'][self._owner]
         self._segment: dict[str, NDArray[Any]] = {
             name: segments[name][at, ..., slot] for name in ('slope', 'tip_slope', 'chord', 'rest')
         }
         # x turns about e2 and y about -e1.
         e1, e2 = branches['frame'][self._owner, 1], branches['frame'][self._owner, 2]
         self._pair = np.stack([e2, -e1], axis=1)
-        self._turn = self._segment['slope'][:, None, None] * self._pair
+        self._rotation_mode = self._segment['slope'][:, None, None] * self._pair
         if branches['load_mode'].shape[1] > 2:
-            self._turn = segments['turn'][at, ..., slot]
+            self._rotation_mode = segments['rotation_mode'][at, ..., slot]
         place = np.zeros(int(self._rows.max()) + 1, dtype=np.int64)
         place[self._rows] = np.arange(len(self._rows))
-        self._on = place[np.maximum(branches['base_segment'], 0)]
+        self._base_row = place[np.maximum(branches['base_segment'], 0)]
 
     def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
         """Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7)."""
@@ -64,9 +64,9 @@ class NumpyPlacing:
         )
         keys = angles.copy()
         keys[:, :2] *= stretch[:, None]
-        far = blend[owner] * (segment['tip_slope'] - segment['slope'])
-        bend = np.einsum('jc,jck->jk', keys[owner], self._turn)
-        bend += far[:, None] * np.einsum('jc,jck->jk', keys[owner, :2], self._pair)
+        difference = blend[owner] * (segment['tip_slope'] - segment['slope'])
+        bend = np.einsum('jc,jck->jk', keys[owner], self._rotation_mode)
+        bend += difference[:, None] * np.einsum('jc,jck->jk', keys[owner, :2], self._pair)
         bend = quaternions_of(bend)
 
         angles[:, :2] *= (1.0 + np.minimum(t, _STRETCH_TO) * branch['skew'])[:, None]
@@ -74,18 +74,18 @@ class NumpyPlacing:
         base[0, 0] = 1.0
         for level in self._passes.levels:
             parent = branch['parent'][level]
-            turn = self._turns(parent, branch['base_turn'][level], angles)
+            turn = self._turns(parent, branch['base_rotation'][level], angles)
             base[level] = quaternion_product(base[parent], turn)
         turned = quaternion_product(base[owner], bend)
         pose = quaternion_product(turned, segment['rest'])
 
         ahead = quaternion_rotated(turned, segment['chord'])
-        reached = np.vstack([np.zeros(3), np.cumsum(ahead, axis=0)])
-        within = reached[:-1] - reached[self._begin][owner]
+        ends = np.vstack([np.zeros(3), np.cumsum(ahead, axis=0)])
+        within = ends[:-1] - ends[self._begin][owner]
         start = np.zeros((len(t), 3))
         start[0] = origin
         for level in self._passes.levels:
-            on = self._on[level]
+            on = self._base_row[level]
             offset = quaternion_rotated(pose[on], branch['offset'][level])
             start[level] = start[owner[on]] + within[on] + offset
 

@@ -61,7 +61,7 @@ class SensorFaults:
         self._kind = kind
         self._every = within('every', every, 0.0, 1e6, 's', above=True)
         self._duration = within('duration', duration, 0.0, every, 's', above=True)
-        self._held: list[Sample] = []
+        self._delayed: list[Sample] = []
         self._before = 'none'
         self._last = np.zeros(3)
 
@@ -77,8 +77,8 @@ class SensorFaults:
         fault, before = self.at(time), self._before
         self._before = fault
         if fault not in ('delay', 'reorder'):
-            yield from self._held
-            self._held = []
+            yield from self._delayed
+            self._delayed = []
         if before == 'restart' and fault != 'restart':
             yield Sample(stamp, np.zeros(3))  # the first line after it has started
             return
@@ -86,10 +86,10 @@ class SensorFaults:
             case 'dropout' | 'restart':
                 return
             case 'delay':
-                self._held.append(Sample(stamp, vector))
+                self._delayed.append(Sample(stamp, vector))
                 return
-            case 'reorder' if not self._held:
-                self._held.append(Sample(stamp, vector))
+            case 'reorder' if not self._delayed:
+                self._delayed.append(Sample(stamp, vector))
                 return
             case 'spike':
                 vector = vector + np.array([_SPIKE, -_SPIKE, 0.0])
@@ -108,4 +108,4 @@ class SensorFaults:
         self._last = vector
         yield Sample(stamp, vector)
         if fault == 'reorder':
-            yield self._held.pop()
+            yield self._delayed.pop()

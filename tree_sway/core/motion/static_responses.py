@@ -5,7 +5,7 @@ How a tree gives way to steady winds: the loads on it, and where it comes to res
 
 A step of wind meets every branch, and what the coordinates cannot do is lost. So the answers to
 winds of all directions and speeds are found once, and the coordinates made of these and of the
-answers to gusts (`gust_answers`, `reduction.modes.leading_modes`).
+answers to gusts (`gust_responses`, `reduction.modes.leading_modes`).
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ class WindMoments:
         projector = branches['projector'][:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(n, 3, 3)
         across = projector @ winds.T
         square = np.maximum((across * winds.T).sum(axis=1), 0.0)
-        push = (branches['area'] * branches['speed'] ** 2)[:, None] * np.sqrt(square)
-        loads: Floats = (push[:, None] * across).reshape(3 * n, -1).T @ at.reshape(3 * n, -1)
+        load = (branches['area'] * branches['speed'] ** 2)[:, None] * np.sqrt(square)
+        loads: Floats = (load[:, None] * across).reshape(3 * n, -1).T @ at.reshape(3 * n, -1)
         return loads
 
     def slopes(self, shapes: Floats) -> LoadSlopes:
@@ -83,7 +83,7 @@ class WindMoments:
         return LoadSlopes(self._records, self, shapes)
 
 
-def static_answers(
+def static_responses(
     moments: WindMoments, solve: Callable[[Floats], Floats], pressure: Callable[[float], float]
 ) -> Floats:
     """
@@ -99,21 +99,21 @@ def static_answers(
         Dynamic pressure [kg/m/s^2] of a wind in [m/s].
 
     """
-    still = np.zeros(moments.n)
+    rest = np.zeros(moments.n)
     found = []
     for azimuth in _AZIMUTHS:
-        ahead = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-        upright = moments(still, still, ahead)
-        found.append(solve(upright))
+        direction = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+        at_rest = moments(rest, rest, direction)
+        found.append(solve(at_rest))
         for speed in _SPEEDS:
-            push, x = pressure(speed), still
+            scale, x = pressure(speed), rest
             for turn in range(_TURNS):
-                x = x + (solve(push * moments(x, still, ahead)) - x) / (turn + 2.0) ** 0.5
+                x = x + (solve(scale * moments(x, rest, direction)) - x) / (turn + 2.0) ** 0.5
                 x *= min(1.0, _FARTHEST / max(float(np.abs(x).max()), 1e-12))
-            found.append(x / push)
+            found.append(x / scale)
     for rise in (-np.pi / 2.0, -np.pi / 4.0, np.pi / 4.0, np.pi / 2.0):
         for azimuth in _AZIMUTHS[::2] if abs(rise) < 1.5 else _AZIMUTHS[:1]:
             level = np.cos(rise)
             wind = np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(rise)])
-            found.append(solve(moments(still, still, wind)))
+            found.append(solve(moments(rest, rest, wind)))
     return np.array(found).T

@@ -4,7 +4,7 @@
 How a tree answers to gusts: linear motion of its modes in turbulence, in the damping of the air.
 
 Branches that swing alike are driven together, and the air couples them: a few patterns hold what
-many modes do. Static answers hold what is slower or faster (`static_answers`).
+many modes do. Static answers hold what is slower or faster (`static_responses`).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _COUNT, _BEYOND = 20, 1.5
 """How many frequencies, and from and to what multiple of those of the modes."""
 
 
-def gust_answers(branches: Records, modes: Modes, damping_ratio: Floats, law: DragLaw) -> Floats:
+def gust_responses(branches: Records, modes: Modes, damping_ratio: Floats, law: DragLaw) -> Floats:
     """
     Find how turbulence of several speeds and directions moves a tree, whose tips all move alike.
 
@@ -56,8 +56,8 @@ def gust_answers(branches: Records, modes: Modes, damping_ratio: Floats, law: Dr
         for speed in _SPEEDS:
             system = 1j * swept[:, :, None] * (pressure(speed, *law) * speed * air)
             system += free[:, :, None] * np.eye(len(circular))
-            answers = gusts * np.linalg.solve(system, load)
-            parts = np.concatenate([answers.real, answers.imag]).swapaxes(0, 1)
+            responses = gusts * np.linalg.solve(system, load)
+            parts = np.concatenate([responses.real, responses.imag]).swapaxes(0, 1)
             flat = parts.reshape(len(circular), -1)
             found.append(flat / np.linalg.norm(tips @ flat))
     return np.hstack(found)

@@ -21,12 +21,12 @@ from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf, Singles
 from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.motion.placing import NONE, place
-from tree_sway.core.motion.records import Heads, Instances, Segments, Tables, TimeSteps
+from tree_sway.core.motion.records import Blocks, Instances, Segments, Tables, TimeSteps
 from tree_sway.core.motion.simd import settle, write_past_caches
 from tree_sway.core.motion.wind_basis import step_instance
 
 
-class Standing:
+class Placement:
     """How a tree of a stand is placed."""
 
     kind: int  # its row among the tables
@@ -40,18 +40,18 @@ class Standing:
     at: Annotated[Floats, 3]  # its root node [m]
 
 
-Stand = RecordsOf[Standing]
-STANDING = np.dtype(fields_of(Standing))
+Placements = RecordsOf[Placement]
+PLACEMENT = np.dtype(fields_of(Placement))
 
 _CACHED = 1 << 21
 """Numbers in a pose block up to which it is written to the caches: 16 MB, half of a large one."""
 
 
 @fused
-def step_standing(
+def step_stand(
     tables: Tables,
     time_steps: TimeSteps,
-    standing: Stand,
+    placements: Placements,
     instances: Instances,
     drag_laws: Floats,
     winds: Floats,
@@ -59,7 +59,7 @@ def step_standing(
     """
     Step every tree that is not still, each with its mean wind over the step in [m/s], (t, 3).
 
-    Records are of `table_layout` (k,), `time_step_layout` (p,), `STANDING` and
+    Records are of `table_layout` (k,), `time_step_layout` (p,), `PLACEMENT` and
     `instance_layout` (t,); C and N of each kind (k, 2).
 
     Returns
@@ -70,8 +70,8 @@ def step_standing(
 
     """
     clamped, restarted = 0, 0
-    for t in range(len(standing)):
-        here = standing[t]
+    for t in range(len(placements)):
+        here = placements[t]
         if here.is_still:
             continue
         table, instance = tables[here.kind], instances[t]
@@ -103,9 +103,9 @@ def step_standing(
 
 
 @fused
-def place_standing(
-    standing: Stand, instances: Instances, which: Ints, shapes: Singles,
-    segments: Segments, heads: Heads, bases: Floats, x: Floats, poses: Floats,
+def place_stand(
+    placements: Placements, instances: Instances, which: Ints, shapes: Singles,
+    segments: Segments, blocks: Blocks, bases: Floats, x: Floats, poses: Floats,
     out: Floats,
 ) -> None:  # fmt: skip
     """
@@ -117,12 +117,12 @@ def place_standing(
     Parameters
     ----------
     standing, instances
-        As of `step_standing`.
+        As of `step_stand`.
     which
         Trees and their first rows in the pose block, (w, 2).
     shapes
         Of the kind, as of `placing.expand`.
-    segments, heads, bases
+    segments, headers, bases
         Of the kind, as of `placing.place`.
     x, poses
         To work in, (N,) and (m, 7).
@@ -133,9 +133,9 @@ def place_standing(
     block, whole = poses.reshape(-1), out.reshape(-1)
     for row in range(len(which)):
         t, first = which[row, 0], which[row, 1]
-        here = standing[t]
+        here = placements[t]
         place(
-            instances[t : t + 1], shapes, segments, heads, bases,
+            instances[t : t + 1], shapes, segments, blocks, bases,
             here.cosine, here.sine, here.scale, x, NONE, here.at[:], poses,
         )  # fmt: skip
         into = whole[7 * first : 7 * first + len(block)]

@@ -18,7 +18,7 @@ from tree_sway.core.reduction.matrices import Reduction
 from tree_sway.core.tree.tree import Tree
 
 
-def carried_inertia(tree: Tree, reduction: Reduction) -> Floats:
+def subtree_inertia(tree: Tree, reduction: Reduction) -> Floats:
     """
     Inertia of each coordinate with its subtree giving way, in [kg m^2], (N,).
 
