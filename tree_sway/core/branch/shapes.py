@@ -3,12 +3,12 @@
 """
 The fields of rotation by which a branch bends and twists in space.
 
-A plain branch has two: those in which winds bend and twist it with all that it carries, so that
-its chord turns about one axis or the other. An enriched branch has further ones: what the inertia
-of these bends it into, and so on; and how it is twisted by all it carries when that turns about
-the chord as one (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space
-of its flexibility and inertia). They are orthogonal in bending energy. A crooked branch bends and
-twists in one: no coordinate of its own is spent on twist.
+A plain branch has two: the static responses to winds on it and its subtree in which its chord
+rotates about one axis or the other. An enriched branch has further ones: the responses to the
+inertia of these, and so on; and the twist by the rotation of its subtree about the chord
+(load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space of its flexibility
+and inertia). They are orthogonal in bending energy. A crooked branch bends and twists in the same
+fields: twist has no coordinate of its own.
 """
 
 from __future__ import annotations
@@ -32,20 +32,20 @@ N_PAIRS = 3
 """Pairs of fields of an enriched branch: the static ones, then by inertia."""
 
 N_TURNS, FEWER_TURNS = 3, 1
-"""Further fields by what turns about the chord: of a stem, and of any other branch."""
+"""Further fields by rotation about the chord: of a stem, and of any other branch."""
 
 MAX_COORDINATES = 12
-"""Most fields of a branch."""
+"""Largest number of fields of a branch."""
 
 _APART, _LEFT_APART = 24, 1e-4
 """
-Cases in which what a branch carries swings apart, and the share of their energy that the fields
-may leave out.
+Cases of subtrees that swing against each other, and the largest share of their energy that the
+fields may miss.
 
 """
 
 _NEGLIGIBLE = 1e-4
-"""Share of a field that must be new."""
+"""Smallest share of a field that is orthogonal to those before."""
 
 _UPWARD = 0.3
 _WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
@@ -53,7 +53,7 @@ _WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
 
 class SubtreeSums(NamedTuple):
     """
-    What each child of a branch hands down: sums over its subtree, about the root of the tree.
+    Sums over the subtree of each child of a branch, about the root of the tree.
 
     Parameters
     ----------
@@ -77,18 +77,18 @@ class SubtreeSums(NamedTuple):
 
     @classmethod
     def zeros(cls, count: int) -> SubtreeSums:
-        """Make sums over a number of subtrees, all of them zero."""
+        """Return zero sums over a number of subtrees."""
         shapes: tuple[tuple[int, ...], ...] = (), (3,), (3, 3), (3, 3), (), (3,), (3, 3)
         return cls(*(np.zeros((count, *shape)) for shape in shapes))
 
     def select(self, children: Ints) -> SubtreeSums:
-        """Pick some of the subtrees."""
+        """Select some of the subtrees."""
         return SubtreeSums(*(sums[children] for sums in self))
 
 
 def across(chord: Floats) -> tuple[Floats, Floats]:
     """
-    Two unit vectors across a chord (3,): e1 in the vertical plane, or along x for an upright one.
+    Return unit vectors across a chord (3,): e1 in the vertical plane, along x for an upright one.
 
     (b, e1, e2) is right-handed.
     """
@@ -116,21 +116,20 @@ def shape_fields(
     beam
         The branch.
     drag_area, mass
-        Per length at its points in [m] and [kg/m], (p, 5).
-    carried
-        What its children hand down; none for a branch that is taken alone.
-    curvatures
-        Of the branch by `wind_loads` on it and on these, for a modulus of 1, (p, 5, 3, 3).
+        Drag area and mass per length at the points in [m] and [kg/m], (p, 5).
+    subtrees Sums over the subtrees of the children; none for an isolated branch. curvatures
+        Curvatures of the branch by `wind_loads` on it and its subtrees, for a modulus of 1, (p, 5,
+        3, 3).
     shear_ratio
         Shear modulus over Young's in [-].
     n_pairs, n_turns
-        How many, of either kind; fewer where there are no more.
+        Largest number of fields of either kind.
 
     Returns
     -------
     tuple
-        The slope that a plain branch is drawn by, and what a unit of each coordinate does: of the
-        key rotation x, y, then of further ones.
+        Slope of a plain branch as it is drawn, and the fields per unit of each coordinate: key
+        rotation x, y, then further ones.
 
     """
     e1, e2 = across(beam.chord)
@@ -161,7 +160,7 @@ def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
 
 
 def exposure(beam: BranchBeam) -> Floats:
-    """Mean over winds from all sides of the share of the wind that goes across, (m,)."""
+    """Return the share of the wind across each panel, averaged over winds from all sides, (m,)."""
     level = 1.0 - beam.tangent[:, 2:] ** 2
     share: Floats = np.sqrt(1.0 - level * _ALL_SIDES).mean(axis=1)
     return share
@@ -172,12 +171,12 @@ _ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
 
 def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -> Floats | None:
     """
-    Curvatures, (2, p, 5, 3), that turn the chord by 1 about e2 and about -e1 as the winds do.
+    Curvatures, (2, p, 5, 3), by winds, scaled to rotate the chord by 1 about e2 and about -e1.
 
-    Of all that do, these come nearest to what the winds along x, y and z make of the branch, (p,
-    5, 3, 3) (least squares, an upward wind weighted by `_UPWARD`): where winds along the ground
-    turn the chord both ways, what they do is exact, and so is the static sway of a tree. None for
-    a branch whose chord no wind turns.
+    They are the best fit to the curvatures by winds along x, y and z, (p, 5, 3, 3) (least squares,
+    an upward wind weighted by `_UPWARD`). Where horizontal winds rotate the chord about both axes,
+    their curvatures are exact, and so is the static sway of a tree. The result is None for a
+    branch whose chord no wind rotates.
     """
     slopes = beam.from_base(curvatures)[0]
     ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
@@ -199,11 +198,11 @@ def _further(
     n_pairs: int,
     n_turns: int,
 ) -> list[RotationField]:
-    """Ways beyond the static ones, each orthogonal in energy to those before, of unit slope."""
+    """Find fields beyond the static ones, orthogonal in energy, of unit slope."""
     basis: list[Floats] = []
 
     def rest_of(curvature: Floats) -> RotationField | None:
-        """Take what is new in a curvature into the basis, and return it."""
+        """Add the part of a curvature that is new to the basis, and return it."""
         vector = _energy_vector(beam, curvature, shear_ratio)
         whole = float(np.linalg.norm(vector))
         for _ in range(2):
@@ -250,11 +249,11 @@ def _further(
 
 def _apart(beam: BranchBeam, subtrees: SubtreeSums) -> Floats:
     """
-    Return internal moments as what is carried swings apart, in some random cases (p, 5, k, 3).
+    Return internal moments as subtrees swing at random against each other, (p, 5, k, 3).
 
-    Limbs that swing against each other bend and twist a stem between their feet, as no motion of
-    the whole crown does (random vectors find what matters: Halko, Martinsson & Tropp 2011, SIAM
-    Review 53(2), 217-288).
+    Limbs that swing against each other bend and twist a stem between their bases, unlike any
+    motion of the whole crown (random vectors find what matters: Halko, Martinsson & Tropp 2011,
+    SIAM Review 53(2), 217-288).
     """
     places = beam.child_point[: len(subtrees.area)]
     rng = np.random.default_rng(0)
@@ -272,9 +271,9 @@ def _inertial_wrench(
     places: Floats, subtrees: SubtreeSums, turn: Floats, moved: Floats
 ) -> tuple[Floats, Floats]:
     """
-    Force and moment by the inertia of what is carried, about the root of the tree, (c, k, 3).
+    Return force and moment by the inertia of subtrees, about the root of the tree, (c, k, 3).
 
-    Each subtree turns about its place (c, 3) and moves with it, in k cases, both (c, k, 3).
+    Each subtree rotates about its base (c, 3) and moves with it, in k cases, both (c, k, 3).
     """
     at_root = moved - cross(turn, places[:, None])
     force = subtrees.mass[:, None, None] * at_root + cross(turn, subtrees.mass_moment[:, None])
@@ -284,7 +283,7 @@ def _inertial_wrench(
 
 
 def _energy_vector(beam: BranchBeam, curvature: Floats, shear_ratio: float) -> Floats:
-    """Curvature (p, 5, 3) as a vector whose square is twice its energy, for a modulus of 1."""
+    """Return curvature (p, 5, 3) as a vector whose square is twice its energy, by modulus."""
     measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
     vector: Floats = measure * _twisted(beam, curvature, math.sqrt(2.0 * shear_ratio))
     return vector.ravel()
@@ -313,21 +312,21 @@ def shaken_energies(
     fields: Sequence[RotationField],
 ) -> tuple[float, float]:
     """
-    Compute the energy of a branch whose base is shaken, and of what its fields cannot follow.
+    Compute the energy of a branch whose base is shaken, and the part that its fields miss.
 
     Parameters
     ----------
-    beam, mass, carried, shear_ratio
-        As of `shape_fields`.
+    beam, mass, subtrees, shear_ratio
+        Beam, mass, subtrees and shear ratio, as in `shape_fields`.
     fields
-        By which the branch moves.
+        Fields of the branch.
 
     Returns
     -------
     tuple of float
-        Twice the sum of the energies of bending and twist by an acceleration of 1 m/s^2 of all
-        that it carries, along x, y and z, for a modulus of 1 Pa; and the part orthogonal to the
-        fields.
+        Twice the sum of the energies of bending and twist by an acceleration of 1 m/s^2 of the
+        branch and its subtrees along x, y and z, for a modulus of 1 Pa; and the part orthogonal to
+        the fields.
 
     """
     force = subtrees.mass[:, None, None] * np.eye(3)
@@ -345,9 +344,9 @@ def inertial_moment(
     beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, field: RotationField | None
 ) -> Floats:
     """
-    Return the internal moment by the inertia of a field and of all that it carries, (p, 5, 3).
+    Return the internal moment by the inertia of a field and its subtrees, (p, 5, 3).
 
-    Without a field all that is carried turns about the chord as one.
+    Without a field all subtrees rotate about the chord as one body.
     """
     places = beam.child_point[: len(subtrees.area)]
     if field is None:
@@ -361,7 +360,7 @@ def inertial_moment(
 
 
 def _static_shape(beam: BranchBeam, drag_area: Floats, subtrees: SubtreeSums) -> SlopeShape:
-    """Bent by an even wind on the branch and on all it carries."""
+    """Return the shape by a uniform wind on the branch and its subtrees."""
     places = beam.child_point[: len(subtrees.area)]
     lever = (subtrees.area_moment - subtrees.area[:, None] * places) @ beam.chord
     bending = beam.bending_moment(drag_area, subtrees.area, np.maximum(lever, 0.0))

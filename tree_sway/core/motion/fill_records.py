@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The one place where records are filled: what stepping and placing know of a tree.
+Filling of the records for stepping and placing a tree.
 
-`Places` says how a tree is joined and drawn; whoever has one can place it, as a receiver of the
-stream. `branch_records` adds what the wind does; `block_records` and `load_records` lay it out in
+`Places` has how a tree is joined and drawn, which suffices to place it, as for a receiver of the
+stream. `branch_records` adds the wind load; `block_records` and `load_records` lay the data out in
 slots.
 """
 
@@ -36,10 +36,10 @@ from tree_sway.core.tree.tree import Tree
 
 class Places(NamedTuple):
     """
-    How branches are joined and drawn: all that placing knows of a tree, before it is laid out.
+    How branches are joined and drawn: the data for placing a tree, before it is laid out.
 
-    Of branches (b,) and segments (n,) in the order of the tree; k is the most coordinates that a
-    branch has.
+    Branches (b,) and segments (n,) are in the order of the tree; k is the largest number of
+    coordinates of a branch.
     """
 
     first: Ints
@@ -53,7 +53,7 @@ class Places(NamedTuple):
     skew: Floats
     tip_skew: Floats
     offset: Floats
-    """Base from its base segment's start, in that one's frame, (b, 3)."""
+    """Base from the start of the base segment, in the frame of that segment, (b, 3)."""
     base_rotation: Floats
     """Rotation of the base per unit of the parent's coordinates, (b, k, 3)."""
     chord: Floats
@@ -65,7 +65,7 @@ class Places(NamedTuple):
 
 
 def segment_records(places: Places) -> Records:
-    """Fill what placing needs of each segment: records of `segment_layout`, in blocks."""
+    """Fill the segments for placing: records of `segment_layout`, in blocks."""
     block, slot, n_records = assign_slots(places.first, places.parent, places.n_coordinates)
     is_plain = places.rotation_mode.shape[1] == 2
     records = zeros_in_lines(n_records, segment_layout(2) if is_plain else segment_layout())
@@ -84,7 +84,7 @@ def segment_records(places: Places) -> Records:
 
 
 def fill_places(places: Places, records: Records) -> None:
-    """Fill what placing needs of each branch, in records of `branch_layout`, (b,)."""
+    """Fill the fields for placing in records of `branch_layout`, (b,)."""
     records['first_record'], records['slot'], _ = assign_slots(
         places.first, places.parent, places.n_coordinates
     )
@@ -115,9 +115,9 @@ def rotation_modes_of(branch: np.void, segments: Records) -> Floats:
 
 def block_records(branches: Records, segments: Records) -> Records:
     """
-    Lay out what placing needs to know of `BRANCH` records, whose coordinates are set.
+    Lay the fields for placing out in blocks, from `BRANCH` records whose coordinates are set.
 
-    Records of `block_layout`, one per block of `assign_slots` and one to work in.
+    Records are of `block_layout`, one per block of `assign_slots` and one of scratch memory.
     """
     first, block = np.unique(branches['first_record'], return_inverse=True)
     slot, parent = branches['slot'], branches['parent']
@@ -145,11 +145,13 @@ def block_records(branches: Records, segments: Records) -> Records:
 
 _rotated = rotated.py_func  # type: ignore[attr-defined]  # whole arrays at once
 _AS_ONE = 1e-12
-"""Share of a chord by which a segment may miss it and still reach from its start to its end."""
+"""
+Largest deviation of a segment from a chord that it is taken to span, as a share of the chord.
+"""
 
 
 def _joined(segments: Records) -> NDArray[np.bool_]:
-    """Return chords in each segment's own frame, and for which of them it is the x axis."""
+    """Fill chords in the frames of their segments; return where the chord is the x axis."""
     w, x, y, z = np.moveaxis(segments['rest'], 1, 0)
     own_chord = _rotated(w, -x, -y, -z, *np.moveaxis(segments['chord'], 1, 0))
     segments['own_chord'] = np.stack(own_chord, axis=1)
@@ -160,14 +162,14 @@ def assign_slots(
     first: Ints, branch_parent: Ints, fields: Ints | None = None
 ) -> tuple[Ints, Ints, int]:
     """
-    Give each branch a slot of a block: parents first, long branches together, few slots empty.
+    Assign a slot of a block to each branch: parents first, similar lengths together.
 
-    Those of many ``fields`` (b,), if they are given, are together as well.
+    Branches of similar numbers of ``fields`` (b,), if given, are together as well.
 
     Returns
     -------
     tuple
-        First record (b,) and slot (b,) of each branch; how many records there are.
+        First record (b,) and slot (b,) of each branch; number of records.
 
     """
     size = np.diff(first)
@@ -177,12 +179,12 @@ def assign_slots(
         children[branch_parent[branch]].insert(0, branch)
         carried[branch_parent[branch]] += carried[branch]
     block, slot = np.zeros((2, len(size)), dtype=np.int64)
-    # Sixteen branches take as long to place as the one with most fields.
+    # The time to place sixteen branches is that of the one with most fields.
     rich = (-fields if fields is not None else 0 * size).tolist()
     begin, ready = 0, [(rich[0], -int(size[0]), -int(carried[0]), 0)]
     while ready:
         together = [heappop(ready)[-1] for _ in range(min(WIDTH, len(ready)))]
-        # Records have segments of the first slots alone.
+        # Records have segments of the first slots only.
         together.sort(key=lambda branch: -int(size[branch]))
         block[together], slot[together] = begin, np.arange(len(together))
         begin += int(size[together[0]])
@@ -193,7 +195,7 @@ def assign_slots(
 
 
 def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Places:
-    """Describe how the branches of a tree are joined and drawn, as they are modelled."""
+    """Find how the modelled branches of a tree are joined and drawn."""
     first, size = tree.branch_first[:-1], np.diff(tree.branch_first)
     on = tree.segment_parent[first]
     following = tree.end.copy()
@@ -206,7 +208,7 @@ def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Pl
     share, skews = tree.length / np.repeat(np.add.reduceat(tree.length, first), size), []
     for each in (slope, tip_slope):
         deviation = each - np.repeat(np.add.reduceat(share * each, first), size)
-        # The third cumulant over 6: how far the chord angle lags, per angle cubed.
+        # The third cumulant over 6: the lag of the chord angle, per angle cubed.
         skews.append(np.add.reduceat(share * deviation**3, first) / 6.0)
     counts = np.array([len(model.fields) for model in models])
     is_plain = (counts == 2).all()
@@ -230,7 +232,7 @@ def branch_records(
     speed_profile: Floats,
 ) -> Records:
     """
-    All that stepping and placing know of the branches: records of `branch_layout`, (b,).
+    Fill the branches for stepping and placing: records of `branch_layout`, (b,).
 
     The profile is the wind speed at each segment over that at the anemometer, (n,).
     """
@@ -255,16 +257,16 @@ def branch_records(
 
 
 _STRAIGHT = 0.03
-"""Share of the wind along a branch below which this is not distinguished from none."""
+"""Smallest share of the wind along a branch that is distinguished from 0."""
 
 
 def _fill_loads(
     models: list[BranchModel], speed_profile: Floats, rows: Ints, records: Records
 ) -> None:
     """
-    Fill what the wind load reads of branches of as many panels, p, and fields, n, as each other.
+    Fill the fields of the wind load of branches that all have p panels and n fields.
 
-    The wind speed at their panels is over that at the anemometer, (k, p).
+    The speed profile is the wind speed at their panels over that at the anemometer, (k, p).
     """
     beams, n = [model.beam for model in models], len(models[0].fields)
     point, tangent = (np.array([getattr(b, name) for b in beams]) for name in ('point', 'tangent'))
@@ -297,7 +299,7 @@ def _fill_loads(
     records['load_mode'][rows, :n] = mean @ into_load_mode
     along_it = (fields[:, :2] * tangent[:, None, :, None]).sum(axis=-1)
     moved = (np.square(fields[:, :2]).sum(axis=-1) - np.square(along_it)).sum(axis=1)
-    # What moves most does most work, and it is turned most.
+    # Pieces that move most do most work, and are rotated most.
     work = (share * np.sqrt(np.maximum(moved, 0.0))).reshape(len(rows), 1, 1, -1)
     whole = work.sum(axis=-1, keepdims=True)
     work /= np.where(whole > 0.0, whole, 1.0)
@@ -317,7 +319,7 @@ def _cubes(squares: Floats) -> Floats:
 
 
 def _fit_load(model: BranchModel, share: Floats, record: np.void) -> None:
-    """Fit projector, push and couple of a crooked branch to the drag on it (least squares)."""
+    """Fit projector, load mode and coupling of a crooked branch to its drag (least squares)."""
     tangent = model.beam.tangent
     slanting = _SlantingWinds(model.beam.chord)
     outer = (np.eye(3) - tangent[:, :, None] * tangent[:, None, :]).reshape(-1, 9)
@@ -342,12 +344,12 @@ def _fill_damping(
     records: Records, rows: Ints, mean: Floats, square: Floats, cube: Floats
 ) -> None:
     """
-    Scale the displacement across the branch to that at which drag damps as its mean square does.
+    Scale the mean displacement to the one whose drag damping is that of the mean square.
 
     Both axes of the first shape count as one, so that it does not matter how they are laid.
 
-    In wind this damps as the pieces do. In still air they do so by the mean cube, which needs a
-    speed of mean cube over mean square: what the flow lacks of that is the spread.
+    In wind its damping is that of the pieces. In still air that is the mean cube of their speed:
+    the spread is the missing part of the speed of mean cube over mean square.
     """
     across = np.square(mean[:, :2]).sum(axis=(1, 2))
     ratio = np.divide(square, across, out=np.ones_like(square), where=across > 0.0)
@@ -360,14 +362,14 @@ def _fill_damping(
 
 class _SlantingWinds:
     """
-    Winds from all sides, along the ground and, as branches bend, aslant.
+    Winds from all sides, horizontal and, as branches bend, oblique.
 
-    The first comes from the side that a direction (3,) points to, so that a tree that is turned as
-    a whole has the same load from the side that is turned with it.
+    The first one follows a direction (3,), so that a rotated tree has the load of the rotated
+    wind.
     """
 
     def __init__(self, direction: Floats) -> None:
-        """Lay 16 bearings on each of three rises."""
+        """Make winds of 16 bearings at each of three elevations."""
         x, y, _ = direction
         points = math.hypot(x, y) > 1e-6 * float(np.linalg.norm(direction))
         bearing = (math.atan2(y, x) if points else 0.0) + np.arange(16) * np.pi / 8.0
@@ -385,7 +387,7 @@ class _SlantingWinds:
         return squares
 
     def nearest(self, squares: Floats) -> Floats:
-        """Return the projector (6,) whose squares come nearest to these, (48,)."""
+        """Return the projector (6,) that fits these squares, (48,), best."""
         projector: Floats = np.linalg.lstsq(self._weights, squares, rcond=None)[0]
         return projector
 
@@ -394,7 +396,7 @@ def _drawn_modes(model: BranchModel) -> Floats:
     """
     Rotation vector of each segment per unit of each coordinate, as it is drawn, (m, k, 3).
 
-    A plain branch turns by one slope about the axes across its chord.
+    A plain branch rotates by one slope about the axes across its chord.
     """
     if len(model.fields) == 2:
         e1, e2 = across(model.beam.chord)
@@ -405,7 +407,7 @@ def _drawn_modes(model: BranchModel) -> Floats:
 
 def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
     """
-    Slope of each segment as its branch is drawn, and under a load at the tip, both (n,).
+    Slope of each segment of a plain branch, and under a load at the tip, both (n,).
 
     The latter is the mean over the segment of 1.5 (2 u - u^2), u the arc length over the length.
     """
@@ -424,7 +426,7 @@ def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> 
     """
     Lay out what the wind load knows of `BRANCH` records, (b,), sixteen at a time, (ceil(b / 16),).
 
-    At rest, with no force yet; of `load_fields` with as many rows as the branches have, or of a
+    At rest, with no force yet; of `load_layout` with as many rows as the branches have, or of a
     layout with further fields, which are left zeros.
     """
     if layout is None:

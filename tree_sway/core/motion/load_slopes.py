@@ -4,9 +4,9 @@
 Slopes of the wind load of a bent tree, by many shapes of motion in one pass.
 
 `tree_passes` differentiated by hand, for all branches at once. A unit of each shape gives every
-base a velocity and a spin; what loads a shape is the power of the changed forces on it, by virtual
-work. Where a force stays as it is and the tree below it turns, it does work on other coordinates
-than before: in a storm that part is as large as the other.
+base a velocity and a spin; the load on a shape is the power of the changed forces on it, by
+virtual work. Where the tree rotates below a constant force, the force does work on other
+coordinates: in a storm that part is as large as the other.
 
 Twists are (velocity, spin) and wrenches (force, moment); both are about the root node and in the
 frame of the tree where no other point and frame are named.
@@ -32,14 +32,15 @@ _TOGETHER = 256
 
 class LoadSlopes:
     """
-    What the load of a tree on some shapes changes by, as they move.
+    Slopes of the load of a tree on some shapes by their motion.
 
     Parameters
     ----------
     records
-        Branches, work and loads that ``moments`` writes of a pose, as `modal.wind_moments` does.
+        Records of branches, work and loads that ``moments`` writes, as `modal.wind_moments`.
     moments
-        Find the loads at a pose (N,), at rates (N,) and in a wind [m/s], (3,), at 1 kg/m^3.
+        Function that finds the loads at a pose (N,), rates (N,) and a wind [m/s], (3,), of 1
+        kg/m^3.
     shapes
         Key rotations of each shape, (N, m).
 
@@ -51,7 +52,7 @@ class LoadSlopes:
         moments: Callable[[Floats, Floats, Floats], Floats],
         shapes: Floats,
     ) -> None:
-        """Find what a unit of each shape does to each branch on its parent."""
+        """Find the motion of each branch on its parent per unit of each shape."""
         branches, self._work, self._loads = records
         self._branches, count = branches, len(branches)
         bearing, self._on = np.unique(np.maximum(branches['parent'], 0), return_inverse=True)
@@ -73,7 +74,8 @@ class LoadSlopes:
         """
         Differentiate modal loads by the amounts of the shapes, and by their rates, both (m, m).
 
-        By the shape that moves, then the one that is loaded; the tree is still at x, (N,).
+        The first axis is the shape that moves, the second the one that is loaded; the tree is at
+        x, (N,), without motion.
         """
         self._moments(x, np.zeros(len(x)), wind)
         branches, work, count = self._branches, self._work, len(self._branches)
@@ -85,8 +87,8 @@ class LoadSlopes:
         force = (frame @ work['wrench'][:, :3, None])[..., 0]
         moment = (frame @ work['wrench'][:, 3:, None])[..., 0]
 
-        # Each base on its parent's: its twist by that of the joint, and by how much the force and
-        # moment that it hands on load the joint more as the parent, or the joint itself, moves.
+        # Each base on its parent's: its twist by that of the joint, and how the force and moment
+        # at the joint change as the parent, or the joint itself, moves.
         per_arm, moved = branches['per_arm'][:, None, None], work['displacement']
         leant = -2.0 * per_arm * _outer(branches['arm'], moved)
         slide, spin = self._free + leant @ self._free, np.zeros((count, 3, 6))
@@ -104,7 +106,7 @@ class LoadSlopes:
         bent = cross_matrices(bent)
         by_joint[:, 3:, 3:] += 0.5 * bent + (bent @ skew - 2.0 * skew @ bent) / 6.0
 
-        # Each branch on its base, in its own frame as it is turned.
+        # Each branch on its base, in its own turned frame.
         own = of_slots(self._loads['rotation'], count)
         turn = frame @ _rotations(quaternions_of(own))
         back = turn.swapaxes(1, 2)
@@ -127,7 +129,7 @@ class LoadSlopes:
         bases = self._outward(small[0][self._bearing] @ self._joint[self._bearing])
         m = bases.shape[2]
         turning, damping = np.zeros((2, m, m), dtype=np.float32)
-        for first in range(0, count, _TOGETHER):  # what is in between stays in the cache
+        for first in range(0, count, _TOGETHER):  # intermediate results stay in the cache
             rows = slice(first, first + _TOGETHER)
             twist, by_parent, by_joint, moving, seeing, lever, forces, moments, gain, drag = (
                 each[rows] for each in small
@@ -145,7 +147,7 @@ class LoadSlopes:
         return turning, damping
 
     def _outward(self, joints: NDArray[Any]) -> NDArray[Any]:
-        """Sum what branches that bear others have on their parents from the root on."""
+        """Sum the joint motion of branches that have children from the root on."""
         return sum_outward(self._on[self._bearing], self._levels, joints)
 
     def _in_slots(self, name: str) -> Floats:
@@ -161,7 +163,7 @@ class LoadSlopes:
 
 
 def _power(moved: Singles, loaded: Singles) -> Singles:
-    """Sum products of what shapes move and what they load, both (b, k, m), to (m, m)."""
+    """Sum products of motion and load by shapes, both (b, k, m), to (m, m)."""
     m = moved.shape[2]
     return moved.reshape(-1, m).T @ loaded.reshape(-1, m)
 

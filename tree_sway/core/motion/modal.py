@@ -3,13 +3,13 @@
 """
 Natural modes of the coupled tree as oscillators, on the loads of all branches.
 
-The model `full` steps all modes, a number of coordinates that many. The load is that of the state
-half a step on, and is constant over the step.
+The model `full` steps all modes, a number of coordinates steps that number. The load is that of
+the state at the middle of the step, and is constant over the step.
 
-**Implicit where it must be.** What a load does in a step is felt by the load itself: twigs in a
-storm point along the wind within a fraction of it. So the load is found again until it is that of
-the state it leads to; in light wind, where the last step's is near enough, once. What still turns
-further than a step can follow is clamped, and counted.
+**Implicit load.** The motion in a step changes the load itself: twigs in a storm point along the
+wind within a fraction of a step. So the load is iterated until it is that of the resulting state;
+in light wind, where the last step's load is close enough, once. Rotations beyond what a step can
+follow are clamped and counted.
 
 Symbols: Phi mode shapes (N, m), stored by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -36,19 +36,19 @@ from tree_sway.core.reduction.matrices import Reduction
 from tree_sway.core.reduction.modes import Modes
 
 MOST_TRIALS = 12
-"""How often the load of a step is found at most."""
+"""Largest number of iterations for the load of a step."""
 
 ENOUGH = 0.02
-"""By how much the load may miss that of the middle of its step: the turn that it makes [rad]."""
+"""Tolerance of the load, as the rotation that it makes [rad]."""
 
 
 FARTHEST, MOST_TURN = 2.0, 1.0
-"""How far a branch may turn on its parent, and how far in a step, in [rad]."""
+"""Largest rotation of a branch on its parent, and in a step, in [rad]."""
 
 
 class ModalBank(Branchwise):
     """
-    Oscillators of natural modes of a tree, its slowest or all, of one damping ratio.
+    Oscillators of the slowest or all natural modes of a tree, of one damping ratio.
 
     ``made_of`` are the arrays of `modal_arrays`.
     """
@@ -69,14 +69,16 @@ class ModalBank(Branchwise):
         self.damping = 2.0 * damping_ratio * self.loss * made_of['circular']
         self.limit = LOAD_MAX * made_of['diagonal']
         self.weight = made_of['weight']
-        """Stiffness by gravity of each mode in [1/s^2], (m,); below 0 where weight softens it."""
+        """Stiffness by gravity of each mode in [1/s^2], (m,); negative where weight softens it."""
         self.compliance = made_of['branch_compliance'], made_of['mode_compliance']
-        """Of every branch by itself, (N, 9), and of the modes if branches were so, (m, m)."""
+        """
+        Compliance of every isolated branch, (N, 9), and of the modes of isolated branches, (m, m).
+        """
         self._momentum = made_of['momentum'].T
         self._participation = made_of['participation']
         self.work = np.zeros(len(branches), dtype=WORK)
         self.loads = load_records(branches)
-        """Records of `load_fields`."""
+        """Records of `load_layout`."""
         self.modal = np.zeros((5, m))
         self.swing = tuple(self.modal[:3])
         """Displacement, rate and force of each mode, (m,)."""
@@ -87,20 +89,20 @@ class ModalBank(Branchwise):
 
     @property
     def mean_square_motion(self) -> Floats:
-        """Mean square motion of what the wind meets, per unit of each mode, (m,)."""
+        """Mean square motion of the loaded pieces, per unit of each mode, (m,)."""
         area = self.branches['area']
         mean: Floats = 2.0 * area @ self._participation / max(float(area.sum()), 1e-300)
         return mean
 
     def set_time_step(self, dt: float) -> None:
-        """Refill how the modes go on in a time step [s]."""
+        """Refill the propagator of the modes for a time step [s]."""
         one = np.ones(len(self.stiffness))
         self._fastest[0] = MOST_TURN / dt
         fill_propagator(one, self.damping, self.stiffness, dt, self.whole)
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
 
     def set_step(self, dt: float) -> None:
-        """Refill what depends on the time step [s]."""
+        """Refill the coefficients for a time step [s]."""
         self.set_time_step(dt)
         block, slot = np.divmod(np.arange(len(self.branches)), WIDTH)
         velocity = self.half[:, 6] + self.half[:, 7]
@@ -132,7 +134,7 @@ class ModalBank(Branchwise):
 
     @property
     def tunable(self) -> Tunable:
-        """Return what changes with stiffness, damping and gravity."""
+        """Return the arrays that change with stiffness, damping and gravity."""
         others = (self.limit, 1.0), *((each, -1.0) for each in self.compliance)
         return Tunable(self.stiffness, self.damping, 1.0, self.weight, others, self.loss)
 
@@ -143,11 +145,11 @@ class ModalBank(Branchwise):
         return damping @ self._participation
 
     def memory(self) -> tuple[Floats, ...]:
-        """Return views of what is carried from one step to the next."""
+        """Return views of the state."""
         return self.modal[:3], self.state[0], self.loads['drag_impulse']
 
     def take(self, eta: Floats, rate: Floats, force: Floats) -> None:
-        """Go on from modes, rates and forces (m,)."""
+        """Continue from modes, rates and forces (m,)."""
         self.modal[0], self.modal[1], self.modal[2] = eta, rate, force
         self.state[0] = 0.0
         self.loads['drag_impulse'] = 0.0
@@ -163,12 +165,12 @@ class ModalBank(Branchwise):
         return self.rotations().copy(), self.shapes @ self.modal[1]
 
     def take_over(self, x: Floats, v: Floats) -> None:
-        """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
+        """Continue from key rotations and rates, (N,), projected on the modes."""
         self.reset()
         self.modal[0], self.modal[1] = self._momentum @ x, self._momentum @ v
 
     def reset(self) -> None:
-        """Go back to rest."""
+        """Return to rest."""
         self.modal[:] = 0.0
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
@@ -176,8 +178,8 @@ class ModalBank(Branchwise):
 
 
 def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[str, Floats]:
-    """Find what a `ModalBank` is made of, all of it arrays that can be stored."""
-    # One mode after another, so that a loop over coordinates is one of vectors.
+    """Find the arrays of a `ModalBank`, which can be stored."""
+    # One mode after the other, so that loops over coordinates are vectorised.
     shapes = np.ascontiguousarray(modes.shapes.T)
     return {
         'circular': modes.circular,
@@ -194,7 +196,7 @@ def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[
 
 @fused
 def _expand(shapes: Floats, modal: Floats, state: Floats) -> None:
-    """Modes to key rotations."""
+    """Expand modes to key rotations."""
     eta, x = modal[0], state[1]
     for i in range(len(x)):
         x[i] = 0.0
@@ -205,7 +207,7 @@ def _expand(shapes: Floats, modal: Floats, state: Floats) -> None:
 
 @part
 def _to_middle(modal: Floats, state: Floats, shapes: Floats, half: Floats) -> None:
-    """Key rotations and rates half a step on, under the last step's load."""
+    """Key rotations and rates at the middle of the step, under the last step's load."""
     eta, rate, force = modal[0], modal[1], modal[2]
     middle_eta, middle_rate, x, v = modal[3], modal[4], state[1], state[2]
     for k in range(len(eta)):
@@ -228,7 +230,7 @@ def wind_moments(
     """
     Find the moments of a wind on the key rotations of a tree that bends and moves.
 
-    They are written as by `bent_loads`; key rotations are in [rad], their rates in [rad/s], (N,).
+    Moments are those of `bent_loads`; key rotations are in [rad], their rates in [rad/s], (N,).
     """
     outward_pass(branches, work, x, v)
     for b in range(len(branches)):
@@ -292,7 +294,7 @@ def _advance(
 
 @part
 def _clamp(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastest: float) -> None:
-    """Let no branch turn further or faster than a step can follow."""
+    """Clamp rotations and rates of branches to what a step can follow."""
     eta, rate, x, v = modal[0], modal[1], state[1], state[2]
     for i in range(len(x)):
         x[i], v[i] = 0.0, 0.0
@@ -313,11 +315,11 @@ def _clamp(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, faste
 @part
 def _try_next(trials: Floats, trial: int) -> None:
     """
-    Find the change of the moments after which nothing should be missing, in [rad].
+    Find the change of the moments that should make the residual zero, in [rad].
 
-    Rows of ``trials`` are what is missing now, what was missing before, and the last change, which
-    is written; behind the next one, pairs of what a change brought, orthonormal, and that change
-    (Anderson's mixing; Walker & Ni 2011, SIAM Journal on Numerical Analysis 49, 1715-1735).
+    Rows of ``trials`` are the residual, the one before, and the last change, which is written;
+    after the next row, pairs of an orthonormal response and the change that causes it (Anderson's
+    mixing; Walker & Ni 2011, SIAM Journal on Numerical Analysis 49, 1715-1735).
     """
     residual, before, change = trials[0], trials[1], trials[2]
     if trial > 1:
@@ -346,7 +348,7 @@ def _try_next(trials: Floats, trial: int) -> None:
 
 @part
 def _project_out(response: Floats, step: Floats, other: Floats, by: Floats) -> None:
-    """Take off what is along another unit vector, and the change that would bring it."""
+    """Project a response orthogonal to a previous one, and its change with it."""
     share = 0.0
     for i in range(len(response)):
         share += response[i] * other[i]

@@ -1,19 +1,19 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Key rotations to poses: segments follow the key of their branch, branches join from the root.
+Key rotations to poses: segments bend with their branch, branches are joined from the root.
 
-A segment turns by its slope times the branch's rotation vector, so a branch bends as one smooth
-curve and keeps its length. The chord of the bent chain turns by a little less than the coordinate
-says (third cumulant of the slope along the branch); the coordinate is stretched by that much, so
-that the chord angle stays. Beyond 30 degrees a tapered branch goes over to the slope of a load
-at the tip.
+A segment rotates by its slope times the rotation vector of the branch, so a branch bends as one
+smooth curve and keeps its length. The chord of the bent chain rotates by a little less than the
+coordinate (third cumulant of the slope along the branch); the coordinate is stretched by the
+difference, so that the chord angle is right. Beyond 30 degrees the slope of a tapered branch is
+blended with that of a load at the tip.
 
-Sixteen branches at a time, parents before their children: how the bases are turned and where they
-stand, then segment after segment up the sixteen branches at once.
+Sixteen branches are placed at a time, parents before their children: first orientation and
+position of the bases, then one segment after the other of the sixteen branches.
 
-The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose
-is at its segment's root-side node, its x axis runs along the segment (REP-103).
+The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose is
+at its segment's root-side node, its x axis is along the segment (REP-103).
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ NONE = np.zeros(0)
 
 @fused
 def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
-    """Write key rotations (N,) of the first instance, by shapes as of `shapes_together`."""
+    """Write key rotations (N,) of the first instance, by the shapes of `shapes_together`."""
     instance = instances[0]
     eta, faded, shown = instance.eta, instance.faded, instance.wanted
     for k in range(len(eta)):
@@ -67,7 +67,7 @@ def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
 
 
 def room_for(n_coordinates: int) -> Floats:
-    """Return zeros for `place` to write key rotations to: it reads past the last of a branch."""
+    """Return zeros for `place` to write key rotations to, and some more that kernels read."""
     return np.zeros(n_coordinates + MAX_COORDINATES)
 
 
@@ -83,20 +83,20 @@ def place(
     Parameters
     ----------
     instances, shapes
-        What key rotations are found from (`expand`), or `GIVEN` where they are given.
-    segments, heads
+        Coordinates and shapes of the key rotations (`expand`), or `GIVEN` where these are given.
+    segments, blocks
         Records of `SEGMENT` and `block_layout`.
     bases
-        Written: orientation of each base from rest, w x y z, then half the key rotation,
-        stretched, (b, 8).
+        Orientation of each base from rest, w x y z, then half the stretched key rotation, (b, 8),
+        written.
     cosine, sine
-        Of half the angle that the tree is turned by about the vertical.
+        Cosine and sine of half the rotation of the tree about the vertical.
     scale
-        Its size over that of its records.
+        Size of the tree over that of its records.
     x
-        Written: key rotations in the order of the coordinates, (N,), in a `room_for` them.
+        Key rotations in the order of the coordinates, (N,), in an array of `room_for`, written.
     given
-        Key rotations, (N,), or `NONE` where they are found.
+        Key rotations, (N,), or `NONE` where they are computed.
     origin
         Root node, (3,).
     out
@@ -132,21 +132,21 @@ def _read_parents(
     block: Block, scratch: Block, bases: Floats, x: Floats, origin: Floats,
     cosine: float, sine: float, out: Floats,
 ) -> None:  # fmt: skip
-    """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
+    """Read the keys of sixteen branches, and the bases and base segments of their parents."""
     key, parent_key, support = scratch.key, scratch.parent_key, scratch.support
     base, parents, on = scratch.parent_base, block.parent, block.base_segment
     coordinate = block.coordinate
-    for j in range(8 * block.n_eights):  # slots that are empty have the keys of the stem
+    for j in range(8 * block.n_eights):  # empty slots have the keys of the stem
         i = np.uintp(coordinate[j])
         key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
-    if parents[0] < 0:  # the stem, alone
+    if parents[0] < 0:  # the stem
         for j in range(8 * block.n_eights):
             for row in range(7):
                 base[row, j] = support[row, j] = 0.0
             base[0, j], base[3, j], support[5, j], support[6, j] = cosine, sine, sine, cosine
             support[0, j], support[1, j], support[2, j] = origin[0], origin[1], origin[2]
         return
-    for j in range(0, block.n_slots, 4):  # what is read of slots that are empty is of no account
+    for j in range(0, block.n_slots, 4):  # values of empty slots are unused
         a, b, c, d = on[j], on[j + 1], on[j + 2], on[j + 3]
         take_four(out, a, b, c, d, 0, support, 0, j)
         take_four(out, a, b, c, d, 3, support, 3, j)
@@ -159,7 +159,7 @@ def _read_parents(
 
 @part
 def _read_further(x: Floats, first: Ints, keys: Floats, j: int) -> None:
-    """Read further coordinates of four slots, and what lies behind those of who has fewer."""
+    """Read further coordinates of four slots, or values after the last one of a branch."""
     for c in range(2, keys.shape[0], 4):
         row = min(c, keys.shape[0] - 4)
         take_four(x, first[j], first[j + 1], first[j + 2], first[j + 3], row, keys, row, j)
@@ -168,9 +168,9 @@ def _read_further(x: Floats, first: Ints, keys: Floats, j: int) -> None:
 @part
 def _rotate_on_parents(block: Block, scratch: Block) -> bool:
     """
-    Find how sixteen branches are turned from the bases of their parents, by half the vector.
+    Find half the rotation vectors of sixteen bases from the bases of their parents.
 
-    Returns whether none is turned, nor bent by its key, beyond the short series.
+    Returns whether all these, and the key rotations, are within the range of the short series.
     """
     parent_key, mode, half = scratch.parent_key, block.base_rotation, scratch.base_half
     base, key, square, n_beyond = scratch.parent_base, scratch.key, scratch.square, 0
@@ -194,7 +194,7 @@ def _rotate_on_parents(block: Block, scratch: Block) -> bool:
 
 @part
 def _half_angles(scratch: Block, largest: float, n_eights: int) -> None:
-    """Find cosine and sine over it of sixteen half angles from their squares, of which one is."""
+    """Find cosine and sinc of sixteen half angles from squares up to the largest."""
     square, cosine, sinc = scratch.square, scratch.cosine, scratch.sinc
     if largest <= NEAR_LIMIT:
         for j in range(8 * n_eights):
@@ -210,9 +210,9 @@ def _half_angles(scratch: Block, largest: float, n_eights: int) -> None:
 @part
 def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, is_near: bool) -> float:
     """
-    Turn the bases of sixteen branches, place them, and set how their shapes bend.
+    Rotate and place the bases of sixteen branches, and set their amounts of bending.
 
-    Returns a bound on the square of half the angle that any segment turns by.
+    Returns a bound on the squared half angle of any segment.
     """
     key, parent, steepest = scratch.key, scratch.parent_base, block.steepest
     rotation, frame, base, sine = scratch.base_half, block.frame, scratch.base, scratch.sine_part
@@ -268,7 +268,7 @@ def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, is_near
 
 @part
 def _write_bases(block: Block, scratch: Block, bases: Floats) -> None:
-    """Leave their turned bases to the children."""
+    """Write the rotated bases for the children."""
     branch, base, whole = block.branch, scratch.base, block.n_parents - block.n_parents % 4
     for j in range(0, whole, 4):
         a, b, c, d = branch[j], branch[j + 1], branch[j + 2], branch[j + 3]
@@ -281,7 +281,7 @@ def _write_bases(block: Block, scratch: Block, bases: Floats) -> None:
 
 @part
 def _write_poses(block: Block, scratch: Block, rank: int, n_slots: int, out: Floats) -> None:
-    """Write the poses of sixteen segments, each behind the one before it on its branch."""
+    """Write the poses of sixteen segments, each after the one before it on its branch."""
     pose, first = scratch.pose, block.first
     whole = n_slots - n_slots % 4
     for j in range(0, whole, 4):
@@ -297,7 +297,7 @@ def _write_poses(block: Block, scratch: Block, rank: int, n_slots: int, out: Flo
 def _transform(
     pose: Floats, out: Floats, scale: float, local: Floats, is_on_axis: int, n_eights: int
 ) -> None:
-    """Find where points of segments' own frames, all on their x axes or not, are at poses."""
+    """Transform points in frames of segments, all on their x axes or not, by poses."""
     for j in range(8 * n_eights):
         x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
         length = scale * local[0, j]
@@ -317,7 +317,7 @@ def _transform(
 
 @part
 def _join(segment: Segment, scratch: Block, scale: float, is_joined: int, n_eights: int) -> None:
-    """Put sixteen turned segments behind those before them, and find where the next ones are."""
+    """Join sixteen rotated segments to those before them, and find the start of the next ones."""
     pose, start = scratch.pose, scratch.next
     for j in range(8 * n_eights):
         pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
@@ -326,7 +326,7 @@ def _join(segment: Segment, scratch: Block, scale: float, is_joined: int, n_eigh
 
 @part
 def _bend_and_join(segment: Segment, scratch: Block, scale: float, n_eights: int) -> None:
-    """Turn and join sixteen straight segments of branches that bend a little about one axis."""
+    """Rotate and join sixteen straight segments of branches that bend a little about one axis."""
     base, sine, rest, chord = scratch.base, scratch.sine_part, segment.rest, segment.own_chord
     pose, start = scratch.pose, scratch.next
     for j in range(8 * n_eights):
@@ -350,7 +350,7 @@ def _bend_and_join(segment: Segment, scratch: Block, scale: float, n_eights: int
 
 @part
 def _bend(segment: Segment, scratch: Block, n_rows: int, largest: float, n_eights: int) -> None:
-    """Turn sixteen segments from rest by all coordinates of their branches."""
+    """Rotate sixteen segments from rest by all coordinates of their branches."""
     mode, half, square, rest = segment.rotation_mode, scratch.half, scratch.square, segment.rest
     base, half_key, rotation = scratch.base, scratch.half_key, scratch.half_rotation
     pose, blend = scratch.pose, scratch.blend
@@ -362,7 +362,7 @@ def _bend(segment: Segment, scratch: Block, n_rows: int, largest: float, n_eight
             half[0, j], half[1, j], half[2, j] = hx, hy, hz
             square[j] = hx * hx + hy * hy + hz * hz
     else:
-        # All rows that there is room for: a count known when compiled lets the slots be a vector.
+        # All rows of the record: with a count known at compile time the slots are a vector.
         for j in range(8 * n_eights):
             slope = blend[j] * (segment.tip_slope[j] - segment.slope[j])
             hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How far branches and their tips move by small key rotations, joined from the root."""
+"""Motion of branches and their tips by small key rotations, joined from the root."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ def own_motion(branches: Records, mode: str, rotations: NDArray[Any]) -> NDArray
 
 
 def _moved(branches: Records, rotations: NDArray[Any]) -> Iterator[tuple[NDArray[Any], Ints]]:
-    """Rotations (k, c, ...) of those branches (k,) that have as many coordinates, c."""
+    """Yield rotations (k, c, ...) and rows (k,) of branches by number c of coordinates."""
     for count in np.unique(branches['n_coordinates']):
         rows = np.flatnonzero(branches['n_coordinates'] == count)
         yield rotations[branches['coordinate'][rows, None] + np.arange(count)], rows
 
 
 def _sums(twists: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
-    """Motion (k, d, ...) of branches by what a unit of each coordinate moves, (k, c, d)."""
+    """Sum motions per unit of each coordinate, (k, c, d), to those of branches, (k, d, ...)."""
     flat = rotations.reshape(*rotations.shape[:2], math.prod(rotations.shape[2:]))
     moved = np.swapaxes(twists, 1, 2) @ flat
     return moved.reshape(len(twists), twists.shape[2], *rotations.shape[2:])
@@ -75,15 +75,15 @@ def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
 
 
 def sum_outward(parents: Ints, levels: list[Ints], joints: NDArray[Any]) -> NDArray[Any]:
-    """Add to what each branch has on its parent, (b, ...), what that one has from the root on."""
+    """Add the motion of the parent from the root on to that of each branch on it, (b, ...)."""
     total = joints.copy()
-    for level in levels[1:]:  # children of the stem have all that is theirs
+    for level in levels[1:]:  # children of the stem are complete
         total[level] += total[parents[level]]
     return total
 
 
 def levels_of(parent: Ints) -> list[Ints]:
-    """Branches as many steps from the stem as each other, the nearest first, without the stem."""
+    """Sort the branches into levels by their distance from the stem, without the stem."""
     depth = np.zeros(len(parent), dtype=np.int64)
     for b, below in enumerate(parent.tolist()):
         depth[b] = depth[below] + 1 if below >= 0 else 0

@@ -1,11 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How a tree gives way to steady winds: the loads on it, and where it comes to rest in them.
+Static response of a tree to steady winds: the loads on it, and its equilibria.
 
-A step of wind meets every branch, and what the coordinates cannot do is lost. So the answers to
-winds of all directions and speeds are found once, and the coordinates made of these and of the
-answers to gusts (`gust_responses`, `reduction.modes.leading_modes`).
+A wind loads every branch, and motion outside of the span of the coordinates is lost. So the
+responses to winds of all directions and speeds are found once, and the coordinates are made of
+these and of the responses to gusts (`gust_responses`, `reduction.modes.leading_modes`).
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ _TURNS, _FARTHEST = 6, 1.0
 
 
 class WindMoments:
-    """Moments (N,) on the coordinates of a tree that bends and moves, of even winds."""
+    """Moments (N,) of uniform winds on the coordinates of a tree that bends and moves."""
 
     def __init__(self, branches: Records, *, plain: bool = False) -> None:
-        """Make room to work in."""
+        """Make scratch memory."""
         self.branches, self._plain = branches, plain or bool(WHY_PLAIN)
         self.n = int(branches['n_coordinates'].sum())
 
@@ -87,7 +87,7 @@ def static_responses(
     moments: WindMoments, solve: Callable[[Floats], Floats], pressure: Callable[[float], float]
 ) -> Floats:
     """
-    Find where winds hold a tree: key rotations [rad], (N, k).
+    Find the equilibria of a tree in winds: key rotations [rad], (N, k).
 
     Parameters
     ----------

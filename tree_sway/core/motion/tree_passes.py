@@ -1,14 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-One pass outward and one inward: how branches move on each other, and what they hand to each other.
+Outward pass of motion and inward pass of loads through the branches of a tree.
 
-Outward, from the stem to the twigs: each base takes over the motion of its parent, in its own
-frame as it is turned, and the wind's force on each branch is found in the air that passes it.
-Inward, from the twigs to the stem: each branch adds up force and moment of all it carries.
+Outward, from the stem to the twigs: the motion of each base follows from that of its parent, in
+its own turned frame, and the wind's force on each branch from its relative velocity. Inward, from
+the twigs to the stem: forces and moments are summed over subtrees.
 
-**One is the other's transpose.** The velocities that drag is found at are those that its moments
-do work at, however far the tree is bent; so no drag ever feeds motion.
+**The passes are each other's transpose.** The drag does work at the very velocities that it is
+computed from, however far the tree is bent; so drag never adds energy.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from tree_sway.core.rotation import product, quaternion, rotated, turned
 @part
 def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
     """
-    Hand rotation [rad] and velocity [rad/s], (N,), of every parent to the bases of its children.
+    Find the motion of all bases by rotations [rad] and rates [rad/s], (N,), of their parents.
 
-    Where bases are, how they move and how they are turned is written to records of `WORK`, (b,).
-    On its way a base keeps its distance from the parent's base, as the end of a rod does.
+    Position, velocity and orientation of the bases are written to records of `WORK`, (b,). A base
+    keeps its distance from the parent's base, as the end of a rod.
     """
     work[0].velocity[:], work[0].orientation[:] = 0.0, 0.0
     work[0].orientation[0] = 1.0
@@ -60,7 +60,7 @@ def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
             parent_work.velocity[0], parent_work.velocity[1], parent_work.velocity[2],
             parent_work.velocity[3], parent_work.velocity[4], parent_work.velocity[5],
         )  # fmt: skip
-        # A rotation on top of one by t spins by t x w / 2 + t x (t x w) / 6 more than its rate w.
+        # The spin of a rotation vector t exceeds its rate w by t x w / 2 + t x (t x w) / 6.
         gx, gy, gz = ty * wz - tz * wy, tz * wx - tx * wz, tx * wy - ty * wx
         kx = px + wx + 0.5 * gx + (ty * gz - tz * gy) / 6.0
         ky = py + wy + 0.5 * gy + (tz * gx - tx * gz) / 6.0
@@ -78,7 +78,7 @@ def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
 
 @part
 def set_air(work: Works, loads: Loads, wx: float, wy: float, wz: float) -> None:
-    """Give every branch the wind [m/s] that blows at it, as its turned base sees it."""
+    """Write the wind [m/s] of every branch in the turned frame of its base."""
     for b in range(len(work)):
         group, j, q = loads[b // WIDTH], b % WIDTH, work[b].orientation
         speed = group.speed[j]
@@ -98,9 +98,9 @@ def wind_forces(loads: Loads, per_speed_squared: float) -> None:
     Parameters
     ----------
     loads
-        Records of `load_fields`. They hold key rotations and rates half a step on, under the last
-        step's forces, how bases move then, their wind (`set_air`) and the slip of the last step;
-        forces and slip are written.
+        Records of `load_layout`. Input are key rotations and rates at the middle of the step, the
+        motion of the bases, the wind (`set_air`) and the drag impulse of the last step; forces and
+        drag impulse are written.
     per_speed_squared
         `pressure` of the wind in [kg/m^3].
 
@@ -159,7 +159,7 @@ def own_loads(loads: Loads) -> None:
     """
     Turn the wind's own forces on branches into loads on their key rotations.
 
-    A force meets a branch where the branch now points. Records are of `load_fields`, after
+    Forces act on the branch in its bent direction. Records are of `load_layout`, after
     `wind_forces`.
     """
     for block in range(len(loads)):
@@ -177,13 +177,13 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
     """
     Turn forces into moments on the coordinates of a tree as it is bent and turned.
 
-    The load of a branch goes with it as it turns, and each branch hands on what acts on it, at the
-    place where its base now is, in the frame of its parent's base: `outward_pass` transposed.
+    The load of a branch rotates with it, and its force and moment act on the parent at the bent
+    position of its base: `outward_pass` transposed.
 
     Parameters
     ----------
     branches, work, loads
-        Records of `BRANCH` and `WORK`, (b,), after `outward_pass`, and of `load_fields`, after
+        Records of `BRANCH` and `WORK`, (b,), after `outward_pass`, and of `load_layout`, after
         `wind_forces`.
     moment
         Moments on the coordinates in [N m], (N,), written.

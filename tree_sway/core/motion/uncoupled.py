@@ -5,9 +5,9 @@ The model `branch`, the paper's: every branch an oscillator of its own, on two a
 
 A branch meets its own wind with its own inertia, as if its base were at rest.
 
-The load is found once per step, at the state half a step on (exponential midpoint rule), and
-constant over the step; what depends on the branch's own angle is corrected once within the step
-(`two_axis.step_branch`).
+The load is found once per step, at the state at the middle of the step (exponential midpoint
+rule), and is constant over the step; its dependence on the branch's own angle is corrected once
+within the step (`two_axis.step_branch`).
 """
 
 from __future__ import annotations
@@ -62,12 +62,12 @@ class UncoupledBank(Branchwise):
         self.state = np.zeros((2, 2 * n))
         self.x, self.v = self.state
         self.tunable = Tunable(stiffness, damping, inertia, weight)
-        """What changes with stiffness, damping and gravity."""
+        """Arrays that change with stiffness, damping and gravity."""
         self.loads = load_records(branches, OSCILLATORS)
-        """Records of `load_fields`, and what the oscillators add."""
+        """Records of `OSCILLATORS`."""
 
     def set_step(self, dt: float) -> None:
-        """Refill what depends on the time step [s]."""
+        """Refill the coefficients for a time step [s]."""
         n = len(self.branches)
         whole, half, guard = np.zeros((n, 8)), np.zeros((n, 8)), np.zeros((n, 3))
         fill_propagator(self.inertia, self.damping, self.stiffness, dt, whole)
@@ -95,7 +95,7 @@ class UncoupledBank(Branchwise):
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Return views of what is carried from one step to the next."""
+        """Return views of the state."""
         return self.x, self.v, self.loads['drag_impulse'], self.loads['load']
 
     def rotations(self) -> Floats:
@@ -107,12 +107,12 @@ class UncoupledBank(Branchwise):
         return self.x.copy(), self.v.copy()
 
     def take_over(self, x: Floats, v: Floats) -> None:
-        """Go on from key rotations and rates, (2 b,)."""
+        """Continue from key rotations and rates, (2 b,)."""
         self.reset()
         self.x[:], self.v[:] = x, v
 
     def reset(self) -> None:
-        """Go back to rest."""
+        """Return to rest."""
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
         self.loads['drag_impulse'] = self.loads['load'] = 0.0
@@ -149,7 +149,7 @@ def _advance(
 
 @part
 def _to_middle(bank: Oscillators) -> None:
-    """State of sixteen branches half a step on, under the last step's load."""
+    """State of sixteen branches at the middle of the step, under the last step's load."""
     x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
     middle_x, middle_v = bank.x, bank.v
     for j in range(WIDTH):

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Modal forces of an even wind, out of the table of a tree."""
+"""Modal forces of a uniform wind from the table of a tree."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tree_sway.core.motion.harmonics import fill_harmonics
 from tree_sway.core.motion.records import N_AZIMUTHS, N_LEVELS, Table
 
 STEEP = math.sin(math.radians(45.0))
-"""Sine of the elevation from which on a wind goes over to one straight up or down."""
+"""Sine of the elevation above which slopes are blended with those of vertical wind."""
 
 
 @part
@@ -22,7 +22,7 @@ def table_corners(
     table: Table, x: float, y: float, eta: Floats
 ) -> tuple[int, int, int, float, float]:
     """
-    Where a wind and a lean are in a table.
+    Locate a wind and a lean in a table.
 
     Returns
     -------
@@ -58,25 +58,25 @@ def wind_force(
     n_coupled: int,
 ) -> None:  # fmt: skip
     """
-    Find the modal forces of an even wind.
+    Find the modal forces of a uniform wind.
 
     Parameters
     ----------
     table
         Record of `table_layout`.
     x, y, z
-        Where the wind goes, a unit vector.
-    push, per_speed_squared
+        Unit vector of the wind.
+    dynamic_pressure, per_speed_squared
         Dynamic pressure ``p U^2`` in [kg/m/s^2] and p in [kg/m^3].
     eta, rate
         Coordinates and their rates, (m,).
     values, scratch
-        Harmonics, (h,), and room to work in, single precision (4, m), both written.
+        Harmonics, (h,), and scratch memory in single precision, (4, m), both written.
     force, diagonal
-        Modal forces, and the slope by its rate that each is found with, (m,), both written: its
-        own, and that by the others as if they moved with it.
-    n_felt
-        Coordinates whose motion turns and damps all; each of the others damps itself alone.
+        Modal forces, and their slopes by the rate of the coordinate, (m,), both written; the
+        slopes include those by the others, with equal rates.
+    n_coupled
+        Number of coordinates whose motion loads all; each of the others damps only itself.
 
     """
     m = len(eta)
@@ -136,7 +136,7 @@ def wind_force(
                 damped[i] += moving_at * table.steep_damping[pole, k, i]
             diagonal[k] += drag * steep * table.steep_damping[pole, k, k]
     for i in range(m):
-        # Slopes hold near a pose. However far it is from there, a wind loads a tree no more.
+        # Slopes are valid near a pose; the load far from it is bounded by that of any wind.
         load = min(max(force[i] + turned[i], -table.limit[i]), table.limit[i])
         force[i] = dynamic_pressure * load + drag * damped[i]
     for i in range(n_coupled, m):

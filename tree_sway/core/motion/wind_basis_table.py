@@ -1,23 +1,23 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The table of the model `wind_basis`: what every even wind does to the coordinates of a tree.
+Table of the model `wind_basis`: loads of all uniform winds on the coordinates of a tree.
 
-In one even wind U = |U| d all branches feel one direction d, and the load is ``Q = s L(d)`` with
-the dynamic pressure ``s = p(|U|) |U|^2``. L is a smooth function on the sphere, and so is each
-projection of it on a mode (Diener, Rodriguez, Baboud & Reveret 2009, *Wind projection basis for
-real-time animation of trees*, Computer Graphics Forum 28(2), 533-540). Here it is a sum of
-harmonics Y.
+In a uniform wind U = |U| d all branches have one wind direction d, and the load is ``Q = s L(d)``
+with the dynamic pressure ``s = p(|U|) |U|^2``. L is a smooth function on the sphere, and so is
+each projection of it on a mode (Diener, Rodriguez, Baboud & Reveret 2009, *Wind projection basis
+for real-time animation of trees*, Computer Graphics Forum 28(2), 533-540). Here it is a sum of
+harmonics Y, and the effect of the tree's own motion is added.
 
-To it comes what the tree's own motion changes. In steady winds of an azimuth, calm to storm, a
-tree is at rest in poses e, each further over than the one before; its lean, a mean of its
-coordinates, says between which two of them it is. The table has the load there, its slope by the
-coordinates (the load turns and leans with the tree) and by their rates (aerodynamic damping):
+ In steady winds of an azimuth, calm to storm, a
+tree has equilibria e, each with more lean than the one before; its lean, a mean of its
+coordinates, is between those of two of them. The table has the load there, its slope by the
+coordinates (the load rotates with the tree) and by their rates (aerodynamic damping):
 
     F = s [Y C + load + turning (eta - e) + d_z lean eta] + p W damping eta'
 
-with W the root mean square of wind and of what the branches move at. A steep wind goes over to
-slopes of its own, those of winds straight up and down.
+with W the root mean square of wind and velocity of the branches. For steep winds the slopes are
+blended with those of vertical winds.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
 """Steady winds in [m/s] at the levels of the table."""
 
 BEYOND = 1.1
-"""Dynamic pressure up to which the table goes on, over that of the last of `SPEEDS`."""
+"""Largest dynamic pressure of the table, over that of the last of `SPEEDS`."""
 
 _ELEVATIONS = np.deg2rad([-90.0, -60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0, 90.0])
 _ELEVATION_SPREAD = 0.25
@@ -49,8 +49,9 @@ _STEPS, _FARTHEST, _AT_REST, _NEAR_REST = 20, 0.3, 0.01, 0.05
 
 _BREEZE, _FLUTTER = 10.0, 3.0
 """
-Norm of what feeds sways over what damping takes from them, in winds above these [m/s]: from some
-three on trees of hanging twigs flutter, as eigenvalues of their tables say.
+Largest ratio of energy that slopes add to a sway over energy that damping takes, in winds above
+this speed [m/s]: from some three on, eigenvalues of tables of trees with hanging twigs show
+flutter.
 
 """
 
@@ -60,29 +61,29 @@ _LARGE = 2000
 
 class WindBasisTable:
     """
-    What an even wind does to a tree, found once.
+    Loads of all uniform winds on a tree, computed once.
 
     Parameters
     ----------
     bank
-        The coordinates of the tree.
+        Bank of the coordinates of the tree.
     wind_moments
         Loads of the tree.
     drag_law
         C and N of the species.
     degree
-        Of the harmonics, 1, 3 or 5.
+        Degree of the harmonics, 1, 3 or 5.
 
     Attributes
     ----------
     record
-        Of `table_layout`, (1,).
+        Record of `table_layout`, (1,).
 
     """
 
     @classmethod
     def of_arrays(cls, stored: Mapping[str, Any]) -> WindBasisTable:
-        """Return the table whose ``record`` is among arrays that were stored."""
+        """Return the table whose ``record`` is among stored arrays."""
         made = object.__new__(cls)
         made.record = stored['table']
         return made
@@ -98,7 +99,7 @@ class WindBasisTable:
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m, COUNT[degree]))
         table = self.record[0]
-        # Loads are found at some azimuths; those between follow, for loads are smooth there.
+        # Loads are computed at some azimuths and interpolated, for they are smooth.
         each = 2 if len(wind_moments.branches) <= _LARGE else 3
         self._azimuths = 2.0 * np.pi * np.arange(0, N_AZIMUTHS, each) / N_AZIMUTHS
         table['n_modes'], table['degree'] = m, degree
@@ -114,7 +115,7 @@ class WindBasisTable:
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
 
     def _fit_harmonics(self, table: np.void, degree: int) -> None:
-        """Fit the load at rest in winds of all azimuths, level ones to count for most."""
+        """Fit the load at rest in winds of all azimuths, horizontal ones with most weight."""
         elevation, azimuth = np.meshgrid(
             _ELEVATIONS, 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, indexing='ij'
         )
@@ -128,7 +129,7 @@ class WindBasisTable:
         table['harmonics'][:, : table['n_modes']] = fitted
 
     def _fill_standing(self, table: np.void, pressures: list[float]) -> None:
-        """Find the loads of the tree, and their slopes, where winds of each speed hold it."""
+        """Find loads and their slopes at the equilibria in winds of each speed."""
         shapes, m = self._shapes, int(table['n_modes'])
         stiffness = table['stiffness'][:m]
         equilibrium, load = np.zeros((2, len(self._azimuths), N_LEVELS, m))
@@ -166,15 +167,15 @@ class WindBasisTable:
 
     def _feeding(self, slopes: Floats, damping: Floats) -> Floats:
         """
-        Find by how much slopes (m, m) [1/s^2] feed sways that damping (m,) [1/s] cannot stop.
+        Find the part of slopes (m, m) [1/s^2] that adds more energy than damping (m,) [1/s] takes.
 
-        The part of slopes that no potential has feeds a sway by what it has of two coordinates,
-        and damping takes from both. Hanging twigs would flutter in gales.
+        The antisymmetric part of slopes adds energy to a sway of two coordinates, and damping
+        takes energy from both. Without this bound, hanging twigs flutter in gales.
         """
         circulating = 0.5 * (slopes - slopes.T)
         scale = 1.0 / np.sqrt(np.maximum(damping, 1e-6 * self._root) * self._root)
         scaled = circulating * scale * scale[:, None]
-        if float(np.linalg.norm(scaled)) <= _FLUTTER:  # no less than the norm that counts
+        if float(np.linalg.norm(scaled)) <= _FLUTTER:  # at least the spectral norm
             return np.zeros_like(slopes)
         return circulating * max(0.0, 1.0 - _FLUTTER / float(np.linalg.norm(scaled, 2)))
 
@@ -182,11 +183,11 @@ class WindBasisTable:
         """
         Find the coordinates (m,) of a tree at rest under a dynamic pressure [kg/m/s^2].
 
-        From where it was at rest, by Broyden's method (Broyden 1965, Mathematics of Computation
-        19, 577-593) with the slopes there, or new ones where these lead no further. Where a branch
-        flips, no path of rests leads on: slopes keep to the way that a tree without inertia goes
-        (Kelley & Keyes 1998, SIAM Journal on Numerical Analysis 35, 508-523). Where that ends far
-        from any rest the table has the pose of the weaker wind again.
+        It is found from the last equilibrium, by Broyden's method (Broyden 1965, Mathematics of
+        Computation 19, 577-593) with the slopes there, or new ones where these do not converge.
+        Where a branch flips, the path of equilibria ends: slopes follow the motion of a tree
+        without inertia (Kelley & Keyes 1998, SIAM Journal on Numerical Analysis 35, 508-523).
+        Where that ends far from any equilibrium, the pose of the weaker wind is repeated.
         """
         start, nearest, least, before, step, rest = at, at, np.inf, np.inf, at, at
         inverse: Floats = np.eye(len(at))
@@ -213,7 +214,7 @@ class WindBasisTable:
         return nearest if least < _NEAR_REST else start
 
     def _fill_aslant(self, table: np.void) -> None:
-        """Fill what winds aslant change in the slopes of an upright tree, and steep winds."""
+        """Fill the change of slopes by oblique winds at rest, and slopes of steep winds."""
         m, azimuths = int(table['n_modes']), self._azimuths
         rising = [self._slopes(self._still, direction(a, _SLOPE_AT))[0] for a in azimuths]
         # A falling wind is the opposite of one that rises from the other side.
@@ -226,7 +227,7 @@ class WindBasisTable:
 
 
 def _between(values: Floats) -> Floats:
-    """Values at `N_AZIMUTHS`, first axis, of a smooth function known at every other one."""
+    """Interpolate values at every other azimuth, the first axis, to `N_AZIMUTHS`."""
     waves = np.fft.rfft(values, axis=0)
     waves[-1] *= 0.5
     return np.asarray(np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(values)))

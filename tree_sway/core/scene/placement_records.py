@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Trees on shared tables as records: where each is, and which time step it has."""
+"""Records of trees on shared tables: their places and time steps."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.motion.stand import PLACEMENT
 
 _FINEST_SCALE = 0.01
-"""Trees whose scales differ by less than this share have one time step."""
+"""Largest relative difference of scales of trees with the same time step."""
 
 
 def placement_records(kinds: Ints, places: Floats, speeds: Floats) -> Records:
@@ -30,7 +30,7 @@ def placement_records(kinds: Ints, places: Floats, speeds: Floats) -> Records:
 
 
 def own_steps(kinds: Ints, scales: Floats, dt: float) -> tuple[list[tuple[int, float]], Ints]:
-    """Return the kinds and time steps [s] there are for a step of the scene, and each tree's."""
+    """Return the kinds and time steps [s] for a step of the scene, and that of each tree."""
     steps = np.rint(np.log(scales) / _FINEST_SCALE)
     pairs = np.stack([kinds, steps], axis=1)
     found, number = np.unique(pairs, axis=0, return_inverse=True)

@@ -5,8 +5,8 @@ The simulator of a scene of several trees in one wind.
 
 Trees on a number of coordinates share the table and the rest geometry of their kind: each is a
 state, a pose, a scale and the delay with which gusts reach it. All of them are solved in one call.
-Trees on other models are solved one after another, each by a simulator that is set up where the
-tree is, so that no wind need be turned into its frame.
+Trees on other models are solved one after another, each by a simulator at the place of the tree,
+so that the wind need not be rotated into its frame.
 """
 
 from __future__ import annotations
@@ -63,16 +63,16 @@ class SceneSimulator:
     Parameters
     ----------
     scene
-        The trees, and where their wind is measured.
+        Trees and the place of the anemometer.
     settings
-        How trees are modelled, but for what a tree has of its own.
+        Settings of the trees, except values that a tree has itself.
     tolerance, cache, progress
-        As of `Scene.simulator`.
+        Arguments of `Scene.simulator`.
 
     Raises
     ------
     TreeSwayError
-        What is wrong with a tree, under its name.
+        Error of a tree, with its name.
 
     """
 
@@ -91,7 +91,7 @@ class SceneSimulator:
         models = [settings.model if each.model is None else each.model for each in trees]
         kind = scene.kind_numbers
         counts = np.array([each if isinstance(each, int) else -1 for each in models])
-        # Without a compiler there is no table: each tree is stepped on its branches.
+        # Without a compiler there are no tables: each tree is stepped branch by branch.
         is_own = np.ones(len(models), dtype=bool) if WHY_PLAIN else counts < 0
         used = np.unique(kind[~is_own]).tolist()
         self._models: list[SwaySimulator] = []
@@ -131,7 +131,7 @@ class SceneSimulator:
         )
         self._counts = Counts()
         self.pushed: dict[int, SwaySimulator] = {}
-        """Trees that are pushed, or where something is left of it, by their numbers."""
+        """Trees on which pushes have an effect, by their numbers."""
         self.wind, self._dt = np.zeros(3), math.nan
         """Wind at the anemometer in the last step in [m/s], (3,)."""
 
@@ -143,7 +143,7 @@ class SceneSimulator:
 
     @property
     def counts(self) -> Counts:
-        """Return what was refused at the anemometer, and clamped or restarted in any tree."""
+        """Return counts of the wind, and of clamped or restarted trees."""
         own, counts = [sim.counts for sim in self.own.values()], self._counts
         return replace(
             counts,
@@ -178,7 +178,7 @@ class SceneSimulator:
         Returns
         -------
         int
-            As `SwaySimulator.step`, of all trees together.
+            Result of `SwaySimulator.step`, of all trees together.
 
         Raises
         ------
@@ -188,7 +188,7 @@ class SceneSimulator:
         """
         refuse_time_step(dt)
         status = OK
-        # The history must not remember what no tree would take.
+        # The history must not contain winds that the trees refuse.
         wind = three_numbers('wind', wind_mean)
         if is_wind(*wind, self.settings.max_wind):
             self.wind[:] = wind
@@ -239,7 +239,7 @@ class SceneSimulator:
             raise
 
     def _one_of_kind(self, number: int) -> SwaySimulator:
-        """Return a simulator of a tree's kind on the tree's own state, to push at."""
+        """Return a simulator of a tree's kind with the state of the tree, for pushes."""
         model = self._models[self._placed['kind'][number]]
         one, bank = copy(model), copy(_oscillators(model))
         bank.__dict__.pop('_expand', None)
@@ -251,8 +251,8 @@ class SceneSimulator:
         """
         Return a force or a spring on a tree as it is on one of its kind.
 
-        A tree scaled by k is moved k times as far by the same angles, against k^3 times the
-        stiffness: a force counts 1 / k^2, a spring's stiffness 1 / k.
+        A tree scaled by k moves k times as far by the same angles, against k^3 times the
+        stiffness: a force is scaled by 1 / k^2, the stiffness of a spring by 1 / k.
         """
         from tree_sway.core.simulator.touch import Spring
 
@@ -265,7 +265,7 @@ class SceneSimulator:
         return Spring(back @ away / k + one.tree.start[0], force.stiffness / k)
 
     def check_tuning(self, **changes: float) -> Tuning:
-        """Refuse what any tree could not take, as `SwaySimulator.check_tuning`."""
+        """Check changes for all trees, as `SwaySimulator.check_tuning`."""
         trees = (*self._models, *self.own.values())
         return [each.check_tuning(**changes) for each in trees][-1]
 
@@ -315,7 +315,7 @@ class SceneSimulator:
         self._tables = np.concatenate([bank.record for bank in banks]) if banks else _NO_TABLES
         self._laws = np.array([model.drag_law for model in self._models])
         self._scratch = []
-        """What each kind is placed in."""
+        """Scratch memory for placing each kind."""
         for model, bank in zip(self._models, banks, strict=True):
             blocks = zeros_in_lines(len(model.bank.blocks), model.bank.blocks.dtype)
             blocks[:] = model.bank.blocks
@@ -323,7 +323,7 @@ class SceneSimulator:
             self._scratch.append((blocks, bases, bank.room_for_rotations(), block))
 
     def _show(self) -> None:
-        """Leave out of each tree what it has fewer coordinates than the table of its kind."""
+        """Hide the coordinates of the table that a tree does not have."""
         for _, bank, those in self.shared:
             left_out = np.maximum(bank.shapes.shape[1] - self._numbers[those], 0)
             m = self._instances['faded'].shape[1]
@@ -333,13 +333,13 @@ class SceneSimulator:
 
     @property
     def shared(self) -> list[tuple[SwaySimulator, WindBasisBank, Ints]]:
-        """Each model in a frame of its own, its table, and the trees that share it."""
+        """Models in their own frames, with their tables and trees."""
         kinds = np.where(self._is_shared, self._placed['kind'], -1)
         pairs = enumerate(zip(self._models, self._banks, strict=True))
         return [(model, bank, np.flatnonzero(kinds == k)) for k, (model, bank) in pairs]
 
     def shares(self, numbers: Ints) -> Floats:
-        """How much trees of one kind bend in each shape, (t, m)."""
+        """Coordinates of trees of one kind, (t, m)."""
         n_modes = self._banks[self._placed['kind'][numbers[0]]].shapes.shape[1]
         shown = (1.0 - self._instances['faded'][numbers]) * self._instances['eta'][numbers]
         shares: Floats = shown[:, :n_modes]
@@ -400,7 +400,7 @@ class SceneSimulator:
         return np.array([each.tree.height for each in self.scene.kinds])[self.scene.kind_numbers]
 
     def _set_step(self, dt: float) -> None:
-        """Fill the coefficients of every kind and scale that there is, to a hundredth."""
+        """Fill the coefficients of every kind and scale, rounded to a hundredth."""
         rows = np.flatnonzero(self._is_shared)
         found, number = own_steps(self._placed['kind'][rows], self._placed['scale'][rows], dt)
         self._time_steps = np.zeros(len(found), dtype=self._time_steps.dtype)
@@ -413,7 +413,7 @@ class SceneSimulator:
 
 
 Simulator: TypeAlias = SwaySimulator | SceneSimulator
-"""A tree that sways, whatever its model, or the trees of a scene: both are used alike."""
+"""Simulator of a tree on any model, or of the trees of a scene, with the same interface."""
 
 
 def _oscillators(model: SwaySimulator) -> WindBasisBank:

@@ -3,7 +3,7 @@
 """
 From the reductions of a tree to the oscillators that step it, for every model.
 
-What only one model needs is imported where that model is made.
+Modules of one model are imported where that model is made.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 EVENLY_DAMPED = 40
 """
-Natural modes of an even damping ratio; above them it grows with the frequency, as by dampers in
-the wood that go with its stiffness.
+Number of natural modes of equal damping ratio; above them it grows with the frequency, as by
+damping proportional to the stiffness of the wood.
 
 """
 
@@ -42,7 +42,8 @@ def assembled(
     """
     Build the oscillators of a model: a number of coordinates, ``branch`` or ``full``.
 
-    It is that of the settings if None. What steps modes is looked for in the cache, and put there.
+    The model is that of the settings if None. Set-ups of modes are read from the cache, and
+    written there.
 
     Raises
     ------
@@ -66,7 +67,7 @@ def assembled(
 
 
 def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFiles | None) -> Bank:
-    """Take a set-up from the cache, or make one; the same bits either way."""
+    """Read a set-up from the cache, or make one; both have the same bits."""
     digest, found = '', None
     if cache is not None:
         settings = replace(reductions.settings, model=model)
@@ -101,7 +102,7 @@ def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFil
 
 @one_thread()
 def _modal_arrays(reductions: TreeReductions, model: int | str) -> dict[str, Any]:
-    """Find all that modes are stepped and placed by."""
+    """Find the arrays by which modes are stepped and placed."""
     from tree_sway.core.motion.modal import modal_arrays
 
     reduced = reductions.with_subtrees

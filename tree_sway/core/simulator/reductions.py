@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What a tree is reduced to, once for all of its models: beams, key segments, matrices, modes.
+Reductions of a tree, shared by its models: beams, key segments, matrices, modes.
 
-Models differ in two ways of reduction: with subtrees, where a branch moves with all that it
-carries, or isolated, where each is by itself (the paper's).
+Models differ in two ways of reduction: with subtrees, where a branch moves with its subtree, or
+isolated (the paper's).
 """
 
 from __future__ import annotations
@@ -39,21 +39,24 @@ if TYPE_CHECKING:
     from tree_sway.core.motion.static_responses import WindMoments
 
 CUT_FOR = 15.0
-"""Wind in [m/s] whose turns branches are cut for."""
+"""Wind in [m/s] for whose rotations branches are cut."""
 
 _STEADY = 2.0
-"""Root mean square of what steady winds do over that of gusts, as of a turbulence of some 0.25."""
+"""
+Weight of steady responses over gust responses, root mean square, as for a turbulence intensity of
+some 0.25.
+"""
 
 _CANDIDATES = 120
-"""Natural modes by which answers to gusts are found."""
+"""Number of natural modes by which responses to gusts are computed."""
 
 
 @dataclass(frozen=True)
 class ReducedTree:
     """
-    A tree reduced in one of the two ways that models differ in.
+    A tree reduced in one of the two ways.
 
-    Its branches may be pieces of those of the tree as it is given: ``branch`` are these, (p,).
+    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,).
     """
 
     tree: Tree
@@ -67,9 +70,9 @@ class ReducedTree:
 
 class TreeReductions:
     """
-    The reductions of a tree of a species, each made when it is first asked for.
+    The reductions of a tree of a species, each made at its first use.
 
-    Nothing is compiled for it if ``plain``.
+    With ``plain`` nothing is compiled.
     """
 
     def __init__(
@@ -81,9 +84,12 @@ class TreeReductions:
         self.settings = in_season(tree, species, settings)
         self.plain = plain or bool(WHY_PLAIN)
         self.drag_law, self.leaf_load_area = _crown_drag(tree, species, self.settings)
-        """Law of the whole tree; bare wood that leaves of each branch are worth in [m^2], (b,)."""
+        """
+        Law of the whole tree; equivalent area of bare wood of the leaves of each branch in [m^2],
+        (b,).
+        """
         self.circular = np.zeros(0)
-        """Lowest natural circular frequencies that are known in [rad/s]."""
+        """Lowest known natural circular frequencies in [rad/s]."""
         self._slowest: Modes | None = None
 
     @property
@@ -110,7 +116,7 @@ class TreeReductions:
         return np.asarray(self.circular[:count] / (2.0 * np.pi))
 
     def modes(self, model: int | str) -> Modes:
-        """All modes, or as many as do most of what the tree does in winds."""
+        """Return all modes, or the leading ones in winds."""
         reduction = self.with_subtrees.reduction
         n = reduction.n_coordinates
         count = n if isinstance(model, str) else min(model, n)
@@ -135,7 +141,7 @@ class TreeReductions:
         return leading_modes(reduction, np.hstack([gusts, steady]), moved, count)
 
     def _static_responses(self) -> Floats:
-        """Key rotations by which the tree answers to winds, for a pressure of 1 kg/m/s^2."""
+        """Responses of the tree to winds as key rotations, per pressure of 1 kg/m/s^2."""
         from tree_sway.core.motion.static_responses import static_responses
 
         law, solve = self.drag_law, self.with_subtrees.reduction.factors.solve
@@ -149,21 +155,21 @@ class TreeReductions:
         return WindMoments(self.with_subtrees.branches, plain=self.plain)
 
     def reduced(self, model: int | str) -> ReducedTree:
-        """Reduction that a model starts from."""
+        """Return the reduction for a model."""
         return self.isolated if model == 'branch' else self.with_subtrees
 
     @cached_property
     def isolated(self) -> ReducedTree:
-        """Every branch on its own."""
+        """Reduction of isolated branches."""
         whole = whole_tree(self.tree)
         return self._reduced(whole, self._beams.models(subtrees=False), subtrees=False)
 
     @cached_property
     def with_subtrees(self) -> ReducedTree:
         """
-        Branches that carry their children, those of the enriched ones with further shapes.
+        Reduction with subtrees, enriched branches with further shapes.
 
-        Those that turn far are cut into key segments.
+        Branches that rotate far are cut into key segments.
         """
         dynamic_pressure = pressure(CUT_FOR, *self.drag_law) * CUT_FOR**2
         turns = dynamic_pressure * self._beams.turns(self.species.modulus)
@@ -212,7 +218,7 @@ class TreeReductions:
         )
         places = places_of(tree, models, reduction)
         records = branch_records(tree, models, reduction, places, self._speed[cut.row])
-        # Poses are those of the whole branches' segments.
+        # Poses are those of the segments of whole branches.
         row, on = cut.row[records['first']], records['base_segment']
         records['end'] += row - records['first']
         records['first'], records['base_segment'] = row, np.where(on < 0, -1, cut.row[on])
@@ -222,7 +228,7 @@ class TreeReductions:
 
 
 def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:
-    """Find the drag law of wood and leaves, and the area that leaves add to each branch, (b,)."""
+    """Find the drag law of wood and leaves, and the equivalent area of leaves by branch, (b,)."""
     if not settings.in_leaf or settings.leaf_area is None:
         law = DragLaw(*species.drag_law(bool(settings.in_leaf)))
         return law, np.zeros(tree.n_branches)

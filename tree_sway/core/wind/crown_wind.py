@@ -135,7 +135,7 @@ class CrownWind:
         return partial(entry_of(push_wind, self.record, 0.0, 0.0, 0.0, 0.0), self.record)
 
     def memory(self) -> tuple[NDArray[Any], ...]:
-        """Return views of what is carried from one step to the next."""
+        """Return views of the state."""
         return tuple(self.record[name] for name in _CARRIED)
 
     def reset(self) -> None:

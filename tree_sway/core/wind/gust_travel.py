@@ -149,7 +149,7 @@ class GustHistory:
         return {name: each.round(4).tolist() for name, each in found.items()}
 
     def go_on(self, mean: ArrayLike, delay: ArrayLike, wind: ArrayLike) -> None:
-        """Go on from the `recent` of another history of these places."""
+        """Continue from the `recent` of another history of these places."""
         rows = np.array(wind, dtype=np.float64).reshape(-1, 3)
         means, delays = np.array(mean, dtype=np.float64), np.array(delay, dtype=np.float64)
         if not all(np.isfinite(each).all() for each in (rows, means, delays)):

@@ -3,8 +3,8 @@
 """
 Banks of oscillators in plain numpy, for machines without a compiler: some 100 times slower.
 
-Each keeps the state of its compiled counterpart, in the same arrays, so that a state stored by one
-is taken by the other; they agree to rounding. They are the oracle of the kernels as well.
+Each has the state of its compiled counterpart, in the same arrays, so that stored states are
+exchangeable; they agree to rounding. They are the oracle of the kernels as well.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class NumpyUncoupledBank(UncoupledBank):
         self._passes = NumpyPasses(self.branches)
 
     def set_step(self, dt: float) -> None:
-        """Refill what depends on the time step [s]."""
+        """Refill the coefficients for a time step [s]."""
         super().set_step(dt)
         n = len(self.branches)
         names = ('whole', 'half', 'guard', 'compliance')

@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The load step on whole levels of a tree at a time: `tree_passes` where nothing is compiled.
+The load step for whole levels of a tree at a time: `tree_passes` without a compiler.
 
-The same formulas on the same records; subtree sums are differences of one cumulative sum.
+The formulas and records are the same.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from tree_sway.core.motion.response import levels_of
 
 
 class Bases(NamedTuple):
-    """Where bases are, how they move and are turned: the fields of `WORK` of the same names."""
+    """Motion of the bases: the fields of `WORK` of the same names."""
 
     velocity: Floats
     orientation: Floats
@@ -36,7 +36,7 @@ class Bases(NamedTuple):
 
     @classmethod
     def at_rest(cls, count: int) -> Bases:
-        """Return a number of bases that are not turned and do not move."""
+        """Return a number of bases at rest."""
         orientation = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
         return cls(np.zeros((count, 6)), orientation, *np.zeros((3, count, 3)))
 
@@ -49,7 +49,7 @@ class NumpyPasses:
     """
 
     def __init__(self, branches: Records) -> None:
-        """Take over columns, and sort the branches by level."""
+        """Read the fields of the records, and sort the branches by level."""
         names = (
             'parent', 'twist', 'damping_mode', 'load_rotation', 'load_mode', 'lever',
             'speed', 'base', 'arm', 'per_arm',
@@ -67,7 +67,7 @@ class NumpyPasses:
         self._column = np.where(self.is_there, branches['coordinate'][:, None] + column, 0)
 
     def per_branch(self, x: Floats) -> Floats:
-        """Numbers on the coordinates (N,) side by side per branch, zeros where none, (b, c)."""
+        """Arrange values of coordinates (N,) by branch, padded with zeros, (b, c)."""
         found: Floats = np.where(self.is_there, x[self._column], 0.0)
         return found
 
@@ -105,9 +105,9 @@ class NumpyPasses:
         impulse: Floats,
     ) -> Floats:
         """
-        Force of the wind on each branch as it is turned in [N], (b, 3).
+        Find the force of the wind on each branch, in its turned frame, in [N], (b, 3).
 
-        The impulse (b, 3) is written again.
+        The impulse (b, 3) is written.
         """
         branch = self._branch
         back = bases.orientation * [1.0, -1.0, -1.0, -1.0]
@@ -130,7 +130,7 @@ class NumpyPasses:
         return turned_by(np.einsum('bc,bck->bk', x, self._branch['load_rotation']), force)
 
     def own_loads(self, force: Floats) -> Floats:
-        """Pull along each chord and moments on its key rotation in [N m], (b, 3)."""
+        """Find the load along each chord and the moments on its key rotation in [N m], (b, 3)."""
         branch = self._branch
         own = np.einsum('bck,bk->bc', branch['load_mode'][:, :2], force)
         pull = branch['lever'] * np.einsum('bk,bk->b', branch['frame'][:, 0], force)
@@ -140,7 +140,7 @@ class NumpyPasses:
         """
         Write moments on the coordinates of a tree as it is bent and turned, (N,), in [N m].
 
-        Forces (b, 3) are those of `wind_forces`; returned they are as they act in space.
+        Forces (b, 3) are those of `wind_forces`; they are returned in the frame of the tree.
         """
         branch = self._branch
         load_rotation = np.einsum('bc,bck->bk', x, branch['load_rotation'])

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Key rotations to poses in plain numpy: `placing` where nothing is compiled.
+Key rotations to poses in plain numpy: `placing` without a compiler.
 
-The same formulas on the same records, whole levels of the tree at a time, with sines and cosines
-in place of series.
+The formulas and records are the same, for whole levels of the tree at a time, with sines and
+cosines in place of series.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _BLEND_FROM, _BLEND_TO, _STRETCH_TO = np.deg2rad([30.0, 45.0, 90.0]) ** 2
 
 
 class NumpyPlacing:
-    """Places the segments of a tree by its records."""
+    """Placing of the segments of a tree by its records."""
 
     def __init__(self, branches: Records, segments: Records) -> None:
         """Lay out the segments in the order of the branches."""
@@ -93,5 +93,5 @@ class NumpyPlacing:
         out[self._rows, 3:] = pose[:, [1, 2, 3, 0]]
 
     def _turns(self, parent: Ints, turns: Floats, angles: Floats) -> Floats:
-        """Rotation of places on branches by their angles, stretched, from the parents' bases."""
+        """Find the rotation of bases from their parents' bases by stretched angles."""
         return quaternions_of(np.einsum('bc,bck->bk', angles[parent], turns))

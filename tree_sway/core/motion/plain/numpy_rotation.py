@@ -31,7 +31,7 @@ def cross(a: Floats, b: Floats) -> Floats:
 
 
 def quaternion_product(a: Floats, b: Floats) -> Floats:
-    """Quaternions of b followed by a."""
+    """Return the quaternions of b followed by a."""
     scalar = a[:, :1] * b[:, :1] - (a[:, 1:] * b[:, 1:]).sum(axis=1, keepdims=True)
     vector = a[:, :1] * b[:, 1:] + b[:, :1] * a[:, 1:] + cross(a[:, 1:], b[:, 1:])
     return np.hstack([scalar, vector])
@@ -79,7 +79,7 @@ def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: Arr
     Returns
     -------
     Floats
-        In [N m], (n, 2).
+        Moment in [N m], (n, 2).
 
     """
     e = within_guard(e)
