@@ -232,6 +232,12 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         while self._closers:
             self._closers.pop()()
 
+    def destroy_node(self) -> None:
+        """Leave the graph at once, and not when rclpy's state machine is collected."""
+        super().destroy_node()
+        if (machine := getattr(self, '_state_machine', None)) is not None:
+            machine.destroy_when_not_in_use()
+
     def close(self) -> None:
         """Stop the node's threads and leave the graph."""
         self.stop()
