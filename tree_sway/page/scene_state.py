@@ -13,12 +13,7 @@ from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.page.description import describe_scene
-from tree_sway.page.protocol import (
-    decode_description,
-    encode_state,
-    PAUSED,
-    RESTARTED,
-)
+from tree_sway.page.protocol import decode_description, encode_state, PAUSED, RESTARTED
 from tree_sway.page.scene_kind import scene_kinds, SceneKind
 from tree_sway.page.tables import tables_of
 

@@ -20,13 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.branch.beam import (
-    Attachments,
-    BranchBeam,
-    cross,
-    RotationField,
-    SlopeShape,
-)
+from tree_sway.core.branch.beam import Attachments, BranchBeam, cross, RotationField, SlopeShape
 from tree_sway.core.branch.shapes import (
     FEWER_TURNS,
     N_PAIRS,

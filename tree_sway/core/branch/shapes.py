@@ -20,13 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.branch.beam import (
-    BranchBeam,
-    cross,
-    cross_matrix,
-    RotationField,
-    SlopeShape,
-)
+from tree_sway.core.branch.beam import BranchBeam, cross, cross_matrix, RotationField, SlopeShape
 
 N_PAIRS = 3
 """Pairs of fields of an enriched branch: the static ones, then by inertia."""

@@ -54,10 +54,7 @@ class ModalBank(Branchwise):
     """
 
     def __init__(
-        self,
-        branches: Records,
-        made_of: Mapping[str, Floats],
-        damping_ratio: float,
+        self, branches: Records, made_of: Mapping[str, Floats], damping_ratio: float
     ) -> None:
         """Make room for the coefficients and the state."""
         self._shapes = made_of['shapes']

@@ -11,12 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.leaves.foliage import (
-    foliage_of,
-    joined_clusters,
-    leaf_clusters,
-    LeafClusters,
-)
+from tree_sway.core.leaves.foliage import foliage_of, joined_clusters, leaf_clusters, LeafClusters
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import Kind
 from tree_sway.core.scene.placed_trees import PlacedTrees
@@ -167,10 +162,7 @@ class Scene(PlacedTrees):
         counts = np.ceil(count * area / area.sum() - 1e-9).astype(np.int64).tolist()
         clusters = [
             leaf_clusters(
-                each.placed(),
-                np.random.default_rng(number),
-                count=own,
-                traits=each.species.leaves,
+                each.placed(), np.random.default_rng(number), count=own, traits=each.species.leaves
             )
             for number, (each, own) in enumerate(zip(self.trees, counts, strict=True))
         ]

@@ -23,12 +23,7 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.drag import crown_drag, DragLaw, pressure
 from tree_sway.core.motion.fill_records import branch_records, places_of, segment_records
 from tree_sway.core.reduction.matrices import reduce_tree, Reduction
-from tree_sway.core.reduction.modes import (
-    leading_modes,
-    Modes,
-    natural_modes,
-    solvable,
-)
+from tree_sway.core.reduction.modes import leading_modes, Modes, natural_modes, solvable
 from tree_sway.core.reduction.one_thread import one_thread
 from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings

@@ -27,11 +27,7 @@ from tree_sway.core.tree.species import bark_color, leaf_traits
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError
 from tree_sway.files.export.breeze import in_breeze, RATE
-from tree_sway.files.export.gltf_document import (
-    ARRAY_BUFFER,
-    ELEMENT_ARRAY_BUFFER,
-    GltfDocument,
-)
+from tree_sway.files.export.gltf_document import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, GltfDocument
 from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
 
 _GENERATOR = 'tree_sway'
@@ -179,10 +175,7 @@ def _primitive(
     color = bark_color(species) if is_bark else leaf_traits(species).green
     kind = np.uint16 if len(mesh.points) < 65535 else np.uint32  # 65535 starts a new strip
     return {
-        'attributes': {
-            **attributes,
-            'TEXCOORD_0': _add_shares(document, mesh.texture, np.uint16),
-        },
+        'attributes': {**attributes, 'TEXCOORD_0': _add_shares(document, mesh.texture, np.uint16)},
         'indices': document.add_array(
             mesh.triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER
         ),
