@@ -160,8 +160,7 @@ class Description:
         if part.stop > most or (count not in (0, most) and not frame.flags & PART):
             what = f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described'
             raise FormatError(what, where='tree state')
-        values: Floats = frame.coordinates * (self.scale[part] / FULL_SCALE)
-        return values
+        return np.asarray(frame.coordinates * (self.scale[part] / FULL_SCALE))
 
 
 @dataclass(frozen=True)

@@ -70,8 +70,7 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
         per_shape = bank.all_shapes @ basis.projection.T
 
         def found(numbers: Ints = numbers, per_shape: Floats = per_shape) -> Floats:
-            coordinates: Floats = simulator.shares(numbers) @ per_shape
-            return coordinates
+            return np.asarray(simulator.shares(numbers) @ per_shape)
 
         where = [trees[number] for number in numbers.tolist()]
         places = [(tree.x, tree.y, tree.z, tree.yaw, tree.scale) for tree in where]

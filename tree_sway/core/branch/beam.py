@@ -165,8 +165,7 @@ class BranchBeam:
         panels = np.einsum('pg,pg...->p...', self.weight, values)
         first = np.searchsorted(self.segment, np.arange(len(self.segment_length)))
         sums = np.add.reduceat(panels, first, axis=0)
-        mean: Floats = (sums.T / self.segment_length).T
-        return mean
+        return np.asarray((sums.T / self.segment_length).T)
 
     def bending_moment(self, load: Floats, force: Floats, moment: Floats) -> Floats:
         """
@@ -219,16 +218,14 @@ class BranchBeam:
         if len(force) > 0:
             handed = np.concatenate([force, moment], axis=-1).reshape(len(force), -1)
             beyond += (self.child_lever[1] @ handed).reshape(beyond.shape)
-        out: Floats = beyond[..., 3:] - cross(point, beyond[..., :3])
-        return out
+        return np.asarray(beyond[..., 3:] - cross(point, beyond[..., :3]))
 
     def curvature_in_space(self, moment: Floats, shear_ratio: float) -> Floats:
         """Curvature by an internal moment, bending and twist, for a modulus of 1, (p, 5, k, 3)."""
         along = self.tangent[:, None, None, :]
         twist = (moment * along).sum(axis=-1, keepdims=True) * along
         bent = moment + (0.5 / shear_ratio - 1.0) * twist
-        out: Floats = bent / self.second_moment[..., None, None]
-        return out
+        return np.asarray(bent / self.second_moment[..., None, None])
 
     @cached_property
     def child_lever(self) -> tuple[Floats, Floats]:
@@ -325,8 +322,7 @@ def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: flo
     measure = beam.weight * beam.second_moment
     whole = (measure[..., None] * curvature).reshape(n, -1) @ curvature.reshape(n, -1).T
     twist = (measure * twisting).reshape(n, -1) @ twisting.reshape(n, -1).T
-    energy: Floats = modulus * (whole - twist) + 2.0 * shear_modulus * twist
-    return energy
+    return np.asarray(modulus * (whole - twist) + 2.0 * shear_modulus * twist)
 
 
 def cross(a: Floats, b: Floats) -> Floats:

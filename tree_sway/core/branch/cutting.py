@@ -79,8 +79,7 @@ def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
     carried = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches) / CARRIED
     wanted = np.maximum(np.minimum(most_turned, MOST_PIECES), np.minimum(carried, MOST_CARRYING))
     wanted = np.ceil(wanted).astype(np.int64)
-    pieces: Ints = np.clip(wanted, 1, np.maximum(most, 1))
-    return pieces
+    return np.asarray(np.clip(wanted, 1, np.maximum(most, 1)))
 
 
 def cut_tree(tree: Tree, pieces: Ints) -> CutTree:

@@ -149,15 +149,13 @@ def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
     """
     tangent = beam.tangent
     across = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
-    loads: Floats = (drag_area * exposure(beam)[:, None])[..., None, None] * across[:, None]
-    return loads
+    return np.asarray((drag_area * exposure(beam)[:, None])[..., None, None] * across[:, None])
 
 
 def exposure(beam: BranchBeam) -> Floats:
     """Return the share of the wind across each panel, averaged over winds from all sides, (m,)."""
     level = 1.0 - beam.tangent[:, 2:] ** 2
-    share: Floats = np.sqrt(1.0 - level * _ALL_SIDES).mean(axis=1)
-    return share
+    return np.asarray(np.sqrt(1.0 - level * _ALL_SIDES).mean(axis=1))
 
 
 _ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
@@ -179,8 +177,7 @@ def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -
     if not largest[-1] > 0.02 * largest[0]:
         return None
     mix = (winds.T / largest) @ sides.T * _WIND_WEIGHTS
-    pair: Floats = np.ascontiguousarray(np.moveaxis(mix @ curvatures, 2, 0))
-    return pair
+    return np.asarray(np.ascontiguousarray(np.moveaxis(mix @ curvatures, 2, 0)))
 
 
 def _further(
@@ -294,8 +291,7 @@ def _twisted(beam: BranchBeam, curvature: Floats, scale: float) -> Floats:
     """Curvature, (p, 5, 3), with its twist scaled by a factor."""
     along = beam.tangent[:, None, :]
     about = (curvature * along).sum(axis=-1, keepdims=True) * along
-    out: Floats = curvature + (scale - 1.0) * about
-    return out
+    return np.asarray(curvature + (scale - 1.0) * about)
 
 
 def shaken_energies(

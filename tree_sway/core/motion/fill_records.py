@@ -107,8 +107,7 @@ def rotation_modes_of(branch: np.void, segments: Records) -> Floats:
     first, count = int(branch['first_record']), int(branch['n_coordinates'])
     rows = slice(first, first + int(branch['end'] - branch['first']))
     if branch['load_mode'].shape[0] > 2:
-        turns: Floats = segments['rotation_mode'][rows, :count, :, branch['slot']]
-        return turns
+        return np.asarray(segments['rotation_mode'][rows, :count, :, branch['slot']])
     slope, (_, e1, e2) = segments['slope'][rows, branch['slot']], branch['frame']
     return np.multiply.outer(slope, np.stack([e2, -e1]))
 
@@ -314,8 +313,7 @@ def _fill_loads(
 
 def _cubes(squares: Floats) -> Floats:
     """Cubes of displacements from the sum of their squares, as if both axes were alike."""
-    cubes: Floats = 2.0 * np.maximum(0.5 * squares, 0.0) ** 1.5
-    return cubes
+    return np.asarray(2.0 * np.maximum(0.5 * squares, 0.0) ** 1.5)
 
 
 def _fit_load(model: BranchModel, share: Floats, record: np.void) -> None:
@@ -383,13 +381,11 @@ class _SlantingWinds:
 
     def squares(self, projectors: Floats) -> Floats:
         """Return ``u . P u`` of projectors (k, 6) in each wind u, (48, k)."""
-        squares: Floats = np.maximum(self._weights @ projectors.T, 0.0)
-        return squares
+        return np.asarray(np.maximum(self._weights @ projectors.T, 0.0))
 
     def nearest(self, squares: Floats) -> Floats:
         """Return the projector (6,) that fits these squares, (48,), best."""
-        projector: Floats = np.linalg.lstsq(self._weights, squares, rcond=None)[0]
-        return projector
+        return np.asarray(np.linalg.lstsq(self._weights, squares, rcond=None)[0])
 
 
 def _drawn_modes(model: BranchModel) -> Floats:

@@ -88,8 +88,7 @@ class ModalBank(Branchwise):
     def mean_square_motion(self) -> Floats:
         """Mean square motion of the loaded pieces, per unit of each mode, (m,)."""
         area = self.branches['area']
-        mean: Floats = 2.0 * area @ self._participation / max(float(area.sum()), 1e-300)
-        return mean
+        return np.asarray(2.0 * area @ self._participation / max(float(area.sum()), 1e-300))
 
     def set_time_step(self, dt: float) -> None:
         """Refill the propagator of the modes for a time step [s]."""
@@ -154,8 +153,7 @@ class ModalBank(Branchwise):
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
         self._compiled_expand()
-        rotations: Floats = self.state[1]
-        return rotations
+        return np.asarray(self.state[1])
 
     def motion(self) -> tuple[Floats, Floats]:
         """Key rotations in [rad] and their rates in [rad/s], both (N,)."""

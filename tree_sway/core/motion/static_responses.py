@@ -75,8 +75,7 @@ class WindMoments:
         across = projector @ winds.T
         square = np.maximum((across * winds.T).sum(axis=1), 0.0)
         load = (branches['area'] * branches['speed'] ** 2)[:, None] * np.sqrt(square)
-        loads: Floats = (load[:, None] * across).reshape(3 * n, -1).T @ at.reshape(3 * n, -1)
-        return loads
+        return np.asarray((load[:, None] * across).reshape(3 * n, -1).T @ at.reshape(3 * n, -1))
 
     def slopes(self, shapes: Floats) -> LoadSlopes:
         """Return the slopes of the loads on some shapes (N, m)."""

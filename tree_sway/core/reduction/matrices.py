@@ -105,8 +105,7 @@ class Factors:
 
     def solve(self, right: Floats) -> Floats:
         """Solve for one right side, (N,)."""
-        solved: Floats = self._factors.solve(right[::-1])[::-1]
-        return solved
+        return np.asarray(self._factors.solve(right[::-1])[::-1])
 
 
 def reduce_tree(
@@ -277,5 +276,4 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     curvatures = np.stack([one.curvature for one in model.fields]).reshape(n, -1)
     about = np.stack([cross(borne, slope) for slope in slopes]).reshape(n, -1)
     unlike = about @ curvatures.T
-    lift: Floats = 0.5 * (once + once.T + unlike + unlike.T) - both
-    return lift
+    return np.asarray(0.5 * (once + once.T + unlike + unlike.T) - both)

@@ -49,8 +49,7 @@ class Modes:
     @property
     def frequencies(self) -> Floats:
         """Natural frequencies in [Hz], (m,)."""
-        frequencies: Floats = self.circular / (2.0 * np.pi)
-        return frequencies
+        return np.asarray(self.circular / (2.0 * np.pi))
 
     def slowest(self, count: int) -> Modes:
         """Return the slowest modes."""

@@ -99,8 +99,7 @@ class PlacedTree:
         turn = self.scale * np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
         def moved(nodes: Floats) -> Floats:
-            out: Floats = here + (nodes - root) @ turn.T
-            return out
+            return np.asarray(here + (nodes - root) @ turn.T)
 
         return replace(
             tree,

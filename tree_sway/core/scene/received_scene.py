@@ -101,8 +101,7 @@ class ReceivedScene:
     def coordinates(self, tree: int) -> Floats:
         """Modal coordinates of a tree, (m,)."""
         size = self._sizes[int(self._kind_of[tree])]
-        found: Floats = self.instances['eta'][tree, :size]
-        return found
+        return np.asarray(self.instances['eta'][tree, :size])
 
     def state(self) -> Floats:
         """Coordinates of the description of all trees, (M,)."""

@@ -342,8 +342,7 @@ class SceneSimulator:
         """Coordinates of trees of one kind, (t, m)."""
         n_modes = self._banks[self._placed['kind'][numbers[0]]].shapes.shape[1]
         shown = (1.0 - self._instances['faded'][numbers]) * self._instances['eta'][numbers]
-        shares: Floats = shown[:, :n_modes]
-        return shares
+        return np.asarray(shown[:, :n_modes])
 
     def _place_kind(self, kind: int, rows: Ints, out: Floats) -> None:
         """Place trees of one table: their numbers and first rows in a pose block, (w, 2)."""
@@ -375,8 +374,7 @@ class SceneSimulator:
             return self.own[number].tip_displacement
         top, poses = int(np.argmax(tree.end[:, 2])), np.empty((tree.n_segments, 7))
         self._place_kind(int(self._placed['kind'][number]), np.array([[number, 0]]), poses)
-        tip: Floats = ends_of_poses(poses, tree.length)[1][top] - tree.end[top]
-        return tip
+        return np.asarray(ends_of_poses(poses, tree.length)[1][top] - tree.end[top])
 
     def reset(self) -> None:
         """Bring every tree to rest and forget the wind; the counts stay."""

@@ -380,8 +380,7 @@ class SwaySimulator:
     def base_moment(self) -> Floats:
         """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
         coupling, force = self.bank.branches['coupling'], self.bank.oscillators.forces()
-        moment: Floats = np.einsum('bij,bj->i', coupling, force)
-        return moment
+        return np.asarray(np.einsum('bij,bj->i', coupling, force))
 
     def motion(self) -> tuple[Floats, Floats]:
         """Key rotations in [rad] and their rates in [rad/s] in the model in use, both (N,)."""

@@ -50,5 +50,4 @@ class WoodStrain:
     def of(self, rotations: Floats) -> Floats:
         """Largest strain over a section, mean over each segment, (m,), by key rotations (N,)."""
         curvature = (self._curvature @ rotations).reshape(-1, 3)
-        strain: Floats = np.sqrt(np.einsum('mi,mi->m', curvature, curvature)) * self._radius
-        return strain
+        return np.asarray(np.sqrt(np.einsum('mi,mi->m', curvature, curvature)) * self._radius)

@@ -74,5 +74,4 @@ class WindCurve:
         later = takewhile(lambda knot: knot[0] > start, reversed(self.knots))
         times = np.array([end, *(time for time, _ in later if time < end), start])
         values = np.array([self.value(time) for time in times])
-        mean: Floats = 0.5 * np.diff(times) @ (values[1:] + values[:-1]) / (start - end)
-        return mean
+        return np.asarray(0.5 * np.diff(times) @ (values[1:] + values[:-1]) / (start - end))

@@ -68,8 +68,7 @@ class NumpyPasses:
 
     def per_branch(self, x: Floats) -> Floats:
         """Arrange values of coordinates (N,) by branch, padded with zeros, (b, c)."""
-        found: Floats = np.where(self.is_there, x[self._column], 0.0)
-        return found
+        return np.asarray(np.where(self.is_there, x[self._column], 0.0))
 
     def outward(self, x: Floats, v: Floats) -> Bases:
         """Move the bases by angles and rates (b, c)."""
