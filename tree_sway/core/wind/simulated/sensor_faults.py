@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What anemometers do when they fail, as a change of what they send: for rehearsals.
+Faults of anemometers, as a change of their samples, for tests.
 
-Each fault is one that was seen on sensors in the field: a wet sonic sends a code for no reading, a
+Each fault has been observed on sensors in the field: a wet sonic sends a code for no reading, a
 driver repeats its last value with new stamps, a logger sends a batch at once, a sensor starts
 again.
 """
@@ -25,11 +25,11 @@ _KINDS = (
     *('zero_stamp', 'future_stamp', 'restart'),
 )
 FAULTS = ('none', *_KINDS, 'all')
-"""Kinds of fault, none of them, and each in its turn."""
+"""Kinds of fault, none, and all in turn."""
 
 
 class Sample(NamedTuple):
-    """What is sent: a stamp in [ns], 0 for none, and a vector in [m/s]."""
+    """A sample: a stamp in [ns], 0 for none, and a vector in [m/s]."""
 
     stamp: int
     vector: Floats
@@ -37,16 +37,16 @@ class Sample(NamedTuple):
 
 class SensorFaults:
     """
-    Faults that come again and again.
+    Faults that occur periodically.
 
     Parameters
     ----------
     kind
-        One of `FAULTS`; ``none`` for a sensor without a fault, ``all`` for each in its turn.
+        One of `FAULTS`; ``none`` for a sensor without a fault, ``all`` for each in turn.
     every
         Time from the beginning of one fault to that of the next in [s].
     duration
-        Time that each lasts in [s], less than `every`.
+        Duration of each in [s], less than `every`.
 
     Raises
     ------
@@ -73,7 +73,7 @@ class SensorFaults:
         return _KINDS[int(number - 1) % len(_KINDS)] if self._kind == 'all' else self._kind
 
     def sent(self, time: float, stamp: int, vector: Floats) -> Iterator[Sample]:
-        """Return what is sent for a sample at a time [s], of a stamp [ns] and wind [m/s]."""
+        """Yield the samples sent for one at a time [s], of a stamp [ns] and wind [m/s]."""
         fault, before = self.at(time), self._before
         self._before = fault
         if fault not in ('delay', 'reorder'):
