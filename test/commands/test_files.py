@@ -131,7 +131,7 @@ def test_a_tree_for_another_program(tmp_path: Path, suffix: str, start: str) -> 
     [
         ([SEEDLING, '-o', 'tree.yaml', '--sway'], "--sway: 'tree.yaml' cannot sway; write a .glb"),
         (['FOREST', '-o', 'trees.glb', '--sway', 'morph'], 'trees.glb: a forest to sway'),
-        (['FOREST', '-o', 'trees.usda'], 'trees.usda: a forest to sway in another program'),
+        (['FOREST', '-o', 'trees.usda'], 'trees.usda: a forest for a different program'),
     ],
 )
 def test_what_cannot_sway(

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Natural modes for people: frequency, damping, and the branch that bends most."""
+"""Table of natural modes: frequency, damping, and the branch that bends most."""
 
 from __future__ import annotations
 

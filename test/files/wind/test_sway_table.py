@@ -55,12 +55,12 @@ def test_dates(tmp_path):
 @pytest.mark.parametrize(
     ('text', 'message'),
     [
-        ('time,wind\n0,1\n', r'sway.csv:1: no motion among time, wind; name the columns time, x'),
+        ('time,wind\n0,1\n', r'sway.csv:1: no motion among time, wind; call the columns time, x'),
         ('x,y\n0,1\n', r'sway.csv:1: no time among x, y'),
         ('time,x,ax\n0,1,1\n', r'sway.csv:1: acceleration and displacement in one file; keep'),
         ('time,x [ft]\n0,1\n', r"sway.csv:1: unknown unit 'ft'; use m, cm, mm"),
         ('time [week],x\n0,1\n', r"sway.csv:1: unknown unit 'week'"),
-        ('time,x\n0,1\n.1,1e308\n', r'sway.csv:3: x is 1e\+308, which nothing measures; mend'),
+        ('time,x\n0,1\n.1,1e308\n', r'sway.csv:3: x is 1e\+308, which is implausible; correct'),
         ('time,x [g]\n0,1\n.1,1e308\n', r"sway.csv:1: unknown unit 'g'"),
         ('time,ax [g]\n0,1\n.1,1e308\n', r'sway.csv:3: ax \[g\] is 1e\+308, which nothing'),
         ('time,x\n0,1\n1e300,1\n', r"sway.csv:3: time is '1e300', neither seconds nor a date"),

@@ -138,7 +138,7 @@ def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Sett
     """
     if not isinstance(settings, Settings | None):
         raise ParameterError(
-            f'a {type(settings).__name__}, where Settings are asked for',
+            f'a {type(settings).__name__}, where Settings are expected',
             where='settings',
             cure='give Settings(...), or its fields as keywords',
         )
