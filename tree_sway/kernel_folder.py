@@ -67,9 +67,7 @@ def why_unsafe(place: Path) -> str:
     for folder in (place, *place.parents):
         found = folder.lstat()
         if found.st_uid not in (os.getuid(), 0) or (folder == place and not _is_mine(found)):
-            return (
-                f'{folder} belongs to a different user; set {FOLDER_VARIABLE} to a folder of yours'
-            )
+            return f'{folder} belongs to other users; set {FOLDER_VARIABLE} to a folder of yours'
         is_shared = found.st_mode & stat.S_ISVTX and folder != place
         if found.st_mode & _BY_OTHERS and not is_shared:
             return f'others may write into {folder}; chmod go-w {folder}'

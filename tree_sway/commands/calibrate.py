@@ -57,13 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='CSV of the sway instead: time and x, y or tilt_x or ax ...; or http://... of a '
         'phone that measures with phyphox',
     )
-    add(
-        '--seconds',
-        type=float,
-        default=0.0,
-        metavar='N',
-        help='of a phone: duration of its measurement',
-    )
+    add('--seconds', type=float, default=0.0, metavar='N', help='duration, of a phone [s]')
     add(
         '--branch', metavar='NAME', help='branch that was measured, such as stem; the slowest sway'
     )

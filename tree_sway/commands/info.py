@@ -43,12 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
-    add(
-        '--gravity',
-        choices=('on', 'off'),
-        default='on',
-        help='own weight of the tree (%(default)s)',
-    )
+    add('--gravity', choices=('on', 'off'), default='on', help='weight of the tree (%(default)s)')
     add('--count', type=int, default=10, metavar='N', help='number of frequencies (%(default)s)')
     speed = 'mean of a gusty wind [m/s] for the used share of its strength'
     add('--speed', type=float, metavar='U', help=speed)

@@ -138,9 +138,7 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     else:
         source = f'simulated westerly, mean {arguments.speed:g} m/s'
     if seconds < 2.0 / _RATE:
-        raise ParameterError(
-            'the wind is too short to draw', where=source, cure='give a longer one'
-        )
+        raise ParameterError('the wind is too short', where=source, cure='give a longer one')
     simulator = _simulator(scene, arguments)
     frames = swaying(simulator, wind, _RATE, seconds)
     shown = [(simulator.wind.copy(), simulator.tip_displacement.copy()) for _ in frames]

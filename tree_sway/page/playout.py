@@ -203,9 +203,8 @@ def catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:
     span, before, behind = c.stamp - b.stamp, c.stamp - a.stamp, d.stamp - b.stamp
     u2, u3 = u * u, u * u * u
     states = [each.coordinates for each in (a, b, c, d)]
-    p, q, r, s = (
-        each[: min(map(len, states))] for each in states
-    )  # more where a branch is pulled
+    # There are more coordinates while a branch is pulled.
+    p, q, r, s = (each[: min(map(len, states))] for each in states)
     curve = (2.0 * u3 - 3.0 * u2 + 1.0) * q + (3.0 * u2 - 2.0 * u3) * r
     if before > 0.0:
         curve += (u3 - 2.0 * u2 + u) * span / before * (r - p)

@@ -37,12 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add('--sensor', metavar='ADDRESS', help=f'anemometer in place of both: {kinds}')
     add_seconds(parser)
     add('--rate', type=float, default=60.0, help='poses per second [Hz] (%(default)s)')
-    add(
-        '--gravity',
-        choices=('on', 'off'),
-        default='on',
-        help='own weight of the tree (%(default)s)',
-    )
+    add('--gravity', choices=('on', 'off'), default='on', help='weight of the tree (%(default)s)')
     add('--no-page', action='store_true', help='serve no page')
     add_page_arguments(parser)
 

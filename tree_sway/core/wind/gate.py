@@ -162,9 +162,7 @@ class WindGate:
         self._seen = (math.nan, math.nan, math.nan)  # last sample offered
         self._good = (0.0, 0.0, 0.0)  # last one accepted, at _good_time
         self._given = (0.0, 0.0, 0.0)  # wind that was returned for it
-        self._before: tuple[float, float, float] | None = (
-            None  # remaining difference while a level fades in
-        )
+        self._before: tuple[float, float, float] | None = None  # wind before a new level
         self._good_time = self._refused_since = _NEVER
         self._equal_since = 0
         self.is_frozen = False

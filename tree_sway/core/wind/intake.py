@@ -65,9 +65,7 @@ class WindIntake:
         """
         reads = self.convention
         velocity = np.array(components) if reads is None else reads.velocity(components)
-        if (
-            rotation is not None and np.abs(velocity).max() <= FASTEST_WIND
-        ):  # else it would be refused
+        if rotation is not None and np.abs(velocity).max() <= FASTEST_WIND:  # else refused
             velocity = rotation @ velocity
         verdict = self.gate.offer(stamp, velocity, arrival, lead=lead)
         if not verdict.accepted:

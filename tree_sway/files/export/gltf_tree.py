@@ -218,9 +218,7 @@ def _swung(
 
 def _change(material: str, mesh: TreeMesh, step: tuple[Floats, Floats]) -> Floats:
     """Return the motion of vertices per unit of a coordinate, by a central difference."""
-    if (
-        material == 'bark'
-    ):  # a ring moves with its centre, as vertices rounded one by one would distort it
+    if material == 'bark':  # a ring moves with its centre, so that rounding keeps its shape
         mesh = replace(mesh, points=mesh.points * [1.0, 0.0, 0.0])
     return (0.5 / _SWING) * (mesh.placed(step[0]) - mesh.placed(step[1]))
 

@@ -83,7 +83,7 @@ def test_mtg_in_other_units():
         ('fork.mtg', '^<U2', '^~U2', FormatError, ":32: '~U2' is not a code"),
         ('fork.mtg', '^<U2', '^/U2', TreeError, ':32: U2: scale 3 in scale 3'),
         ('fork.mtg', '\t^/S1', '\t\t\t^/S1', FormatError, ':28: no code in the first 3 columns'),
-        ('fork.mtg', '/P1', '\t/P1', TreeError, ":26: '/P1' has no vertex before it"),
+        ('fork.mtg', '/P1', '\t/P1', TreeError, ":26: '/P1' has no parent"),
         ('fork.mtg', '\tXX', '\tPX', FormatError, 'no two vertices with XX, YY, ZZ'),
     ],
 )  # fmt: skip

@@ -128,9 +128,7 @@ def _parse(lines: list[str], source: str) -> list[_Vertex]:
         code = cells[column].strip()
         has_predecessor = code.startswith('^')
         if column - (not has_predecessor) >= len(latest):
-            raise TreeError(
-                f"'{code[:20]}' has no vertex before it", where=where, cure='check its column'
-            )
+            raise TreeError(f"'{code[:20]}' has no parent", where=where, cure='check its column')
         reference = latest[column] if has_predecessor else (latest[column - 1] if column else -1)
         reference = _add(vertices, code.removeprefix('^'), reference, scales, where)
         del latest[column:]
