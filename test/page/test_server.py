@@ -211,7 +211,7 @@ def test_a_token_is_asked_for_elsewhere_than_here() -> None:
 
 
 def test_a_port_in_use_is_an_error_in_words(server: PageServer) -> None:
-    with pytest.raises(TransportError, match='another port'):
+    with pytest.raises(TransportError, match='different port'):
         PageServer(PageSettings(port=server.port)).start()
 
 

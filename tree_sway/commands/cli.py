@@ -37,7 +37,7 @@ _ELSEWHERE = {
     'lab': 'it belongs to the laboratory: pip install ./lab in the checkout',
 }
 #: Extra of the package with a module; a module that is not listed is in no extra, and no advice
-#: is made from the name of a module, which may be that of another project.
+#: is made from the name of a module, which may be that of a different project.
 EXTRAS = {
     **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
     **dict.fromkeys(('cryptography', 'dask', 'distributed', 'pyarrow'), 'study'),

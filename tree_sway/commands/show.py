@@ -144,7 +144,7 @@ def _controls(
     controls += [Control.of(SWAY[name], _LABELS[name]) for name in ('tolerance', 'damping_ratio')]
     trees = (*BUILTIN_TREES, *(() if choices.tree in BUILTIN_TREES else (choices.tree,)))
     counts = tuple(dict.fromkeys((*_COUNTS, choices.count)))
-    controls.append(Control('tree', 'Tree', choices.tree, 'What is shown.', choices=trees))
+    controls.append(Control('tree', 'Tree', choices.tree, 'Tree on the page.', choices=trees))
     if is_one_tree:
         # Models and number of the trees of a stand are those of its file.
         how_many = Control('count', 'Stand of', choices.count, 'Number of trees.', choices=counts)

@@ -77,7 +77,7 @@ def format_of(
     """
     Return the format of a file: the given one, else by its content, then by its suffix.
 
-    The first that recognises the content is used; ``kind`` (what the files hold) is for the
+    The first that recognises the content is used; ``kind`` (the contents of the files) is for the
     errors, ``folder`` the name of the format that is a folder, if there is one, ``head`` the
     beginning of the file where it was read before.
 
@@ -108,7 +108,7 @@ def format_of(
     of_suffix = [known for known in formats if path.suffix.lower() in known.suffixes]
     if len(of_suffix) == 1:
         return of_suffix[0]
-    cure = f'give one of {names}, or say its format'
+    cure = f'give one of {names}, or give its format'
     if kind == 'tree':
         cure += '; an inventory has columns for the place, the species, and the height or dbh'
     raise FormatError(f'a file of an unknown {kind} format', where=str(path), cure=cure)

@@ -27,7 +27,7 @@ from tree_sway.files.text_file import finite, why_no_number
 from tree_sway.files.time_stamps import seconds_of_stamps
 
 _MAX_COLUMNS = 10_000
-_MEND = 'mend the cell or remove the row'
+_MEND = 'correct the cell or remove the row'
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 _UNIT = re.compile(r'\[(.*)\]|\((.*)\)|')
 _KNOWN = json.loads(files('tree_sway.files').joinpath('columns.json').read_text('utf-8'))
@@ -205,7 +205,7 @@ class TextTable:
 
 
 def split_row(line: str, separator: str) -> Sequence[str]:
-    """Cells of one line, stripped; quoted cells may hold the separator but no line end."""
+    """Cells of one line, stripped; quoted cells may contain the separator but no line end."""
     if '"' not in line:
         return list(map(str.strip, line.split(separator)))
     if line.count('"') == 2 and line[0] == '"' and line.count(f'"{separator}') == 1:

@@ -42,7 +42,7 @@ def path_of(name: str | Path) -> Path:
         raise FormatError(
             f"no user '{text.split('/')[0]}'", where=text[:80], cure='write the folder in full'
         ) from None
-    except (OSError, ValueError) as error:  # such as a name that is too long, or holds a zero byte
+    except (OSError, ValueError) as error:  # such as a name that is too long, or has a zero byte
         reason = error.strerror if isinstance(error, OSError) else error
         raise FormatError(f'not a path: {reason}', where=ascii(text[:80])) from None
     return path
@@ -56,7 +56,7 @@ def read_bytes(path: Path, at_most: int = -1) -> bytes:
     """
     try:
         is_there = path.exists()
-    except (OSError, ValueError):  # a name that is too long, or holds a zero byte
+    except (OSError, ValueError):  # a name that is too long, or has a zero byte
         is_there = False
     if not is_there:
         raise FormatError('no such file', where=str(path), cure='check the path')

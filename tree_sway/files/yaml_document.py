@@ -89,7 +89,7 @@ def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         where = f'{source}:{mark.line + 1}' if mark is not None else source
-        raise FormatError(f'not YAML: {error.problem}', where=where, cure='mend it') from None
+        raise FormatError(f'not YAML: {error.problem}', where=where, cure='correct it') from None
     except yaml.YAMLError as error:
         raise FormatError(f'not YAML: {str(error).splitlines()[0]}', where=source) from None
     if root is None:

@@ -5,5 +5,5 @@ The browser page: the stream, its server, and the modules of the page.
 
 `protocol` is the binary form, `description` the data by which a receiver computes every pose,
 `server` sends both to any number of browsers, `session` is a live tree without ROS. ``static/``
-holds the page: our own ES modules, without external ones.
+has the page: our own ES modules, without external ones.
 """

@@ -48,7 +48,7 @@ _FRAME = struct.Struct('<BBBxIIq3hH')
 _ALIGNMENT = 8
 
 FRAME_SIZE = _FRAME.size
-"""Size of a frame of the wind alone in [bytes]."""
+"""Size of a frame of the wind only in [bytes]."""
 
 LARGEST_DESCRIPTION = 64 * 2**20
 """Size of the message of a description in [bytes]."""

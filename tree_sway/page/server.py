@@ -241,7 +241,7 @@ class PageServer:
 
     @property
     def url(self) -> str:
-        """Address for a browser, without the token: the page asks for it."""
+        """Address for a browser, without the token, which the page requests."""
         scheme = 'https' if self.settings.certificate else 'http'
         address = self.settings.address
         host = f'[{address}]' if ':' in address else address

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-``tree-sway listen``: count what a solver in another process streams, by a raw subscription.
+``tree-sway listen``: count the poses that a solver streams, by a raw subscription.
 
 `ros2 topic hz` turns every pose into a Python object and is too slow for a thousand of them.
 """

@@ -33,7 +33,7 @@ class LineSource(Worker):
     Connection to an instrument at an address; calls `take` with each line, in its own thread.
 
     A link without a byte for the time of `silence` [s] is closed and opened again, first after
-    `first_pause` [s]. A `MissingDependencyError` says that a serial port needs pyserial.
+    `first_pause` [s]. A serial port without pyserial raises a `MissingDependencyError`.
     """
 
     address: Address

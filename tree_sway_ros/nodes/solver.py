@@ -15,7 +15,7 @@ from std_srvs.srv import SetBool, Trigger
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.scene.shard import dealt
+from tree_sway.core.scene.shard import shard_of
 from tree_sway.core.simulator.live_tuning import LIVE
 from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import Settings
@@ -78,7 +78,7 @@ class SolverNode(TreeSwayNode):
             source = source.of_species(species_named(self.values['species'])).checked()
         x, y, z, yaw = self.values['pose']
         moved = source.moved(x=x, y=y, z=z, yaw=yaw)
-        return dealt(moved, self.values['shard.index'], self.values['shard.count'])
+        return shard_of(moved, self.values['shard.index'], self.values['shard.count'])
 
     def _make(self, source: Any) -> None:
         settings = Settings(

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from tree_sway.errors import TransportError
 
 _LITTLE_ENDIAN = 1
-# Patterns that no other field of a message holds: both numbers of a stamp, and a number's value.
+# Patterns that no other field of a message has: both numbers of a stamp, and a number's value.
 # They are longer than the gaps between fields, where the serialiser leaves old bytes.
 _STAMP = 0x5EC0_0000
 _NUMBER = struct.unpack('<d', bytes.fromhex('0000c3d2e1f05a41'))[0]
@@ -115,7 +115,7 @@ def block_mark(number: int = 0) -> float:
 
 
 def pose_array_template(n_poses: int, frame_id: str) -> CdrTemplate:
-    """Bytes of a ``geometry_msgs/PoseArray``, whose block (n_poses, 7) holds x y z qx qy qz qw."""
+    """Bytes of a ``geometry_msgs/PoseArray``, whose block (n_poses, 7) has x y z qx qy qz qw."""
     from geometry_msgs.msg import Pose, PoseArray
 
     message = PoseArray()

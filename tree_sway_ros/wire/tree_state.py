@@ -24,7 +24,7 @@ WIND_NAMES = ('wind/x', 'wind/y', 'wind/z')
 
 
 def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
-    """Make the bytes of a state, whose one block holds wind [m/s] and coordinates, (3 + m,)."""
+    """Make the bytes of a state, whose one block has wind [m/s] and coordinates, (3 + m,)."""
     message = JointState()
     message.header.frame_id = frame_id
     mark_stamp(message.header.stamp)

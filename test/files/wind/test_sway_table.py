@@ -62,7 +62,7 @@ def test_dates(tmp_path):
         ('time [week],x\n0,1\n', r"sway.csv:1: unknown unit 'week'"),
         ('time,x\n0,1\n.1,1e308\n', r'sway.csv:3: x is 1e\+308, which is implausible; correct'),
         ('time,x [g]\n0,1\n.1,1e308\n', r"sway.csv:1: unknown unit 'g'"),
-        ('time,ax [g]\n0,1\n.1,1e308\n', r'sway.csv:3: ax \[g\] is 1e\+308, which nothing'),
+        ('time,ax [g]\n0,1\n.1,1e308\n', r'sway.csv:3: ax \[g\] is 1e\+308, which is implausible'),
         ('time,x\n0,1\n1e300,1\n', r"sway.csv:3: time is '1e300', neither seconds nor a date"),
         ('time;x\n0.5;1\n1;0,5\n', r"sway.csv:3: x is '0,5', with a decimal comma: export it"),
         ('time,x\n0,0,0,5\n0,1,0,6\n', r'sway.csv:2: more cells than the 2 columns'),

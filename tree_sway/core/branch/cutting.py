@@ -38,7 +38,7 @@ each other bend a stem between their bases, by more shapes than one key segment 
 @dataclass(frozen=True)
 class CutTree:
     """
-    A tree whose branches are pieces of those of another tree.
+    A tree whose branches are pieces of those of a whole tree.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ rotates about one axis or the other. An enriched branch has further ones: the re
 inertia of these, and so on; and the twist by the rotation of its subtree about the chord
 (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space of its flexibility
 and inertia). They are orthogonal in bending energy. A crooked branch bends and twists in the same
-fields: twist has no coordinate of its own.
+fields: twist has no separate coordinate.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class SubtreeSums(NamedTuple):
     area, area_moment
         Drag area in [m^2], (c,), and its first moment in [m^3], (c, 3).
     force, moment
-        Force of winds along x, y and z, as of `wind_loads`, and its moment about the root of the
+        Force of winds along x, y and z, as in `wind_loads`, and its moment about the root of the
         tree, both (c, 3, 3), the wind first.
     mass, mass_moment, mass_second
         Mass in [kg], (c,), its first moment in [kg m], (c, 3), and second in [kg m^2], (c, 3, 3).

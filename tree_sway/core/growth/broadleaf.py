@@ -29,7 +29,7 @@ def grow_broadleaf(
     species: str = 'broadleaf',
 ) -> Tree:
     """
-    Grow a tree with a trunk, limbs, branches and twigs, as of `finished_tree`.
+    Grow a tree with a trunk, limbs, branches and twigs, as in `finished_tree`.
 
     The same state of the source of randomness gives the same tree.
     """

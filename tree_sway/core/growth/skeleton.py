@@ -50,7 +50,7 @@ class Skeleton:
     shoots: list[Shoot] = field(default_factory=list)
 
     def add(self, nodes: Floats, parent: int = -1, at: int = 0) -> int:
-        """Add a shoot on a node of another one and return its number."""
+        """Add a shoot on a node of an older one and return its number."""
         self.shoots.append(Shoot(nodes, parent, at))
         return len(self.shoots) - 1
 

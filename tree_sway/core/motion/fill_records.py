@@ -420,10 +420,10 @@ def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
 
 def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:
     """
-    Lay out what the wind load knows of `BRANCH` records, (b,), sixteen at a time, (ceil(b / 16),).
+    Lay the wind load of `BRANCH` records, (b,), out in sixteens, (ceil(b / 16),).
 
-    At rest, with no force yet; of `load_layout` with as many rows as the branches have, or of a
-    layout with further fields, which are left zeros.
+    Records are at rest, without force, and of `load_layout` with the rows of the branches, or of a
+    layout with further fields, which are zero.
     """
     if layout is None:
         layout = load_layout(branches.dtype['load_mode'].shape[0])

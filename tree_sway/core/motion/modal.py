@@ -8,8 +8,8 @@ the state at the middle of the step, and is constant over the step.
 
 **Implicit load.** The motion in a step changes the load itself: twigs in a storm point along the
 wind within a fraction of a step. So the load is iterated until it is that of the resulting state;
-in light wind, where the last step's load is close enough, once. Rotations beyond what a step can
-follow are clamped and counted.
+in light wind, where the last step's load is close enough, once. Rotations beyond the limit of a
+step are clamped and counted.
 
 Symbols: Phi mode shapes (N, m), stored by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -289,7 +289,7 @@ def _advance(
 
 @part
 def _clamp(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastest: float) -> None:
-    """Clamp rotations and rates of branches to what a step can follow."""
+    """Clamp rotations and rates of branches to the limits of a step."""
     eta, rate, x, v = modal[0], modal[1], state[1], state[2]
     for i in range(len(x)):
         x[i], v[i] = 0.0, 0.0

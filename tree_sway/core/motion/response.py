@@ -56,7 +56,7 @@ def _sums(twists: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
 
 
 def joint_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
-    """Motion (v, w) of bases about the root by their parents' rotations alone, (b, 6, ...)."""
+    """Motion (v, w) of bases about the root by their parents' rotations only, (b, 6, ...)."""
     motion = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
     parents = branches['parent']
     for own, rows in _moved(branches, rotations):

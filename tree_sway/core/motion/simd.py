@@ -107,7 +107,7 @@ if not WHY_PLAIN:
             def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
                 kinds = signature.args
                 slots, row, slot, array, *rows, first = values
-                of = [
+                source = [
                     _place(
                         context, builder, kinds[0], slots,
                         builder.add(row, row.type(k)), slot,
@@ -119,8 +119,8 @@ if not WHY_PLAIN:
                 else:
                     at = [builder.add(each, first) for each in rows]
                     to = [_place(context, builder, kinds[3], array, each) for each in at]
-                of, to = (of, to) if is_put else (to, of)
-                read = [builder.load(where, align=8) for where in of]
+                source, to = (source, to) if is_put else (to, source)
+                read = [builder.load(where, align=8) for where in source]
                 for value, where in zip(_turned(builder, read), to, strict=True):
                     builder.store(value, where, align=8)
                 return context.get_dummy_value()

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The model `branch`, the paper's: every branch an oscillator of its own, on two axes.
+The model `branch`, the paper's: every branch a separate oscillator on two axes.
 
 A branch meets its own wind with its own inertia, as if its base were at rest.
 

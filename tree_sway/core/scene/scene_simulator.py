@@ -292,7 +292,7 @@ class SceneSimulator:
         Raises
         ------
         ParameterError
-            An array that cannot hold the poses.
+            An array of a wrong shape or type.
 
         """
         shape = (int(self._ends[-1]), 7)

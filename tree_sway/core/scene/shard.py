@@ -12,7 +12,7 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.errors import ParameterError
 
 
-def dealt(scene: Scene, shard: int = 0, shards: int = 1) -> Scene:
+def shard_of(scene: Scene, shard: int = 0, shards: int = 1) -> Scene:
     """
     Return the trees of one shard, from 0 on: consecutive trees, of equal numbers.
 

@@ -81,7 +81,7 @@ def simulate(
     Raises
     ------
     ParameterError
-        A wind that is empty, not finite or of another shape, an unknown branch, or a setting out
+        A wind that is empty, not finite or of a wrong shape, an unknown branch, or a setting out
         of its range.
     TreeError
         A tree that buckles.

@@ -50,13 +50,13 @@ def assembled(
     TreeError
         A tree that buckles under its own weight, or a branch without mass.
     ParameterError
-        A model that has no oscillators of its own.
+        A model without oscillators.
 
     """
     model = reductions.settings.model if model is None else model
     if model == 'auto':
         raise ParameterError(
-            "model 'auto' has no oscillators of its own",
+            "model 'auto' has no oscillators",
             where='model',
             cure='make it by make_simulator, or give a number of coordinates',
         )

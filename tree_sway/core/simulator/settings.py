@@ -70,7 +70,7 @@ class Settings:
         Profile of the wind over height.
     crown_coherence
         Share of a gust in [-] that reaches the whole crown at once; the rest reaches each limb
-        after a delay of its own (`crown_wind`). 1 is one wind for the whole crown.
+        after its own delay (`crown_wind`). 1 is one wind for the whole crown.
     enrich
         Branches with further shapes and twists, on all models but ``branch``: ``none``, the
         ``stem``, those ``needed`` (`TreeBeams.enriched`), all ``carriers`` of others, or ``all``.

@@ -353,7 +353,7 @@ class SwaySimulator:
         Raises
         ------
         ParameterError
-            An array that cannot hold the poses.
+            An array of a wrong shape or type.
 
         """
         out = self._to_fill(out)

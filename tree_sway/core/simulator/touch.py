@@ -59,7 +59,7 @@ class Spring(NamedTuple):
     """
     A spring from a segment to a place ``to`` [m], (3,), of a stiffness [N/m].
 
-    Its stiffness is limited to what a time step can follow.
+    Its stiffness is limited by the time step.
     """
 
     to: ArrayLike

@@ -157,7 +157,7 @@ def check_numbers(rows: Floats, labels: Sequence[str]) -> None:
         raise TreeError(
             f'a number {what}: {rows[index].tolist()}',
             where=labels[index],
-            cure='check that the columns are what they should be, in metres',
+            cure='check the order of the columns and their unit, metres',
         )
 
 

@@ -61,11 +61,11 @@ def oddities(tree: Tree, species: Species) -> tuple[str, ...]:
         ('density', species.density, ' kg/m^3', 'green wood has', (400.0, 1300.0),
          'check --density'),
         ('height', height, ' m', 'trees have', (0.05, 116.0),
-         'if the file is not in metres, add --option length_unit=0.01 for cm, or what it is'),
+         'if the file is not in metres, add --option length_unit=0.01 for cm, or its unit'),
         ('diameter at the ground', diameter, ' m', 'trees have', (0.0, 5.0),
          'if diameters are in cm, add --option diameter_unit=0.01'),
         ('height over diameter', slenderness, '', 'stems have', (8.0, 200.0),
-         'its diameters may be too thick or too thin; --option diameter_unit says their unit'),
+         'its diameters may be too thick or too thin; --option diameter_unit sets their unit'),
         ('lean', _lean(tree), ' degrees', 'trees have', (0.0, _LEAN),
          'if the y axis of its file points up, add --option up=y'),
     )  # fmt: skip

@@ -87,7 +87,7 @@ def species_like(name: str) -> tuple[Species, str]:
     Returns
     -------
     Species, str
-        The species, and the assumption made; empty if there is none.
+        The species, and the assumption made; empty without one.
 
     """
     try:

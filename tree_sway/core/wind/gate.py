@@ -3,13 +3,12 @@
 """
 The gate of wind samples: faults are refused and counted, true gusts and steps are accepted.
 
-A sample is refused if it is not finite, faster than any wind for which the model holds, or too far
-from the last good one. The limit is a rate of change times the time between the two, plus the
-change by small eddies between any two samples: in the inertial subrange increments grow as the
-cube root of time, so that a rate without this refuses good samples of a fast sensor in a strong
-wind (20 m/s^2: 39 % at 20 Hz in 12 m/s). A change that lasts for `longest_refusal` may be a step
-and is accepted, but no faster than `max_rate`: a longer spike moves the wind no further than a
-gust.
+A sample is refused if it is not finite, faster than any wind of the model, or too far from the
+last good one. The limit is a rate of change times the time between the two, plus the change by
+small eddies between any two samples: in the inertial subrange increments grow as the cube root of
+time, so that a rate without this refuses good samples of a fast sensor in a strong wind (20 m/s^2:
+39 % at 20 Hz in 12 m/s). A change that lasts for `longest_refusal` may be a step and is accepted,
+but no faster than `max_rate`: a longer spike moves the wind no further than a gust.
 
 Samples are taken in their order of arrival. An impossible stamp (zero, ahead of its arrival, much
 older, a duplicate, out of order) is counted by its cause and replaced by the time of arrival, less

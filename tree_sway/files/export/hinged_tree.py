@@ -143,7 +143,7 @@ def _compliance(tree: Tree, modulus: float) -> Floats:
 
 
 def _bodies(tree: Tree, density: float, leaf_line: Floats) -> tuple[Floats, Floats, Floats]:
-    """Mass, centre and inertia as of `HingedTree`, with leaves [kg/m], (n,)."""
+    """Mass, centre and inertia as in `HingedTree`, with leaves [kg/m], (n,)."""
     along, part, diameter = _points(tree)
     wood = density * np.pi / 4.0 * diameter**2 * part
     line, away = wood + leaf_line[:, None, None] * part, tree.length[:, None, None] * along

@@ -26,7 +26,7 @@ def refuse_no_table(path: Path) -> None:
 
 def write_columns(columns: Mapping[str, Sequence[Any]], path: Path) -> None:
     """
-    Write columns of one length by their names, whole or not at all.
+    Write columns of one length by their names, atomically.
 
     Raises
     ------

@@ -36,7 +36,7 @@ def write_tree(
     path
         The file: ``.yaml``, ``.yml`` or ``.glb``; overwritten if it exists.
     tree
-        The tree, alone or with its species.
+        Tree, with or without its species.
     species
         Species, if different from the tree's own; only YAML can store it.
     leaves

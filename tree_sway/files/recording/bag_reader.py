@@ -15,7 +15,7 @@ import numpy as np
 from tree_sway.errors import FormatError
 from tree_sway.files.bounded import Arrays, bounded_arrays
 
-_CURE = "if it was cut off, mend it with 'mcap recover' or 'sqlite3 FILE .recover'"
+_CURE = "if it was cut off, repair it with 'mcap recover' or 'sqlite3 FILE .recover'"
 
 
 @dataclass(frozen=True)

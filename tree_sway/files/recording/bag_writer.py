@@ -120,7 +120,7 @@ class BagWriter:
             raise FormatError(
                 f'cannot be written to: {error}',
                 where=str(self._writer.path),
-                cure='make room; what is in it can be read',
+                cure='make room; the written part can be read',
             ) from error
 
     def __enter__(self) -> BagWriter:

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree or a forest by name or by path: what the command line and the nodes call TREE."""
+"""A tree or a forest by name or by path: TREE of the command line and the nodes."""
 
 from __future__ import annotations
 

@@ -77,11 +77,11 @@ def read_trees(
 
 def read_tree(path: str | Path, format: str | None = None, **options: Any) -> TreeFile:  # noqa: A002, E501
     """
-    Read the tree of a file, the first if it holds several; see `read_trees`.
+    Read the tree of a file, the first of several; see `read_trees`.
 
     The notes of the result have the number of others.
     """
     first, *others = read_trees(path, format, **options)
     if not others:
         return first
-    return replace(first, notes=(*first.notes, f'the file holds {len(others)} more trees'))
+    return replace(first, notes=(*first.notes, f'the file has {len(others)} more trees'))

@@ -19,7 +19,7 @@ from tree_sway.files.wind.record import WindRecord
 
 
 def filled_means(record: WindRecord, turbulence: bool, seed: float) -> WindRecord:
-    """Return a record with turbulence about its samples if these are means; a note says so."""
+    """Return a record with turbulence about its samples if these are means, with a note."""
     if not (seed >= 0 and float(seed).is_integer()):
         raise ParameterError(f'seed is {seed:g}', cure='give a whole number of 0 or more')
     if record.period < LEAST_INTERVAL or len(record.time) < 3:

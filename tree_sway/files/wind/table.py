@@ -136,7 +136,7 @@ def _wind(
 
 
 def _stamps(table: TextTable, clock: Column, rows: list[int]) -> list[str]:
-    """Return times as texts, loggers' dates as ISO 8601, with the time of another column."""
+    """Return times as texts, loggers' dates as ISO 8601, with the time of a second column."""
     stamps = table.cells(clock.index, rows)
     names = [heading for heading, _ in table.headings]
     if names[clock.index] in ('date', 'time') and {'date', 'time'} <= set(names):

@@ -3,7 +3,7 @@
 """
 Digitised trees in MTG files in the code FORM-A (Godin & Caraglio 1998).
 
-Each line of the section MTG holds a vertex, in the column that is its depth, and the values of its
+Each line of the section MTG has a vertex, in the column of its depth, and the values of its
 features. ``/`` decomposes, ``<`` continues, ``+`` branches; with ``^`` before, it refers to the
 vertex above in its own column, else to the latest in the column before.
 

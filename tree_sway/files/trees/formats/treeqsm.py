@@ -8,7 +8,7 @@ version. Cylinders are numbered from 1, parent 0 at the root; PyTLidar writes th
 numbered from 0, parent -1 at the root. A cylinder that is the extension of its parent continues
 the branch; any other starts one, on its parent's axis or skin and not at its end.
 
-MATLAB: structs with a field ``cylinder``. A file may hold several models, as variables or as an
+MATLAB: structs with a field ``cylinder``. A file may have several models, as variables or as an
 array of structs; each is a tree. Text: without a header, or with that of 2.4 and PyTLidar, which
 names start and axis once, though each has three columns; tabs, spaces, commas or semicolons
 between the cells.
