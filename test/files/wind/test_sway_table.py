@@ -66,7 +66,7 @@ def test_dates(tmp_path):
         ('time,x\n0,1\n1e300,1\n', r"sway.csv:3: time is '1e300', neither seconds nor a date"),
         ('time;x\n0.5;1\n1;0,5\n', r"sway.csv:3: x is '0,5', with a decimal comma: export it"),
         ('time,x\n0,0,0,5\n0,1,0,6\n', r'sway.csv:2: more cells than the 2 columns'),
-        ('time,x\n0,1\n.1,nan\n', r"sway.csv:3: x is 'nan', not a finite number; mend"),
+        ('time,x\n0,1\n.1,nan\n', r"sway.csv:3: x is 'nan', not a finite number; correct"),
         ('time,x\n0,1\n.1\n', r"sway.csv:3: 1 cells, none for 'x'"),
         ('time,x\n0,1\nlater,1\n', r"sway.csv:3: time is 'later', neither seconds nor a date"),
         ('time,x\n0,1\n.2,1\n.1,1\n', r'sway.csv:4: time .1 does not come after .2; put the rows'),
