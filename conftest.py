@@ -3,6 +3,7 @@
 """For all tests: Hypothesis that repeats, kernels made once, a ROS domain each, small trees."""
 
 import contextlib
+import faulthandler
 import functools
 import hashlib
 import os
@@ -12,6 +13,9 @@ import sys
 import tempfile
 import time
 
+# Before a participant is made: the profile counts for the whole process.
+PROFILE = Path(__file__).parent / 'tree_sway_ros' / 'process' / 'discovery.xml'
+os.environ.setdefault('FASTRTPS_DEFAULT_PROFILES_FILE', str(PROFILE))
 # Before numpy is loaded: matrices here are small, and idle threads of BLAS that spin slow down the
 # test beside.
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
@@ -34,6 +38,29 @@ settings.load_profile(os.environ.get('HYPOTHESIS_PROFILE', 'repeatable'))
 
 LAST_DOMAIN = 101
 """Of those whose ports are not handed out by the system."""
+
+
+LONGEST, LONGEST_LONG = 300.0, 1500.0
+"""Time that a test may take with its fixtures, and one that is marked `long` [s]."""
+
+
+def pytest_configure(config):
+    """Keep what errors are written to, before tests have it captured."""
+    global _errors
+    _errors = os.dup(2)
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_protocol(item):
+    """
+    End the process of a test that hangs, so that it fails by its name, with all its stacks.
+
+    No signal and no thread of Python would: middleware that waits may hold the interpreter.
+    """
+    longest = LONGEST_LONG if item.get_closest_marker('long') else LONGEST
+    faulthandler.dump_traceback_later(longest, exit=True, file=_errors)
+    yield
+    faulthandler.cancel_dump_traceback_later()
 
 
 @contextlib.contextmanager

@@ -1,7 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 import os
-from pathlib import Path
 import subprocess
 import sys
 import threading
@@ -9,14 +8,9 @@ import time
 
 import pytest
 
-import tree_sway_ros
-
 # An int in a float field can end the process: have every field checked.
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-# An observer announces itself as often as nodes do.
-PROFILE = Path(tree_sway_ros.__file__).parent / 'process' / 'discovery.xml'
-os.environ.setdefault('FASTRTPS_DEFAULT_PROFILES_FILE', str(PROFILE))
 
 DEADLINE = 60.0
 

@@ -1,5 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+from pathlib import Path
 import threading
 
 import pytest
@@ -16,14 +17,21 @@ from tree_sway_ros.process.topics import CLOCK, WIND_FILTERED  # noqa: E402
 from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 
 
+def threads_of_fast_dds():
+    """Return the threads that Python does not know."""
+    names = [each.read_text() for each in Path('/proc/self/task').glob('*/comm')]
+    return sorted(name for name in names if name.startswith('dds.ev'))
+
+
 def test_it_closes_twice_and_leaves_no_thread(domain):
-    before = set(threading.enumerate())
+    before, of_dds = set(threading.enumerate()), threads_of_fast_dds()
     with Composition({'wind': {}, 'anemometer': {}}, domain_id=domain) as nodes:
         assert nodes['wind'].get_name() == 'wind'
         nodes.check()
         assert not nodes.is_done
     nodes.close()
     assert set(threading.enumerate()) == before
+    assert threads_of_fast_dds() == of_dds
 
 
 def test_namespaces_keep_two_apart(compose, observer):

@@ -20,7 +20,7 @@ export function madeUp(m) {
   add("motion", [m], singles(m, 0, 1e-3));
   add("levels", [A, N], Float32Array.from({ length: A * N }, (_, i) => (i % N) * 0.1));
   plain("harmonics", 21, m);
-  plain("standing", A, N, m);
+  plain("equilibrium", A, N, m);
   plain("amount", A, m);
   plain("load", A, N, m);
   plain("cross_damping", A, N, m);

@@ -211,7 +211,7 @@ export class TreeState {
  * vector @param {number} push dynamic pressure [kg/m/s^2] @param {number} drag the same over speed squared */
 function windForce(table, [x, y, z], push, drag) {
   const { m, slopes, lean, values, arrays } = table;
-  const { motion, load, limit, standing, harmonics, cross_damping: cross } = arrays;
+  const { motion, load, limit, equilibrium, harmonics, cross_damping: cross } = arrays;
   const [eta, rate, force, diagonal, off, leaning, leaned] = table.scratch;
   fillHarmonics(x, y, z, table.degree, values);
   const { here, there, first, second, share, up } = corners(table, x, y);
@@ -226,8 +226,8 @@ function windForce(table, [x, y, z], push, drag) {
   const [e, f] = [slight * from * slant, slight * to * slant];
   const [a4, b4, c4, d4, e4, f4, s4] = [a, b, c, d, e, f, steep].map(Math.fround);
   for (let i = 0; i < m; i++) {
-    off[i] = eta[i] - sa * standing[ia + i] - sb * standing[ib + i]
-      - sc * standing[ic + i] - sd * standing[id + i];
+    off[i] = eta[i] - sa * equilibrium[ia + i] - sb * equilibrium[ib + i]
+      - sc * equilibrium[ic + i] - sd * equilibrium[id + i];
     moving += motion[i] * rate[i] * rate[i];
     let sum = a * load[ia + i] + b * load[ib + i] + c * load[ic + i] + d * load[id + i];
     for (let k = 0, at = i; k < values.length; k++, at += m) sum += values[k] * harmonics[at];
