@@ -101,8 +101,8 @@ def test_it_is_small_and_sways(file: Path, visit: Callable[..., None]) -> None:
         await browser.until("treeSway.state === 'paused'")
         await browser.run("document.getElementById('control-reset').click()")
         await browser.until(
-            'Math.hypot(...treeSway.scene.position().map((x, c) => x - treeSway.scene.restPosition()[c]))'
-            ' < 1e-4'
+            'Math.hypot(...treeSway.scene.position().map((x, c) =>'
+            ' x - treeSway.scene.restPosition()[c])) < 1e-4'
         )
 
     visit(file, script)
