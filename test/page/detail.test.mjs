@@ -101,10 +101,11 @@ test("far trees are coarse, near ones fine, those out of sight nothing, all with
 });
 
 /** Length and width of a card, about which its triangle is [m]. */
-function edges({ values, indices }, i) {
+function edges({ values, indices }, i, across) {
   const [a, b, c] = [0, 1, 2].map((k) => values.slice(19 * indices[3 * i + k] + 1).slice(0, 3));
   const middle = a.map((x, k) => 0.5 * (x + c[k]));
-  return [Math.hypot(...b.map((x, k) => x - middle[k])) / 1.45, Math.hypot(...c.map((x, k) => x - a[k])) / 1.75];
+  const [long, wide] = across === 1 ? [1.45, 1.75] : [2, 2];
+  return [Math.hypot(...b.map((x, k) => x - middle[k])) / long, Math.hypot(...c.map((x, k) => x - a[k])) / wide];
 }
 
 test("few cards are larger and show more leaves, none of which is twice its own size", () => {
@@ -114,7 +115,7 @@ test("few cards are larger and show more leaves, none of which is twice its own 
     const { mesh, across } = leafMesh(shape, placer.order, cards, most);
     let area = 0;
     for (let i = 0; i < mesh.indices.length / 3; i++) {
-      const [long, wide] = edges(mesh, i);
+      const [long, wide] = edges(mesh, i, across);
       area += long * wide;
       assert.ok(long / across < 2 * size, `${long / across} m of ${size} m`);
     }

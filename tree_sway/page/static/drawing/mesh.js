@@ -174,9 +174,9 @@ function cardCorners(species, size, number, isAlone, random) {
   const around = [0, 0, Math.sin(fan / 2), Math.cos(fan / 2)];
   multiply(around, 0, [0, Math.sin(hang / 2), 0, Math.cos(hang / 2)], 0, around);
   multiply(around, 0, [Math.sin(roll / 2), 0, 0, Math.cos(roll / 2)], 0, around);
-  // A triangle about a blade or a disc of leaves: what would be cut away costs time.
-  const half = 0.875 * (isAlone ? Math.min(1, slender) : isConifer ? 0.72 : 1);
-  return [[0, -half], [1.45, 0], [0, half]].map(([u, v]) => {
+  // A triangle about a blade, or about a square of leaves: what would be cut away costs time.
+  const [far, half] = isAlone ? [1.45, 0.875 * Math.min(1, slender)] : [2, isConifer ? 0.72 : 1];
+  return [[0, -half], [far, 0], [0, half]].map(([u, v]) => {
     const place = turned(around, [u * long, v * long, 0]);
     place[0] -= 0.5 * long;
     place[2] -= 0.1 * long * u;
