@@ -28,8 +28,8 @@ def run(*arguments: str) -> tuple[int, str]:
 
 
 def one_line(text: str) -> str:
-    """Return the only line of a text."""
-    lines = text.strip().splitlines()
+    """Return the only line of a text, but for what a busy machine is said to be at."""
+    lines = [line for line in text.strip().splitlines() if line != 'opening benjamina ...']
     assert len(lines) == 1, text
     return lines[0]
 
@@ -261,6 +261,7 @@ def test_names_outside_ascii_on_an_ascii_terminal(tmp_path: Path) -> None:
             'benjamina',
             '-o',
             'Bäume.glb',
+            '--quiet',
         ],
         cwd=tmp_path,
         env={**os.environ, 'PYTHONIOENCODING': 'ascii'},

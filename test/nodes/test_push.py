@@ -97,7 +97,7 @@ def test_the_example_pulls_and_lets_go(compose, domain, tree_file):
     environment = os.environ | {'ROS_DOMAIN_ID': str(domain)}
     strongest = 0.0
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
-        deadline = time.monotonic() + 30.0
+        deadline = time.monotonic() + 60.0
         while process.poll() is None and time.monotonic() < deadline:
             strongest = max(strongest, *solver.simulator.push_load[:1])
             with suppress(subprocess.TimeoutExpired):

@@ -44,12 +44,14 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def visit(browser_class: Any) -> Callable[..., None]:
     """Open a file offline and run a script; nothing but the file is asked for."""
 
-    def visited(path: Path, script: Callable[[Browser], Coroutine[Any, Any, None]]) -> None:
+    def visited(
+        path: Path, script: Callable[[Browser], Coroutine[Any, Any, None]], **size: Any
+    ) -> None:
         async def whole() -> None:
             async with browser_class() as browser:
                 offline = {'latency': 0, 'downloadThroughput': 0, 'uploadThroughput': 0}
                 await browser.call('Network.emulateNetworkConditions', offline=True, **offline)
-                await browser.open(path.as_uri())
+                await browser.open(path.as_uri(), **size)
                 await script(browser)
                 asked = [url for url in browser.requests if not url.startswith('data:')]
                 assert asked == [path.as_uri()]
@@ -105,7 +107,7 @@ def test_it_is_small_and_sways(file: Path, visit: Callable[..., None]) -> None:
             ' x - treeSway.scene.restPosition()[c])) < 1e-4'
         )
 
-    visit(file, script)
+    visit(file, script, scale=1.0)
 
 
 def test_a_table_of_wind_blows_and_another_file_is_refused(
