@@ -28,6 +28,7 @@ from tree_sway.core.branch.beam import (
     SlopeShape,
 )
 from tree_sway.core.branch.shapes import (
+    bent_by_weight,
     Carried,
     FEWER_TURNS,
     N_PAIRS,
@@ -43,6 +44,9 @@ _LEFT = 1e-4
 
 _FEW, _ONE_OF = 24, 50
 """Branches beside the stem with further shapes: at most this number, or one in this number."""
+
+_SMALL = 16
+"""Branches of a tree that all get further shapes, and one pair more."""
 
 _LIGHT = 1e-3
 """Share of the mass of a tree below which a branch with all it carries is never asked."""
@@ -111,6 +115,8 @@ class TreeBeams:
         Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
     root_compliance
         Root compliance of the stem, as `BranchBeam` takes it.
+    gravity
+        Over Young's modulus in [m/s^2/Pa]; 0 leaves weight out.
     known
         Other beams of the same wood, and which of them each branch is, -1 for none, (b,).
 
@@ -126,11 +132,13 @@ class TreeBeams:
         leaf_mass: Floats | None = None,
         leaf_area: Floats | None = None,
         root_compliance: float = 0.0,
+        gravity: float = 0.0,
         known: tuple[TreeBeams, Ints] | None = None,
     ) -> None:
         """Sum up what hangs on each branch."""
         n = tree.n_branches
         self._tree, self._density, self._shear_ratio = tree, density, shear_ratio
+        self._gravity = gravity
         self._leaf_mass = np.zeros(n) if leaf_mass is None else leaf_mass
         self._leaf_area = np.zeros(n) if leaf_area is None else leaf_area
         self._speed = np.ones(tree.n_segments) if speed_profile is None else speed_profile
@@ -246,10 +254,13 @@ class TreeBeams:
         choice
             ``none``, the ``stem``, all ``carriers`` of others, ``all``, or those ``needed``: the
             stem and the branches that bend most unlike their static fields when they are shaken,
-            until what is left of that energy is `_LEFT` of that of all branches.
+            until what is left of that energy is `_LEFT` of that of all branches; all of a tree of
+            `_SMALL` branches.
 
         """
         parent = self._tree.branch_parent
+        if choice == 'needed' and len(parent) <= _SMALL:
+            choice = 'all'
         if choice != 'needed':
             chosen = {
                 'none': (), 'stem': (0,), 'carriers': (0, *parent[1:].tolist()),
@@ -277,7 +288,10 @@ class TreeBeams:
         if key not in self._known:
             beam, drag_area, mass, children, _ = self._bare[branch]
             carried = self._sums.of(children[:n_carried])
-            curvatures = self._curvatures(branch, n_carried)
+            curvatures = bent_by_weight(
+                beam, mass, carried, self._curvatures(branch, n_carried), self._shear_ratio,
+                self._gravity,
+            )  # fmt: skip
             shape, fields = shape_fields(
                 beam, drag_area, mass, carried, curvatures, self._shear_ratio, n_pairs, n_turns
             )
@@ -288,7 +302,8 @@ class TreeBeams:
         """Pairs of a branch, and further fields by what turns about its chord."""
         if branch not in enriched:
             return 1, 0
-        return N_PAIRS, N_TURNS if self._tree.branch_parent[branch] < 0 else FEWER_TURNS
+        n_pairs = N_PAIRS + (self._tree.n_branches <= _SMALL)
+        return n_pairs, N_TURNS if self._tree.branch_parent[branch] < 0 else FEWER_TURNS
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:

@@ -47,6 +47,13 @@ may leave out.
 _NEGLIGIBLE = 1e-4
 """Share of a field that must be new."""
 
+_LIMP, _BLOCKS, _BUCKLED = 0.1, 3, 0.05
+"""
+Share of its stiffness that weight may change before a branch counts as limp, Krylov blocks by
+weight of such a branch, and the share of its stiffness that must be left.
+
+"""
+
 _UPWARD = 0.3
 _WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
 
@@ -158,6 +165,92 @@ def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
     across = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
     loads: Floats = (drag_area * exposure(beam)[:, None])[..., None, None] * across[:, None]
     return loads
+
+
+def bent_by_weight(
+    beam: BranchBeam,
+    mass: Floats,
+    carried: Carried,
+    curvatures: Floats,
+    shear_ratio: float,
+    gravity: float,
+) -> Floats:
+    """
+    Find how far loads bend a branch whose weight goes with it.
+
+    Weight that is moved sideways bends and twists a limp branch further, and straightens one that
+    hangs (second-order theory: Timoshenko & Gere, 1961). The answer is sought among the loads'
+    curvatures and those that follow from them by weight (Galerkin, in a block Krylov space).
+
+    Parameters
+    ----------
+    beam, mass, carried, shear_ratio
+        As of `shape_fields`.
+    curvatures
+        By the loads alone, (p, 5, k, 3).
+    gravity
+        Over Young's modulus in [m/s^2/Pa].
+
+    Returns
+    -------
+    Floats
+        Curvatures (p, 5, k, 3), those by the loads alone where weight matters little or would
+        buckle the branch by itself.
+
+    """
+    below, nodes, _ = beam.from_base(mass)
+    beyond = nodes[-1] - below
+    if len(carried.mass):
+        beyond += beam.child_lever[1] @ carried.mass
+    slenderness = gravity * float(beam.integral(beyond / beam.second_moment))
+    if slenderness * float(beam.node[-1]) < _LIMP:
+        return curvatures
+
+    def by_weight(vectors: Floats) -> Floats:
+        bent = np.moveaxis(_curvature_of(beam, vectors, shear_ratio), 0, 2)
+        moments = gravity * _moment_of_weight(beam, mass, carried, bent, beyond)
+        found = beam.curvature_in_space(moments, shear_ratio)
+        return _energy_vector(beam, np.moveaxis(found, 2, 0), shear_ratio)
+
+    loads = _energy_vector(beam, np.moveaxis(curvatures, 2, 0), shear_ratio)
+    blocks = [loads]
+    for _ in range(_BLOCKS):
+        block = by_weight(blocks[-1])
+        blocks.append(block / max(float(np.linalg.norm(block)), 1e-300))
+    basis = np.linalg.qr(np.vstack(blocks).T)[0]
+    left = np.eye(basis.shape[1]) - basis.T @ by_weight(basis.T).T
+    if np.linalg.eigvalsh(left + left.T)[0] < 2.0 * _BUCKLED:
+        return curvatures
+    amounts = np.linalg.solve(left, basis.T @ loads.T)
+    out: Floats = np.moveaxis(_curvature_of(beam, (basis @ amounts).T, shear_ratio), 0, 2)
+    return out
+
+
+def _moment_of_weight(
+    beam: BranchBeam, mass: Floats, carried: Carried, curvature: Floats, beyond: Floats
+) -> Floats:
+    """
+    Return the change of the internal moment by weight as a branch bends, for a gravity of 1.
+
+    It is that in the frame of the cross-section, which turns away from the moment at rest, of
+    curvatures (p, 5, k, 3); beyond each point is a mass in [kg], (p, 5).
+    """
+    slope, _, child_slope = beam.from_base(curvature)
+    moved, _, child_moved = beam.from_base(cross(slope, beam.tangent[:, None, None]))
+    moments = np.concatenate([moved, beam.point[:, :, None]], axis=2) * mass[..., None, None]
+    below, nodes, _ = beam.from_base(moments)
+    first = nodes[-1] - below
+    if len(carried.mass):
+        places = beam.child_point[: len(carried.mass)]
+        hung = carried.mass_moment - carried.mass[:, None] * places
+        weighed = carried.mass[:, None, None] * child_moved + cross(child_slope, hung[:, None])
+        handed = np.concatenate([weighed, carried.mass_moment[:, None]], axis=1)
+        first += np.tensordot(beam.child_lever[1], handed, axes=1)
+    first -= beyond[..., None, None] * np.concatenate([moved, beam.point[:, :, None]], axis=2)
+    down = np.array([0.0, 0.0, -1.0])
+    turning = cross(first, down)
+    out: Floats = turning[:, :, :-1] - cross(slope, turning[:, :, -1:])
+    return out
 
 
 def exposure(beam: BranchBeam) -> Floats:
@@ -284,21 +377,21 @@ def _inertial_wrench(
 
 
 def _energy_vector(beam: BranchBeam, curvature: Floats, shear_ratio: float) -> Floats:
-    """Curvature (p, 5, 3) as a vector whose square is twice its energy, for a modulus of 1."""
+    """Curvature (..., p, 5, 3) as vectors whose square is twice its energy, for a modulus of 1."""
     measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
     vector: Floats = measure * _twisted(beam, curvature, math.sqrt(2.0 * shear_ratio))
-    return vector.ravel()
+    return vector.reshape(*curvature.shape[:-3], -1)
 
 
 def _curvature_of(beam: BranchBeam, vector: Floats, shear_ratio: float) -> Floats:
-    """Return the curvature (p, 5, 3) of an `_energy_vector`."""
+    """Return the curvature (..., p, 5, 3) of an `_energy_vector`."""
     measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
-    curvature = vector.reshape(*beam.weight.shape, 3) / measure
+    curvature = vector.reshape(*vector.shape[:-1], *beam.weight.shape, 3) / measure
     return _twisted(beam, curvature, 1.0 / math.sqrt(2.0 * shear_ratio))
 
 
 def _twisted(beam: BranchBeam, curvature: Floats, scale: float) -> Floats:
-    """Curvature, (p, 5, 3), with its twist scaled by a factor."""
+    """Curvature, (..., p, 5, 3), with its twist scaled by a factor."""
     along = beam.tangent[:, None, :]
     about = (curvature * along).sum(axis=-1, keepdims=True) * along
     out: Floats = curvature + (scale - 1.0) * about
