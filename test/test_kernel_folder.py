@@ -71,10 +71,10 @@ def test_so_is_one_below_a_folder_that_others_may_write(
 @pytest.mark.skipif(not hasattr(os, 'getuid') or os.getuid() != 0, reason='chown needs root')
 def test_a_folder_of_another_user_is_refused(place: Path) -> None:
     os.chown(place, 12345, -1)
-    assert 'belongs to another user' in why_unsafe(place)
+    assert 'belongs to other users' in why_unsafe(place)
     inner = place / 'inner'
     inner.mkdir(mode=0o700)
-    assert 'belongs to another user' in why_unsafe(inner)
+    assert 'belongs to other users' in why_unsafe(inner)
 
 
 def test_a_link_to_the_folder_is_resolved_once(

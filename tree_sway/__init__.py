@@ -3,8 +3,8 @@
 """
 Trees that sway in measured wind: a reduced-order model of a tree, its files, its page. No ROS.
 
-The names below are all that most users need. Each is imported when it is first asked for, so that
-``import tree_sway`` itself costs nothing.
+The names below are all that most users need. Each is imported at its first use, so that ``import
+tree_sway`` itself costs nothing.
 
 Examples
 --------
@@ -82,5 +82,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """Return what may be asked for."""
+    """Return the public names."""
     return sorted({*globals(), *__all__})

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What can go wrong, as types: every error names what, where and the cure.
+Types of errors: each has what is wrong, where, and the cure.
 
 The command line and the nodes turn a `TreeSwayError` into one line and exit code 2. An error
 carries the offending values as attributes, so that a program can act on them without reading the
@@ -16,16 +16,16 @@ from contextlib import contextmanager
 
 class TreeSwayError(Exception):
     """
-    Root of every error that this package raises on purpose.
+    Root of all errors of this package.
 
     Parameters
     ----------
     what
-        What is wrong, with the offending value.
+        Description of the fault, with the offending value.
     where
-        The file, line, segment, branch or parameter it was found at; may be empty.
+        File, line, segment, branch or parameter of the fault; may be empty.
     cure
-        What to do about it; may be empty.
+        Action for the user; may be empty.
 
     """
 
@@ -39,17 +39,17 @@ class TreeSwayError(Exception):
         super().__init__(f'{place}{self.what}{advice}')
 
     def at(self, where: str) -> TreeSwayError:
-        """Return the same error with another place."""
+        """Return the error with a different place."""
         return type(self)(self.what, where=where, cure=self.cure)
 
     def inside(self, whole: str) -> TreeSwayError:
-        """Return the same error with its place as a part of a larger one."""
+        """Return the error with its place as a part of a larger one."""
         return self.at(f'{whole}: {self.where}' if self.where else whole)
 
 
 @contextmanager
 def inside(whole: str) -> Iterator[None]:
-    """Name the larger place in all that is wrong with its part."""
+    """Add the larger place to errors of its part."""
     try:
         yield
     except TreeSwayError as error:
@@ -57,11 +57,11 @@ def inside(whole: str) -> Iterator[None]:
 
 
 class TreeError(TreeSwayError):
-    """A tree that cannot be: cyclic, orphaned, zero length, not finite, buckling."""
+    """An impossible tree: cyclic, orphaned, zero length, not finite, buckling."""
 
 
 class FormatError(TreeSwayError):
-    """A file that does not hold what its format promises."""
+    """A file with contents that do not match its format."""
 
 
 class ParameterError(TreeSwayError):
@@ -69,15 +69,15 @@ class ParameterError(TreeSwayError):
 
 
 class SpeciesError(TreeSwayError):
-    """A species that no table knows."""
+    """An unknown species."""
 
 
 class StateError(TreeSwayError):
-    """A state that is of another tree, model or version, or none at all."""
+    """A state of a different tree, model or version, or no state."""
 
 
 class MissingDependencyError(TreeSwayError):
-    """An optional part, such as ROS itself, that is asked for and not there."""
+    """A missing optional part, such as ROS itself."""
 
 
 class TransportError(TreeSwayError):
@@ -85,14 +85,14 @@ class TransportError(TreeSwayError):
 
 
 def shown(text: str, most: int = 400) -> str:
-    """Return a text fit for a line: no control characters of a file, and cut in its middle."""
+    """Return a text for one line: without control characters, and cut in its middle."""
     if len(text) > most:
         text = f'{text[: most - 60]} ... {text[-55:]}'
     return ''.join(c if c.isprintable() else ' ' if c.isspace() else ascii(c)[1:-1] for c in text)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Ask whether the nearest of some names is meant; an empty text where none is near."""
+    """Return a question whether the nearest of some names is meant; empty if none is near."""
     from difflib import get_close_matches
 
     return ''.join(f"did you mean '{each}'?" for each in get_close_matches(name, [*known], n=1))

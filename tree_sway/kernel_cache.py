@@ -1,13 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Compiled kernels on disk, keyed by all the source that goes into them.
+Compiled kernels on disk, keyed by all their source.
 
-numba's own cache looks at the file of a function alone, so that after an edit the callers of a
+numba's own cache checks only the file of a function, so that after an edit the callers of a
 changed function run the old code. Here the key is a digest of all modules of the core, and of the
-package that a function belongs to if that is another, beside signature, processor, compiler
-version and flags. A kernel that cannot be read from disk is compiled again; one that cannot be
-written is stored in memory.
+package of a function if it is a different one, beside signature, processor, compiler version and
+flags. A kernel that cannot be read from disk is compiled again; one that cannot be written is
+stored in memory.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ ROOT = Path(__file__).resolve().parent
 """Folder of the package."""
 
 PLAIN_VARIABLE = 'TREE_SWAY_NO_NUMBA'
-"""Environment variable that leaves the compiler out, if it is set to anything but nothing or 0."""
+"""Environment variable that turns the compiler off, if it is neither empty nor 0."""
 
 OLDEST_COMPILER = (0, 59)
-"""Versions of numba before this one do not come to an end of these kernels."""
+"""Oldest version of numba that can compile these kernels."""
 
 
 @cache
 def why_no_compiler() -> str:
-    """Why kernels cannot be compiled here, in a few words; empty where they can."""
+    """Return why kernels cannot be compiled, in a few words; empty where they can."""
     if os.environ.get(PLAIN_VARIABLE, '0') not in ('', '0'):
         return f'{PLAIN_VARIABLE} is set'
     reason = _what_is_wrong_with_numba()
@@ -54,7 +54,7 @@ def _what_is_wrong_with_numba() -> str:
         found = import_module('numba').__version__
     except ModuleNotFoundError:
         return 'numba is not installed'
-    except Exception as error:  # whatever a broken installation raises
+    except Exception as error:  # any error of a broken installation
         return f'numba cannot be imported ({type(error).__name__})'
     numbers = tuple(int(part) for part in re.findall(r'\d+', found)[:2])
     if numbers < OLDEST_COMPILER:
@@ -64,19 +64,19 @@ def _what_is_wrong_with_numba() -> str:
 
 class KernelCache:
     """
-    What a numba dispatcher asks for compiled code, in place of numba's own cache.
+    Cache of compiled code for a numba dispatcher, in place of numba's own.
 
     Parameters
     ----------
     function
         The plain function.
     flags
-        Options it is compiled with; part of the key.
+        Compiler options; part of the key.
 
     """
 
     def __init__(self, function: Callable[..., Any], flags: str) -> None:
-        """Find out what the kernel is made from."""
+        """Find the source of the kernel."""
         numba = import_module('numba')
         self._codec = import_module('numba.core.caching').CompileResultCacheImpl
         self._dumps = import_module('numba.core.serialize').dumps
@@ -98,23 +98,23 @@ class KernelCache:
         return str(kernel_folder() or '')
 
     def enable(self) -> None:
-        """Read and write from now on."""
+        """Enable reading and writing."""
         self._enabled = True
 
     def disable(self) -> None:
-        """Neither read nor write from now on."""
+        """Disable reading and writing."""
         self._enabled = False
 
     def flush(self) -> None:
-        """Forget nothing: another source has another key."""
+        """Do nothing: changed source has a different key."""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return compiled code for a signature, or None without any that can be used."""
+        """Return compiled code for a signature, or None."""
         path = self._path(sig, target_context.codegen())
         if path is None or not path.is_file():
             return None
-        # What numba knows to compile from takes long to load; code that is compiled asks for none
-        # of it, and whatever compiles loads it then.
+        # The typing of numba takes long to load; compiled code does not need it, of it, and
+        # whatever compiles loads it then.
         import_module('numba.core.runtime').rtsys.initialize(target_context)
         try:
             payload = pickle.loads(read_own(path))
@@ -124,7 +124,7 @@ class KernelCache:
             return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Write compiled code, all of it or nothing."""
+        """Write compiled code atomically."""
         path = self._path(sig, data.codegen)
         if path is None or not self._codec.check_cachable(None, data):
             return
@@ -153,7 +153,7 @@ def source_digest(folder: Path) -> str:
 
 
 def _package(path: Path) -> Path:
-    """Folder of the package that a file belongs to."""
+    """Folder of the package of a file."""
     top = path.parent
     while (top.parent / '__init__.py').is_file():
         top = top.parent

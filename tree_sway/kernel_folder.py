@@ -1,11 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The folder of compiled kernels, which nobody but its user may write.
+The folder of compiled kernels, writable only by its user.
 
-A kernel is a pickle: whoever can put one there runs code as whoever reads it. So the folder and
-all above it belong to the user or to root, others may write into none of them (/tmp may be one of
-them, where nobody removes what is another's), and files are opened without following links.
+A kernel is a pickle: a program that can write one there runs code as the user who reads it. So the
+folder and all above it belong to the user or to root, others may not write into them (except /tmp,
+where users cannot remove files of others), and files are opened without following links.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ import time
 import warnings
 
 FOLDER_VARIABLE = 'TREE_SWAY_CACHE'
-"""Environment variable that names another folder for compiled kernels."""
+"""Environment variable for a different folder of compiled kernels."""
 
 UNUSED = 30 * 86_400.0
-"""A kernel that nobody has read for this long is removed [s]."""
+"""Time without a read after which a kernel is removed [s]."""
 
 _PART_LEFT = 3600.0
-"""A file that is written for this long has lost its writer [s]."""
+"""Age after which an unfinished file is removed [s]."""
 
 _BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
 @cache
 def kernel_folder() -> Path | None:
-    """Folder for compiled kernels: the one asked for, the user's, a temporary one; or None."""
+    """Return the folder of kernels: the given one, the user's, a temporary one; or None."""
     asked = os.environ.get(FOLDER_VARIABLE) or os.environ.get('NUMBA_CACHE_DIR')
     home = os.environ.get('XDG_CACHE_HOME') or os.path.expanduser('~/.cache')
     own = f'tree_sway-{os.getuid()}' if hasattr(os, 'getuid') else 'tree_sway'
@@ -61,13 +61,13 @@ def kernel_folder() -> Path | None:
 
 
 def why_unsafe(place: Path) -> str:
-    """Why others could put a file into a folder, and the cure; empty where they cannot."""
+    """Return why other users could write into a folder, and the cure; empty where they cannot."""
     if not hasattr(os, 'getuid'):
         return ''
     for folder in (place, *place.parents):
         found = folder.lstat()
         if found.st_uid not in (os.getuid(), 0) or (folder == place and not _is_mine(found)):
-            return f'{folder} belongs to another user; set {FOLDER_VARIABLE} to a folder of yours'
+            return f'{folder} belongs to other users; set {FOLDER_VARIABLE} to a folder of yours'
         is_shared = found.st_mode & stat.S_ISVTX and folder != place
         if found.st_mode & _BY_OTHERS and not is_shared:
             return f'others may write into {folder}; chmod go-w {folder}'
@@ -96,7 +96,7 @@ def read_own(path: Path) -> bytes:
 
 
 def write_own(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all; an `OSError` where that fails."""
+    """Write a file atomically; raises an `OSError` on failure."""
     handle, partial = tempfile.mkstemp(dir=path.parent, suffix='.part')
     try:
         with open(handle, 'wb') as file:
@@ -112,7 +112,7 @@ def _is_mine(found: os.stat_result) -> bool:
 
 
 def _clean(folder: Path) -> None:
-    """Remove kernels that nobody reads any more, and what broken off writers have left."""
+    """Remove kernels that are no longer read, and unfinished files."""
     for suffix, age in (('kernel', UNUSED), ('part', _PART_LEFT)):
         for path in folder.glob(f'*.{suffix}'):
             with suppress(OSError):
@@ -124,7 +124,7 @@ _said: set[str] = set()
 
 
 def complain(text: str) -> None:
-    """Say it on one line, once per process and cause."""
+    """Print it on one line, once per process and cause."""
     cause = text.split(':')[0]
     if cause not in _said:
         _said.add(cause)

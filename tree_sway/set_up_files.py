@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Set-ups of trees on disk, so that a solver that is started again sways sooner.
+Set-ups of trees on disk, so that a solver restarts faster.
 
-They lie beside the compiled kernels, in numpy's own format, which is read without pickles. A
-file is found by a digest of the tree, its species and settings, of the source of the core, of the
-versions of numpy and scipy, and of the machine; what cannot be read is made again, and what cannot
-be written is left.
+They are beside the compiled kernels, in numpy's own format, which is read without pickles. A file
+is found by a digest of the tree, its species and settings, of the source of the core, of the
+versions of numpy and scipy, and of the machine; an unreadable file is made again, and failures to
+write are ignored.
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ from tree_sway.kernel_cache import ROOT, source_digest
 from tree_sway.kernel_folder import kernel_folder, write_own
 
 MOST = 32
-"""Number of set-ups on disk; the oldest are removed first."""
+"""Largest number of set-ups on disk; the oldest are removed first."""
 
 MOST_BYTES = 1 << 29
-"""Bytes of all set-ups on disk together, some forty large trees."""
+"""Largest size of all set-ups on disk [bytes], some forty large trees."""
 
 LARGEST = 1 << 27
-"""Bytes of a set-up above which it is not written: all modes of a large tree are more."""
+"""Largest size of a set-up on disk [bytes]: all modes of a large tree are more."""
 
 _SUFFIX = '.set_up.npz'
 
 
 class SetUpFiles:
-    """What `SwaySimulator` and others take as ``cache``; in the folder of the kernels if None."""
+    """Set-ups as the ``cache`` of simulators; in the folder of the kernels if None."""
 
     def __init__(self, folder: Path | None = None) -> None:
         self._folder = folder
 
     def read(self, digest: str) -> dict[str, Any] | None:
-        """Arrays by name, as they were written under this digest; None if there are none."""
+        """Return the arrays by name that were written under a digest; None if there are none."""
         if (folder := self._folder or kernel_folder()) is None:
             return None
         key = _key(digest)
@@ -52,11 +52,11 @@ class SetUpFiles:
             with np.load(folder / f'{key}{_SUFFIX}') as file:
                 arrays = dict(file)
             return arrays if str(arrays.pop('key')) == key else None
-        except Exception:  # whatever numpy makes of a damaged file
+        except Exception:  # any error of numpy for a damaged file
             return None
 
     def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
-        """Write arrays, all of them or nothing, in place of the oldest set-ups."""
+        """Write arrays atomically, and remove the oldest set-ups."""
         size = sum(each.nbytes for each in arrays.values())
         if (folder := self._folder or kernel_folder()) is None or size > LARGEST:
             return
@@ -73,11 +73,11 @@ class SetUpFiles:
 
 
 SET_UPS = SetUpFiles()
-"""Where set-ups are written and found again unless another place is named."""
+"""Default place of set-ups."""
 
 
 def _key(digest: str) -> str:
-    """Name of a set-up, which it bears inside as well."""
+    """Name of a set-up, which is stored inside as well."""
     versions = np.__version__, scipy.__version__
     parts = digest, source_digest(ROOT / 'core'), platform.node(), *versions
     return hashlib.blake2b('\0'.join(parts).encode(), digest_size=16).hexdigest()

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Tables that come with the package: one CSV file each, beside the module that reads it."""
+"""Tables of the package: one CSV file each, beside the module that reads it."""
 
 from __future__ import annotations
 

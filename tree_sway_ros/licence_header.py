@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How files of this package name their licence, for `ament_copyright`, which knows long headers.
+Licence header of files of this package, for `ament_copyright`.
 
-It finds this by the entry point ``ament_copyright.license`` of setup.py, and nobody else needs it.
+It is found by the entry point ``ament_copyright.license`` of setup.py.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 
 class LicenceHeader(NamedTuple):
-    """A licence as `ament_copyright` asks for it: texts in files, and its SPDX name."""
+    """A licence for `ament_copyright`: texts in files, and its SPDX name."""
 
     name: str
     spdx: str

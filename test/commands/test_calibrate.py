@@ -188,4 +188,4 @@ def test_what_the_user_can_mend_is_one_line_and_exit_code_2(
 
 def test_only_yaml_can_carry_wood(tree: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(['calibrate', str(tree), '--frequency', '1', '-o', 'x.glb']) == 2
-    assert "'x.glb' cannot carry wood; write a .yaml file" in capsys.readouterr().err
+    assert "'x.glb' cannot store wood; write a .yaml file" in capsys.readouterr().err

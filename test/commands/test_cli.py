@@ -182,7 +182,7 @@ def test_a_file_that_is_there_is_not_written_over_in_silence(
     path = tmp_path / 'tree.glb'
     path.write_text('mine')
     assert cli.main([*command, '-o', str(path)]) == 2
-    assert 'is there already; name another file, or write over it' in capsys.readouterr().err
+    assert 'exists; give a different file, or write over it' in capsys.readouterr().err
     assert path.read_text() == 'mine'
 
 

@@ -52,7 +52,7 @@ def test_plot_refuses_a_wind_too_short_to_draw(
     path.write_text('time,u,v,w\n0,1,0,0\n0.01,1,0,0\n')
     arguments = ['plot', SEEDLING, '--wind', str(path), '-o', str(tmp_path / 'x.png')]
     assert cli.main(arguments) == 2
-    assert 'wind.csv: too short a wind' in capsys.readouterr().err
+    assert 'wind.csv: the wind is too short' in capsys.readouterr().err
 
 
 def test_plot_refuses_a_format_it_cannot_draw(
@@ -65,7 +65,7 @@ def test_plot_refuses_a_format_it_cannot_draw(
 
 @pytest.mark.parametrize(
     ('diameter', 'warning'),
-    [('0.18', 'cannot stand'), ('0.4', '')],
+    [('0.18', 'buckles in leaf'), ('0.4', '')],
 )
 def test_a_stem_that_its_crown_bends_over_is_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], diameter: str, warning: str
@@ -130,8 +130,8 @@ def test_a_tree_for_another_program(tmp_path: Path, suffix: str, start: str) -> 
     ('arguments', 'message'),
     [
         ([SEEDLING, '-o', 'tree.yaml', '--sway'], "--sway: 'tree.yaml' cannot sway; write a .glb"),
-        (['FOREST', '-o', 'trees.glb', '--sway', 'morph'], 'trees.glb: a forest to sway'),
-        (['FOREST', '-o', 'trees.usda'], 'trees.usda: a forest to sway in another program'),
+        (['FOREST', '-o', 'trees.glb', '--sway', 'morph'], 'trees.glb: a forest for'),
+        (['FOREST', '-o', 'trees.usda'], 'trees.usda: a forest for a different program'),
     ],
 )
 def test_what_cannot_sway(

@@ -66,7 +66,7 @@ def test_a_thousand_trees_of_one_kind_are_worked_out_once(
     assert cli.main(['info', str(tmp_path / 'hall.yaml'), '--json']) == 0
     assert time.monotonic() - began < 10.0
     assert len(asked) == 1
-    assert counted == [(1, 'working out the modes')]
+    assert counted == [(1, 'computing the modes')]
     facts = json.loads(capsys.readouterr().out)
     assert len(facts['trees']) == 1000
     slow, fast = facts['trees'][-1], facts['trees'][0]
@@ -103,7 +103,7 @@ def test_convert_names_objects_as_the_description(forest: str, tmp_path: Path) -
         (['convert', '{}', '-o', 'x.yaml'], 'a forest as the YAML of one tree'),
         (['info', '{}', '--modulus', '1e9'], 'modulus or density for a whole forest'),
         (['info', '{}', '--option', 'twig_diameter=1'], "option 'twig_diameter' for a forest"),
-        (['lab', 'compare', '{}'], 'a forest, where one tree is asked for'),
+        (['lab', 'compare', '{}'], 'a forest, where one tree is expected'),
         (['info', str(SCAN), '--option', 'up'], 'write NAME=VALUE'),
         (
             ['info', str(SCAN), '--option', 'twig_diameter=x'],

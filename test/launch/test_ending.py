@@ -35,7 +35,7 @@ def test_while_it_sways_and_serves_its_page(launched, tmp_path):
 def test_while_kernels_compile(launched, tmp_path):
     cold = {'TREE_SWAY_CACHE': str(tmp_path / 'cold')}
     run = launched('sway.launch.py', tree='goldcrest', environment=cold)
-    run.until('making the kernels ready')
+    run.until('preparing the kernels')
     assert_ended_well(run.end()[1])
 
 

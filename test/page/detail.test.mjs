@@ -64,7 +64,7 @@ function crowd() {
     place: [3 * (i % 50), 3 * Math.floor(i / 50), 0, 0, 1],
   }));
   const camera = new Camera();
-  camera.frame([0, 0, 0], [150, 60, 1]);
+  camera.home([[0, 0, 0], [150, 60, 1]]);
   return { levels, camera, detail: new Detail(trees, [levels], [0.7], 0) };
 }
 
@@ -100,10 +100,12 @@ test("far trees are coarse, near ones fine, those out of sight nothing, all with
   assert.equal(detail.level[0], 1, "the tree that is watched is placed whatever the budget");
 });
 
-/** Edges of a card along and across [m]. */
-function edges({ values, indices }, i) {
-  const [a, b, , c] = [0, 1, 2, 5].map((k) => values.slice(19 * indices[6 * i + k] + 1).slice(0, 3));
-  return [b, c].map((each) => Math.hypot(...each.map((x, k) => x - a[k])));
+/** Length and width of a card, about which its triangle is [m]. */
+function edges({ values, indices }, i, across) {
+  const [a, b, c] = [0, 1, 2].map((k) => values.slice(19 * indices[3 * i + k] + 1).slice(0, 3));
+  const middle = a.map((x, k) => 0.5 * (x + c[k]));
+  const [long, wide] = across === 1 ? [1.45, 1.75] : [2, 2];
+  return [Math.hypot(...b.map((x, k) => x - middle[k])) / long, Math.hypot(...c.map((x, k) => x - a[k])) / wide];
 }
 
 test("few cards are larger and show more leaves, none of which is twice its own size", () => {
@@ -112,8 +114,8 @@ test("few cards are larger and show more leaves, none of which is twice its own 
   const areas = [most, Math.round(most / 3), Math.round(most / 12), 6].map((cards) => {
     const { mesh, across } = leafMesh(shape, placer.order, cards, most);
     let area = 0;
-    for (let i = 0; i < mesh.indices.length / 6; i++) {
-      const [long, wide] = edges(mesh, i);
+    for (let i = 0; i < mesh.indices.length / 3; i++) {
+      const [long, wide] = edges(mesh, i, across);
       area += long * wide;
       assert.ok(long / across < 2 * size, `${long / across} m of ${size} m`);
     }

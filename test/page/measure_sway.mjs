@@ -20,12 +20,14 @@ export function madeUp(m) {
   add("motion", [m], singles(m, 0, 1e-3));
   add("levels", [A, N], Float32Array.from({ length: A * N }, (_, i) => (i % N) * 0.1));
   plain("harmonics", 21, m);
-  plain("standing", A, N, m);
+  plain("equilibrium", A, N, m);
   plain("amount", A, m);
   plain("load", A, N, m);
   plain("cross_damping", A, N, m);
   plain("state", m, 20);
   plain("correction", 20, m);
+  plain("branch_compliance", 20, 4);
+  plain("shape_compliance", 20, 20);
   for (const [name, rows] of [["turning", A * N], ["damping", A * N], ["lean", A], ["steep_turning", 2], ["steep_damping", 2]]) {
     add(`${name}_rows`, [rows, 2], singles(2 * rows, 1e-9));
     add(`${name}_shapes`, [2, m * m], Int16Array.from({ length: 2 * m * m }, () => 1000 * random()));
@@ -39,7 +41,7 @@ function timed(m, count) {
   const trees = Array.from({ length: count }, (_, i) => ({
     kind: 0, place: [4 * (i % 32), 4 * Math.floor(i / 32), 0, i, 1], firstCoordinate: 20 * i,
   }));
-  const description = { kinds: [{ nCoordinates: 20 }], trees, identity: "made up", nCoordinates: 20 * count };
+  const description = { kinds: [{ nCoordinates: 20, nKeys: 20 }], trees, identity: "made up", nCoordinates: 20 * count };
   const tables = { description: "made up", anemometer: null, ratio: 1, kinds: [table], speeds: new Float32Array(count).fill(1) };
   const stand = new Stand(tables, description);
   const steps = Math.max(1, Math.round(100 / count));

@@ -260,4 +260,4 @@ def test_a_scene_without_tables_comes_state_by_state(run: Run, server: PageServe
                 continue
             break
         assert client.solver is None
-        assert 'cannot be solved elsewhere' in client.problem
+        assert 'cannot be solved by clients' in client.problem

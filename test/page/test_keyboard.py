@@ -163,7 +163,7 @@ def test_a_branch_is_pulled_by_keys_and_let_go(
         for _ in range(8):
             await press(browser, 'ArrowRight')
         assert await browser.run(f'{pull}.segment') == await browser.run('treeSway.scene.followed')
-        away = f'Math.hypot(...{pull}.to.map((x, c) => x - treeSway.scene.restTip()[c]))'
+        away = f'Math.hypot(...{pull}.to.map((x, c) => x - treeSway.scene.restPosition()[c]))'
         assert await browser.run(away) > 0.05 * await browser.run('treeSway.scene.height')
         await browser.until(f'{pull}.force > 0.01')
         await press(browser, 'Enter')

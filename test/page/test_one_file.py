@@ -91,8 +91,8 @@ def test_it_is_small_and_sways(file: Path, visit: Callable[..., None]) -> None:
     async def script(browser: Browser) -> None:
         await browser.until(LIVE)
         before = picture(await browser.screenshot())
-        tip = await browser.run('treeSway.scene.tip()')
-        moved = 'Math.hypot(...treeSway.scene.tip().map((x, c) => x - {}[c])) > 0.002'
+        tip = await browser.run('treeSway.scene.position()')
+        moved = 'Math.hypot(...treeSway.scene.position().map((x, c) => x - {}[c])) > 0.002'
         await browser.until(moved.format(json.dumps(tip)))
         assert (np.abs(picture(await browser.screenshot()) - before) > 30).mean() > 1e-3
         await browser.run("treeSway.stream.set('mean_speed', 20)")
@@ -101,8 +101,8 @@ def test_it_is_small_and_sways(file: Path, visit: Callable[..., None]) -> None:
         await browser.until("treeSway.state === 'paused'")
         await browser.run("document.getElementById('control-reset').click()")
         await browser.until(
-            'Math.hypot(...treeSway.scene.tip().map((x, c) => x - treeSway.scene.restTip()[c]))'
-            ' < 1e-4'
+            'Math.hypot(...treeSway.scene.position().map((x, c) =>'
+            ' x - treeSway.scene.restPosition()[c])) < 1e-4'
         )
 
     visit(file, script)

@@ -228,7 +228,7 @@ def test_a_branch_is_picked_and_read(visit: Visit) -> None:
             )
         await browser.until('treeSway.scene.picked >= 0')
         picked = await browser.run('treeSway.scene.picked')
-        names = 'treeSway.scene.watchedKind.branch_names'
+        names = 'treeSway.scene.watched.kind.branch_names'
         assert await browser.run(name) == await browser.run(f'{names}[{picked}]')
         for key, then in ((']', picked + 1), ('[', picked)):
             await browser.run("document.getElementById('view').focus()")
@@ -251,7 +251,7 @@ def test_strain_and_moment_are_those_of_the_wood(visit: Visit) -> None:
         await browser.until('treeSway.scene.load().strain > 1e-6')
         strain, moment, radius, modulus = await browser.run(
             '(({strain, moment}, {arrays, modulus}) => [strain, moment, arrays.segment_radius[2],'
-            ' modulus])(treeSway.scene.load(), treeSway.scene.watchedKind)'
+            ' modulus])(treeSway.scene.load(), treeSway.scene.watched.kind)'
         )
         assert moment == pytest.approx(0.25 * np.pi * modulus * radius**3 * strain, rel=1e-5)
         await browser.run(
@@ -406,10 +406,10 @@ def test_a_stand_of_a_thousand_trees_is_drawn_and_moves(browser_class: Any) -> N
             assert await browser.run('treeSway.scene.description.nSegments') > 1_000_000
             assert await browser.run('treeSway.scene.detail.segments') < 60_000
             assert await browser.run('treeSway.scene.detail.level.every((each) => each >= 0)')
-            before = await browser.run('treeSway.scene.tip()')
+            before = await browser.run('treeSway.scene.position()')
             shot = picture(await browser.screenshot())
             await browser.until(
-                'Math.hypot(...treeSway.scene.tip().map((each, c) => each - '
+                'Math.hypot(...treeSway.scene.position().map((each, c) => each - '
                 f'{json.dumps(before)}[c])) > 0.02'
             )
             dark = (shot[100:].sum(axis=2) < 230).mean()  # of trees before a light ground

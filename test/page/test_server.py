@@ -165,8 +165,8 @@ def test_what_is_changed_is_applied_or_refused_with_the_reason() -> None:
             ('wind', float('nan'), 'out of range'),
             ('model', 'best', 'not among its choices; give branch | full'),
             ('model', 'full', "leaves on model 'full'; use 'branch'"),
-            ('gravity', 0.0, "nothing called 'gravity'"),
-            (None, None, 'nothing called'),
+            ('gravity', 0.0, "no control 'gravity'"),
+            (None, None, 'no control'),
         ):
             await viewer.say(set={'name': name, 'value': value})
             assert reason in (await viewer.text('refused'))['reason']
@@ -181,7 +181,7 @@ def test_what_is_changed_is_applied_or_refused_with_the_reason() -> None:
 def test_without_a_panel_nothing_can_be_changed(server: PageServer) -> None:
     async def script(viewer: Viewer) -> None:
         await viewer.say(set={'name': 'wind', 'value': 1.0})
-        assert "nothing called 'wind'" in (await viewer.text('refused'))['reason']
+        assert "no control 'wind'" in (await viewer.text('refused'))['reason']
 
     run(server, script)
 
@@ -211,7 +211,7 @@ def test_a_token_is_asked_for_elsewhere_than_here() -> None:
 
 
 def test_a_port_in_use_is_an_error_in_words(server: PageServer) -> None:
-    with pytest.raises(TransportError, match='another port'):
+    with pytest.raises(TransportError, match='different port'):
         PageServer(PageSettings(port=server.port)).start()
 
 

@@ -161,7 +161,7 @@ def test_plot_of_wind_and_tip(tmp_path: Path) -> None:
     tip = 0.02 * wind
     path = plot_wind_and_tip(time, wind, tip, tmp_path / 'plot.png', title='a pole')
     assert Image.open(path).width > 800
-    with pytest.raises(ParameterError, match='do not go together'):
+    with pytest.raises(ParameterError, match='do not match'):
         plot_wind_and_tip(time, wind[:-1], tip, path)
 
 

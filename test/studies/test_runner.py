@@ -211,7 +211,7 @@ def test_the_command_resumes_its_own_table_and_writes_over_no_other(tmp_path, ca
     words = ['study', str(study), '-o', str(table), '--workers', '1']
     table.write_text('of another kind')
     assert cli.main(words) == 2
-    assert 'is there already; name another file, or write over it' in capsys.readouterr().err
+    assert 'exists; give a different file, or write over it' in capsys.readouterr().err
     assert table.read_text() == 'of another kind'
     assert cli.main([*words, '--force']) == 0
     assert cli.main(words) == 0

@@ -3,6 +3,5 @@
 """
 The command line ``tree-sway``: one module per command.
 
-Arguments in, text or a file out.
-What a command computes lives lower.
+They convert arguments to text or a file. Computations are in rooms below.
 """

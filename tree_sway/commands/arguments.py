@@ -27,7 +27,7 @@ from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind
 from tree_sway.parameters.sway_parameters import SWAY
 
-OUTPUT_HELP = 'file to write; its suffix names the format: .yaml, .glb'
+OUTPUT_HELP = 'file to write; its suffix is that of the format: .yaml, .glb'
 _TREE = 'benjamina, goldcrest, broadleaf, or a file'
 _DRAWN = 1500
 
@@ -35,7 +35,7 @@ _DRAWN = 1500
 def add_tree_arguments(
     parser: argparse.ArgumentParser, *, forests: bool = False, default: str | None = None
 ) -> None:
-    """Add TREE, maybe a forest, and what its wood is; a default may not be left out."""
+    """Add TREE, or a forest, and its wood; TREE is required unless there is a default."""
     add = parser.add_argument
     kind = f'{_TREE}{" of a tree or a forest" * forests}'
     if default is None:
@@ -45,7 +45,7 @@ def add_tree_arguments(
     add('--seed', type=int, default=0, help='seed of a built-in tree (%(default)s)')
     add(
         '--species',
-        help=f"its wood, if not the tree's own: a file, or {', '.join(species_keys())}",
+        help=f"its species, if not the tree's own: a file, or {', '.join(species_keys())}",
     )
     add('--modulus', type=float, metavar='PA', help="Young's modulus of green wood [Pa]")
     add('--density', type=float, metavar='RHO', help='green density [kg/m^3]')
@@ -61,7 +61,7 @@ def add_tree_arguments(
 
 def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     """
-    Open the tree that the arguments name, with the wood they give it.
+    Open the tree of the arguments, with their wood.
 
     Raises a `TreeSwayError` for no such tree or species, a file that cannot be read, a modulus or
     density that is not positive.
@@ -74,9 +74,9 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
 
 def opened_scene(arguments: argparse.Namespace) -> Scene:
     """
-    Open the tree or the forest that the arguments name, with the wood they give it.
+    Open the tree or the forest of the arguments, with their wood.
 
-    Raises as `opened_tree`, and for values of one tree where there are several.
+    Errors are those of `opened_tree`, and values of one tree for several.
     """
     with waiting(f'opening {arguments.tree}'):
         scene = open_scene(arguments.tree, arguments.seed, **_options(arguments))
@@ -85,7 +85,7 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
         raise ParameterError(
             'modulus or density for a whole forest',
             where=scene.source,
-            cure='say --species, or give trees files with wood of their own',
+            cure='use --species, or files of trees with their own wood',
         )
     if not wood and not arguments.species:
         return scene
@@ -94,7 +94,7 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
 
 
 def _wood(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Values in place of those of the species."""
+    """Values that replace those of the species."""
     given = {name: getattr(arguments, name) for name in ('modulus', 'density')}
     changed = {name: value for name, value in given.items() if value is not None}
     for name, value in changed.items():
@@ -113,30 +113,30 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def add_leaves_argument(parser: argparse.ArgumentParser, default: str = 'auto') -> None:
-    """Add the choice of leaves; ``--leaves`` alone is on."""
+    """Add the choice of leaves; ``--leaves`` without a value is on."""
     parser.add_argument(
         '--leaves',
         nargs='?',
         choices=tuple(LEAVES),
         const='on',
         default=default,
-        help='in leaf; auto is in leaf where the species is evergreen; of a forest, those trees '
-        'of which its file does not say (%(default)s)',
+        help='in leaf; auto is in leaf where the species is evergreen; in a forest, those trees '
+        'whose leaves its file does not determine (%(default)s)',
     )
 
 
 def chosen_leaves(arguments: argparse.Namespace) -> bool | None:
-    """Whether trees bear leaves; None leaves it to their species."""
+    """Whether trees bear leaves; None is by their species."""
     return LEAVES[arguments.leaves]
 
 
 def drawn_leaves(scene: Scene, arguments: argparse.Namespace) -> LeafClusters | None:
-    """Clusters to draw, the same in every picture of a tree; None if there are none."""
+    """Return clusters to draw, the same in every picture of a tree; None if there are none."""
     return scene.leaves(chosen_leaves(arguments), _DRAWN)
 
 
 def add_wind_arguments(parser: argparse.ArgumentParser, record: str = '') -> None:
-    """Add the record of a wind, and the speed of a simulated one; `record` is the first's help."""
+    """Add a wind record, and the speed of a simulated one; `record` is the help of the first."""
     record = record or 'a wind record; simulated if left out'
     parser.add_argument('--wind', metavar='FILE', help=record)
     options = (
@@ -150,7 +150,7 @@ def add_wind_arguments(parser: argparse.ArgumentParser, record: str = '') -> Non
 
 
 def opened_record(arguments: argparse.Namespace) -> WindRecord:
-    """Read the record that the arguments name, as they say; print what was assumed or refused."""
+    """Read the record of the arguments; print assumptions and refused rows."""
     options: dict[str, Any] = {**reader_options(arguments.wind_option)}
     record = read_wind(arguments.wind, **options)
     refused = f'{record.refused} rows refused; {record.first_refused}' if record.refused else ''
@@ -160,7 +160,7 @@ def opened_record(arguments: argparse.Namespace) -> WindRecord:
 
 
 def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
-    """Open the record that arguments name, over and over, or simulated wind of their speed."""
+    """Open the record of the arguments, repeated, or simulated wind of their speed."""
     if arguments.wind is not None:
         record = opened_record(arguments)
         return RecordedWind(record.time, record.velocity)
@@ -168,7 +168,7 @@ def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
 
 
 def add_sway_arguments(parser: argparse.ArgumentParser, record: str = '') -> None:
-    """Add a scene, a wind, a model and leaves, which what is drawn has unless they are off."""
+    """Add a scene, a wind, a model and leaves, which are drawn by default."""
     add_tree_arguments(parser, forests=True, default='benjamina')
     add_wind_arguments(parser, record)
     add_model_argument(parser)
@@ -176,7 +176,7 @@ def add_sway_arguments(parser: argparse.ArgumentParser, record: str = '') -> Non
 
 
 def add_model_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the model of the sway, of all that there are."""
+    """Add the model of the sway."""
     parser.add_argument(
         '--model',
         type=model_of,
@@ -189,28 +189,28 @@ def add_model_argument(parser: argparse.ArgumentParser) -> None:
 def add_output_arguments(parser: argparse.ArgumentParser, what: str) -> None:
     """Add ``--output`` and ``--force``; `what` is the help of the first."""
     parser.add_argument('-o', '--output', required=True, metavar='FILE', help=what)
-    parser.add_argument('--force', action='store_true', help='write over a file that is there')
+    parser.add_argument('--force', action='store_true', help='write over an existing file')
 
 
 def output_path(arguments: argparse.Namespace) -> str:
-    """File to write; a `ParameterError` if it is there already and ``--force`` is not given."""
+    """File to write; a `ParameterError` if it exists and ``--force`` is not given."""
     if not arguments.force:
         refuse_overwriting(arguments.output, '--output')
     return str(arguments.output)
 
 
 def refuse_overwriting(path: str | Path, option: str) -> None:
-    """Raise a `ParameterError` if a file that an option names is there already."""
+    """Raise a `ParameterError` if a file of an option exists."""
     if Path(path).is_file():
         raise ParameterError(
-            f"'{path}' is there already",
+            f"'{path}' exists",
             where=option,
-            cure='name another file, or write over it with --force',
+            cure='give a different file, or write over it with --force',
         )
 
 
 def write_tree_file(path: str, tree: Tree, species: Species | None) -> None:
-    """Write a tree and say what was written."""
+    """Write a tree and print its file."""
     write_tree(path, tree, species)
     print(what_was_written(path, tree))
 

@@ -34,7 +34,7 @@ from tree_sway.files.wind.sway_table import read_csv_sway, SwayRecord
 
 _YAML = ('.yaml', '.yml')
 _PERIOD = 1.0
-"""Time between two looks at what a phone has measured [s]."""
+"""Interval of reading the measurement of a phone [s]."""
 _WOOD = (0.3e9, 200e9)
 """A modulus outside of this [Pa] is ten times beyond any green wood's."""
 
@@ -57,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='CSV of the sway instead: time and x, y or tilt_x or ax ...; or http://... of a '
         'phone that measures with phyphox',
     )
-    add('--seconds', type=float, default=0.0, metavar='N', help='of a phone: until it has as much')
+    add('--seconds', type=float, default=0.0, metavar='N', help='duration, of a phone [s]')
     add(
         '--branch', metavar='NAME', help='branch that was measured, such as stem; the slowest sway'
     )
@@ -66,7 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         nargs=2,
         metavar=('LOW', 'HIGH'),
-        help="where in the record's spectrum to look for the sway [Hz]",
+        help="band of the record's spectrum in which to search the sway [Hz]",
     )
     add_output_arguments(parser, 'tree with the fitted wood to write: .yaml')
 
@@ -107,7 +107,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    """Refuse what cannot work before anything slow is done."""
+    """Check the arguments before slow work."""
     if (arguments.frequency is None) == (arguments.record is None):
         given = 'both' if arguments.record is not None else 'neither'
         raise ParameterError(f'{given} of --frequency and --record', cure='give one of the two')
@@ -119,12 +119,12 @@ def _check(arguments: argparse.Namespace) -> None:
         within('--damping', arguments.damping, 0.0, 1.0)
     if Path(arguments.output).suffix.lower() not in _YAML:
         raise ParameterError(
-            f"'{arguments.output}' cannot carry wood", where='--output', cure='write a .yaml file'
+            f"'{arguments.output}' cannot store wood", where='--output', cure='write a .yaml file'
         )
 
 
 def _measured(arguments: argparse.Namespace) -> FreeDecay:
-    """Return what the record says, and print it."""
+    """Return the result of the record, and print it."""
     record = _recorded(arguments.record, arguments.seconds)
     band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
     with inside(record.source):
@@ -152,13 +152,13 @@ def _recorded(source: str, seconds: float) -> SwayRecord:
             if measured >= seconds:
                 return record
             if measured == before:
-                what = f'{measured:.1f} s are measured, and it goes on no more'
+                what = f'{measured:.1f} s are measured, and the measurement has stopped'
                 raise TransportError(what, where=source, cure='start the experiment in phyphox')
             time.sleep(_PERIOD)
 
 
 def _summary(before: Species, fitted: Calibration, error: float, *, in_leaf: bool) -> list[str]:
-    """Say what changed, for people; `error` is the frequency's relative standard error."""
+    """Print the changes; `error` is the relative standard error of the frequency."""
     after, table = fitted.species, species_named(before.key)
     was_stable = fitted.frequency_before is not None
     was = f'{fitted.frequency_before:.4g} Hz' if was_stable else 'could not stand'

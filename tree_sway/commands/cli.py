@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The command line ``tree-sway``: one module per command, imported when it is asked for.
+The command line ``tree-sway``: one module per command, imported when needed.
 
-A module of a command has ``add_arguments(parser)`` and ``run(arguments) -> int``. Whatever the
-user can mend ends as one line on standard error and exit code 2.
+A module of a command has ``add_arguments(parser)`` and ``run(arguments) -> int``. Errors that the
+user can correct are one line on standard error and exit code 2.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ _ELSEWHERE = {
     **dict.fromkeys(('demo', 'listen', 'record', 'relay'), _ROS_CURE),
     'lab': 'it belongs to the laboratory: pip install ./lab in the checkout',
 }
-#: The extra of the package that brings a module: what is not here is in no extra, and no advice
-#: is made from the name of a module, which may be that of another project.
+#: Extra of the package with a module; a module that is not listed is in no extra, and no advice
+#: is made from the name of a module, which may be that of a different project.
 EXTRAS = {
     **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
     **dict.fromkeys(('cryptography', 'dask', 'distributed', 'pyarrow'), 'study'),
@@ -52,12 +52,12 @@ _UNRECOGNIZED = re.compile(r'unrecognized arguments: (?:\S+ )*?(--[\w-]+)')
 
 
 class _OneLineParser(argparse.ArgumentParser):
-    """Errors on one line, without the usage before it, and with the name that may be meant."""
+    """Parser whose errors are one line, without usage, and with the nearest name."""
 
     chosen: argparse.ArgumentParser | None = None
 
     def error(self, message: str) -> NoReturn:
-        """Print what is wrong and where to read more, and exit."""
+        """Print the error and where to read more, and exit."""
         guess = ''
         if wrong := _CHOICE.search(message):
             guess = nearest(wrong[1], re.findall(r'[\w.-]+', wrong[2]))
@@ -73,7 +73,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     Run a command by its arguments, `sys.argv` if None.
 
-    The exit code is 0, or 2 if the user can mend it, with one line that says how.
+    The exit code is 0, or 2 for an error that the user can correct, with one line on how.
     """
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning  # type: ignore[assignment]
@@ -88,7 +88,7 @@ def _main(given: list[str]) -> int:
         return _fail(command, _ELSEWHERE[command])
     try:
         arguments = _parser(command, table, group).parse_args(given[bool(group) :])
-        # Without notes and progress: errors are printed after this ends.
+        # This is without notes and progress: errors are printed afterwards.
         quiet = contextlib.redirect_stderr(io.StringIO()) if arguments.quiet else None
         with quiet or contextlib.nullcontext():
             code = int(_module(table[arguments.command]).run(arguments))
@@ -102,7 +102,7 @@ def _main(given: list[str]) -> int:
             raise
         return _fail(command, f'{error}; {_cure_of_missing(str(error.name))}')
     except BrokenPipeError:
-        # Whoever read our output has gone; keep Python from complaining when it flushes.
+        # The reader of our output has ended: prevent an error when Python flushes.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
@@ -113,13 +113,13 @@ def _main(given: list[str]) -> int:
 
 
 def _show_warning(message: Warning | str, *_where: Any) -> None:
-    """Say what a library warns of on one line, without its line of code."""
+    """Print warnings of libraries on one line, without the line of code."""
     if sys.stderr is not None:
         print(f'note: {" ".join(str(message).split())}', file=sys.stderr)
 
 
 def _write_any_name() -> None:
-    """Have names that a terminal has no letters for printed with escapes, instead of a crash."""
+    """Print characters that a terminal lacks with escapes, instead of a crash."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors='backslashreplace')
@@ -131,20 +131,20 @@ def _fail(command: str, text: str) -> int:
 
 
 def _cure_of_missing(module: str) -> str:
-    """Say what brings a module that is missing, by our own table of extras."""
+    """Return how to install a missing module, by our table of extras."""
     package = module.partition('.')[0]
     if _OF_ROS.fullmatch(package):
         return _ROS_CURE
     if package in EXTRAS:
         return f'install it: pip install "tree_sway_ros[{EXTRAS[package]}]"'
-    return 'the installation is not whole: install tree_sway_ros again'
+    return 'the installation is incomplete: install tree_sway_ros again'
 
 
 def _table(first: str) -> tuple[dict[str, Command], str]:
-    """Return the commands among which the first word chooses, and the name of their group."""
+    """Return the commands for the first word, and the name of their group."""
     table = dict(COMMANDS)
     if first in table:
-        return table, ''  # entry points are not looked for where they are not needed
+        return table, ''  # entry points are searched only when needed
     for point in entry_points(group=GROUP):
         if point.name == MERGED:
             table.update(point.load())
@@ -158,7 +158,7 @@ def _module(command: Command) -> Any:
 
 
 def _parser(chosen: str, table: dict[str, Command], group: str) -> _OneLineParser:
-    """Parse all commands, but only the chosen one's arguments, as importing others takes long."""
+    """Parse all commands, but only the arguments of the given one, as imports take long."""
     program = f'tree-sway {group}'.strip()
     parser = _OneLineParser(prog=program, description='Trees that sway in measured wind.')
     version = importlib.import_module('tree_sway').__version__
@@ -171,7 +171,7 @@ def _parser(chosen: str, table: dict[str, Command], group: str) -> _OneLineParse
             description=f'{command.summary[0].upper()}{command.summary[1:]}.',
             epilog=f'example: {program} {command.example}',
         )
-        sub.add_argument('-q', '--quiet', action='store_true', help='no notes, errors alone')
+        sub.add_argument('-q', '--quiet', action='store_true', help='no notes, only errors')
         if name == chosen:
             _module(command).add_arguments(sub)
             parser.chosen = sub

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A command of ``tree-sway``, as its help shows it."""
+"""A command of ``tree-sway`` in the help."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tree_sway.tables import table_beside
 
 
 class Command(NamedTuple):
-    """What a command does, an example of it, and the module that runs it."""
+    """Summary, example and module of a command."""
 
     summary: str
     example: str

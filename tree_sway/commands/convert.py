@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""``tree-sway convert``: any tree this package reads, written in a format that others read."""
+"""``tree-sway convert``: any tree that this package reads, written for other programs."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs='?',
         choices=('skin', 'morph'),
         const='skin',
-        help='how a .glb is to sway: by a joint per segment, set from segment_poses, or '
+        help='motion of a .glb: by a joint per segment, set from segment_poses, or '
         "by some 20 weights, set from the tree's state (skin)",
     )
 
@@ -92,10 +92,10 @@ def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
 
 
 def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> None:
-    """Write one tree with what it needs to sway in another program."""
+    """Write one tree for swaying in a different program."""
     if not scene.is_one_tree:
         raise ParameterError(
-            'a forest to sway in another program',
+            'a forest for a different program',
             where=arguments.output,
             cure='convert its trees one by one',
         )

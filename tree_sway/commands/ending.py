@@ -1,12 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Asked to end, a process ends soon, whatever it is doing.
+A process that is asked to end ends soon, during any work.
 
-Ctrl-C and SIGTERM set a flag that a loop looks at, or break into what runs before there is a loop.
-Python looks at signals between two of its own instructions, and the compiler of the kernels may
-not come back to one for seconds; so a thread watches as well, and ends the process when the time
-is over.
+Ctrl-C and SIGTERM set a flag that a loop checks, or interrupt work before the loop. Python handles
+signals between two of its own instructions, and the compiler of the kernels may run for seconds
+without one; so a thread checks as well, and ends the process after a timeout.
 """
 
 from __future__ import annotations
@@ -19,20 +18,19 @@ import threading
 from types import FrameType
 
 LONGEST = 1.5
-"""From the signal to the end of a process that runs [s], if it does not end by itself before."""
+"""Time from the signal to the end of a running process [s], if it does not end before."""
 SHORTEST = 0.3
-"""The same of a process that only starts: nothing is open that would have to be closed."""
+"""The same time while a process starts, with nothing open that must be closed."""
 _GRACE = 0.2
-"""Time [s] after which a process ends that even its threads cannot end."""
+"""Time [s] after which the operating system ends a process."""
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Ending:
     """
-    A context that hears SIGINT and SIGTERM; in the main thread only, elsewhere it does nothing.
+    A context that handles SIGINT and SIGTERM, in the main thread only.
 
-    Once asked to end, nothing that is raised leaves it: what is broken off may complain of
-    anything.
+    After a signal no exception leaves it, as interrupted work may raise any.
     """
 
     def __init__(self) -> None:
@@ -44,7 +42,7 @@ class Ending:
         self._before: list[object] = []
 
     def look(self) -> None:
-        """From now on a loop looks at `is_asked`: break into nothing any more."""
+        """From now on a loop checks `is_asked`: do not interrupt any more."""
         self._breaks_in = False
         self.limit = LONGEST
         if self.is_asked:
@@ -65,7 +63,7 @@ class Ending:
             return False
         self._over.set()
         for number, before in zip(_SIGNALS, self._before, strict=True):
-            # What was asked to end stays deaf: a second Ctrl-C amid the last lines is no error.
+            # Further signals are ignored: a second Ctrl-C during the end is not an error.
             after = signal.SIG_IGN if self.is_asked else before
             signal.signal(number, after)  # type: ignore[arg-type]
         faulthandler.cancel_dump_traceback_later()
@@ -79,7 +77,7 @@ class Ending:
         if is_first:
             self._end_by_all_means()
         if is_first and self._breaks_in:
-            sys.unraisablehook = lambda _args: None  # nor does what cannot raise complain
+            sys.unraisablehook = lambda _args: None  # nor print unraisable exceptions
             raise KeyboardInterrupt
 
     def _end_by_all_means(self) -> None:

@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='M',
         help='at breast height [m]; from the height if left out',
     )
-    add('--seed', type=int, default=0, help='another seed, another tree (%(default)s)')
+    add('--seed', type=int, default=0, help='seed of the tree (%(default)s)')
     add_output_arguments(parser, OUTPUT_HELP)
 
 
@@ -58,6 +58,6 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         TreeReductions(tree, species, Settings(in_leaf=True)).natural_frequencies(1)
     except TreeError as error:
-        print(f'warning: in leaf it cannot stand: {error}', file=sys.stderr)
+        print(f'warning: it buckles in leaf: {error}', file=sys.stderr)
     write_tree_file(output, tree, species)
     return 0

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""``tree-sway info``: what the trees of a scene are, and how they would sway."""
+"""``tree-sway info``: facts on the trees of a scene, and their sway."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from tree_sway.parameters.sway_parameters import SWAY
 _BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
 _SUMS = ('branches', 'segments', 'volume', 'mass')
 _POWERS = {'height': 1, 'volume': 3, 'mass': 3}
-"""How a figure goes with the size of a tree."""
+"""Scaling of figures with the size of a tree."""
 _MOST_LINES = 40
 
 
@@ -43,15 +43,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add_tree_arguments(parser, forests=True)
     add_leaves_argument(parser)
-    add('--gravity', choices=('on', 'off'), default='on', help='its own weight (%(default)s)')
-    add('--count', type=int, default=10, metavar='N', help='how many frequencies (%(default)s)')
-    speed = 'mean of a gusty wind [m/s] in which to find the share of its strength that it uses'
+    add('--gravity', choices=('on', 'off'), default='on', help='weight of the tree (%(default)s)')
+    add('--count', type=int, default=10, metavar='N', help='number of frequencies (%(default)s)')
+    speed = 'mean of a gusty wind [m/s] for the used share of its strength'
     add('--speed', type=float, metavar='U', help=speed)
     add('--json', action='store_true', help='for programs, SI units')
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print what the trees are."""
+    """Print the facts on the trees."""
     within('--count', arguments.count, 1, 1e6)
     if arguments.speed is not None:
         SWAY['mean_speed'].checked(arguments.speed)
@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
     kinds = scene.kinds
     if scene.is_one_tree:
         kinds = [kinds[0]._replace(tree=scene.tree)]
-    found = [_kind_facts(kind, arguments) for kind in bar(kinds, 'working out the modes')]
+    found = [_kind_facts(kind, arguments) for kind in bar(kinds, 'computing the modes')]
     facts = {'name': scene.name, 'source': scene.source} | (
         found[0] if scene.is_one_tree else _sums(scene, found)
     )
@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
-    """Gather what there is to say about a kind of trees, in SI units, fit for JSON."""
+    """Collect the facts on a kind of trees, in SI units, for JSON."""
     tree, species, count = kind.tree, kind.species, arguments.count
     settings = Settings(
         gravity=_GRAVITY if arguments.gravity == 'on' else 0.0,
@@ -82,15 +82,15 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
     except TreeError as error:
         if settings.gravity == 0.0:
             raise
-        # A scan full of noise may not stand; its size is asked for all the same.
+        # A noisy scan may buckle; its size is still of interest.
         settings = replace(settings, gravity=0.0)
-        notes.append(f'modes without its own weight, as it cannot stand: {error}')
+        notes.append(f'modes without its own weight, as it buckles: {error}')
         modes, mass = mode_table(tree, species, settings, count)
     used = None
     if arguments.speed is not None:
         rng = np.random.default_rng(0)
         (used,) = Rig(kind, settings).strength_curve([arguments.speed], rng=rng)
-        left_out = 'rot, wet soil and sheltering are left out'
+        left_out = 'rot, wet soil and sheltering are not included'
         notes.append(f'in gusts of a mean wind of {arguments.speed:g} m/s, {used}; {left_out}')
     frequencies = [mode['frequency'] for mode in modes]
     slow = sway_oddity(tree, species, min(frequencies)) if modes else None
@@ -130,7 +130,7 @@ def _breast_height_diameter(tree: Tree) -> float | None:
 
 
 def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:
-    """Gather what several trees are; each is as its kind, scaled as the solver scales it."""
+    """Collect the facts on several trees, each scaled from its kind as in the solver."""
     trees = []
     for each, number in zip(scene.trees, scene.kind_numbers.tolist(), strict=True):
         facts, k = kinds[number], each.scale
@@ -156,7 +156,7 @@ def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _text(facts: dict[str, Any]) -> str:
-    """Lay the facts out for people."""
+    """Format the facts as text."""
     lines = [f'{facts["name"]}, from {facts["source"]}']
     lines += _forest_lines(facts) if 'trees' in facts else _tree_lines(facts)
     lines += [f'  note       {note}' for note in facts['notes']]

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Natural modes for people: frequency, damping, and the branch that bends most."""
+"""Table of natural modes: frequency, damping, and the branch that bends most."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def mode_table(
     branch that bends most.
     """
     whole = TreeReductions(tree, species, settings)
-    modes = whole.natural_modes(min(count, whole.coupled.reduction.n_coordinates))
-    reduced = whole.coupled
+    modes = whole.natural_modes(min(count, whole.with_subtrees.reduction.n_coordinates))
+    reduced = whole.with_subtrees
     owner = np.repeat(reduced.branch, reduced.branches['n_coordinates'])
     rows = [
         {

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Where and to whom a command serves the page: the same arguments in every command that does."""
+"""Arguments of commands that serve the page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _PORT = 8765
 
 
 def add_page_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add where and to whom a page is served."""
+    """Add the arguments of the page's server."""
     add = parser.add_argument
     add('--open', action='store_true', help='open the page in the browser')
     add('--port', type=int, help=f'of the page ({_PORT}, or a free one if that is taken)')
@@ -27,7 +27,7 @@ def add_page_arguments(parser: argparse.ArgumentParser) -> None:
         '--token-file',
         default='',
         metavar='FILE',
-        help='what viewers must know: a file with a token, which only its owner may read',
+        help='token of viewers: a file that only its owner may read',
     )
     add('--certificate', default='', metavar='PEM', help='for https')
     add(

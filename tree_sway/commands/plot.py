@@ -57,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Draw, and say where the picture is."""
+    """Draw, and print the name of the picture."""
     within('--seconds', arguments.seconds, 0.0, 3600.0, 's', above=True)
     if arguments.speed is None:
         arguments.speed = 30.0 if arguments.strength else 10.0 if arguments.portrait else 6.0
@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _rows_of_study(path: str) -> list[dict[str, str]]:
-    """Rows of the table that a study wrote; none of any other file."""
+    """Rows of the table of a study; none of other files."""
     table = Path(path).expanduser()
     if table.suffix != '.csv' or not table.is_file():
         return []
@@ -105,14 +105,14 @@ def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
 
 
 def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
-    """Simulate what is drawn; a scan too noisy to stand has no weight."""
+    """Simulate the motion to draw; a noisy scan that buckles has no weight."""
     model: dict[str, Any] = {'model': arguments.model, 'in_leaf': chosen_leaves(arguments)}
     try:
         with waiting('setting up the tree'):
             return scene.simulator(**model)
     except TreeError as error:
         light = scene.simulator(**model, gravity=0.0)
-        print(f'note: without its own weight, as it cannot stand: {error}', file=sys.stderr)
+        print(f'note: without its own weight, as it buckles: {error}', file=sys.stderr)
         return light
 
 
@@ -138,7 +138,7 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     else:
         source = f'simulated westerly, mean {arguments.speed:g} m/s'
     if seconds < 2.0 / _RATE:
-        raise ParameterError('too short a wind to draw', where=source, cure='give a longer one')
+        raise ParameterError('the wind is too short', where=source, cure='give a longer one')
     simulator = _simulator(scene, arguments)
     frames = swaying(simulator, wind, _RATE, seconds)
     shown = [(simulator.wind.copy(), simulator.tip_displacement.copy()) for _ in frames]

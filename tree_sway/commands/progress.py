@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What a command shows while it works: a bar for what is counted, a line for what is not.
+Progress of commands: a bar for counted work, a line for other work.
 
-Everything goes to standard error. Bars are tqdm's, on terminals alone; without tqdm, and where
-there is no terminal, a line says what is done.
+All output goes to standard error. Bars are those of tqdm, only on terminals; without tqdm or
+terminal there is a line.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from typing import TypeVar
 T = TypeVar('T')
 
 PATIENCE = 2.0
-"""A wait as long as this is reported [s]."""
+"""Shortest wait that is reported [s]."""
 
 
 def bar(items: Collection[T], what: str) -> Iterator[T]:
-    """Yield the items, and show how many of them are done, and of what: "MuJoCo", "settling"."""
+    """Yield the items, and show their progress under a label: "MuJoCo", "settling"."""
     if sys.stderr is not None and sys.stderr.isatty():
         with suppress(ImportError):
             from tqdm import tqdm
@@ -35,7 +35,7 @@ def bar(items: Collection[T], what: str) -> Iterator[T]:
 
 @contextmanager
 def waiting(what: str) -> Iterator[None]:
-    """Say what is done, if the work inside takes longer than people wait without a word."""
+    """Print a label, if the work inside takes longer than a short wait."""
     timer = threading.Timer(PATIENCE, _report, [f'{what} ...'])
     timer.daemon = True
     timer.start()

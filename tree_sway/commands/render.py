@@ -23,7 +23,7 @@ from tree_sway.core.checks import within
 from tree_sway.page.film import browser, page_pictures
 
 _LEAVES = 2800
-"""Of all leaves: a frame must take less time than it shows."""
+"""Share of the leaves, so that frames are drawn fast enough."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Sway the tree, paint it, and say how long that took."""
+    """Sway the tree, paint it, and print the time taken."""
     for name, low, high in (('seconds', 0.1, 3600.0), ('rate', 1.0, 120.0), ('pixels', 64, 4320)):
         within(f'--{name}', getattr(arguments, name), low, high)
     from tree_sway.pictures.animation import animate_poses, check_film, write_pictures
@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
         images = (Image.open(BytesIO(each)).convert('RGB') for each in pictures)
         write_pictures(images, target, rate)
     else:
-        print('note: drawn plainly, as there is no Chromium or no --model with a number of '
+        print('note: drawn by matplotlib, as there is no Chromium or no --model with a number of '
               'coordinates', file=sys.stderr)  # fmt: skip
         shown = [(simulator.place().copy(), simulator.wind.copy()) for _ in frames]
         leaves = scene.leaves(chosen_leaves(arguments), _LEAVES)

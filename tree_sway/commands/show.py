@@ -35,7 +35,7 @@ from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway.parameters.sway_parameters import SWAY
 
 _SPACING = 1.2
-"""Between the trees of a stand over the greater of height and spread of one."""
+"""Distance of the trees of a stand over the greater of height and spread of one."""
 
 _COUNTS = ('1', '9', '100')
 _LABELS = {
@@ -49,14 +49,14 @@ _LABELS = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_sway_arguments(parser, 'a wind record, played over and over; simulated if left out')
+    add_sway_arguments(parser, 'a wind record, repeated; simulated if left out')
     parser.add_argument(
         '--stand', type=int, default=1, metavar='N', help='number of trees (%(default)s)'
     )
     parser.add_argument(
         '--seconds', type=float, metavar='N', help='end after this time [s]; else by Ctrl-C'
     )
-    parser.add_argument('--read-only', action='store_true', help='viewers may change nothing')
+    parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
     add_page_arguments(parser)
 
 
@@ -92,7 +92,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
-    """Make the simulator of what was chosen."""
+    """Make the simulator of some choices."""
     is_first = choices.tree == Path(arguments.tree).name
     scene = opened_scene(arguments) if is_first else open_scene(choices.tree)
     count = int(choices.count)
@@ -106,7 +106,7 @@ def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
 
 
 def stand(scene: Scene, count: int, model: str) -> Scene:
-    """Trees of one kind on a grid, each turned another way; on their table where they have one."""
+    """Trees of one kind on a grid, with different yaws; on their table if they have one."""
     tree, one = scene.tree, scene.trees[0]
     low, high = tree.start.min(axis=0), tree.end.max(axis=0)
     spacing = _SPACING * float(max(*(high - low)[:2], 0.5 * tree.height))
@@ -129,7 +129,7 @@ def stand(scene: Scene, count: int, model: str) -> Scene:
 def _controls(
     choices: Choices, wind: WindSource, *, is_one_tree: bool = True
 ) -> tuple[Control, ...]:
-    """Make what viewers may change, with the ranges of the nodes' parameters."""
+    """Make the controls of viewers, with the ranges of the nodes' parameters."""
     controls = []
     if isinstance(wind, SimulatedWind):
         for name in ('mean_speed', 'intensity', 'bearing_to'):
@@ -144,9 +144,9 @@ def _controls(
     controls += [Control.of(SWAY[name], _LABELS[name]) for name in ('tolerance', 'damping_ratio')]
     trees = (*BUILTIN_TREES, *(() if choices.tree in BUILTIN_TREES else (choices.tree,)))
     counts = tuple(dict.fromkeys((*_COUNTS, choices.count)))
-    controls.append(Control('tree', 'Tree', choices.tree, 'What is shown.', choices=trees))
+    controls.append(Control('tree', 'Tree', choices.tree, 'Tree on the page.', choices=trees))
     if is_one_tree:
-        # The trees of a stand have models of their own, and are as many as its file says.
-        how_many = Control('count', 'Stand of', choices.count, 'How many of it.', choices=counts)
+        # Models and number of the trees of a stand are those of its file.
+        how_many = Control('count', 'Stand of', choices.count, 'Number of trees.', choices=counts)
         controls.append(how_many)
     return (*controls, *PAUSE_AND_RESET)

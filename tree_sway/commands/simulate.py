@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""``tree-sway simulate``: a tree taken through a wind from rest, to a table of its motion."""
+"""``tree-sway simulate``: a tree in a wind from rest, and a table of its motion."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Simulate the tree and write what it did."""
+    """Simulate the tree and write its motion."""
     output = Path(output_path(arguments))
     refuse_no_table(output)
     tree_file = opened_tree(arguments)
@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _wind(arguments: argparse.Namespace) -> WindSamples | np.ndarray:
-    """Return the record that is named, or simulated wind."""
+    """Return the given record, or simulated wind."""
     if arguments.wind is None:
         rng, seconds = np.random.default_rng(0), arguments.seconds or 60.0
         return simulate_turbulence(arguments.speed, rate=arguments.rate, duration=seconds, rng=rng)

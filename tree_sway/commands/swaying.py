@@ -24,7 +24,7 @@ def swaying(simulator: Simulator, wind: WindSource, rate: float, seconds: float)
     Parameters
     ----------
     simulator, wind
-        The scene at rest, and the samples of its wind.
+        Scene at rest, and the samples of its wind.
     rate
         Frames per second [Hz].
     seconds

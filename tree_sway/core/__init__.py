@@ -3,6 +3,6 @@
 """
 The numeric core: trees, wind, reduced equations, poses.
 
-Arrays in, arrays out; numpy, scipy and, where it is there, numba.
-No ROS, no files, no clock, no logging, no randomness without an ``rng`` argument.
+Arrays in, arrays out; numpy, scipy and, if installed, numba. No ROS, no files, no clock, no
+logging, no randomness without an ``rng`` argument.
 """

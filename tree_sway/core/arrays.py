@@ -17,7 +17,7 @@ Ints = NDArray[np.int64]
 Records = NDArray[np.void]
 
 
-#: Code of a field's numbers by its type.
+#: Codes of fields by type.
 _CODES = {int: 'i8', float: 'f8', Ints: 'i8', Floats: 'f8', Singles: 'f4'}
 
 _Record = TypeVar('_Record', covariant=True)
@@ -40,7 +40,7 @@ def fields_of(record: type, **sizes: int) -> list[tuple[Any, ...]]:
     Return name, code and shape of each field of a record, as `numpy.dtype` takes them.
 
     Fields are the annotations of a class: a number, or ``Annotated[Floats, ...]`` with its shape;
-    ``sizes`` are the numbers for what is a name there.
+    ``sizes`` are the numbers for names in the shape.
     """
     fields: list[tuple[Any, ...]] = []
     for name, hint in get_type_hints(record, include_extras=True).items():

@@ -59,7 +59,7 @@ def three_numbers(name: str, vector: ArrayLike) -> tuple[float, float, float]:
     """
     Return the three components of a vector, which may be infinite or not-a-number.
 
-    A `ParameterError` names what is not three numbers.
+    A `ParameterError` reports other values than three numbers.
     """
     try:
         numbers: Any = vector
@@ -80,7 +80,7 @@ def array_to_fill(name: str, array: object, shape: tuple[int, ...]) -> NDArray[n
     """
     Return an array if a kernel can write all of a shape into it.
 
-    A kernel knows no bounds: what is too short would be written past its end. Raises a
+    A kernel checks no bounds: a short array would be written past its end. Raises a
     `ParameterError` for no array of float64 in the machine's own order, of that shape, whole in
     one piece of memory, row after row, and free to be written.
     """
@@ -98,7 +98,7 @@ def array_to_read(name: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArr
     """
     Return numbers as a kernel reads them: float64, in one piece, and as many as it will read.
 
-    Raises a `ParameterError` for another shape, or what are no numbers.
+    Raises a `ParameterError` for a wrong shape, or other values than numbers.
     """
     try:
         numbers = np.ascontiguousarray(values, dtype=np.float64)

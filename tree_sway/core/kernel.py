@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The one way a hot function is compiled: cached on disk, IEEE division, typed for the checker.
+How all hot functions are compiled: cached on disk, IEEE division, typed for the checker.
 
-Where numba is missing (`WHY_PLAIN`) functions stay as they are: those of numbers run as plain
-Python, and `motion` takes the numpy form of what runs over a tree.
+Where numba is missing (`WHY_PLAIN`), functions of numbers run as plain Python, and `motion` uses
+the numpy form of functions over a tree.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ def fused(function: _F) -> _F:
     """
     Compile like `kernel`, but let a product and a sum be one instruction and reorder loops' sums.
 
-    For what is placed and summed, where the last bit does not matter. The result is still the same
+    It is for placing and sums, where the last bit does not matter. The result is still the same
     bit for bit on one machine, for a callee becomes part of each caller: were it called, a caller
-    would run whichever copy of it was loaded first. Not for code that counts on rounding.
+    would run whichever copy of it was loaded first. It is not for code that depends on rounding.
     """
     return _compiled(function, fastmath=_LOOSE, forceinline=True, _nrt=False)
 
@@ -47,7 +47,8 @@ def part(function: _F) -> _F:
     """
     Let kernels call a function, which is compiled like `fused` as a part of each.
 
-    From elsewhere it is the plain function: what Python may call takes a third longer to compile.
+    Outside of kernels it is the plain function: an entry for Python takes a third longer to
+    compile.
     """
     function.py_func = function  # type: ignore[attr-defined]
     if not WHY_PLAIN:
@@ -72,11 +73,11 @@ def _compiled(function: _F, **options: Any) -> _F:
 
 def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
     """
-    Return the machine code of a kernel for arguments such as these, to be called many times.
+    Return the machine code of a kernel for arguments of these types, for many calls.
 
-    A call of the kernel itself looks at the type of each argument first, which for a small tree
-    takes as long as a fifth of a step. Here nobody looks: only arguments of the very same types
-    and layouts may be passed.
+    A call of the kernel itself checks the type of each argument first, which for a small tree
+    takes a fifth of a step. The machine code has no checks: only arguments of the same types and
+    layouts may be passed.
     """
     find = getattr(function, 'get_overload', None)
     if find is None:

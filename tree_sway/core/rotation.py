@@ -3,7 +3,7 @@
 """
 Rotations of the hot path, as scalars: quaternions w x y z and rotation vectors.
 
-Compiled into their callers, so nothing is allocated and no array is made.
+They are compiled into their callers, without arrays or allocation.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ import math
 from tree_sway.core.kernel import part
 
 SERIES_LIMIT = 2.25
-"""Square of half an angle in [rad^2] up to which `half_angle_series` holds: 1.5 rad."""
+"""Squared half angle in [rad^2] up to which `half_angle_series` is valid: 1.5 rad."""
 
 NEAR_LIMIT = 0.04
-"""The same up to which `half_angle_near` holds: 0.2 rad."""
+"""Squared half angle in [rad^2] up to which `half_angle_near` is valid: 0.2 rad."""
 
 _C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8 = (
     (-1.0) ** k / math.factorial(2 * k) for k in range(9)
@@ -28,7 +28,7 @@ _S0, _S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8 = (
 
 @part
 def half_angle_series(t: float) -> tuple[float, float]:
-    """Return what `half_angle` does, by series alone, for t up to `SERIES_LIMIT`."""
+    """Return the same as `half_angle`, by series, for t up to `SERIES_LIMIT`."""
     cosine = _C8 * t + _C7
     sinc = _S8 * t + _S7
     cosine, sinc = cosine * t + _C6, sinc * t + _S6
@@ -43,7 +43,7 @@ def half_angle_series(t: float) -> tuple[float, float]:
 
 @part
 def half_angle_near(t: float) -> tuple[float, float]:
-    """Return what `half_angle` does, for t up to `NEAR_LIMIT` (error below 3e-14)."""
+    """Return the same as `half_angle`, for t up to `NEAR_LIMIT` (error below 3e-14)."""
     cosine, sinc = _C4 * t + _C3, _S4 * t + _S3
     cosine, sinc = cosine * t + _C2, sinc * t + _S2
     cosine, sinc = cosine * t + _C1, sinc * t + _S1
@@ -105,11 +105,11 @@ def turned(
     rx: float, ry: float, rz: float, vx: float, vy: float, vz: float
 ) -> tuple[float, float, float]:
     """
-    Turn a vector by a rotation vector through Cayley's map, at no root, sine or cosine.
+    Rotate a vector by a rotation vector through Cayley's map, without root, sine or cosine.
 
-    That map is a rotation always, and turns by 2 atan(|r| / 2). So the vector is stretched first,
-    by the series of the tangent: the angle is right to 1e-4 at 1 rad and to 2 % at 2 rad. The
-    opposite rotation vector undoes it to rounding.
+    That map is always a rotation, by the angle 2 atan(|r| / 2). So the vector is stretched first,
+    by the series of the tangent: the error of the angle is 1e-4 at 1 rad and 2 % at 2 rad. The
+    opposite rotation vector inverts it to rounding.
     """
     t = rx * rx + ry * ry + rz * rz
     half = 0.5 + t * (1.0 / 24.0 + t * (1.0 / 240.0 + t * (17.0 / 40320.0)))

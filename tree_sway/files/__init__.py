@@ -3,6 +3,6 @@
 """
 Files to trees and winds, and back.
 
-Text, tables and schemas that several formats share live in this folder itself.
-No ROS, no arithmetic of motion.
+Text, tables and schemas that several formats share are in this folder itself. It has no ROS and no
+arithmetic of motion.
 """

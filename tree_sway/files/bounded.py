@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Read a file by a library in a process of its own, with bounded memory and time.
+Read a file by a library in a separate process, with bounded memory and time.
 
 A few bytes can claim gigabytes, nest without end, or end the process that a library runs in. The
-reader runs in a child, which this file is the program of, and gives arrays back in numpy's own
+reader runs in a child process, whose program is this file, and returns arrays in numpy's own
 format, which is read without pickles.
 """
 
@@ -26,7 +26,7 @@ from tree_sway.errors import FormatError, MissingDependencyError
 from tree_sway.files.text_file import reason_of
 
 MEMORY, SECONDS = 768 << 20, 20
-"""What reading a file may take: memory, and each file that is unpacked [bytes]; processor [s]."""
+"""Limits of reading a file: memory, and each unpacked file [bytes]; processor [s]."""
 _MAX_ARRAYS = 100_000
 
 Arrays = Iterator[tuple[str, Any]]
@@ -41,10 +41,10 @@ def bounded_arrays(
     Raises
     ------
     FormatError
-        The function raised an error, or took more than `MEMORY` or `SECONDS`; the ``kind`` of file
-        and the cure are for its message.
+        The function raised an error, or took more than `MEMORY` or `SECONDS`; its message has the
+        ``kind`` of file and the cure.
     MissingDependencyError
-        The function imports what is not installed.
+        The function imports a module that is not installed.
 
     """
     command = [sys.executable, __file__, read.__module__, read.__name__, str(path.absolute())]
@@ -72,7 +72,7 @@ def bounded_arrays(
 
 
 def _main(module: str, name: str, path: str, *words: str) -> None:
-    with suppress(ImportError):  # of systems other than Unix, where the parent's clock is left
+    with suppress(ImportError):  # of systems other than Unix, where the parent has a timeout
         import resource
 
         for kind, most in (

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A format of files: a name, a sniffer and a reader; and which format a file is of."""
+"""Formats of files: name, sniffer and reader; and the format of a file."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class FileFormat:
 
     ``name`` is also the value of the option ``format``; suffixes are in lower case. ``recognise``
     decides by the beginning of a file, as text with all else replaced; arguments of ``read`` after
-    the path are the format's own options. ``defaults`` are those of the options of all trees that
+    the path are the options of the format. ``defaults`` are those of the options of all trees that
     are not as in `TreeOptions`.
     """
 
@@ -53,7 +53,7 @@ def contains(pattern: str) -> Callable[[str], bool]:
 
 
 def has_columns(*names: str) -> Callable[[str], bool]:
-    """Recognise a table by the columns in its first line that is no comment."""
+    """Recognise a table by the columns in its first line that is not a comment."""
 
     def recognise(head: str) -> bool:
         for line in head.splitlines():
@@ -75,16 +75,16 @@ def format_of(
     head: str | None = None,
 ) -> FileFormat:
     """
-    Return the format of a file: the one that is named; else its content decides, then its suffix.
+    Return the format of a file: the given one, else by its content, then by its suffix.
 
-    Of several that recognise the content the first is taken; ``kind`` (what the files hold) is for
-    the errors, ``folder`` the name of the format that is a folder, if there is one, ``head`` the
+    The first that recognises the content is used; ``kind`` (the contents of the files) is for the
+    errors, ``folder`` the name of the format that is a folder, if there is one, ``head`` the
     beginning of the file where it was read before.
 
     Raises
     ------
     FormatError
-        If the file is of none, or its numbers have decimal commas.
+        If no format fits, or numbers have decimal commas.
     ParameterError
         If no format has that name.
 
@@ -108,7 +108,7 @@ def format_of(
     of_suffix = [known for known in formats if path.suffix.lower() in known.suffixes]
     if len(of_suffix) == 1:
         return of_suffix[0]
-    cure = f'give one of {names}, or say its format'
+    cure = f'give one of {names}, or give its format'
     if kind == 'tree':
         cure += '; an inventory has columns for the place, the species, and the height or dbh'
-    raise FormatError(f'a file of no known {kind} format', where=str(path), cure=cure)
+    raise FormatError(f'a file of an unknown {kind} format', where=str(path), cure=cure)

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Options for the reader of a file as words: ``rate=20 sentence=MWV columns=u,v,w``."""
+"""Options of the reader of a file as words: ``rate=20 sentence=MWV columns=u,v,w``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def reader_options(words: Iterable[str]) -> dict[str, Option]:
     """
     Read options for `read_wind`, `read_trees` and `open_tree` from words ``NAME=VALUE``.
 
-    A number or a truth is read as such, words parted by commas as a tuple. Raises a
+    Numbers and booleans are converted, words separated by commas are a tuple. Raises a
     `ParameterError` for a word without a value.
     """
     options: dict[str, Option] = {}

@@ -3,9 +3,9 @@
 """
 Tables in text: one mapper from columns to arrays for every format of the family.
 
-Comma, semicolon or tab between cells, white space where a format has no header; a unit may be
-behind a column's name in brackets, or in a row of its own. Cells are read when they are asked for,
-a block at a time, as a day of wind has millions of rows.
+Comma, semicolon or tab between cells, white space where a format has no header; units are in
+brackets after a column's name, or in a separate row. Cells are read when needed, a block at a
+time, as a day of wind has millions of rows.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from tree_sway.files.text_file import finite, why_no_number
 from tree_sway.files.time_stamps import seconds_of_stamps
 
 _MAX_COLUMNS = 10_000
-_MEND = 'mend the cell or remove the row'
+_MEND = 'correct the cell or remove the row'
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 _UNIT = re.compile(r'\[(.*)\]|\((.*)\)|')
 _KNOWN = json.loads(files('tree_sway.files').joinpath('columns.json').read_text('utf-8'))
@@ -36,10 +36,10 @@ UNITS: dict[str, dict[str, float]] = _KNOWN['units']
 """Units of each kind of quantity, and their factors to SI."""
 
 COLUMNS: dict[str, dict[str, Any]] = _KNOWN['columns']
-"""What the column of a quantity may be called, and its kind of unit."""
+"""Names of the column of a quantity, and its kind of unit."""
 
 MOTIONS = {quantity: re.compile(pattern) for quantity, pattern in _KNOWN['motions'].items()}
-"""What columns of a tree's motion may be called; each quantity is its own kind of unit."""
+"""Names of columns of a tree's motion; each quantity has its own kind of unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,10 +53,10 @@ class Column:
 @dataclass(frozen=True)
 class TextTable:
     """
-    A table whose columns have names: number and text of each line, and what splits it into cells.
+    A table whose columns have names: number and text of each line, and its separator.
 
     ``header_line`` and ``unit_line`` are the lines of names and units; ``units`` are those of the
-    columns, if they have a row of their own.
+    columns, if they are in a separate row.
     """
 
     columns: tuple[str, ...]
@@ -73,11 +73,11 @@ class TextTable:
         return f'{self.source}:{self.header_line if row is None else self.numbers[row]}'
 
     def error(self, what: str, row: int | None = None, cure: str = '') -> FormatError:
-        """Make the error of what is wrong with a row, or with the header."""
+        """Make an error of a row, or of the header."""
         return FormatError(what, where=self.where(row), cure=cure)
 
     def index_of(self, name: str) -> int:
-        """Position of a column, whatever the case of its name; a `FormatError` if it lacks."""
+        """Position of a column, in any case of letters; a `FormatError` if it is missing."""
         for index, column in enumerate(self.columns):
             if column.lower() == name.lower():
                 return index
@@ -123,7 +123,7 @@ class TextTable:
         return None
 
     def values(self, indices: Iterable[int]) -> Floats:
-        """Numbers in some columns, NaN where a cell holds none, (n, k)."""
+        """Numbers in some columns, NaN where a cell is not a number, (n, k)."""
         columns = list(indices)
         result = np.full((len(self.texts), len(columns)), np.nan)
         for row, text in enumerate(self.texts):
@@ -137,7 +137,7 @@ class TextTable:
         """
         Numbers in the columns of these names, (n, k).
 
-        Raises a `FormatError` for the first row that is short or holds no finite number.
+        Raises a `FormatError` for the first row that is short or has no finite number.
         """
         indices = [self.index_of(name) for name in names]
         values = self.values(indices)
@@ -146,7 +146,7 @@ class TextTable:
         return values
 
     def why_none(self, row: int, indices: Iterable[int]) -> str:
-        """Say which cell of a row is missing or holds no number."""
+        """Describe the cell of a row that is missing or not a number."""
         cells = self.split(self.texts[row])
         for index in indices:
             if index >= len(cells):
@@ -156,7 +156,7 @@ class TextTable:
         return 'not a row of numbers'
 
     def whole(self, values: Floats, name: str) -> Ints:
-        """Return a column of whole numbers; a `FormatError` for fractions or out of reach."""
+        """Return a column of whole numbers; a `FormatError` for fractions or out of range."""
         for row in np.flatnonzero((values != np.round(values)) | (np.abs(values) > 2**53))[:1]:
             raise self.error(f'{name} is {values[row]:g}, not a whole number', row)
         return values.astype(np.int64)
@@ -167,7 +167,7 @@ class TextTable:
         return [row[index] if index < len(row) else '' for row in split]
 
     def seconds(self, stamps: list[str], factor: float) -> tuple[Floats, float | None]:
-        """Seconds of times, and what they count from if they are dates; NaN where one is not."""
+        """Seconds of times, and their origin if they are dates; NaN where one is not."""
         numbers = [finite(stamp) for stamp in stamps]
         if any(number is not None for number in numbers):
             times = [np.nan if number is None else number * factor for number in numbers]
@@ -178,10 +178,10 @@ class TextTable:
         self, number: str, parent: str, none: Sequence[int], what: str
     ) -> tuple[list[str], Ints]:
         """
-        Return what an error calls each row (``what`` and number), and its parent's row, or -1.
+        Return the name of each row in errors (``what`` and number), and its parent's row, or -1.
 
         ``none`` are the parent numbers that mean no parent. A number that occurs twice is a
-        `FormatError`, a parent that is not there a `TreeError`.
+        `FormatError`, a missing parent a `TreeError`.
         """
         values = self.strict([number, parent])
         numbers = self.whole(values[:, 0], number).tolist()
@@ -205,7 +205,7 @@ class TextTable:
 
 
 def split_row(line: str, separator: str) -> Sequence[str]:
-    """Cells of one line, stripped; quoted cells may hold the separator but no line end."""
+    """Cells of one line, stripped; quoted cells may contain the separator but no line end."""
     if '"' not in line:
         return list(map(str.strip, line.split(separator)))
     if line.count('"') == 2 and line[0] == '"' and line.count(f'"{separator}') == 1:
@@ -259,6 +259,6 @@ def parse_columns(
     columns: Sequence[str],
     split: Callable[[str], Sequence[str]] = str.split,
 ) -> TextTable:
-    """Parse a table without a header, of columns that its format says."""
+    """Parse a table without a header, with given columns."""
     numbers, texts = filled_lines(lines)
     return TextTable(tuple(columns), numbers, texts, split, source)

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Text of a file, or one error that says why not.
+Text of a file, or an error with the reason.
 
-Every importer reads through here, so that a missing file, a folder, a binary file or a huge one
-gives the same short answer for each format.
+Every importer reads through these functions, so that a missing file, a folder, a binary file or a
+huge one gives the same short error for each format.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ import re
 from tree_sway.errors import FormatError
 
 MAX_BYTES = 256 * 1024 * 1024
-"""Larger files are refused, so that no input takes the memory of the machine [bytes]."""
+"""Largest size of a file, so that no input fills the memory [bytes]."""
 MAX_LINES = 4_000_000
-"""Files of more lines are refused: two days at 20 Hz are 3.5 million."""
+"""Largest number of lines of a file: two days at 20 Hz are 3.5 million."""
 
-# Each digit can be matched in one way only, so that no text takes longer than its length.
+# Each digit matches in one way only, so that the time is proportional to the length.
 _NUMBER = re.compile(r'[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?', re.ASCII)
 _DECIMAL_COMMA = re.compile(r'[-+]?\d*,\d+([eE][-+]?\d+)?', re.ASCII)
 
 
 def path_of(name: str | Path) -> Path:
     """
-    Return a path as a person names it: ``~`` is the home folder.
+    Return a path from text: ``~`` is the home folder.
 
-    Raises a `FormatError` for a user that does not exist, or what can be no path.
+    Raises a `FormatError` for a user that does not exist, or an impossible path.
     """
     text = str(name)
     try:
@@ -42,7 +42,7 @@ def path_of(name: str | Path) -> Path:
         raise FormatError(
             f"no user '{text.split('/')[0]}'", where=text[:80], cure='write the folder in full'
         ) from None
-    except (OSError, ValueError) as error:  # such as a name that is too long, or holds a zero byte
+    except (OSError, ValueError) as error:  # such as a name that is too long, or has a zero byte
         reason = error.strerror if isinstance(error, OSError) else error
         raise FormatError(f'not a path: {reason}', where=ascii(text[:80])) from None
     return path
@@ -52,12 +52,11 @@ def read_bytes(path: Path, at_most: int = -1) -> bytes:
     """
     Read a file, or a number of bytes from its beginning.
 
-    Raises a `FormatError` that says that it is missing, not a file, not readable or larger than
-    `MAX_BYTES`.
+    Raises a `FormatError` if it is missing, not a file, not readable or larger than `MAX_BYTES`.
     """
     try:
         is_there = path.exists()
-    except (OSError, ValueError):  # a name that is too long, or holds a zero byte
+    except (OSError, ValueError):  # a name that is too long, or has a zero byte
         is_there = False
     if not is_there:
         raise FormatError('no such file', where=str(path), cure='check the path')
@@ -75,7 +74,7 @@ def read_bytes(path: Path, at_most: int = -1) -> bytes:
 
 
 def read_head(path: Path) -> str:
-    """Read the beginning of a file, enough for its format; what is not text is replaced."""
+    """Read the beginning of a file, enough for its format; other bytes than text are replaced."""
     return read_bytes(path, at_most=4096).removeprefix(b'\xef\xbb\xbf').decode('utf-8', 'replace')
 
 
@@ -102,7 +101,7 @@ def read_lines(path: Path) -> list[str]:
 
 
 def finite(text: str) -> float | None:
-    """Read a plain decimal number; None if it is anything else, such as empty, NaN or infinite."""
+    """Read a plain decimal number; None for other text, such as empty, NaN or infinite."""
     cell = text.strip()
     if _NUMBER.fullmatch(cell) is None:
         return None
@@ -116,7 +115,7 @@ def reason_of(error: Exception) -> str:
 
 
 def why_no_number(text: str) -> str:
-    """Say what keeps a cell from being a finite number, with the cell."""
+    """Describe why a cell is not a finite number, with the cell."""
     cell = text.strip()
     if _DECIMAL_COMMA.fullmatch(cell):
         return f"'{cell[:40]}', with a decimal comma: export it with decimal points"

@@ -23,7 +23,7 @@ def seconds_of_stamps(stamps: Sequence[str]) -> tuple[Floats, float]:
     Seconds of each stamp after the first good one, to the microsecond; NaN for another text.
 
     Stamps are such as ``2012-06-07 12:45:00.05`` or ``2012-06-07T12:45:00Z``; one without a zone
-    is taken as it is.
+    is taken as UTC.
 
     Returns
     -------
@@ -42,7 +42,7 @@ def seconds_of_stamps(stamps: Sequence[str]) -> tuple[Floats, float]:
 
 
 def _microseconds(stamp: str) -> int:
-    """Microseconds after 1970-01-01, `_NONE` of what is not a stamp."""
+    """Microseconds after 1970-01-01, `_NONE` for other text than a stamp."""
     match = _STAMP.fullmatch(_iso(stamp.strip()))
     if match is None:
         return _NONE

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Write a file whole or not at all: the old file stays until the new one is complete."""
+"""Atomic writing of files: the old file stays until the new one is complete."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from tree_sway.files.text_file import path_of
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
     """
-    Give a path to write to, which takes the place of the file when the block ends well.
+    Yield a path to write to, which replaces the file when the block ends without an error.
 
     It is a new, empty file of the same suffix in the same folder. A link is followed; a device or
-    a pipe is written to directly. Raises a `FormatError` that says that the file cannot be
-    written, or that an `OSError` ended the block.
+    a pipe is written to directly. Raises a `FormatError` if the file cannot be written, or an
+    `OSError` ended the block.
     """
     target = path_of(path).resolve()
     partial: Path | None = None
@@ -41,7 +41,7 @@ def whole_file(path: str | Path) -> Iterator[Path]:
         raise FormatError(
             f'cannot be written: {error.strerror or error}',
             where=str(path),
-            cure='name a folder that exists and that you may write to, with room for the file',
+            cure='give an existing folder that you may write to, with room for the file',
         ) from error
     finally:
         if partial is not None:
@@ -49,6 +49,6 @@ def whole_file(path: str | Path) -> Iterator[Path]:
 
 
 def write_text_whole(path: str | Path, text: str) -> None:
-    """Write a text file in UTF-8 whole or not at all; see `whole_file`."""
+    """Write a text file in UTF-8 atomically; see `whole_file`."""
     with whole_file(path) as partial:
         partial.write_text(text, encoding='utf-8')

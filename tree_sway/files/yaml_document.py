@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-YAML checked against a JSON schema, with the line of each value for the errors.
+YAML, checked against a JSON schema, with the line of each value for the errors.
 
-PyYAML composes the nodes and jsonschema holds their values against the schema that users' editors
-read. Before that, a pass over the events refuses what could blow a small file up, or end the
-process: anchors, tags, depth. A ``oneOf`` of required keys is left to the reader, which says it
-better.
+PyYAML composes the nodes and jsonschema checks their values with the schema that users' editors
+read. Before that, a pass over the events refuses anchors, tags and depth, by which a small file
+could use up the memory. A ``oneOf`` of required keys is checked by the reader, whose message is
+clearer.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def tree_schema() -> Schema:
 
 @dataclass(frozen=True)
 class YamlDocument:
-    """Checked values of a YAML text: numbers where the schema has them, texts as they are."""
+    """Checked values of a YAML text: numbers where the schema has them, else texts."""
 
     values: dict[str, Any]
     source: str
@@ -77,9 +77,8 @@ def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
     Raises
     ------
     FormatError
-        Not YAML, empty, more than one document, an anchor, a tag, a key that occurs twice or is no
-        text, nested too deep, or the first thing that the schema does not allow; with
-        ``source:line``.
+        Not YAML, empty, more than one document, an anchor, a tag, a key that occurs twice or is
+        not a text, nested too deep, or the first violation of the schema; with ``source:line``.
 
     """
     if not text.strip():
@@ -90,7 +89,7 @@ def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         where = f'{source}:{mark.line + 1}' if mark is not None else source
-        raise FormatError(f'not YAML: {error.problem}', where=where, cure='mend it') from None
+        raise FormatError(f'not YAML: {error.problem}', where=where, cure='correct it') from None
     except yaml.YAMLError as error:
         raise FormatError(f'not YAML: {str(error).splitlines()[0]}', where=source) from None
     if root is None:
@@ -101,7 +100,7 @@ def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
 
 
 def _refuse_unsafe(text: str, source: str) -> None:
-    """Refuse what could blow a small file up, or end the process."""
+    """Refuse events by which a small file could use up the memory."""
     depth = 0
     events: Iterator[Any] = yaml.parse(text, Loader=_LOADER)
     for number, event in enumerate(events):
@@ -121,7 +120,7 @@ def _refuse_unsafe(text: str, source: str) -> None:
 
 
 def _value(node: Any, schema: Schema, root: Schema, source: str) -> Any:
-    """Plain value of a node; of what a schema wants as text, the text as it is."""
+    """Plain value of a node, the text itself where the schema has a text."""
     schema = _resolved(schema, root)
     for choice in schema.get('anyOf', ()):
         if _resolved(choice, root)['type'] == _TYPES[type(node)]:
@@ -167,13 +166,13 @@ def _node_at(node: Any, path: Any) -> Any:
 
 
 def _check(document: YamlDocument) -> None:
-    """Raise an error for the first thing in the file that the schema does not allow."""
+    """Raise an error for the first violation of the schema."""
     from jsonschema import Draft202012Validator, validators
 
     numbers = {'type': 'number'}
 
     def items(validator: Any, inside: Schema, values: Any, whole: Schema) -> Any:
-        """Check items; lists of nothing but numbers, of which a tree has thousands, at once."""
+        """Check items; lists of numbers, of which a tree has thousands, are checked at once."""
         if inside != numbers or not all(type(value) is float for value in values):
             yield from Draft202012Validator.VALIDATORS['items'](validator, inside, values, whole)
 
@@ -185,7 +184,7 @@ def _check(document: YamlDocument) -> None:
 
 
 def _error(document: YamlDocument, error: Any) -> FormatError:
-    """Return what jsonschema found as an error of ours."""
+    """Convert an error of jsonschema to ours."""
     if error.validator == 'anyOf':
         inside = [each for each in error.context if each.path or each.validator != 'type']
         if inside:

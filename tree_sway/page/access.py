@@ -1,13 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Who may connect: the token, the Origin of a page, the Host that a browser believes it talks to.
+Access to the server: the token, the Origin of a page, the Host in the request of a browser.
 
-A server on this machine's own address needs no token, but a page from elsewhere must not reach it
-through the visitor's browser: its Origin, or its Host after a change of DNS, shows that.
-
-The token is read from a file, as whatever a command line or a parameter holds can be read by
-others on the machine.
+A server on this machine's own address needs no token, but a page of a different site must not
+reach it through the visitor's browser: its Origin, or its Host after a change of DNS, shows that.
+The token is read from a file, as command lines and parameters can be read by other users of the
+machine.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ _LARGEST_TOKEN, _SHORTEST_TOKEN = 256, 8
 
 
 def is_loopback(address: str) -> bool:
-    """Whether an address to bind to is this machine's own alone."""
+    """Whether an address to bind to is reachable only from this machine."""
     if address in _OWN_NAMES:
         return True
     try:
@@ -37,7 +36,7 @@ def is_loopback(address: str) -> bool:
 
 def read_token(path: str | Path) -> str:
     """
-    Token that a file holds, alone on its first line; empty for no path.
+    Token on the first line of a file; empty for no path.
 
     Raises
     ------
@@ -53,7 +52,7 @@ def read_token(path: str | Path) -> str:
             text = file.read(_LARGEST_TOKEN + 1) if stat.S_ISREG(mode) else ''
     except (OSError, ValueError) as error:
         what = f'the token cannot be read ({type(error).__name__})'
-        cure = 'name a text file with the token on its first line'
+        cure = 'give a text file with the token on its first line'
         raise ParameterError(what, where=str(path), cure=cure) from None
     if mode & stat.S_IRWXO:
         what = 'every user of this machine may read the token'
@@ -73,17 +72,17 @@ def require_token(address: str, token: str) -> None:
     Raises
     ------
     ParameterError
-        Another address than this machine's own, and no token of at least 8 characters.
+        An address other than this machine's own, without a token of at least 8 characters.
 
     """
     if not is_loopback(address) and len(token) < _SHORTEST_TOKEN:
         what = f'address {address} without a token of at least {_SHORTEST_TOKEN} characters'
-        cure = 'name a token_file, or keep the address 127.0.0.1'
+        cure = 'give a token_file, or keep the address 127.0.0.1'
         raise ParameterError(what, where='page', cure=cure)
 
 
 def given_token(headers: Mapping[str, str], query: Mapping[str, str]) -> str:
-    """Token that came with a request, in its header or its address; may be empty."""
+    """Token of a request, in its header or its address; may be empty."""
     kind, _, token = headers.get('Authorization', '').partition(' ')
     return token.strip() if kind.lower() == 'bearer' else query.get('token', '')
 
@@ -97,16 +96,16 @@ def refusal(
     origins: Sequence[str] = (),
 ) -> str | None:
     """
-    Why a request is refused; None if it is not.
+    Return why a request is refused; None if it is not.
 
     Parameters
     ----------
     headers
         Headers of the request.
     given
-        The token that came with it; may be empty.
+        Token of the request; may be empty.
     address, token
-        What the server is bound to and asks for.
+        Address of the server and its token.
     origins
         Other origins whose pages may follow the stream.
 
@@ -118,7 +117,7 @@ def refusal(
     """
     host, origin = headers.get('Host', ''), headers.get('Origin')
     if not f'{host}{origin}'.isascii():
-        raise ValueError('an address of letters that no address has')
+        raise ValueError('an address with characters that addresses do not have')
     if is_loopback(address) and not is_loopback(_name_of(host)):
         return f"host '{host}' is not this machine"
     if origin is not None and origin not in origins and urlsplit(origin).netloc != host:
@@ -129,7 +128,7 @@ def refusal(
 
 
 def is_token(given: str, token: str) -> bool:
-    """Whether a token is the right one, in a time that does not depend on how much of it is."""
+    """Whether a token is right, compared in constant time."""
     return hmac.compare_digest(*(each.encode(errors='surrogateescape') for each in (given, token)))
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Frames of the wind alone, to whole ones: a receiver that solves the scene by itself."""
+"""From frames of the wind only to whole ones: a receiver that solves the scene itself."""
 
 from __future__ import annotations
 
@@ -25,10 +25,9 @@ _NEWEST = 0.05
 
 class ByWind:
     """
-    Solves a described scene by the wind of each frame, and follows the states among them.
+    A described scene, solved by the wind of each frame and corrected by states among them.
 
-    Frames that are lost are bridged by a wind between the two that came. ``static/by_wind.js``
-    does the same.
+    For lost frames the wind is interpolated. ``static/by_wind.js`` does the same.
     """
 
     def __init__(self, description: Description, scene: ReceivedScene) -> None:
@@ -37,15 +36,15 @@ class ByWind:
         self._last: Frame | None = None
         self._spacing, self._heard = STEP, 0
         self.corrections = 0
-        """States that the scene was brought to."""
+        """Number of states that corrected the scene."""
 
     def go_on(self, gusts: Mapping[str, Any]) -> None:
-        """Feel the wind that was on its way before the first frame, as of `SceneState.gusts`."""
+        """Set the wind of the time before the first frame, as in `SceneState.gusts`."""
         self._heard = gusts['sequence']
         self._scene.gusts.go_on(gusts['mean'], gusts['delay'], gusts['wind'])
 
     def take(self, frame: Frame) -> Floats | None:
-        """Go on to a frame; coordinates of its time, (M,), None before the first state."""
+        """Advance to a frame; return its coordinates, (M,), None before the first state."""
         scene, last, values = self._scene, self._last, self._description.coordinates(frame)
         is_whole = len(values) == len(self._description.scale)
         if last is None:
@@ -67,7 +66,7 @@ class ByWind:
         return scene.state()
 
     def _step(self, last: Frame, frame: Frame) -> None:
-        """Go on by the steps between two frames."""
+        """Advance by the steps between two frames."""
         count = max((frame.sequence - last.sequence) % 2**32, 1)
         spacing = 1e-9 * (frame.stamp - last.stamp) / count
         self._spacing += _NEWEST * (min(max(spacing, 0.0), 1.0) - self._spacing)

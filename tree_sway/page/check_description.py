@@ -1,10 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What a description must hold before anything is placed by it; ``static/checks.js`` asks the same.
+Checks of a description before it is used; ``static/checks.js`` has the same.
 
-A kernel checks no bounds: a number that points outside of an array would read, or write, whatever
-lies there.
+Kernels check no bounds: an index outside of an array would read, or write, other memory.
 """
 
 from __future__ import annotations
@@ -20,16 +19,16 @@ from numpy.typing import ArrayLike, NDArray
 from tree_sway.errors import FormatError, inside
 
 MOST_SEGMENTS = 500_000
-"""Segments of all kinds."""
+"""Largest number of segments of all kinds."""
 
 MOST_POSES = 10_000_000
-"""Segments of all trees."""
+"""Largest number of segments of all trees."""
 
 MOST_COORDINATES = 65_535
-"""Coordinates of all trees; a frame counts them in two bytes."""
+"""Largest number of coordinates of all trees; a frame counts them in two bytes."""
 
 _GREATEST = 1e12
-"""Size of a height, an error or a number of the law of the leaves."""
+"""Largest height, error or number of the law of the leaves."""
 
 Array = NDArray[Any]
 
@@ -41,29 +40,29 @@ _FORMS: dict[str, tuple[str, list[str | int]]] = {
         resources.files('tree_sway.page').joinpath('static', 'arrays.json').read_text()
     )['description'].items()
 }
-"""Type and axes of each array of a kind; those of leaves only where it bears any."""
+"""Type and axes of each array of a kind; those of leaves only where it has any."""
 
 
 def check_description(
     header: Mapping[str, Any], kinds: Sequence[Mapping[str, Array]], places: Array
 ) -> None:
     """
-    Refuse a description whose header or arrays do not fit each other.
+    Refuse a description whose header or arrays are inconsistent.
 
     Parameters
     ----------
     header
-        Names and numbers, as JSON has them.
+        Names and numbers, from JSON.
     kinds
         Arrays of each kind by name.
     places
-        Array ``tree_place``.
+        Places of the trees, the array ``tree_place``.
 
     Raises
     ------
     FormatError
-        The first array or entry that is missing, of another type or shape, not finite, or that
-        points where there is nothing.
+        The first array or entry that is missing, of a wrong type or shape, not finite, or an index
+        out of range.
 
     """
     _require('header', all(isinstance(header[name], str) for name in ('name', 'frame_id')))
@@ -90,7 +89,7 @@ def check_description(
 
 
 def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[int, int]:
-    """Refuse a kind that does not fit itself; its segments and coordinates."""
+    """Refuse an inconsistent kind; return its numbers of segments and coordinates."""
     size = _sizes(arrays)
     b, n, rows = size['branches'], size['segments'], size['rows']
     _require('branch_parent', b > 0)
@@ -111,7 +110,7 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[i
     _require('branch_first', size['branches + 1'] == b + 1 and first[0] == 0 and first[-1] == n)
     count = np.diff(first)
     _require('branch_first', count > 0)
-    # Here, as it loads the compiler, which nobody needs who only waits for a description.
+    # Here, as it loads the compiler, which is not needed before a description.
     from tree_sway.core.branch.shapes import MAX_COORDINATES
 
     is_stem = row == 0
@@ -129,7 +128,7 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[i
 
 
 def _sizes(arrays: Mapping[str, Array]) -> dict[str, int]:
-    """Sizes of all axes by name, once every array is there, of its type and shape, and finite."""
+    """Sizes of all axes by name; refuses missing arrays, wrong types or shapes, and infinities."""
     sizes: dict[str, int] = {}
     for name, (kind, axes) in _FORMS.items():
         if name.startswith('leaf') and 'leaf_segment' not in arrays:
@@ -152,8 +151,8 @@ def _is_finite(value: object) -> bool:
 
 
 def _require(name: str, holds: ArrayLike) -> None:
-    """Refuse what does not hold, or the first row where it does not."""
+    """Refuse a false condition, or the first row where it is false."""
     rows = np.atleast_1d(holds)
     if not rows.all():
         row = f'[{int(np.argmin(rows))}]' if np.ndim(holds) else ''
-        raise FormatError('it does not fit the rest, or is not finite', where=f'{name}{row}')
+        raise FormatError('inconsistent with the rest, or not finite', where=f'{name}{row}')

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A client of the stream in Python: connects, keeps the line, says where every segment is now.
+A client of the stream in Python, with a connection that is restored, and present poses.
 
-Whatever arrives that cannot be read is counted and named, and the line is made again: a server
-that was updated, or a stranger on its port, must not leave an old picture that looks alive.
+An unreadable message is counted and reported, and the connection is made again: with an updated
+server, or a different one on its port, an old picture must not look alive.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from tree_sway.page.protocol import (
 
 _MOST_CREDIT, _LEAST_CREDIT, _GRANT_EVERY = 24, 8, 4
 _ON_THE_WAY = 200_000
-"""What may be on its way in [bytes], so that a slow line holds little that is old."""
+"""Largest amount of data in transit in [bytes], so that a slow line has little old data."""
 
 _LARGEST_TEXT = 2**20
 _ENDS = aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSING, aiohttp.WSMsgType.CLOSED
@@ -51,30 +51,31 @@ _PING_EVERY, _SILENCE = 2.0, 4.0
 
 class StreamClient:
     """
-    Follows a tree or a scene that ``tree-sway show`` or the node ``viewer`` serves.
+    Receiver of a tree or a scene from ``tree-sway show`` or the node ``viewer``.
 
-    It runs on a thread of its own. A line that is lost is made again, after waits that grow.
+    It has its own thread. A lost connection is made again, after increasing waits.
 
     Parameters
     ----------
     url
         Address of the page, with its token if it has one: ``http://127.0.0.1:8765/``.
     rate
-        Frames per second to ask for [Hz].
+        Requested frames per second [Hz].
     delay
-        Playout delay [s]; as the line asks for, up to 0.15 s, if None.
+        Playout delay [s]; by the lateness of the line, up to 0.15 s, if None.
     by_wind
-        Whether to ask for the wind alone, 28 bytes per frame, and solve the scene here (`ByWind`);
-        ask for 60 frames per second then.
+        Whether to request only the wind, 28 bytes per frame, and solve the scene here (`ByWind`);
+        request 60 frames per second then.
     wind_only
-        Whether to ask for the wind and nothing else, for `on_frame`: there are no poses then.
+        Whether to request nothing else than the wind, for `on_frame`; then there are no poses.
     on_frame
-        Called on the client's thread with every frame and its arrival [s] by the own clock.
+        Function called on the client's thread with every frame and its arrival [s] by the own
+        clock.
 
     Raises
     ------
     ParameterError
-        Text that is not an address, or a rate out of 0.1 to 1000 Hz.
+        A text that is not an address, or a rate outside of 0.1 to 1000 Hz.
 
     Examples
     --------
@@ -103,22 +104,25 @@ class StreamClient:
         path = parts.path.rstrip('/') + '/stream'
         scheme = {'https': 'wss', 'wss': 'wss'}.get(parts.scheme, 'ws')
         self.url = urlunsplit((scheme, parts.netloc, path, '', ''))
-        """Address of the stream; its token is sent beside it, so that no message shows it."""
+        """Address of the stream; its token is sent separately, so that no message shows it."""
         token = parse_qs(parts.query).get('token')
         self._headers = {'Authorization': f'Bearer {token[0]}'} if token else {}
         self.playout = Playout(delay)
         self.state = 'connecting'
-        """One of connecting, open, lost."""
+        """State of the connection: connecting, open or lost."""
         self.problem = ''
-        """Why the line was lost, or a change was refused; empty if neither happened."""
+        """Why the connection was lost, or a change was refused; empty if neither happened."""
         self.received = self.unreadable = 0
-        """Frames, and messages that could not be read; after one of these a new line is made."""
+        """
+        Numbers of frames, and of unreadable messages; after one of these the connection is made
+        again.
+        """
         self.round_trip = float('nan')
         """Time to the server and back [s]."""
         self.status: dict[str, object] = {}
         """The newest status of the server."""
         self.solver: ByWind | None = None
-        """What solves the scene by its wind; None where states come."""
+        """Solver of the scene by its wind; None where states are received."""
         self._rate, self._on_frame = rate, on_frame
         self._wants_wind: bool | str = 'only' if wind_only else by_wind
         self._placer: Placer | None = None
@@ -137,29 +141,29 @@ class StreamClient:
         self.close()
 
     def close(self) -> None:
-        """Close the line and end the thread; may be called twice."""
+        """Close the connection and end the thread; may be called twice."""
         if self._thread.is_alive():
             self._loop.call_soon_threadsafe(self._task.cancel)
             self._thread.join(timeout=5.0)
 
     def wait(self, seconds: float = 30.0, *, frames: int = 1) -> None:
         """
-        Wait for a number of frames in all.
+        Wait for a total number of frames.
 
         Raises
         ------
         TransportError
-            Fewer have come within the seconds [s].
+            Fewer frames within a time [s].
 
         """
         with self._more:
             if not self._more.wait_for(lambda: self.received >= frames, seconds):
                 what = f'{self.received} frames within {seconds:g} s ({self.problem})'
-                cure = 'start tree-sway show, or look at the address'
+                cure = 'start tree-sway show, or check the address'
                 raise TransportError(what, where=self.url, cure=cure)
 
     def set(self, name: str, value: Value) -> None:  # noqa: A003
-        """Change a control of the server; a refusal comes as `problem`."""
+        """Change a control of the server; a refusal is in `problem`."""
         self._loop.call_soon_threadsafe(self._say, {'set': {'name': name, 'value': value}})
 
     @property
@@ -204,12 +208,12 @@ class StreamClient:
                 self._socket, self.state = None, 'lost'
                 if self.received > received:
                     wait = _SHORTEST_WAIT
-                # Many clients that lose one server do not come back in one instant.
+                # Clients that lose the same server do not reconnect at the same time.
                 await asyncio.sleep(wait * random.uniform(0.75, 1.25))
                 wait = min(2.0 * wait, _LONGEST_WAIT)
 
     async def _follow(self, socket: aiohttp.ClientWebSocketResponse) -> None:
-        """Take what comes until the line ends, is silent for too long or cannot be read."""
+        """Receive until the connection ends, is silent or sends an unreadable message."""
         self._say({'rate': self._rate, 'ping': time.monotonic(), 'wind': self._wants_wind})
         pinged = time.monotonic()
         while True:
@@ -244,7 +248,7 @@ class StreamClient:
             self._push(decode_frame(message.data), time.time())
 
     def _ask(self) -> None:
-        """Ask for as many frames as may be on their way."""
+        """Request as many frames as may be in transit."""
         more = self._credit - self._awaited
         if more >= _GRANT_EVERY:
             self._awaited += more

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a viewer may change: each control with its range, and how a change is applied."""
+"""Controls for viewers: each with its range, and the application of changes."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ from tree_sway.parameters.parameter import Parameter
 _GREATEST = 1e15
 _FARTHEST = 1e5
 Value = bool | float | str | None
-"""Value of a control, as JSON has it; None for a button."""
+"""Value of a control, as in JSON; None for a button."""
 
 
 Pull = Callable[[int, tuple[float, ...], float], None]
-"""Pulls at a segment towards a place [m], (3,), by a stiffness [N/m]; 0 lets it go."""
+"""Pull at a segment towards a place [m], (3,), by a stiffness [N/m]; 0 releases it."""
 
 
 @dataclass(frozen=True)
 class Control:
     """
-    One thing that a viewer may change.
+    A value that a viewer may change.
 
     Parameters
     ----------
     name
-        Its name in messages.
+        Name of the control in messages.
     label, description
         Texts for people.
     value
-        Its value now, whose kind (bool, float, str) is the kind that is accepted.
+        Present value, whose type (bool, float, str) is the type of accepted values.
     unit
         SI unit; may be empty.
     minimum, maximum
         Range of a number.
     choices
-        Strings that are accepted.
+        Accepted strings.
     is_action
-        Whether it is a button without a value.
+        True for a button without a value.
 
     """
 
@@ -58,19 +58,20 @@ class Control:
 
     @classmethod
     def of(cls, parameter: Parameter, label: str, value: Value = None) -> Control:
-        """Make the control of a parameter, at its default if no value is given."""
+        """Make the control of a parameter, with its default if no value is given."""
         value = parameter.default if value is None else value
         limits = parameter.minimum, parameter.maximum, parameter.choices
         return cls(parameter.name, label, value, parameter.description, parameter.unit, *limits)
 
     def checked(self, value: object) -> Value:
         """
-        Convert a value that came from outside.
+        Convert an external value.
 
         Raises
         ------
         ParameterError
-            Wrong kind, not finite, out of range, not among the choices; says what is right.
+            A wrong type, not finite, out of range, not among the choices; with the accepted
+            values.
 
         """
         if self.is_action:
@@ -91,16 +92,16 @@ PAUSE_AND_RESET = (
 
 class ControlPanel:
     """
-    All controls, and what carries changes out.
+    All controls, and the functions that apply changes.
 
     Parameters
     ----------
     controls
-        What may be changed.
+        Controls that may be changed.
     apply
-        Called with name and checked value; raises `TreeSwayError` to refuse.
+        Function called with name and checked value; raises `TreeSwayError` to refuse.
     pull
-        Called for a branch that a viewer drags; nothing can be pulled if None.
+        Function called for a branch that a viewer drags; None if branches cannot be pulled.
 
     """
 
@@ -116,24 +117,24 @@ class ControlPanel:
         """Whether a branch can be pulled."""
 
     def entries(self) -> list[dict[str, object]]:
-        """All controls as JSON has them."""
+        """All controls for JSON."""
         return [vars(control) for control in self._controls.values()]
 
     def values(self) -> dict[str, Value]:
-        """Values by name, actions left out."""
+        """Values by name, without actions."""
         return {c.name: c.value for c in self._controls.values() if not c.is_action}
 
     def update(self, values: Mapping[str, Value]) -> None:
-        """Note values that were changed from elsewhere; names that are no control are left out."""
+        """Set values that were changed elsewhere; unknown names are ignored."""
         for name, value in values.items():
             if name in self._controls:
                 self._controls[name] = replace(self._controls[name], value=value)
 
     def set(self, name: object, value: object) -> str | None:  # noqa: A003
-        """Change something; returns why not, None if it was done."""
+        """Change a value; returns the reason of a refusal, or None."""
         control = self._controls.get(name) if isinstance(name, str) else None
         if control is None or self._apply is None:
-            return f"nothing called '{str(name)[:40]}' can be changed here"
+            return f"there is no control '{str(name)[:40]}'"
         try:
             checked = control.checked(value)
             self._apply(control.name, checked)
@@ -144,7 +145,7 @@ class ControlPanel:
         return None
 
     def pull(self, given: object) -> str | None:
-        """Pull at a segment as a viewer asks; returns why not, None if it was done."""
+        """Pull at a segment for a viewer; returns the reason of a refusal, or None."""
         if self._pull is None:
             return 'no branch can be pulled here'
         try:

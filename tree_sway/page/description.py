@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What a receiver needs to rebuild every pose from a frame.
+Description of a scene, by which a receiver computes every pose from a frame.
 
-For each kind of tree it is the rest geometry, how its branches bend, and the basis of its state;
-for each tree it is its kind and its place.
+For each kind of tree it has the rest geometry, the bending of its branches, and the basis of its
+state; for each tree its kind and place.
 
 A kind has its root node at the origin.
 """
@@ -19,14 +19,14 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.leaves.flutter import FLUTTER_GAIN, LARGEST_ANGLE
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.motion.fill_records import turns_of_segments
+from tree_sway.core.motion.fill_records import rotation_modes_of
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import encode_description
 from tree_sway.page.scene_kind import SceneKind
 
 NO_ROW = -1
-"""Row of the turns of a branch that sits on none or bends by its slope."""
+"""Row of the rotations of a branch without a parent, or one that bends by its slope."""
 
 
 def describe_scene(
@@ -45,9 +45,9 @@ def describe_scene(
     name
         Name of the scene.
     kinds
-        Its trees by kind.
+        Kinds of its trees.
     tree_names
-        A name per tree.
+        Names of the trees.
     frame_id
         Frame of the poses.
     leaves
@@ -56,7 +56,7 @@ def describe_scene(
     Returns
     -------
     bytes
-        As `encode_description`.
+        Message of `encode_description`.
 
     """
     places = np.zeros((len(tree_names), 5), dtype=np.float32)
@@ -101,7 +101,7 @@ def describe_scene(
 
 
 def _branches(simulator: SwaySimulator) -> dict[str, Array]:
-    """Arrays of one kind: how each of its branches is placed by the key rotations."""
+    """Arrays of one kind for placing its branches by key rotations."""
     tree, branches, segments = simulator.tree, _in_order(simulator), simulator.bank.segments
     keys, sizes = branches['n_coordinates'], branches['end'] - branches['first']
     base_turn, own_turn = np.full((2, len(branches)), NO_ROW, dtype=np.int32)
@@ -114,11 +114,11 @@ def _branches(simulator: SwaySimulator) -> dict[str, Array]:
             count += len(turns[-1])
         if keys[branch] > 2:
             own_turn[branch] = count
-            turns.append(turns_of_segments(record, segments).reshape(-1, 3))
+            turns.append(rotation_modes_of(record, segments).reshape(-1, 3))
             count += len(turns[-1])
     first = np.concatenate([[0], np.cumsum(sizes)])
     owner = np.repeat(np.arange(len(branches)), sizes)
-    at = branches['block'][owner] + np.arange(len(owner)) - first[owner]
+    at = branches['first_record'][owner] + np.arange(len(owner)) - first[owner]
     slot = branches['slot'][owner]
     indices = {
         'branch_parent': branches['parent'],
@@ -152,7 +152,7 @@ def _in_order(simulator: SwaySimulator) -> Records:
     """
     Return the branches, their segments in the order of the tree.
 
-    A branch that is cut is several here, and what its first piece carries comes before the second.
+    A branch that is cut is several, and the children of its first piece come before the second.
     """
     branches = simulator.bank.branches
     order = np.argsort(branches['first'])

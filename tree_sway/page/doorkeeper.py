@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Sockets before they are clients: how many may be open, and how long one may take to ask.
+Sockets before they are clients: their number, and time until a request.
 
-An HTTP server waits for a handshake and a request as long as they take; a thousand sockets that
-send a byte now and then would occupy it forever. So sockets are counted when they are accepted.
-Those that have shown the token have places of their own, and a new one takes the place of the
-oldest that has not: whoever fills the server with sockets shuts out nobody who may come in.
+An HTTP server waits for a handshake and a request without limit; a thousand sockets that rarely
+send a byte would occupy it forever. So sockets are counted when they are accepted. Those with the
+token have separate places, and a new one replaces the oldest without it: an attacker with many
+sockets does not exclude authorised clients.
 """
 
 from __future__ import annotations
@@ -18,38 +18,38 @@ import socket
 import ssl
 
 ASKING_TIME = 5.0
-"""A socket that has sent no whole request by then is closed, handshake included [s]."""
+"""Time for a whole request, handshake included, after which a socket is closed [s]."""
 
 _PAUSE = 1.0
-"""After the system refused a socket [s]."""
+"""Pause after the system refused a socket [s]."""
 
 MakeProtocol = Callable[[], asyncio.BaseProtocol]
 
 
 class Doorkeeper:
     """
-    Accepts sockets, and closes those that are too many or too slow.
+    Acceptance of sockets; too many or too slow ones are closed.
 
     Parameters
     ----------
     most
-        Sockets that may be open without having shown the token, and as many that have.
+        Largest number of open sockets without the token, and of those with it.
     complain
-        Called with a sentence when the system gives no further socket.
+        Function called with a sentence when the system refuses a socket.
 
     """
 
     def __init__(self, most: int, complain: Callable[[str], None]) -> None:
         self.most, self._complain = most, complain
         self.n_closed = 0
-        """Sockets that were closed as too slow or too many."""
+        """Number of sockets that were closed as too slow or too many."""
         self._strangers: dict[socket.socket, asyncio.TimerHandle] = {}
         self._known: set[socket.socket] = set()
         self._tasks: set[asyncio.Task[None]] = set()
 
     @property
     def n_open(self) -> int:
-        """Sockets that are open."""
+        """Number of open sockets."""
         return sum(map(_is_open, (*self._strangers, *self._known)))
 
     async def admit(
@@ -71,7 +71,7 @@ class Doorkeeper:
             task.add_done_callback(self._tasks.discard)
 
     def let_in(self, transport: asyncio.BaseTransport | None, *, is_known: bool) -> None:
-        """Note that a whole request has come, and whether it showed the token."""
+        """Record that a whole request was received, and whether it had the token."""
         own = None if transport is None else transport.get_extra_info('socket')
         number = -1 if own is None else own.fileno()
         for visitor in [each for each in self._strangers if each.fileno() == number != -1]:
@@ -84,13 +84,13 @@ class Doorkeeper:
         self, visitor: socket.socket, make: MakeProtocol, tls: ssl.SSLContext | None
     ) -> None:
         limit = ASKING_TIME if tls else None
-        with contextlib.suppress(OSError):  # a handshake that failed or was broken off
+        with contextlib.suppress(OSError):  # a handshake that failed or was cancelled
             await asyncio.get_running_loop().connect_accepted_socket(
                 make, visitor, ssl=tls, ssl_handshake_timeout=limit
             )
 
     def _make_room(self) -> None:
-        """Forget sockets that are closed, then close the oldest without the token if need be."""
+        """Forget closed sockets, then close the oldest without the token if there are too many."""
         for visitor in [each for each in self._strangers if not _is_open(each)]:
             self._strangers.pop(visitor).cancel()
         self._known = set(filter(_is_open, self._known))
@@ -98,7 +98,7 @@ class Doorkeeper:
             self._turn_away(next(iter(self._strangers)))
 
     def _turn_away(self, visitor: socket.socket) -> None:
-        """Close a socket at once: whatever waits for it sees its end."""
+        """Close a socket at once, so that waiting tasks end."""
         self._strangers.pop(visitor).cancel()
         self.n_closed += 1
         with contextlib.suppress(OSError):
@@ -106,5 +106,5 @@ class Doorkeeper:
 
 
 def _is_open(visitor: socket.socket) -> bool:
-    """Whether a socket is not closed, by us or by whoever has it."""
+    """Whether a socket is open on both sides."""
     return visitor.fileno() != -1

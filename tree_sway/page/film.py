@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Pictures of a scene as the page draws it, one for each state, by a browser without a screen.
+Pictures of a scene, drawn by the page in a browser without a screen.
 
 The browser opens the scene as one file (`page_of_state`) from this machine; ``static/film.js``
-then asks for one state after another and sends back what it has drawn.
+then requests the states one by one and sends the pictures back.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _FLAGS = (
 _WIDTH = 1.6
 """Width of a picture over its height."""
 _PATIENCE = 120.0
-"""Time after which a browser that draws nothing is given up [s]."""
+"""Time without a picture after which the browser is stopped [s]."""
 
 
 def browser() -> str | None:
@@ -52,18 +52,18 @@ def page_pictures(
     simulator
         A tree or a scene on a number of coordinates, at rest.
     frames
-        Takes the simulator from one frame to the next.
+        Iterator that advances the simulator from one frame to the next.
     rate
         Frames per second [Hz].
     pixels
         Height of the pictures in [px].
     n_leaves
-        Number of clusters of leaves, as of `SceneState`.
+        Number of clusters of leaves, as in `SceneState`.
 
     Raises
     ------
     ParameterError
-        A tree on another model.
+        A tree on a model that is not a number of coordinates.
     TransportError
         No browser, or one that draws nothing.
 

@@ -3,7 +3,7 @@
 """
 A scene as one HTML file that sways by itself: the page, its modules, a description, its tables.
 
-``static/boot.js`` unpacks the modules and gives them their names: no other file is asked for.
+``static/boot.js`` unpacks the modules under their names, without other files.
 `doc/tree_as_a_file.md` is for its users.
 """
 
@@ -27,10 +27,11 @@ from tree_sway.errors import ParameterError
 from tree_sway.page.scene_state import SceneState
 
 _IMPORT = re.compile(r'(\bfrom\s+|\bimport[\s(]+)"(\.[^"]+)"')
+_COMMENT = re.compile(r'^ *(?://.*|/\*\*(?:[^*]|\*(?!/))*\*/ *)\n', re.MULTILINE)
 _LEAVES = 1000
 _BOOT = 'boot.js'
 _BITS = 14
-"""Bits of the fraction of each number: what is drawn errs by some hundredths of a millimetre."""
+"""Bits of the fraction of each number: errors of drawing are some hundredths of a millimetre."""
 
 
 def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
@@ -42,19 +43,19 @@ def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
     simulator
         A tree or a scene on a number of coordinates; it is run to find the basis of its state.
     n_leaves
-        Number of clusters of leaves, as of `SceneState`.
+        Number of clusters of leaves, as in `SceneState`.
 
     Raises
     ------
     ParameterError
-        A tree on another model.
+        A tree on a model that is not a number of coordinates.
 
     """
     return page_of_state(SceneState(simulator, n_leaves, is_running=False))
 
 
 def page_of_state(scene: SceneState, script: str = '') -> str:
-    """Return the same of a scene that is described, with a module of the page that runs last."""
+    """Return the HTML of a described scene, with a module of the page that runs last."""
     tables = scene.tables()
     if tables is None:
         what = f"model '{scene.simulator.model}' has no table to solve it by"
@@ -90,7 +91,7 @@ def _packed(data: bytes) -> str:
 
 
 def _in_planes(message: bytes) -> bytes:
-    """Round the numbers of a message; put the first bytes of each array together, and so on."""
+    """Round the numbers of a message, and group bytes of equal significance."""
     begin = 12 + int.from_bytes(message[8:12], 'little')
     header, body = json.loads(message[12:begin]), bytearray(message[begin:])
     is_table = header['format'] == 'tree_sway tables'
@@ -108,7 +109,7 @@ def _in_planes(message: bytes) -> bytes:
 
 
 def _modules(folder: Path) -> bytes:
-    """Every module and every file that these read, by their names, as JSON."""
+    """All modules and the files that they read, by name, as JSON."""
     modules, files = {}, {}
     for path in sorted(folder.rglob('*.*')):
         name = path.relative_to(folder)
@@ -121,9 +122,9 @@ def _modules(folder: Path) -> bytes:
 
 
 def _with_full_names(text: str, folder: Path) -> str:
-    """Source of a module of a folder, with the full names of what it imports."""
+    """Source of a module of a folder without comments, with full names of its imports."""
 
     def full(found: re.Match[str]) -> str:
         return f'{found[1]}"tree-sway/{posixpath.normpath((folder / found[2]).as_posix())}"'
 
-    return _IMPORT.sub(full, text)
+    return _IMPORT.sub(full, _COMMENT.sub('', text))

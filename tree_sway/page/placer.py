@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A receiver in Python: a frame and its description to poses, by the solver's own placing."""
+"""A receiver in Python: poses from a frame and its description, by the solver's placing."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.branch.shapes import MAX_COORDINATES
 from tree_sway.core.motion.fill_records import (
     assign_slots,
+    block_records,
     fill_places,
-    head_records,
     Places,
     segment_records,
 )
 from tree_sway.core.motion.placing import GIVEN, place, room_for
-from tree_sway.core.motion.records import BRANCH, head_layout, SEGMENT
+from tree_sway.core.motion.records import block_layout, BRANCH, SEGMENT
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import Description
 
 MOST_MEMORY = 512 * 2**20
-"""Memory for the records of a kind in [bytes]."""
+"""Largest memory for the records of a kind in [bytes]."""
 
 _TURNS = 'base_turn', 'turn'
 _Records = NDArray[np.void]
@@ -34,12 +34,12 @@ _Records = NDArray[np.void]
 
 class Placer:
     """
-    Rebuilds the poses of a described tree or scene.
+    Placing of a described tree or scene.
 
     Parameters
     ----------
     description
-        What the sender sent once.
+        Description from the sender.
 
     Raises
     ------
@@ -59,13 +59,13 @@ class Placer:
 
     def place(self, coordinates: Floats) -> Floats:
         """
-        Poses (n, 7) of coordinates in their own unit, and then what is ``beyond``, as of a frame.
+        Poses (n, 7) of coordinates in their own unit, followed by ``beyond``, as in a frame.
 
         They are x y z in [m] and the quaternion's x y z w.
         """
         poses, row, first, key = np.empty((self.n_segments, 7)), 0, 0, 0
         number, turn = coordinates[len(self.description.scale) :].reshape(-1, 2).T
-        # Between frames of other keys nothing is pulled.
+        # Between frames of different keys there is no pull.
         number = np.where(np.abs(number - np.rint(number)) < 1e-6, np.rint(number), -1.0)
         for (x, y, z, yaw, scale), kind in self._trees:
             last, end = first + kind.matrix.shape[1], row + kind.n_segments
@@ -74,8 +74,8 @@ class Placer:
             own = (number >= key) & (number < key + len(keys))
             keys[number[own].astype(np.int64) - key] += turn[own]
             origin = np.array([x, y, z])
-            room, (segments, heads, bases) = room_for(len(keys)), kind.records
-            place(*GIVEN, segments, heads, bases, c, s, scale, room, keys, origin, poses[row:end])
+            room, (segments, blocks, bases) = room_for(len(keys)), kind.records
+            place(*GIVEN, segments, blocks, bases, c, s, scale, room, keys, origin, poses[row:end])
             row, first, key = end, last, key + len(keys)
         return poses
 
@@ -86,7 +86,7 @@ class _Kind(NamedTuple):
     matrix: Floats
     n_segments: int
     records: tuple[_Records, _Records, Floats]
-    """Its segments, heads of its branches, and scratch."""
+    """Records of its segments, blocks and scratch memory."""
 
 
 def _kind(arrays: dict[str, Array]) -> _Kind:
@@ -99,7 +99,7 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     sizes = len(parent), n_records, len(np.unique(block)) + 1
     memory = sum(
         count * layout.itemsize
-        for count, layout in zip(sizes, (BRANCH, SEGMENT, head_layout()), strict=True)
+        for count, layout in zip(sizes, (BRANCH, SEGMENT, block_layout()), strict=True)
     )
     if memory > MOST_MEMORY:
         what = f'a kind of {memory // 2**20} MiB when laid out'
@@ -108,7 +108,7 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     frame = arrays['branch_frame'].astype(np.float64)
     branch = np.repeat(np.arange(len(parent)), np.diff(first))
     rank = np.arange(len(branch)) - first[branch]
-    # By its slope about the axes across its chord, or by rows of its own.
+    # By its slope about the axes across its chord, or by its own rows.
     turn = np.zeros((len(branch), MAX_COORDINATES, 3))
     turn[:, 0] = slope[:, None] * frame[branch, 2]
     turn[:, 1] = -slope[:, None] * frame[branch, 1]
@@ -128,5 +128,5 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     )  # fmt: skip
     branches, segments = np.zeros(len(parent), BRANCH), segment_records(places)
     fill_places(places, branches)
-    heads = head_records(branches, segments)
-    return _Kind(matrix, int(first[-1]), (segments, heads, np.zeros((len(branches), 8))))
+    blocks = block_records(branches, segments)
+    return _Kind(matrix, int(first[-1]), (segments, blocks, np.zeros((len(branches), 8))))

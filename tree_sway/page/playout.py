@@ -1,10 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-From frames that arrive when they will to a smooth motion, as ``static/playout.js`` does it.
+From frames at irregular times to a smooth motion, as ``static/playout.js``.
 
-Shown a little late, on a curve through the states (Catmull & Rom 1974). Where they are close
-together one more is expected on the parabola of the last three, as a tree has inertia.
+States are shown with a short delay, on a curve through them (Catmull & Rom 1974). Where they are
+close together the next one is extrapolated on the parabola of the last three, as a tree has
+inertia.
 """
 
 from __future__ import annotations
@@ -19,17 +20,16 @@ from tree_sway.core.arrays import Floats
 from tree_sway.page.protocol import PAUSED, RESTARTED
 
 DELAY = 0.15
-"""Longest playout delay, and that of the beginning [s]."""
+"""Longest playout delay, and initial delay [s]."""
 
 _CALMS, _FIRST, _DOWN, _UP = 12.0, 0.25, 0.05, 0.2
 """
-Time in which it is forgotten how late states were [s], and at first; shares of the time by which
-the delay goes.
+Time constant of the lateness of states [s], and at first; rates of change of the delay.
 
 """
 
 _AHEAD = 0.03
-"""Spacing of states in [s] up to which one more is expected."""
+"""Largest spacing of states in [s] with extrapolation."""
 
 _WINDOW = 30.0
 _OTHER_CLOCK = 5.0
@@ -52,7 +52,7 @@ class Moment(NamedTuple):
     wind
         Wind, blowing to, in [m/s], (3,).
     flags
-        Flags, as of a frame.
+        Flags, as in a frame.
 
     """
 
@@ -66,17 +66,17 @@ class ClockOffset:
     """
     Difference of two clocks from one-way times.
 
-    Arrival less stamp is offset plus travel, so that the least of the last half minute is the
-    offset and the quickest travel.
+    Arrival less stamp is offset plus travel, so that the smallest of the last half minute is the
+    offset and the shortest travel time.
     """
 
     def __init__(self) -> None:
         self._least: deque[tuple[float, float]] = deque()
 
     def add(self, stamp: float, arrival: float) -> None:
-        """Take a stamp of the sender's clock and its arrival by the own clock [s]."""
+        """Add a stamp of the sender's clock and its arrival by the own clock [s]."""
         value = arrival - stamp
-        # A sender whose clock was set back or that started again is another clock.
+        # After a restart of the sender, or a step back of its clock, the clock is a different one.
         if self._least and abs(value - self.value) > _OTHER_CLOCK:
             self._least.clear()
         while self._least and self._least[-1][1] >= value:
@@ -87,20 +87,19 @@ class ClockOffset:
 
     @property
     def value(self) -> float:
-        """Own clock less the sender's, and the quickest travel [s]; 0 before the first stamp."""
+        """Own clock less the sender's, and shortest travel time [s]; 0 before a stamp."""
         return self._least[0][1] if self._least else 0.0
 
 
 class Playout:
     """
-    Keeps the newest states and finds what to show.
+    The newest states, and interpolation between them.
 
     Parameters
     ----------
     delay
-        Time from a state's stamp to when it is shown, the quickest travel not counted [s]; if
-        None, as long as states were late within some seconds, and one more state where none is
-        expected.
+        Time from a state's stamp to its display, without the shortest travel time [s]; if None,
+        the lateness of states within some seconds, and one period more without extrapolation.
 
     """
 
@@ -110,19 +109,19 @@ class Playout:
         self._age, self._ahead = _FIRST, 0.0
         self.clock = ClockOffset()
         self.received = self.late = 0
-        """States that came, and those of them that came after they were to be shown."""
+        """Numbers of states, and of late ones."""
         self._moments: deque[Moment] = deque(maxlen=_KEPT)
         self._shown: Moment | None = None
         self._before: Floats | None = None
         self._blend_from = 0.0
 
     def clear(self) -> None:
-        """Forget every state: another tree comes."""
+        """Forget every state, for a new tree."""
         self._moments.clear()
         self._before = self._shown = None
 
     def push(self, moment: Moment, arrival: float) -> None:
-        """Take a state that arrived at a time of the own clock [s]."""
+        """Add a state that arrived at a time of the own clock [s]."""
         if self._moments:
             gap = moment.stamp - self._moments[-1].stamp
             if -_OUT_OF_ORDER < gap <= 0.0:
@@ -140,10 +139,10 @@ class Playout:
         self._moments.append(moment)
 
     def _adapt(self, span: float, lateness: float) -> None:
-        """Go towards the delay that a state asks for that came a time after the last [s]."""
+        """Move the delay towards that for a state, at a time [s] after the last."""
         self._spacing += 0.1 * (span - self._spacing)
         self._age += span
-        calms = min(self._age, _CALMS)  # what was taken of a line at first goes sooner
+        calms = min(self._age, _CALMS)  # the first estimate of a line decays faster
         self._jitter = max(lateness, self._jitter * math.exp(-span / calms))
         self._ahead = self._spacing if self._spacing < _AHEAD else 0.0
         change = min(self._spacing - self._ahead + self._jitter, DELAY) - self.delay
@@ -171,7 +170,7 @@ class Playout:
         return self._shown
 
     def _blended(self, coordinates: Floats, now: float) -> Floats:
-        """Blend from what was shown before the stream was cut."""
+        """Blend from the motion before a gap in the stream."""
         before, u = self._before, (now - self._blend_from) / _BLEND
         if before is None or u >= 1.0 or before.shape != coordinates.shape:
             self._before = None
@@ -180,7 +179,7 @@ class Playout:
 
 
 def expected(a: Moment, b: Moment, c: Moment) -> Moment:
-    """Return what comes as long after c as that after b, on the parabola through the three."""
+    """Extrapolate a, b and c by one period, on their parabola."""
     if not len(a.coordinates) == len(b.coordinates) == len(c.coordinates):
         return c
     span, before = c.stamp - b.stamp, b.stamp - a.stamp
@@ -204,7 +203,8 @@ def catmull_rom(a: Moment, b: Moment, c: Moment, d: Moment, u: float) -> Floats:
     span, before, behind = c.stamp - b.stamp, c.stamp - a.stamp, d.stamp - b.stamp
     u2, u3 = u * u, u * u * u
     states = [each.coordinates for each in (a, b, c, d)]
-    p, q, r, s = (each[: min(map(len, states))] for each in states)  # more where one is pulled
+    # There are more coordinates while a branch is pulled.
+    p, q, r, s = (each[: min(map(len, states))] for each in states)
     curve = (2.0 * u3 - 3.0 * u2 + 1.0) * q + (3.0 * u2 - 2.0 * u3) * r
     if before > 0.0:
         curve += (u3 - 2.0 * u2 + u) * span / before * (r - p)

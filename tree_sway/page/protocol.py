@@ -1,11 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The binary form of a swaying tree: a description sent once, then frames that need no other frame.
+The binary form of a swaying tree: a description sent once, then independent frames.
 
 `doc/streaming.md` is the specification; ``static/protocol.js`` reads the same bytes. Everything is
-little-endian. A frame holds the state and the wind, no more: some 60 bytes whatever the tree's
-size.
+little-endian. A frame has the state and the wind: some 60 bytes for any size of a tree.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ MAGIC, TABLES = b'TSWD', b'TSWT'
 
 FRAME_KIND = 0x46
 WIND_UNIT = 0.005
-"""Wind of one unit of its int16 in [m/s]."""
+"""Unit of the wind's int16 in [m/s]."""
 
 PAUSED, BEYOND_SCALE, RESTARTED, PART = 1, 2, 4, 8
 """Flags of a frame: paused, a number clamped to its scale, the motion jumped, some coordinates."""
@@ -49,7 +48,7 @@ _FRAME = struct.Struct('<BBBxIIq3hH')
 _ALIGNMENT = 8
 
 FRAME_SIZE = _FRAME.size
-"""Size of a frame of the wind alone in [bytes]."""
+"""Size of a frame of the wind only in [bytes]."""
 
 LARGEST_DESCRIPTION = 64 * 2**20
 """Size of the message of a description in [bytes]."""
@@ -60,7 +59,7 @@ LARGEST_HEADER = 8 * 2**20
 _WRONG_JSON = (
     ValueError, KeyError, IndexError, TypeError, AttributeError, OverflowError, RecursionError,
 )  # fmt: skip
-"""What reading JSON of another form raises."""
+"""Errors of reading JSON of a different form."""
 
 
 class Frame(NamedTuple):
@@ -70,9 +69,9 @@ class Frame(NamedTuple):
     Parameters
     ----------
     identity
-        First four bytes of the identity of the description that it belongs to.
+        First four bytes of the identity of its description.
     sequence
-        Counts frames, from 0, modulo 2^32.
+        Number of the frame, from 0, modulo 2^32.
     stamp
         Time of the state in [ns].
     flags
@@ -80,12 +79,12 @@ class Frame(NamedTuple):
     wind
         Wind at the anemometer, blowing to, in [m/s], (3,).
     coordinates
-        Coordinates as int16, (m,): full scale is `FULL_SCALE`. A frame of wind alone has none.
+        Coordinates as int16, (m,): full scale is `FULL_SCALE`. A frame of the wind only has none.
     first
-        Number of the first of them.
+        Number of the first coordinate.
     beyond
-        What branches that are pulled turn by beyond them, as pairs of the number of a key rotation
-        among those of all trees and a turn [rad], (2 k,).
+        Corrections of pulled branches, as pairs of the number of a key rotation among those of all
+        trees and a rotation [rad], (2 k,).
 
     """
 
@@ -102,12 +101,12 @@ class Frame(NamedTuple):
 @dataclass(frozen=True)
 class Description:
     """
-    What is sent once.
+    Description of a scene, sent once.
 
     Parameters
     ----------
     header
-        Names and numbers, as ``doc/streaming.md`` lists them.
+        Names and numbers, as listed in ``doc/streaming.md``.
     arrays
         Arrays by name; of a kind under its number and a slash.
     identity
@@ -116,7 +115,7 @@ class Description:
     Raises
     ------
     FormatError
-        As `check_description`.
+        Errors of `check_description`.
 
     """
 
@@ -125,12 +124,12 @@ class Description:
     identity: str
 
     def __post_init__(self) -> None:
-        """Refuse arrays that do not fit each other."""
+        """Refuse inconsistent arrays."""
         check_description(self.header, self.kinds, self.arrays['tree_place'])
 
     @property
     def short_identity(self) -> int:
-        """Return what frames carry of the identity."""
+        """Return the part of the identity in frames."""
         return int(self.identity[:8], 16)
 
     @property
@@ -150,7 +149,7 @@ class Description:
         return np.concatenate(scales).astype(np.float64)
 
     def coordinates(self, frame: Frame) -> Floats:
-        """Coordinates of a frame in their own unit, (m,); a `FormatError` for one not its own."""
+        """Coordinates of a frame in their own unit, (m,); else a `FormatError`."""
         if frame.identity != self.short_identity:
             what = f'a frame of description {frame.identity:08x}'
             cure = f'this one has {self.short_identity:08x}: ask for the new one'
@@ -160,25 +159,24 @@ class Description:
         if part.stop > most or (count not in (0, most) and not frame.flags & PART):
             what = f'{len(frame.coordinates)} coordinates where {len(self.scale)} are described'
             raise FormatError(what, where='tree state')
-        values: Floats = frame.coordinates * (self.scale[part] / FULL_SCALE)
-        return values
+        return np.asarray(frame.coordinates * (self.scale[part] / FULL_SCALE))
 
 
 @dataclass(frozen=True)
 class Tables:
-    """What a receiver solves a scene by: a header and arrays as of `tables_of`."""
+    """Tables by which a receiver solves a scene: header and arrays, as in `tables_of`."""
 
     header: dict[str, Any]
     arrays: dict[str, Array]
 
     def scene(self, description: Description, dt: float) -> ReceivedScene:
-        """Return the scene at rest, for time steps of dt [s]; a `FormatError` for another one."""
-        # Here, as it loads the compiler, which nobody needs who only draws.
+        """Return the scene at rest, for time steps of dt [s]; else a `FormatError`."""
+        # Here, as it loads the compiler, which drawing does not need.
         from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene
 
         header = self.header
         if header['description'] != description.identity:
-            raise FormatError('tables of another description', cure='ask for both again')
+            raise FormatError('tables of a different description', cure='request both again')
         parts = of_kinds(self.arrays, len(header['kinds']))
         kinds = [
             ReceivedKind(numbers, arrays, numbers['drag_law'])
@@ -197,7 +195,7 @@ class Tables:
 
 
 def of_kinds(arrays: Mapping[str, Array], count: int) -> list[dict[str, Array]]:
-    """Arrays of each kind by name, out of those that have its number and a slash before theirs."""
+    """Arrays of each kind by name, from arrays with its number and a slash before the name."""
     kinds: list[dict[str, Array]] = [{} for _ in range(count)]
     for name, array in arrays.items():
         number, is_of_kind, own = name.partition('/')
@@ -215,7 +213,7 @@ def encode_description(
     Parameters
     ----------
     header
-        Whatever JSON can hold; `version`, `identity` and `arrays` are added.
+        Values for JSON; `version`, `identity` and `arrays` are added.
     arrays
         Arrays of float32, int32, int16 or uint8.
     magic
@@ -243,8 +241,8 @@ def decode_description(data: bytes) -> Description:
     Raises
     ------
     FormatError
-        Not a description, of another version, cut short, changed on the way, or with an array
-        that points outside of another.
+        Not a description, of a different version, cut short, changed in transit, or with an index
+        out of range.
 
     """
     with _reading('tree description'):
@@ -252,14 +250,14 @@ def decode_description(data: bytes) -> Description:
 
 
 def decode_tables(data: bytes) -> Tables:
-    """Read the tables of a description; a `FormatError` as of `decode_description`."""
+    """Read the tables of a description; errors are those of `decode_description`."""
     with _reading('tables'):
         return Tables(*_unpacked(data, TABLES)[:2])
 
 
 @contextmanager
 def _reading(what: str) -> Iterator[None]:
-    """Raise all that reading JSON or arrays of another form raises as a `FormatError`."""
+    """Raise errors of reading JSON or arrays of a different form as a `FormatError`."""
     try:
         yield
     except FormatError as error:
@@ -268,12 +266,12 @@ def _reading(what: str) -> Iterator[None]:
         raise FormatError(
             f'not whole: {type(error).__name__}: {error}'[:200],
             where=what,
-            cure='ask the sender for it again',
+            cure='request it again',
         ) from None
 
 
 def _unpacked(data: bytes, magic: bytes) -> tuple[dict[str, Any], dict[str, Array], str]:
-    """Header, arrays and identity of a message of some first bytes."""
+    """Header, arrays and identity of a message with given first bytes."""
     if len(data) < _PREFIX.size or data[:4] != magic:
         raise ValueError(f'it does not begin with {magic.decode()}')
     _, version, size = _PREFIX.unpack_from(data)
@@ -319,7 +317,7 @@ def encode_state(
     coordinates: ArrayLike,
     flags: int = 0,
 ) -> bytes:
-    """Write the frame of `SceneState.coordinates`; the rest is as of `Frame`."""
+    """Write the frame of `SceneState.coordinates`; other fields are as in `Frame`."""
     own, beyond = np.split(np.asarray(coordinates), [len(description.scale)])
     steps, is_cut = quantised(own, description.scale)
     head = description.short_identity, sequence, stamp, flags | BEYOND_SCALE * is_cut, wind
@@ -333,7 +331,7 @@ def decode_frame(data: bytes) -> Frame:
     Raises
     ------
     FormatError
-        Not a frame, of another version, or of another length than it says.
+        Not a frame, of a different version, or of a wrong length.
 
     """
     if len(data) < _FRAME.size or data[0] != FRAME_KIND:
@@ -357,7 +355,7 @@ def decode_frame(data: bytes) -> Frame:
 
 
 def part_of_frame(frame: bytes, first: int, count: int) -> bytes:
-    """Return a frame of some of the coordinates of one; of the wind alone if the count is 0."""
+    """Return a frame with some of the coordinates of one; with the wind only if the count is 0."""
     head, size = bytearray(frame[: _FRAME.size]), _FRAME.size
     count = min(count, int.from_bytes(head[-2:], 'little') - first)
     head[-2:] = count.to_bytes(2, 'little')
@@ -380,8 +378,8 @@ def quantised(values: ArrayLike, scale: ArrayLike) -> tuple[Array, bool]:
     Returns
     -------
     tuple
-        int16 (m,), clamped to full scale, and whether any coordinate is farther out than where
-        the error of the description was found.
+        Coordinates as int16 (m,), clamped to full scale, and whether any is beyond the range of
+        the error of the description.
 
     """
     exact = np.rint(np.asarray(values) * (FULL_SCALE / np.asarray(scale)))

@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The kinds of a scene as they are described: trees on one table share geometry and basis.
+Kinds of a scene for its description: trees on one table share geometry and basis.
 
-A tree that is solved by itself is a kind of its own.
+A tree that is solved by itself is a separate kind.
 """
 
 from __future__ import annotations
@@ -21,24 +21,24 @@ from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.state.state_basis import StateBasis
 
 Place = tuple[float, float, float, float, float]
-"""Place of a tree: x, y, z [m], its turn about the vertical [rad], its scale."""
+"""Place of a tree: x, y, z [m], rotation about the vertical [rad], scale."""
 
 
 @dataclass(eq=False)
 class SceneKind:
     """
-    Trees that are described once.
+    Trees with the same description.
 
     Parameters
     ----------
     simulator
-        The simulator whose records describe them.
+        Simulator with their records.
     basis
-        The basis of its state.
+        Basis of its state.
     coordinates
-        Called for the coordinates of its trees now, (t, m).
+        Function that returns the present coordinates of its trees, (t, m).
     numbers, places
-        Their numbers in the scene, and their places.
+        Numbers of the trees in the scene, and their places.
 
     """
 
@@ -58,7 +58,7 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
     simulator
         The simulator of a tree or a scene.
     is_running
-        Whether it is stepped meanwhile: then a basis is found on another simulator.
+        True if it is stepped at the same time: then a basis is found on a copy.
 
     """
     if not isinstance(simulator, SceneSimulator):
@@ -70,8 +70,7 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
         per_shape = bank.all_shapes @ basis.projection.T
 
         def found(numbers: Ints = numbers, per_shape: Floats = per_shape) -> Floats:
-            coordinates: Floats = simulator.shares(numbers) @ per_shape
-            return coordinates
+            return np.asarray(simulator.shares(numbers) @ per_shape)
 
         where = [trees[number] for number in numbers.tolist()]
         places = [(tree.x, tree.y, tree.z, tree.yaw, tree.scale) for tree in where]
@@ -80,7 +79,7 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
 
 
 def _alone(number: int, simulator: SwaySimulator, is_running: bool) -> SceneKind:
-    """Return the kind of a tree that shares nothing, described where it is."""
+    """Return the kind of a single tree, described at its place."""
     basis = state_basis(_runner(simulator, is_running))
     x, y, z = simulator.tree.start[0].tolist()
 
@@ -91,7 +90,7 @@ def _alone(number: int, simulator: SwaySimulator, is_running: bool) -> SceneKind
 
 
 def _runner(simulator: SwaySimulator, is_running: bool) -> SwaySimulator:
-    """Choose the simulator to find the basis on: this one if it is at rest and no dearer."""
+    """Choose the simulator for finding the basis: this one if at rest and as cheap."""
     is_cheap = isinstance(simulator, SwaySimulator) and simulator.model not in ('full', 'auto')
     if isinstance(simulator, SwaySimulator) and is_cheap and not is_running:
         return simulator

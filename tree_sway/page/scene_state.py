@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The state of a running scene as frames: what is described once, what is sent of each moment."""
+"""The state of a running scene as frames: its description, and its frames."""
 
 from __future__ import annotations
 
@@ -13,22 +13,17 @@ from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.page.description import describe_scene
-from tree_sway.page.protocol import (
-    decode_description,
-    encode_state,
-    PAUSED,
-    RESTARTED,
-)
+from tree_sway.page.protocol import decode_description, encode_state, PAUSED, RESTARTED
 from tree_sway.page.scene_kind import scene_kinds, SceneKind
 from tree_sway.page.tables import tables_of
 
 FULLY_LEAVED = 4
-"""Kinds of which each is described with all the clusters of leaves that are asked for."""
+"""Largest number of kinds that are described with the full number of clusters of leaves."""
 
 
 class SceneState:
     """
-    Writes the state of a tree or a scene.
+    Writer of the state of a tree or a scene.
 
     Finding the basis takes some seconds; the simulator may run meanwhile.
 
@@ -37,17 +32,17 @@ class SceneState:
     simulator
         The simulator of a tree or a scene.
     n_leaves
-        How many clusters of leaves to describe on each kind that is in leaf; fewer where there are
-        more than `FULLY_LEAVED` kinds.
+        Number of clusters of leaves to describe on each kind in leaf; fewer for more than
+        `FULLY_LEAVED` kinds.
     frame_id
         Frame of the poses.
     is_running
-        Whether the simulator is stepped meanwhile; one that is not is itself run, and set back.
+        True if the simulator is stepped at the same time; if not, it is run itself, and set back.
 
     Raises
     ------
     FormatError
-        A scene that is too large to describe, as of `check_description`.
+        A scene that is too large to describe, as in `check_description`.
 
     """
 
@@ -79,19 +74,19 @@ class SceneState:
         self._tables: bytes | None = None
 
     def tables(self) -> bytes | None:
-        """Return what a receiver solves the scene by, as `tables_of`; made at the first call."""
+        """Return the tables for a receiver, as `tables_of`; made at the first call."""
         if self._tables is None:
             self._tables = tables_of(self.simulator, self.kinds, self.identity)
         return self._tables
 
     def gusts(self) -> dict[str, Any] | None:
-        """Return the wind still on its way at the last frame, and that one's ``sequence``."""
+        """Return the gusts in the scene at the last frame, and its ``sequence``."""
         sequence, time = self._framed
         gusts = self.simulator.gusts
         return None if gusts is None else {'sequence': sequence, **gusts.recent(time)}
 
     def _lay_out(self) -> None:
-        """Give the coordinates of all trees numbers, one tree after another."""
+        """Assign numbers to the coordinates of all trees, one tree after another."""
         sizes = np.zeros(len(self.names), dtype=np.int64)
         for kind in self.kinds:
             sizes[kind.numbers] = len(kind.basis.scale)
@@ -103,7 +98,7 @@ class SceneState:
 
     @property
     def coordinate_names(self) -> list[str]:
-        """Return a name per coordinate: ``tree/c0``, or ``c0`` of a tree alone."""
+        """Return a name per coordinate: ``tree/c0``, or ``c0`` for a single tree."""
         is_alone = len(self.names) == 1
         return [
             f'c{i}' if is_alone else f'{name}/c{i}'
@@ -112,7 +107,7 @@ class SceneState:
         ]
 
     def coordinates(self) -> Floats:
-        """Coordinates of all trees now, (m,), and what is ``beyond`` them, as of `Frame`."""
+        """Present coordinates of all trees, (m,), and their ``beyond``, as in `Frame`."""
         whole = np.empty(sum(self._sizes))
         for kind, rows in zip(self.kinds, self._rows, strict=True):
             whole[rows] = kind.coordinates()
@@ -126,16 +121,16 @@ class SceneState:
 
     def frame(self, stamp: int, *, is_paused: bool = False, has_restarted: bool = False) -> bytes:
         """
-        Write the state of this moment.
+        Write the present state.
 
         Parameters
         ----------
         stamp
-            Its time in [ns].
+            Time of the state in [ns].
         is_paused
-            Whether time is paused.
+            True while time is paused.
         has_restarted
-            Whether the motion jumped since the frame before.
+            True if the motion jumped since the frame before.
 
         """
         flags = PAUSED * is_paused + RESTARTED * has_restarted
@@ -146,7 +141,7 @@ class SceneState:
 
 
 def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:
-    """Clusters of leaves of a kind; None where it bears none."""
+    """Clusters of leaves of a kind; None without leaves."""
     simulator = kind.simulator
     if not count or not is_in_leaf(simulator.species, simulator.settings.in_leaf):
         return None

@@ -1,11 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The page's server: files, a description once, the newest frame to whoever has asked for one more.
+The page's server: files, a description, and the newest frame to clients that request one.
 
-It runs on a thread and loop of its own. The solver's thread publishes a frame by storing it and
-waking the loop, and never waits. A client gets a frame only for a credit that it gave, and always
-the newest one, so that a slow client sees fewer frames, not old ones.
+It has its own thread and loop. The solver's thread publishes a frame by storing it and waking the
+loop, and never waits. A client gets a frame only for a credit that it gave, and always the newest
+one, so that a slow client gets fewer frames, not old ones.
 """
 
 from __future__ import annotations
@@ -36,23 +36,23 @@ from tree_sway.page.doorkeeper import Doorkeeper
 from tree_sway.page.protocol import FRAME_SIZE, part_of_frame
 
 LARGEST_MESSAGE = 4096
-"""Longest message that a client may send in [bytes]."""
+"""Longest message of a client in [bytes]."""
 
 MOST_CREDIT = 64
-"""Most frames that may be on their way to one client."""
+"""Largest number of frames in transit to one client."""
 
 SLOWEST, FASTEST = 0.1, 1000.0
-"""Frames per second that a client may ask for [Hz]."""
+"""Range of frames per second of a client [Hz]."""
 
 IDLE_TIME = 60.0
-"""A client that says nothing for this time is closed [s]; a page sends several texts a second."""
+"""Time without a message after which a client is closed [s]; a page sends several a second."""
 
 STATUS_PERIOD = 0.5
 STATE_PERIOD = 5.0
-"""Time after which a client that solves by itself is sent coordinates again [s]."""
+"""Interval of coordinates for a client that solves by itself [s]."""
 
 MOST_IN_STATE = 600
-"""Coordinates that it is sent then; of a scene of more, others each time."""
+"""Number of coordinates that are sent to it each time, in turn."""
 
 _COMPLAINT_PERIOD = 10.0
 _LARGEST_PING = 1e15
@@ -77,19 +77,18 @@ _HEADERS = {
 @dataclass(frozen=True)
 class PageSettings:
     """
-    Where and to whom the page is served.
+    Address of the page and its access.
 
     Parameters
     ----------
     address, port
-        Address to bind to; port 0 takes a free one.
+        Address to bind to; 0 is a free port.
     token, token_file
-        What clients must know, or a file that holds it; needed for any address but this machine's
-        own.
+        Token of clients, or a file with it; needed for any address except this machine's own.
     certificate, private_key
         PEM files for TLS; none if empty.
     max_clients
-        Most pages at once.
+        Largest number of pages.
     origins
         Other origins, as ``https://example.org``, whose pages may follow the stream.
 
@@ -106,7 +105,7 @@ class PageSettings:
 
 
 class _Client:
-    """One connected page: its credit, and what it has been sent."""
+    """A connected page: its credit, and the sent messages."""
 
     def __init__(self, socket: web.WebSocketResponse, transport: asyncio.Transport | None) -> None:
         self.socket, self.transport = socket, transport
@@ -124,11 +123,11 @@ class _Client:
         self.sending_since = math.inf
 
     def is_lost(self, now: float) -> bool:
-        """Whether it has been silent, or has not read, for too long by a time [s]."""
+        """Whether it has neither sent nor read for too long by a time [s]."""
         return now - self.last_heard > IDLE_TIME or now - self.sending_since > _SEND_TIMEOUT
 
     def thinned(self, frame: bytes, now: float) -> bytes:
-        """Return what one that solves by itself needs of a frame: the wind, now and then more."""
+        """Return the part of a frame for a client that solves: wind, sometimes coordinates."""
         if self.wants_nothing_else:
             return part_of_frame(frame, 0, 0)
         if self.states < 2:  # two to begin with, for the rates
@@ -144,31 +143,31 @@ class _Client:
         return part
 
     def say(self, content: Mapping[str, object]) -> None:
-        """Have a text sent, soon."""
+        """Queue a text."""
         self.texts.append(json.dumps(content))
         self.wake.set()
 
     def ring(self) -> None:
-        """Look again at what is to be sent."""
+        """Wake the task that sends."""
         self.timer = None
         self.wake.set()
 
 
 class PageServer:
     """
-    Serves the page and the state of one scene.
+    Server of the page and the state of one scene.
 
     Parameters
     ----------
     settings
-        Where and to whom.
+        Address and access.
     panel
-        What viewers may change; nothing if None.
+        Controls for viewers; none if None.
     status
-        Called twice a second on the server's thread for what the page shows beside the tree.
+        Function called twice a second on the server's thread for the status on the page.
     written
-        Called with ``glb`` or ``html`` on a thread of its own for the tree as a file; raises a
-        `TreeSwayError` to refuse.
+        Function called with ``glb`` or ``html`` on a separate thread for the tree as a file;
+        raises a `TreeSwayError` to refuse.
 
     Examples
     --------
@@ -202,7 +201,7 @@ class PageServer:
         self._ending = asyncio.Event()
         self._is_woken = False
         self.n_refused = 0
-        """Requests and messages that were refused."""
+        """Number of refused requests and messages."""
         self._complained = -_COMPLAINT_PERIOD
         self._doors = Doorkeeper(4 * settings.max_clients, self._complain)
         self._thread = threading.Thread(target=self._run, name='page', daemon=True)
@@ -224,7 +223,7 @@ class PageServer:
             self._thread.join()
             where = f'{self.settings.address}:{self.settings.port}'
             what = f'the page cannot be served ({self._failure})'
-            cure = 'choose another port, or end what uses this one'
+            cure = 'choose a different port, or end the program that uses this one'
             raise TransportError(what, where=where, cure=cure) from self._failure
 
     def close(self) -> None:
@@ -242,7 +241,7 @@ class PageServer:
 
     @property
     def url(self) -> str:
-        """Address for a browser, without the token: the page asks for it."""
+        """Address for a browser, without the token, which the page requests."""
         scheme = 'https' if self.settings.certificate else 'http'
         address = self.settings.address
         host = f'[{address}]' if ':' in address else address
@@ -250,7 +249,7 @@ class PageServer:
 
     @property
     def n_clients(self) -> int:
-        """Pages that are connected."""
+        """Number of connected pages."""
         return len(self._clients)
 
     def describe(
@@ -260,10 +259,10 @@ class PageServer:
         gusts: Callable[[], Mapping[str, object] | None] = lambda: None,
     ) -> None:
         """
-        Send all pages, now and later, what the frames that follow belong to.
+        Send the description of the following frames to all pages, now and later.
 
-        Clients that ask for the wind alone are sent what `tables` returns, and solve by it; what
-        `gusts` returns is the wind that is on its way then, as `GustHistory.recent`.
+        Clients that request only the wind get the result of `tables` to solve by; `gusts` returns
+        the gusts in the scene, as `GustHistory.recent`.
         """
         self._description, self._tables, self._gusts = description, tables, gusts
         self._call(self._wake_all)
@@ -279,14 +278,14 @@ class PageServer:
         self, content: Mapping[str, object], values: Mapping[str, Value] | None = None
     ) -> None:
         """
-        Send all pages something, from any thread.
+        Send a message to all pages, from any thread.
 
         Parameters
         ----------
         content
-            What JSON can hold.
+            Content for JSON.
         values
-            Controls that have other values now.
+            Changed values of controls.
 
         """
         if values is not None:
@@ -350,13 +349,13 @@ class PageServer:
         await runner.cleanup()
 
     def _complain_of(self, record: logging.LogRecord) -> bool:
-        """Complain in one sentence of what the HTTP server would log with a traceback."""
+        """Log errors of the HTTP server in one sentence instead of a traceback."""
         error = record.exc_info[1] if record.exc_info else None
         self._complain(f'{record.getMessage()}: {error!a}')
         return False
 
     def _complain(self, what: str) -> None:
-        """Count what was refused, and log a line now and then."""
+        """Count refusals, and log some of them."""
         self.n_refused += 1
         now = time.monotonic()
         if now - self._complained >= _COMPLAINT_PERIOD:
@@ -369,7 +368,7 @@ class PageServer:
         is_known = not self._token or is_token(given, self._token)
         self._doors.let_in(request.transport, is_known=is_known)
         if request.can_read_body:
-            return self._refused(413, 'nothing here takes a body')
+            return self._refused(413, 'requests have no body')
         try:
             if len(request.path) > _LONGEST_PATH:
                 raise ValueError('a path of no file')
@@ -428,7 +427,7 @@ class PageServer:
                 client.last_heard = time.monotonic()
                 try:
                     if message.type is not WSMsgType.TEXT:
-                        raise ValueError('bytes where text is spoken')
+                        raise ValueError('bytes instead of text')
                     self._take(client, message.data)
                 except (ValueError, TypeError, RecursionError) as error:
                     self._complain(f'a message was refused: {error!a}')
@@ -443,7 +442,7 @@ class PageServer:
         return socket
 
     def _take(self, client: _Client, text: str) -> None:
-        """Take a message of a client; a `ValueError` or `TypeError` for anything else."""
+        """Handle a message of a client; raises a `ValueError` or `TypeError` for anything else."""
         message = json.loads(text)
         if not isinstance(message, dict):
             raise TypeError('not an object')
@@ -483,11 +482,11 @@ class PageServer:
             client.say(content)
 
     async def _send(self, client: _Client) -> None:
-        """Send a client what is new, as its credit allows."""
+        """Send new messages to a client, within its credit."""
         while not client.socket.closed:
             await client.wake.wait()
             client.wake.clear()
-            # Looked at twice a second: a timer and a task per frame would cost memory.
+            # Checked twice a second: a timer and a task per frame would cost memory.
             client.sending_since = time.monotonic()
             try:
                 await self._send_due(client)
@@ -508,7 +507,8 @@ class PageServer:
         if client.credit <= 0 or number == client.sent or not frame or not client.description:
             return
         now = self._loop.time()
-        # Half a period early is on time: the solver's frames and the client's rate share no grid.
+        # Half a period early is on time: the solver's frames and the client's rate have no common
+        # grid.
         if now < client.next_due - 0.5 * client.period:
             if client.timer is None:
                 client.timer = self._loop.call_at(client.next_due, client.ring)
@@ -521,7 +521,7 @@ class PageServer:
         await client.socket.send_bytes(frame)
 
     async def _send_tables(self, client: _Client) -> None:
-        """Send the tables, or say that there are none: then it is sent every state."""
+        """Send the tables, or a message that there are none; then every state is sent."""
         tables = await self._loop.run_in_executor(None, self._tables)
         client.is_solving, client.states = tables is not None, 0
         if tables is not None:
@@ -529,7 +529,7 @@ class PageServer:
             if gusts := self._gusts():
                 await client.socket.send_str(json.dumps({'gusts': gusts}))
             return
-        reason = 'this scene cannot be solved elsewhere: it is sent state by state'
+        reason = 'this scene cannot be solved by clients: it is sent state by state'
         client.say({'refused': {'name': 'wind', 'reason': reason}})
 
     async def _send_status(self) -> None:
@@ -550,7 +550,7 @@ class PageServer:
 
 
 def _number(message: dict[str, Any], name: str, low: float, high: float) -> float:
-    """Return an entry that has to be a number within a range."""
+    """Return an entry that is a number within a range, else raise."""
     value = message[name]
     if type(value) not in (int, float) or not low <= value <= high:
         raise ValueError(f'{name} out of {low:g} .. {high:g}')
@@ -562,7 +562,7 @@ async def _index(_request: web.Request) -> web.FileResponse:
 
 
 def _takes_packed(request: web.Request) -> bool:
-    """Whether a file may be packed; not where it may be none, as aiohttp packs that as well."""
+    """Whether a file may be packed; not where it may be missing, as aiohttp packs that as well."""
     headers = request.headers
     is_sent = request.method == 'GET' and not {'If-None-Match', 'If-Modified-Since'} & {*headers}
     return is_sent and 'gzip' in headers.get('Accept-Encoding', '')

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A live tree without ROS: a thread that steps it in real time and hands each state to the server.
+A live tree without ROS: a thread steps it in real time and publishes each state.
 
-What a viewer asks for that takes long (another tree, another model) is built on a second thread,
-while the first goes on, and taken over between two steps.
+Slow requests of viewers (a different tree or model) are built on a second thread, while the first
+continues, and exchanged between two steps.
 """
 
 from __future__ import annotations
@@ -34,22 +34,22 @@ _LOGGER = logging.getLogger('tree_sway.page')
 _MOST_LATE = 0.25
 _NEWEST = 0.05
 _BUSY = 0.2
-"""Share of a period from which on only every second step is sent."""
+"""Share of a period above which only every second step is sent."""
 
 
 @dataclass(frozen=True)
 class Choices:
     """
-    What is built: changing one of these makes a new simulator.
+    Choices of the simulator: a change of one makes a new simulator.
 
     Parameters
     ----------
     tree
-        Name or file.
+        Name or file of the tree.
     count
         Number of trees in the stand, a whole number as text.
     model
-        Its model.
+        Model of the tree.
     damping_ratio
         Damping ratio of every mode; 0 for the species' own.
 
@@ -62,7 +62,7 @@ class Choices:
 
 
 Build = Callable[[Choices], Simulator]
-"""Makes the simulator of some choices."""
+"""Function that makes the simulator of some choices."""
 
 _LEAVES = 1000
 """Clusters of leaves of each kind of tree."""
@@ -70,16 +70,16 @@ _LEAVES = 1000
 
 class Session:
     """
-    Steps a scene in real time, and takes changes while it runs.
+    A scene stepped in real time, with changes while it runs.
 
     Parameters
     ----------
     build
-        Makes the simulator.
+        Function that makes the simulator.
     choices
-        What to begin with.
+        Initial choices.
     wind
-        What blows.
+        Source of the wind.
     rate
         Steps per second in [Hz].
     tolerance
@@ -88,7 +88,7 @@ class Session:
     Raises
     ------
     TreeSwayError
-        As `build`.
+        Errors of `build`.
 
     """
 
@@ -117,7 +117,7 @@ class Session:
         self.failure: Exception | None = None
 
     def serve(self, server: PageServer) -> None:
-        """Publish on a server from now on; the first time, begin to step."""
+        """Publish on a server from now on; the first call starts the steps."""
         server.describe(self._scene.description, self._scene.tables, self._scene.gusts)
         self._server = server
         if not self._thread.is_alive():
@@ -135,12 +135,12 @@ class Session:
 
     def apply(self, name: str, value: Value) -> None:
         """
-        Carry out a change of a viewer.
+        Apply a change of a viewer.
 
         Raises
         ------
         ParameterError
-            A change that this session does not know, or cannot carry out now.
+            An unknown change, or one that is not possible now.
 
         """
         if name == 'pause':
@@ -174,7 +174,7 @@ class Session:
             self._server.announce({'refused': {'name': 'pull', 'reason': why}})
 
     def status(self) -> dict[str, object]:
-        """Return what the page shows beside the tree."""
+        """Return the status on the page."""
         simulator = self._scene.simulator
         status = {
             'model': simulator.model,
@@ -189,7 +189,7 @@ class Session:
 
     def written(self, suffix: str) -> bytes:
         """
-        Write what is shown as a file, ``glb`` or ``html``.
+        Write the scene as a file, ``glb`` or ``html``.
 
         Raises
         ------
@@ -224,7 +224,7 @@ class Session:
             self._builder.start()
 
     def _build_wanted(self) -> None:
-        """Build what was asked for last; viewers are sent the reason of a refusal or a failure."""
+        """Build the last request; viewers get the reason of a refusal or a failure."""
         while (wanted := self._wanted) is not None:
             try:
                 self._next = self._made(wanted)

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a receiver needs to solve a described scene by itself: a table of each of its kinds."""
+"""Tables of the kinds of a described scene, by which a receiver solves it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
             return None
         numbers, own = exported_table(bank)
         state = bank.all_shapes @ kind.basis.projection.T
-        # What a correction of the coordinates does with the least energy.
+        # Motion of a correction of the coordinates with the least energy.
         root = np.sqrt(bank.modal.stiffness)
         own['state'] = state.astype(np.float32)
         own['correction'] = (np.linalg.pinv(state / root[:, None]) / root).astype(np.float32)

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Samples of wind without a sensor: simulated, or a record that is played over and over."""
+"""Samples of wind without a sensor: simulated, or a repeated record."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class WindSource(Protocol):
     """Samples of wind by their times."""
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
-        """Give the samples after a time up to a later one, both in [s]."""
+        """Return the samples after a time up to a later one, both in [s]."""
 
 
 def blow(run: Run, wind: WindSource, until: int) -> None:
@@ -34,7 +34,7 @@ def blow(run: Run, wind: WindSource, until: int) -> None:
 
 class SimulatedWind:
     """
-    Turbulent wind whose mean can be changed while it blows; the gusts keep their pattern.
+    Turbulent wind with a variable mean; the gusts keep their pattern.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class SimulatedWind:
     intensity
         Standard deviation along the wind over the mean.
     bearing_to
-        Where it blows to, clockwise from north in [rad].
+        Direction of the wind, clockwise from north in [rad].
     seed
         Seed of the turbulence.
 
@@ -66,7 +66,7 @@ class SimulatedWind:
         self._model = self._made()
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
-        """Give the samples after a time up to a later one, both in [s]."""
+        """Return the samples after a time up to a later one, both in [s]."""
         model = self._model
         first, end = (max(math.floor(t * _RATE + 1e-6) + 1, 0) for t in (since, until))
         for tick in range(first, end):
@@ -86,7 +86,7 @@ class SimulatedWind:
 
 class RecordedWind:
     """
-    A record, again from its beginning after its end.
+    A repeated record.
 
     Parameters
     ----------
@@ -104,15 +104,15 @@ class RecordedWind:
         self._ahead = 0.0
 
     def seek(self, time: float, now: float) -> None:
-        """Go on from a time of the record, now; both in [s]."""
+        """Continue from a time of the record, now; both in [s]."""
         self._ahead = time - now
 
     def time(self, now: float) -> float:
-        """Time of the record that blows now; both in [s]."""
+        """Present time of the record; both in [s]."""
         return (now + self._ahead) % self.length
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
-        """Give the samples after a time up to a later one, both in [s]."""
+        """Return the samples after a time up to a later one, both in [s]."""
         since, until = since + self._ahead, until + self._ahead
         lap, n = max(math.floor(since / self.length), 0), len(self._time)
         i = int(self._time.searchsorted(since - lap * self.length + 1e-9, 'right'))

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The form of a parameter; each is defined once, in ``sway.yaml`` or in the ``nodes.yaml`` of ROS.
+Definition of parameters, each once, in ``sway.yaml`` or in the ``nodes.yaml`` of ROS.
 
 The ROS declaration, the check of values and of YAML files, and the table in the README come from
 the same definition. Nothing here needs ROS; `declaration` of the nodes puts a table on a node.
@@ -24,10 +24,10 @@ Value = Any  # bool | int | float | str | tuple[float, ...]
 
 # The C parser, where PyYAML was built with it, is ten times faster.
 _LOADER: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
-# What every ROS 2 node has besides its own.
+# Parameters of every ROS 2 node.
 _OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
 QOS_PREFIX = 'qos_overrides.'
-"""Of parameters that change the quality of service of one publisher or subscription."""
+"""Prefix of parameters of the quality of service of a publisher or subscription."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +38,10 @@ class Parameter:
     Parameters
     ----------
     name
-        As in ROS.
+        Name, as in ROS.
     default
-        Its kind (bool, int, float, str, tuple of floats) is the kind that is accepted; whole
-        numbers are accepted for floats.
+        Default, whose type (bool, int, float, str, tuple of floats) is that of accepted values;
+        integers are accepted for floats.
     description
         One sentence for people.
     unit
@@ -50,14 +50,14 @@ class Parameter:
         Closed range of a number, of each number of a tuple; None for no bound. In files both
         are ``range``.
     choices
-        The strings that are accepted; empty for any. In files ``module:NAME`` means those of
-        a table of the library.
+        Accepted strings; empty for any. In files ``module:NAME`` means those of a table of the
+        library.
     most
         A number from 0 to this is accepted beside the choices; None for none.
     live
-        Whether it may change while the node runs.
+        True if it may change while the node runs.
     source
-        Where the default or the range comes from; may be empty.
+        Source of the default or the range; may be empty.
 
     """
 
@@ -76,8 +76,8 @@ class Parameter:
         """
         Convert a value to the parameter's kind.
 
-        A `ParameterError` says what is right: another kind, not finite, out of range, not among
-        the choices.
+        Raises a `ParameterError` with the accepted values for a wrong type, not finite, out of
+        range, not among the choices.
         """
         kind = type(self.default)
         if kind is tuple:
@@ -92,7 +92,7 @@ class Parameter:
         if self.most is not None and str(value).isdecimal() and int(value) <= self.most:
             return value
         if self.choices and value not in self.choices:
-            short = str(value).replace('/msg/', '/')  # either is a type's name to ROS
+            short = str(value).replace('/msg/', '/')  # both are names of types in ROS
             if short in self.choices:
                 return short
             near = nearest(str(value), self.choices)
@@ -101,7 +101,7 @@ class Parameter:
 
     @property
     def range_text(self) -> str:
-        """Return the accepted values: ``0 .. 40``, ``to | from``; nothing if anything goes."""
+        """Return the accepted values: ``0 .. 40``, ``to | from``; empty for any value."""
         if self.choices:
             choices = [choice or '""' for choice in self.choices]
             return ' | '.join(choices if self.most is None else [*choices, f'0 .. {self.most}'])
@@ -139,7 +139,7 @@ class Parameter:
 
 
 def _of_kind(kind: type, value: Value) -> Value:
-    """Return a value as the kind that is meant, if there is but one: 40 for 40.0, 1 for true."""
+    """Return a value as the intended type, if it is unique: 40 for 40.0, 1 for true."""
     if kind is float and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     if kind is int and isinstance(value, float) and value.is_integer():
@@ -157,7 +157,7 @@ Table = tuple[Parameter, ...]
 
 
 def read_tables(path: Path, shared: Table = ()) -> dict[str, Table]:
-    """Read a YAML file of the package; a name without keys is that of a shared parameter."""
+    """Read a YAML file of the package; a name without keys refers to a shared parameter."""
     by_name = {parameter.name: parameter for parameter in shared}
     content = _LOADER(path.read_text(encoding='utf-8')).get_single_data()
     return {
@@ -183,13 +183,13 @@ def _choices(entry: str) -> Iterable[str]:
 
 
 def unknown_names(table: Table, names: Iterable[str]) -> list[str]:
-    """Names that neither the table nor every ROS node has."""
+    """Names that are neither in the table nor in all ROS nodes."""
     known = {parameter.name for parameter in table} | set(_OF_EVERY_NODE)
     return [n for n in names if n not in known and not n.startswith(QOS_PREFIX)]
 
 
 def unknown_parameter(table: Table, name: str, *, where: str = '') -> ParameterError:
-    """Make the error for a name that a table does not have, with the nearest that it has."""
+    """Make the error for a name that is not in a table, with the nearest name in it."""
     names = [parameter.name for parameter in table]
     cure = nearest(name, names) or f'known are: {", ".join(names)}'
     return ParameterError(f"unknown parameter '{name}'", where=where, cure=cure)

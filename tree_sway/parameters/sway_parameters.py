@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What commands, pages and nodes let people choose of the sway and of the simulated wind."""
+"""Parameters of sway and simulated wind, shared by commands, pages and nodes."""
 
 from __future__ import annotations
 

@@ -3,6 +3,5 @@
 """
 Pictures and films of trees with matplotlib.
 
-Projection, bark, leaves, plots.
-Nothing here is needed to solve or stream.
+Projection, bark, leaves, plots. Solving and streaming do not need this room.
 """

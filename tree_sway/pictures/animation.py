@@ -36,7 +36,7 @@ def check_film(path: str | Path) -> Path:
     Raises
     ------
     FormatError
-        If the suffix names no moving picture.
+        If the suffix is not that of a moving picture.
     ModuleNotFoundError
         If matplotlib, Pillow, or imageio-ffmpeg for a film, is not installed.
 
@@ -70,7 +70,7 @@ def animate_poses(
     Parameters
     ----------
     tree, leaves
-        The tree, and its leaves; none are drawn if None.
+        Tree, and its leaves; none are drawn if None.
     frames
         Pose block of each frame, (n, 7).
     winds
@@ -87,14 +87,14 @@ def animate_poses(
     ParameterError
         If there are no frames, or not as many winds.
     FormatError
-        If the file cannot be written; and as `check_film`.
+        If the file cannot be written, or an error of `check_film`.
 
     """
     target = check_film(path)
     blowing = np.asarray(winds, dtype=np.float64)
     if len(frames) == 0 or blowing.shape != (len(frames), 3):
         raise ParameterError(
-            f'{len(frames)} frames and winds {blowing.shape} do not go together',
+            f'{len(frames)} frames and winds {blowing.shape} do not match',
             cure='give one wind (3,) a frame, and at least one frame',
         )
     blocks = [np.asarray(poses, dtype=np.float64) for poses in frames]
@@ -103,7 +103,7 @@ def animate_poses(
         corners += [_box(points) for points in ends_of_poses(block, tree.length)]
     limits = limits_around(np.vstack(corners))
     (left, right), (bottom, top) = limits
-    # Films want even numbers of points.
+    # Films need even numbers of points.
     size = 2 * round(0.5 * pixels * (right - left) / (top - bottom)), 2 * round(0.5 * pixels)
     figure = new_figure(size[0] / _DOTS_PER_INCH, size[1] / _DOTS_PER_INCH)
     figure.set_dpi(_DOTS_PER_INCH)
@@ -137,13 +137,13 @@ def write_pictures(images: Iterator[Any], target: Path, rate: float) -> Path:
 
 def _write_gif(path: Path, images: Iterator[Any], rate: float) -> None:
     first = next(images).quantize(_GIF_COLORS)
-    # No dither: dots that dance are no motion.
+    # Without dither, whose dots would flicker.
     others = (image.quantize(palette=first, dither=0) for image in images)
     first.save(path, 'GIF', save_all=True, append_images=others, duration=1000.0 / rate, loop=0)
 
 
 def _write_film(path: Path, images: Iterator[Any], rate: float) -> None:
-    """Have ffmpeg write what is painted, frame after frame."""
+    """Write painted frames by ffmpeg."""
     from imageio_ffmpeg import write_frames
 
     first = next(images)
@@ -157,5 +157,5 @@ def _write_film(path: Path, images: Iterator[Any], rate: float) -> None:
 
 
 def _box(points: Floats) -> Floats:
-    """Points that touch each side of the cloud, so that many clouds are framed at little cost."""
+    """Extreme points of the cloud, so that many clouds are framed at low cost."""
     return points[[*points.argmin(axis=0), *points.argmax(axis=0)]]

@@ -34,18 +34,18 @@ def picture_in_wind(
     Parameters
     ----------
     trees, poses
-        The trees, and the pose block of all their segments, one tree after the other, (n, 7).
+        Trees, and the pose block of all their segments, one tree after the other, (n, 7).
     wind
         Wind in [m/s], (3,).
     path
-        File to write; its suffix names the format, such as ``.png`` or ``.pdf``.
+        File to write; its suffix is that of a format, such as ``.png`` or ``.pdf``.
     leaves
         Leaves on these segments; none are drawn if None.
 
     Raises
     ------
     FormatError
-        If the suffix names no picture format, or the file cannot be written.
+        If the suffix is not that of a picture format, or the file cannot be written.
     ModuleNotFoundError
         If matplotlib is not installed.
 

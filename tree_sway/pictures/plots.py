@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 STUDY_COLUMNS = ('wind_mean [m/s]', 'tip_largest [m]', 'base_moment_largest [N m]')
-"""Columns of a study that are drawn, the others over the first."""
+"""Columns of a study that are drawn, over the first one."""
 
 
 def plot_wind_and_tip(
@@ -31,24 +31,24 @@ def plot_wind_and_tip(
     Parameters
     ----------
     time
-        In [s], (n,).
+        Time in [s], (n,).
     wind
-        Where it blows to in [m/s], (n, 3): east, north, up.
+        Velocity of the wind in [m/s], (n, 3): east, north, up.
     tip
         Displacement of the tip from rest in [m], (n, 3).
     path, title
-        File to write, whose suffix names the format, and the title of the plot.
+        File to write, whose suffix is that of the format, and the title of the plot.
 
     Raises
     ------
     ParameterError
-        If the three do not go together.
+        If the shapes of the three do not match.
 
     """
     t, blowing, moved = (np.asarray(each, dtype=np.float64) for each in (time, wind, tip))
     if t.ndim != 1 or len(t) < 2 or blowing.shape != (len(t), 3) or moved.shape != (len(t), 3):
         raise ParameterError(
-            f'time {t.shape}, wind {blowing.shape} and tip {moved.shape} do not go together',
+            f'time {t.shape}, wind {blowing.shape} and tip {moved.shape} do not match',
             cure='give (n,), (n, 3) and (n, 3) with n of 2 or more',
         )
     figure = new_figure(10.0, 4.6)
@@ -70,9 +70,9 @@ def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path
     speeds
         Mean wind speeds in [m/s], (n,).
     used
-        By the name of each tree what it uses at each speed, with the bands of the sources.
+        Used shares at each speed by the name of each tree, with the bands of the sources.
     path
-        File to write, whose suffix names the format.
+        File to write, whose suffix is that of the format.
 
     """
     figure = new_figure(10.0, 4.6)
@@ -86,7 +86,7 @@ def plot_strength(speeds: ArrayLike, used: Mapping[str, list[StrengthUse]], path
         axes.axhline(100.0, color='black', lw=0.8, ls='--')
         axes.set(title=what, xlabel='mean wind [m/s]', ylim=(0.0, 200.0))
     figure.axes[0].set_ylabel('share of strength in gusts [%]')
-    left_out = 'left out: rot, wounds, wet or shallow soil, sheltering by neighbours'
+    left_out = 'not included: rot, wounds, wet or shallow soil, sheltering by neighbours'
     return _finished(figure, path, left_out)
 
 
@@ -97,14 +97,14 @@ def plot_study(rows: Sequence[Mapping[str, str]], path: str) -> Path:
     Parameters
     ----------
     rows
-        Cases with `STUDY_COLUMNS`, and ``tree_...`` columns that name the tree of each.
+        Cases with `STUDY_COLUMNS`, and ``tree_...`` columns of the tree of each.
     path
-        File to write, whose suffix names the format.
+        File to write, whose suffix is that of the format.
 
     Raises
     ------
     ValueError, TypeError
-        A figure that is no number, or is missing.
+        A value that is missing or not a number.
 
     """
     trees: dict[str, list[tuple[float, ...]]] = {}

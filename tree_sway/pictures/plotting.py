@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""matplotlib, asked for only when a picture is wanted, and never with a window."""
+"""Use of matplotlib, imported only for pictures, and without windows."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ def save_figure(
     figures: Path | None = None,
 ) -> Path:
     """
-    Write a figure to a file whose suffix names the format, ``.png`` for one.
+    Write a figure to a file whose suffix is that of the format, such as ``.png``.
 
-    Where a file of the numbers that it shows is named, a PNG carries their digest, so that a
-    picture older than its numbers is recognised. Raises a `FormatError` for no picture format, or
-    a file that cannot be written.
+    If a file of its numbers is given, a PNG contains their digest, so that a picture older than
+    its numbers is recognised. Raises a `FormatError` for an unknown format, or a file that cannot
+    be written.
     """
     target = Path(path)
     known = figure.canvas.get_supported_filetypes()
@@ -59,5 +59,5 @@ def save_figure(
 
 
 def digest_of(figures: Path) -> str:
-    """Digest of a file of numbers, as the picture of them carries it."""
+    """Digest of a file of numbers, for its picture."""
     return hashlib.sha256(figures.read_bytes()).hexdigest()

@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Trees on the axes of matplotlib: bark as thick as it is, leaves, what is far away paler.
+Trees on the axes of matplotlib: bark in its true thickness, leaves, and paler colours far away.
 
-They are seen without perspective from the south, a little from above: east is right.
+The view is without perspective from the south, a little from above: east is right.
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ELEVATION = 0.12
-"""Angle at which trees are looked down at in [rad]."""
+"""Angle of the view below the horizon in [rad]."""
 _MARGIN = 0.06
 _SHADE, _HAZE = 0.68, 0.5
-"""Brightness of near bark over that of bark in the sun; how far far bark fades to white."""
+"""Brightness of near bark over that of bark in the sun; share of white in distant bark."""
 _TWIG = np.array([0.36, 0.28, 0.22])
 _SUN = np.array([-0.35, -0.5, 0.8]) / np.linalg.norm([-0.35, -0.5, 0.8])
-# A leaf that shows the area of the disc that its cluster is as wide as, from its stalk on.
+# A leaf with the area of the disc of its cluster, from its stalk on.
 _BLADE = np.array([[-0.8, 0.0, 0.0], [0.0, 0.48, 0.0], [0.8, 0.0, 0.0], [0.0, -0.48, 0.0]])
 _NEEDLES_WIDTH = 0.4
 """Width of a spray of needles over that of a leaf."""
 _WIND, _GHOST, _SHADOW = '#1f6fb4', '#dedad6', '#e2e2e0'
 
 Limits = tuple[tuple[float, float], tuple[float, float]]
-"""What part of the picture plane is shown: from left to right, from bottom to top, in [m]."""
+"""Visible part of the picture plane: left and right, bottom and top, in [m]."""
 
 
 def seen(points: ArrayLike) -> Floats:
@@ -73,22 +73,22 @@ def draw_trees(
     has_ghost: bool = False,
 ) -> None:
     """
-    Draw trees in place of what the axes show.
+    Clear the axes and draw trees.
 
     Parameters
     ----------
     axes
-        Where to draw.
+        Axes to draw on.
     trees, poses
-        The trees, and the pose block of all their segments, one tree after the other, (n, 7).
+        Trees, and the pose block of all their segments, one tree after the other, (n, 7).
     limits
-        What is shown, as of `limits_around`.
+        Visible part, as in `limits_around`.
     wind
         Wind in [m/s], (3,), shown by an arrow; (0, 0, 0) for no arrow.
     leaves, flutter
-        Leaves on these segments, if any, and how far each is turned, as of `leaf_poses`.
+        Leaves on these segments, if any, and the angle of each, as in `leaf_poses`.
     has_ghost
-        Whether to draw the shape at rest behind.
+        True to draw the shape at rest behind.
 
     """
     from matplotlib.collections import EllipseCollection, PolyCollection
@@ -137,7 +137,7 @@ def _tapered(trees: Sequence[Tree], start: Floats, end: Floats) -> Floats:
 
 
 def _bark(tree: Tree) -> Floats:
-    """Colour of each segment, (n, 3): twigs are brown, whatever the bark of old wood is."""
+    """Colour of each segment, (n, 3): twigs are brown, with any bark of old wood."""
     old = np.clip(tree.base_diameter / (0.2 * tree.base_diameter[0]), 0.0, 1.0)[:, None]
     return np.asarray(_SHADE * (_TWIG + old * (np.array(bark_color(tree.species)) - _TWIG)))
 
@@ -154,7 +154,7 @@ def _blades(trees: Sequence[Tree], leaves: LeafClusters, placed: Floats) -> tupl
     blade[..., 1] *= width[:, None]
     turn = Rotation.from_quat(placed[:, 3:]).as_matrix()
     corners = placed[:, None, :3] + np.einsum('mij,mkj->mki', turn, blade)
-    # A leaf shines through: lit from either side.
+    # A leaf is translucent: lit from either side.
     light = 0.6 + 0.55 * np.abs(turn[..., 2] @ _SUN)
     green = light[:, None] * np.array([each.green for each in traits])[own]
     return seen(corners), np.clip(green, 0.0, 1.0)

@@ -3,7 +3,7 @@
 """
 Many trees in many winds with many settings, offline: ``tree-sway study STUDY.yaml``.
 
-A plan becomes cases; each case is computed on its own, in any process, in any order, once.
-Nothing that runs live imports it.
+A plan becomes cases; each case is computed independently, in any process and order, once. Live
+programs do not import this room.
 
 """

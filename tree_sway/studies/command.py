@@ -28,12 +28,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--workers', type=int, metavar='N', help='processes; one per core if left out'
     )
     parser.add_argument(
-        '--force', action='store_true', help='write over a table that is of no study of yours'
+        '--force', action='store_true', help='write over a table of a different study'
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Compute what is missing, write the table."""
+    """Compute missing cases, write the table."""
     if arguments.workers is not None:
         within('--workers', arguments.workers, 1, 1024)
     cases = read_study(arguments.study)

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""One case from plain data to plain numbers, in whatever process it is asked."""
+"""One case from plain data to plain numbers, in any process."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ def compute(case: Case) -> Plain:
     Parameters
     ----------
     case
-        What to compute.
+        Case or cases to compute.
 
     Returns
     -------
     dict
-        What it asked for beside its numbers, by names with their units.
+        Values of the case and its results, by names with their units.
 
     Raises
     ------
     TreeSwayError
-        A tree, a wind or a setting that cannot be.
+        An impossible tree, wind or setting.
 
     """
     rig, frequency = _rig(json.dumps([case.tree, case.settings, case.digest], sort_keys=True))
@@ -66,7 +66,7 @@ def compute(case: Case) -> Plain:
 
 @lru_cache(maxsize=2)
 def _rig(asked: str) -> tuple[Rig, float]:
-    """Tree and settings set up, as what comes next is often the same; its frequency in [Hz]."""
+    """Set up a tree and its frequency in [Hz], cached as the next case often has the same."""
     tree, settings, _ = json.loads(asked)
     rig = Rig(_tree(tree), **settings)
     return rig, float(rig.reductions.natural_frequencies(1)[0])

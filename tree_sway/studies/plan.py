@@ -4,8 +4,7 @@
 From a study file to its cases: every tree in every wind with every combination of settings.
 
 A case is plain data, so that any process on any machine can compute it, and has a name that
-follows from all that its numbers follow from: what it asks for, the content of the files that it
-reads, and the source of the simulator.
+follows from all its input: its values, the content of its files, and the source of the simulator.
 
 """
 
@@ -32,7 +31,7 @@ _ARRAYS = {'leaf_mass', 'leaf_area', 'profile'}
 """Settings that a study does not vary."""
 
 _ROOMS = 'core', 'files', 'studies'
-"""Rooms whose source and tables the numbers follow from."""
+"""Rooms whose source and tables determine the results."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ class Case:
     seconds, rate
         Length in [s] and steps per second [Hz].
     digest
-        Of the files it reads and of the simulator's source.
+        Digest of its files and of the simulator's source.
 
     """
 
@@ -64,7 +63,7 @@ class Case:
 
     @property
     def name(self) -> str:
-        """Twenty letters and digits that no other case has."""
+        """Unique name of twenty letters and digits."""
         text = json.dumps(asdict(self), sort_keys=True)
         return hashlib.blake2b(text.encode(), digest_size=10).hexdigest()
 
@@ -76,19 +75,19 @@ def read_study(path: str | Path) -> list[Case]:
     Parameters
     ----------
     path
-        YAML; names of files in it are looked for beside it.
+        Path of a YAML file; names of files in it are relative to it.
 
     Returns
     -------
     list of Case
-        In the order of trees, winds, settings.
+        Cases in the order of trees, winds, settings.
 
     Raises
     ------
     FormatError
-        A file that cannot be read, is no YAML, or is not what the schema says.
+        A file that cannot be read, is not YAML, or does not match the schema.
     ParameterError
-        A setting that there is not, or a value that it does not take.
+        An unknown setting, or a wrong value.
 
     """
     path = path_of(path)

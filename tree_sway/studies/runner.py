@@ -3,8 +3,8 @@
 """
 Cases over all cores, or over a cluster, each once.
 
-A finished case is a file, written whole or not at all; a study that is run again computes what is
-missing. A worker that is killed takes its case with it, which another one then computes.
+A finished case is a file, written atomically; a study that is run again computes missing cases.
+The case of a killed worker is computed by a different one.
 
 """
 
@@ -26,38 +26,38 @@ from tree_sway.files.whole_file import write_text_whole
 from tree_sway.studies.plan import Case, Plain
 
 ATTEMPTS = 4
-"""How often a case may take its worker down before the study ends."""
+"""Number of workers that a case may end before the study ends."""
 
 _START, _SET_UP, _STEP = 4.0, 2.5, 2e-4
-"""Time that workers take to start, a tree of 900 branches to set up, and each of its steps [s]."""
+"""Time to start workers, to set up a tree of 900 branches, and for each of its steps [s]."""
 
 
 def run_study(cases: list[Case], folder: Path, *, workers: int | None = None) -> list[Plain]:
     """
-    Compute what is missing of a study, and return all of it.
+    Compute missing cases of a study, and return all rows.
 
     Parameters
     ----------
     cases
-        What to compute.
+        Case or cases to compute.
     folder
-        Where finished cases are stored.
+        Folder of finished cases.
     workers
-        Processes; one per core if None.
+        Number of processes; one per core if None.
 
     Returns
     -------
     list of dict
-        One row per case, in the order of the cases, whatever the order they were computed in.
+        One row per case, in the order of the cases, independent of the order of computation.
 
     Raises
     ------
     TreeSwayError
-        The first case that cannot be computed, by its name; the others are stored.
+        The first case that failed, with its name; the others are stored.
     TransportError
-        Workers that die again and again.
+        Workers that end repeatedly.
     ModuleNotFoundError
-        There is something to compute and dask is not installed.
+        Cases to compute without dask.
 
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -72,12 +72,12 @@ def run_study(cases: list[Case], folder: Path, *, workers: int | None = None) ->
 
 
 def missing_cases(cases: list[Case], folder: Path) -> list[Case]:
-    """Cases of a study that are not computed yet."""
+    """Missing cases of a study."""
     return [case for case in cases if not result_path(folder, case).is_file()]
 
 
 def estimated_time(cases: list[Case], workers: int) -> float:
-    """Time in [s] that cases will take, before anything is computed: of trees of 900 branches."""
+    """Estimated time of cases in [s], for trees of 900 branches."""
     steps = sum(case.seconds * case.rate for case in cases)
     work = _SET_UP * len(batches(cases, workers)) + _STEP * steps
     return _START + work / workers if cases else 0.0
@@ -89,16 +89,16 @@ def result_path(folder: Path, case: Case) -> Path:
 
 
 def compute_to_file(case: Case, folder: Path) -> None:
-    """Compute one case and keep its row."""
+    """Compute one case and store its row."""
     from tree_sway.studies.compute import compute
 
-    if result_path(folder, case).is_file():  # a worker that was killed had come this far
+    if result_path(folder, case).is_file():  # a killed worker had finished it
         return
     write_text_whole(result_path(folder, case), json.dumps(compute(case)))
 
 
 def compute_batch(cases: list[Case], folder: Path) -> list[TreeSwayError | None]:
-    """Compute cases one after the other; of each what is wrong with it, or None."""
+    """Compute cases one after the other; return the error of each, or None."""
     outcomes: list[TreeSwayError | None] = []
     for case in cases:
         try:
@@ -112,10 +112,10 @@ def compute_batch(cases: list[Case], folder: Path) -> list[TreeSwayError | None]
 
 def batches(cases: list[Case], workers: int) -> list[list[Case]]:
     """
-    Cases of one tree with one set of settings together.
+    Group cases of one tree with one set of settings.
 
-    Its set-up costs more than a minute of wind does. A tree in many winds is given out in parts,
-    so that no worker is left without work.
+    Its set-up takes longer than a minute of wind. A tree in many winds is divided into parts, so
+    that all workers have work.
 
     """
     most = -(-len(cases) // (4 * workers))
@@ -129,9 +129,9 @@ def batches(cases: list[Case], workers: int) -> list[list[Case]]:
 
 
 def _outcomes(cases: list[Case], folder: Path, workers: int) -> Iterator[TreeSwayError | None]:
-    """Outcome of each case as it is finished: None, or what is wrong with it."""
+    """Yield the result of each finished case: None, or its error."""
     distributed = import_module('distributed')
-    import_module('cryptography')  # of the keys that keep other users of this machine out
+    import_module('cryptography')  # keys that exclude other users of this machine
     with _cluster(distributed, workers) as client:
         futures = [
             client.submit(compute_batch, part, folder.resolve(), key=part[0].name)
@@ -144,17 +144,17 @@ def _outcomes(cases: list[Case], folder: Path, workers: int) -> Iterator[TreeSwa
             raise TransportError(
                 f'a case took down {ATTEMPTS} workers in turn',
                 where=f'case {error.task}',
-                cure='look for what kills them (memory?), use fewer --workers, and run it again',
+                cure='find out what ends them (memory?), use fewer --workers, and run it again',
             ) from None
 
 
 @contextmanager
 def _cluster(distributed: Any, workers: int) -> Iterator[Any]:
-    """Client of processes of its own, which end at once with the study."""
+    """Client of separate processes, which end at once with the study."""
     import dask
 
-    # This process alone hears Ctrl-C: its threads, and the workers that they start, inherit what
-    # is blocked here. The tracker would unblock it as it starts.
+    # Only this process handles Ctrl-C: its threads, and the workers that they start, inherit is
+    # blocked here. The tracker would unblock it as it starts.
     resource_tracker.ensure_running()
     block = getattr(signal, 'pthread_sigmask', lambda *_: None)
     block(signal.SIG_BLOCK, [signal.SIGINT])
@@ -170,7 +170,7 @@ def _cluster(distributed: Any, workers: int) -> Iterator[Any]:
         try:
             block(signal.SIG_UNBLOCK, [signal.SIGINT])
             yield client
-        except BaseException:  # Ctrl-C: what is computed now is computed again, or never
+        except BaseException:  # Ctrl-C: running cases are computed in the next run
             for worker in local.workers.values():
                 os.kill(worker.pid, signal.SIGKILL)
             raise

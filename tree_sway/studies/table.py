@@ -12,9 +12,9 @@ from tree_sway.studies.plan import Plain
 
 def write_table(rows: list[Plain], path: Path) -> None:
     """
-    Write one row per case, whole or not at all; columns in the order in which they first occur.
+    Write one row per case atomically; columns are in the order of their first occurrence.
 
-    Raises as `write_columns`.
+    Errors are those of `write_columns`.
     """
     names = dict.fromkeys(name for row in rows for name in row)
     write_columns({name: [row.get(name) for row in rows] for name in names}, path)

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Watching a stream from outside: what arrives, its figures, its words.
+Monitoring of a stream: messages, statistics, text.
 
-Nothing here grows with the length of a stream.
+Memory does not grow with the length of a stream.
 """

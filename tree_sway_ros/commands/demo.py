@@ -3,7 +3,7 @@
 """
 ``tree-sway demo``: a tree sways in wind, all nodes in one process, over real DDS.
 
-What it prints is what a subscriber receives, not what the solver believes to have sent.
+It prints statistics of a subscriber, not of the solver.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add_sway_arguments(parser)
-    add('--start', type=float, default=0.0, metavar='T', help='time skipped of the record [s]')
+    add('--start', type=float, default=0.0, metavar='T', help='skipped time of the record [s]')
     kinds = 'serial:/dev/ttyUSB0:4800, tcp://host:port, udp://:port'
     add('--sensor', metavar='ADDRESS', help=f'anemometer in place of both: {kinds}')
     add_seconds(parser)
     add('--rate', type=float, default=60.0, help='poses per second [Hz] (%(default)s)')
-    add('--gravity', choices=('on', 'off'), default='on', help='its own weight (%(default)s)')
+    add('--gravity', choices=('on', 'off'), default='on', help='weight of the tree (%(default)s)')
     add('--no-page', action='store_true', help='serve no page')
     add_page_arguments(parser)
 
@@ -77,10 +77,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
-    """Add the viewer, print where its page is, and open it if asked to."""
+    """Add the viewer, print the address of its page, and open it if requested."""
     values = {**vars(page_settings(arguments)), 'control': True}
     values['origins'] = ' '.join(values['origins'])
-    del values['token']  # the node reads it from its file
+    del values['token']  # the node reads it from the file
     url = nodes.add('viewer', values).server.url
     print(f'page: {url}', flush=True)
     if arguments.open:
@@ -88,7 +88,7 @@ def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
 
 
 def _tree_of(scene: Scene, arguments: argparse.Namespace, files: ExitStack) -> str:
-    """Return what the solver opens: TREE, or a file of it with the wood and the options given."""
+    """Return the tree for the solver: TREE, or a file of it with the given wood and options."""
     own = (arguments.seed, arguments.option, arguments.modulus, arguments.density)
     if not any(own) or not scene.is_one_tree:
         return str(arguments.tree)

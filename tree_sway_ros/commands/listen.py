@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-``tree-sway listen``: count what a solver in another process streams, by a raw subscription.
+``tree-sway listen``: count the poses that a solver streams, by a raw subscription.
 
-`ros2 topic hz` turns every pose into a Python object and cannot keep up with a thousand of them.
+`ros2 topic hz` turns every pose into a Python object and is too slow for a thousand of them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('--namespace', default='', help="namespace of the tree's nodes")
     add_seconds(parser)
-    text = 'poses per second that should come [Hz] (%(default)s)'
+    text = 'expected poses per second [Hz] (%(default)s)'
     parser.add_argument('--rate', type=float, default=60.0, help=text)
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Listens to a swaying tree as any other program would: poses as bytes, over DDS."""
+"""Receiver of a swaying tree, as any other program: poses as bytes, over DDS."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from tree_sway_ros.wire.wind_messages import wind_from_message
 
 _POSE = 7 * 8
 _QUEUE = 50
-"""Messages that may wait: what came while this program was busy is late, not missing."""
-_LOOK_AROUND = 1.0  # [s]: how long programs that run already take to be seen
+"""Length of the queue: messages that arrive while this program is busy are late, not missing."""
+_LOOK_AROUND = 1.0  # [s]: time of discovery of running programs
 
 
 class StreamMonitor(Listener):
-    """A node that receives poses and wind; without a tree it counts poses and follows no tip."""
+    """A node that receives poses and wind; without a tree it only counts poses."""
 
     def __init__(self, context: Any, tree: Tree | None, namespace: str = '') -> None:
         super().__init__('monitor', namespace, context)
@@ -48,21 +48,21 @@ class StreamMonitor(Listener):
             self.node.create_subscription(message_class(topic), topic.name, callback, qos, raw=raw)
 
     def expect_silence(self) -> None:
-        """Raise a `TransportError` if somebody publishes: a second wind or tree would mix in."""
+        """Raise a `TransportError` if a program publishes: two winds or trees would mix."""
         self.spin(_LOOK_AROUND)
         for topic in (WIND, SEGMENT_POSES):
             if self.node.count_publishers(topic.name):
                 raise TransportError(
-                    f"another program publishes '{topic.name}' in this ROS domain",
+                    f"a different program publishes '{topic.name}' in this ROS domain",
                     cure='end it, or set ROS_DOMAIN_ID to another number up to 101',
                 )
 
     def restart(self) -> None:
-        """Forget what came until now; all counts begin here."""
+        """Reset all counts."""
         self.totals, self.recent = StreamTotals(), StreamTotals()
 
     def take_recent(self) -> StreamTotals:
-        """Return what came since this was called before."""
+        """Return statistics since the last call."""
         recent, self.recent = self.recent, StreamTotals()
         return recent
 
@@ -76,7 +76,7 @@ class StreamMonitor(Listener):
         """Displacement of the highest tip from rest in a serialised pose array in [m], (3,)."""
         if self._tree is None:
             return np.zeros(3)
-        # The poses are what the message ends with.
+        # The poses are at the end of the message.
         offset = len(data) - (self._tree.n_segments - self._tip) * _POSE
         pose = np.frombuffer(data, np.float64, 7, offset)
         _, end = ends_of_poses(pose[None], self._tree.length[self._tip, None])

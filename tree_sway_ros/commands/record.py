@@ -3,8 +3,7 @@
 """
 ``tree-sway record``: wind, state and description of a running tree as a bag, some 60 MB per hour.
 
-The state is all that poses are rebuilt from; ``player`` replays it, or the wind, to be solved
-again.
+All poses follow from the state; ``player`` replays it, or the wind, to be solved again.
 """
 
 from __future__ import annotations
@@ -65,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 class Recorder(Listener):
-    """Writes what a tree's nodes send on some topics into a bag, message by message as bytes."""
+    """Recording of some topics of a tree's nodes into a bag, message by message as bytes."""
 
     def __init__(
         self, context: Any, bag: BagWriter, topics: tuple[Topic, ...], namespace: str = ''
@@ -81,7 +80,7 @@ class Recorder(Listener):
         return 0.0 if self._began is None else time.monotonic() - self._began
 
     def spin(self, seconds: float) -> None:
-        """Record for a time [s]; topics that are new are joined first."""
+        """Record for a time [s]; subscribe to new topics first."""
         for name, kinds in self.node.get_topic_names_and_types() if self._wanted else ():
             if name in self._wanted:
                 self._join(name, self._wanted.pop(name), kinds[0])

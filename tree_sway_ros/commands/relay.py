@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-``tree-sway relay``: the wind of another site, published here as an anemometer would.
+``tree-sway relay``: the wind of a remote site, published as by an anemometer.
 
-The other site serves a page, by ``tree-sway show`` or the node ``viewer``: its stream is asked for
-the wind alone, and the nodes `wind` and `solver` of this site do the rest.
+The remote site serves a page, by ``tree-sway show`` or the node ``viewer``: only the wind of its
+stream is requested, for the nodes `wind` and `solver` of this site.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ _LOOK = 0.2
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add('url', help='of the page of the other site, as http://there:8765/')
-    add('--token-file', default='', metavar='FILE', help='what its page asks for')
-    add('--namespace', default='', help='of the nodes of this site')
+    add('url', help='address of the page of the remote site, as http://there:8765/')
+    add('--token-file', default='', metavar='FILE', help='token of its page')
+    add('--namespace', default='', help='namespace of the nodes of this site')
     add('--rate', type=float, default=20.0, help='samples per second [Hz] (%(default)s)')
     add_seconds(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Pass the wind on until the time is over or Ctrl-C."""
+    """Relay the wind until the time is over or Ctrl-C."""
     seconds, token = seconds_of(arguments), read_token(arguments.token_file)
     writer = WindWriter('geometry_msgs/Vector3Stamped', 'to', 'map')
     with Ending() as ending, Listener('tree_sway_relay', arguments.namespace) as site:

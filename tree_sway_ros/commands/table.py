@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The commands of the nodes, found by the entry point of the package."""
+"""The commands of the nodes, for the entry point of the package."""
 
 from __future__ import annotations
 

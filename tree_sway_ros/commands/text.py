@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A stream in words: one line about now, several about all of it."""
+"""Statistics of a stream as text: one line on the present, several on the whole."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _COMPASS = ('E', 'NE', 'N', 'NW', 'W', 'SW', 'S', 'SE')
 
 
 def status_line(recent: StreamTotals, elapsed: float) -> str:
-    """One line about the last moments of a stream."""
+    """Return one line on the last messages of a stream."""
     wind = 'no wind'
     if recent.wind.count:
         origin, rate = _from(recent.wind.mean), recent.wind.rate
@@ -27,7 +27,7 @@ def status_line(recent: StreamTotals, elapsed: float) -> str:
 
 
 def summary(totals: StreamTotals, rate: float) -> str:
-    """Several lines about a whole stream; `rate` is the one it was meant to have in [Hz]."""
+    """Return several lines on a whole stream; `rate` is its expected rate in [Hz]."""
     poses, wind = totals.poses, totals.wind
     if not poses.count:
         return 'no poses'
@@ -53,7 +53,7 @@ def summary(totals: StreamTotals, rate: float) -> str:
 
 
 def _from(vector: Floats) -> str:
-    """Where the wind comes from, as people say it."""
+    """Direction that the wind comes from, as text."""
     if float(np.linalg.norm(vector)) < 0.05:
         return 'calm'
     octant = round(math.atan2(-vector[1], -vector[0]) / (math.pi / 4.0)) % 8

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a whole stream was like, in memory that does not grow with its length."""
+"""Statistics of a whole stream, in memory that does not grow with its length."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LATEST = 36_000
 
 
 class Series:
-    """Vectors at times: how many, from when to when [s], and how long on average and at most."""
+    """Statistics of vectors at times: number, first and last time [s], mean and largest length."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -51,7 +51,7 @@ class Series:
 
 
 class StreamTotals:
-    """Everything that `summary` reports of a stream, from its messages one by one."""
+    """Statistics of a stream for `summary`, from its messages one by one."""
 
     def __init__(self) -> None:
         self.poses, self.wind = Series(), Series()
@@ -63,13 +63,13 @@ class StreamTotals:
         self.latencies.append(arrival - stamp)
 
     def latency(self, *shares: float) -> list[float]:
-        """Time in [s] that each share of the latest poses took at most; NaN without any."""
+        """Percentiles of the latency of the latest poses in [s]; NaN without any."""
         if not self.latencies:
             return [math.nan] * len(shares)
         return [float(each) for each in np.quantile(self.latencies, shares)]
 
     def missing(self, rate: float) -> int:
-        """Frames of a rate's grid [Hz], between the first and the last, that never came."""
+        """Return the number of missing frames of a rate [Hz], between the first and the last."""
         if self.poses.count < 2:
             return 0
         return round((self.poses.last - self.poses.first) * rate) + 1 - self.poses.count

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Watching a stream until its time is over or it is ended, in a line that follows what comes."""
+"""Monitoring of a stream until its time is over or it is ended, with a line of statistics."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _LIVE_PERIOD, _LOG_PERIOD = 0.5, 2.0
 
 
 def add_seconds(parser: argparse.ArgumentParser) -> None:
-    """Add how long a command goes on."""
+    """Add the duration of a command."""
     text = 'end after this time [s]; else by Ctrl-C'
     parser.add_argument('--seconds', type=float, default=math.inf, metavar='N', help=text)
 
 
 def seconds_of(arguments: argparse.Namespace) -> float:
-    """Return how long a command goes on in [s]; a `ParameterError` for no time."""
+    """Return the duration of a command in [s]; a `ParameterError` for an impossible one."""
     return within('--seconds', arguments.seconds, 0.0, math.inf, 's', above=True)
 
 
@@ -34,10 +34,10 @@ def watch(
     monitor: StreamMonitor, seconds: float, check: Callable[[], bool], *, patience: float = 30.0
 ) -> None:
     """
-    Receive for a time [s] from when poses come, and print how it goes.
+    Receive for a time [s] from the first poses on, and print statistics.
 
-    ``check`` is called now and then: it raises if something failed, and returns True to go on. A
-    `TransportError` is raised if no poses come within the ``patience`` [s].
+    ``check`` is called repeatedly: it raises on a failure, and returns True to continue. A
+    `TransportError` is raised if no poses arrive within the ``patience`` [s].
     """
     deadline = time.monotonic() + patience
     while not monitor.totals.poses.count and check():

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Where an instrument is heard: ``tcp://host:port``, ``udp://:port``, ``serial:/dev/x:9600``."""
+"""Address of an instrument: ``tcp://host:port``, ``udp://:port``, ``serial:/dev/x:9600``."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ _BAUD = 4800  # of NMEA 0183
 @dataclass(frozen=True)
 class Address:
     """
-    One end of a link, ``tcp``, ``udp`` or ``serial``: a host to call or listen on, or a port.
+    One end of a link, ``tcp``, ``udp`` or ``serial``: a host, or a port.
 
-    For udp an empty place is all; the number is the port, or the baud rate of the serial port.
+    For udp an empty place is all interfaces; the number is the port, or the baud rate of the
+    serial port.
     """
 
     kind: str

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A thread that listens to an instrument and, whenever the link breaks, takes it up again."""
+"""A thread that listens to an instrument and reconnects when the link breaks."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from tree_sway_ros.link.lines import Lines
 from tree_sway_ros.timing.worker import Worker
 
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
-"""Pause between two attempts [s]: doubled from the first to the longest while nothing comes."""
+"""Pause between two attempts [s]: doubled from the first to the longest while there is no data."""
 _CONNECT_FOR = 5.0  # [s]
-_READ_FOR = 0.1  # [s]: as soon a silent link sees that it is to end
+_READ_FOR = 0.1  # [s]: interval at which a silent link checks whether to end
 _DATAGRAM = 65_536
 
 Read = Callable[[], bytes | None]
-"""Bytes that have come, none where nothing came for a while, None at the end of the link."""
+"""Received bytes, empty after a timeout, None at the end of the link."""
 
 
 @dataclass(eq=False)
 class LineSource(Worker):
     """
-    Listens to an instrument at an address; gives each line to `take`, in a thread of its own.
+    Connection to an instrument at an address; calls `take` with each line, in its own thread.
 
-    A link without a byte for the time of `silence` [s] is given up and opened again, first after
-    `first_pause` [s]. A `MissingDependencyError` says that a serial port needs pyserial.
+    A link without a byte for the time of `silence` [s] is closed and opened again, first after
+    `first_pause` [s]. A serial port without pyserial raises a `MissingDependencyError`.
     """
 
     address: Address
@@ -58,14 +58,14 @@ class LineSource(Worker):
             try:
                 with _opened(self.address) as read:
                     why = self._listen(read)
-            except Exception as error:  # an instrument may fail in any way, and is tried again
+            except Exception as error:  # an instrument may fail in any way, and is connected again
                 why = f'{type(error).__name__}: {error}'
             self._lose(why)
             pause = self.first_pause if self.lines > before else min(2.0 * pause, LONGEST_PAUSE)
             self._stopping.wait(pause)
 
     def _listen(self, read: Read) -> str:
-        """Read until the link ends; return why it did."""
+        """Read until the link ends; return the reason."""
         lines, latest = Lines(), time.monotonic()
         self.is_up, self.failure = True, ''
         self.links += 1

@@ -1,17 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Bytes as they come, cut into lines; what is no line of a sensor is dropped and counted."""
+"""Received bytes, cut into lines; other data than lines of a sensor is dropped and counted."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 LONGEST = 1024
-"""Longer lines are no sensor's [bytes]."""
+"""Largest length of a line [bytes]."""
 
 
 class Lines:
-    """Holds what has come of a line that is not complete; never more than `LONGEST` bytes."""
+    """Buffer of an incomplete line, of at most `LONGEST` bytes."""
 
     def __init__(self) -> None:
         self.dropped = 0
@@ -19,7 +19,7 @@ class Lines:
         self._is_too_long = False
 
     def feed(self, data: bytes, *, is_whole: bool = False) -> Iterator[str]:
-        """Take bytes, whose end ends a line if they are a datagram; return the lines complete."""
+        """Add bytes, whose end ends a line if they are a datagram; return the complete lines."""
         *whole, begun = (self._begun + data).replace(b'\r', b'\n').split(b'\n')
         if is_whole:
             whole, begun = [*whole, begun], b''

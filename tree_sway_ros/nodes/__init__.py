@@ -3,6 +3,5 @@
 """
 rclpy entry points: one node class per file.
 
-A node converts, calls and publishes.
-No arithmetic beyond units.
+A node converts, calls and publishes, without arithmetic beyond units.
 """

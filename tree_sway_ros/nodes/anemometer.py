@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The anemometer node: a simulated wind, as any driver would publish it."""
+"""The anemometer node: a simulated wind, published as by a driver."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ class AnemometerNode(TreeSwayNode):
         self._pacer = self.pacer_of(self._tick)
 
     def activate(self) -> None:
-        """Blow."""
+        """Publish the next sample."""
         self.run_worker(self._pacer)
 
     def check_values(self, values: dict[str, Any]) -> None:
-        """Refuse faults that overlap."""
+        """Refuse overlapping faults."""
         duration, every = values['fault_duration'], values['fault_every']
         if values['fault'] != 'none' and every < duration:
             raise ParameterError(
                 f'faults of {duration:g} s every {every:g} s overlap',
                 where="parameters 'fault_duration' and 'fault_every'",
-                cure='give fault_every not less than fault_duration, both at once',
+                cure='give fault_every of at least fault_duration, both at once',
             )
 
     def on_change(self, values: dict[str, Any]) -> None:
-        """Blow otherwise from the next sample on; the gusts of a seed keep their pattern."""
+        """Change the wind from the next sample on; the gusts of a seed keep their pattern."""
         self._model = self._make_model()
         if any(name.startswith('fault') for name in values):
             self._faults, self._faulty_since = self._make_faults(), self._ticks

@@ -3,8 +3,8 @@
 """
 The executables that ``ros2 run tree_sway_ros`` starts; they can be imported without ROS.
 
-Each takes a command line without the program's name (that of the process if it is left out) and
-returns the exit code.
+The argument of each is a command line without the program's name (by default that of the process),
+the result the exit code.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The player node: a recorded wind, as it was, faster, or around and around."""
+"""The player node: a recorded wind, at its rate or faster, once or repeated."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tree_sway_ros.wire.wind_messages import clock_message, WindWriter
 
 
 class PlayerNode(TreeSwayNode):
-    """Publishes `wind` from a record, and `/clock` if asked to."""
+    """Publishes `wind` from a record, and `/clock` if enabled."""
 
     def configure(self) -> None:
         """Read the record."""
@@ -34,7 +34,7 @@ class PlayerNode(TreeSwayNode):
         epoch = self._record.epoch
         if has_clock and not is_ros_time(epoch, self._record.time):
             self.get_logger().warning(
-                f'{self._record.source} is dated outside 1970 .. 2038, which /clock cannot say: '
+                f'{self._record.source} is dated outside 1970 .. 2038, the range of /clock: '
                 'it starts at 1 s'
             )
             epoch = None
@@ -52,7 +52,7 @@ class PlayerNode(TreeSwayNode):
         self.report_with(self._record.source, self._report)
 
     def activate(self) -> None:
-        """Play from the start, once somebody listens."""
+        """Play from the start, once there is a subscriber."""
         self.run_worker(self._playback)
 
     def _publish(self, row: int, stamp: int) -> None:

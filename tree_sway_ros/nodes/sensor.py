@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The sensor node: a real anemometer that speaks NMEA 0183, or as Gill's do."""
+"""The sensor node: a real anemometer with NMEA 0183 or the lines of Gill."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tree_sway_ros.wire.wind_messages import WindWriter
 
 
 class SensorNode(TreeSwayNode):
-    """Publishes `wind` as an instrument says it, stamped with the time of arrival."""
+    """Publishes `wind` of an instrument, stamped with the time of arrival."""
 
     def configure(self) -> None:
         """Prepare the link."""
@@ -36,11 +36,11 @@ class SensorNode(TreeSwayNode):
         self.report_with(self.values['address'], self._report)
 
     def activate(self) -> None:
-        """Listen."""
+        """Start to listen."""
         self.run_worker(self._source)
 
     def check_values(self, values: dict[str, Any]) -> None:
-        """Refuse what is no address."""
+        """Check the address."""
         read_address(values['address'])
 
     def _take(self, line: str) -> None:
@@ -49,7 +49,7 @@ class SensorNode(TreeSwayNode):
             self._other += 1
             return
         if self._kind == 'auto' and said.velocity is not None:
-            self._kind = said.kind  # the first good one; another reference would jump to and fro
+            self._kind = said.kind  # the first good one; a change of reference would be a jump
             self.get_logger().info(f'reading {said.kind}')
         if said.kind != self._kind:
             self._other += 1

@@ -15,7 +15,7 @@ from std_srvs.srv import SetBool, Trigger
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.scene.shard import dealt
+from tree_sway.core.scene.shard import shard_of
 from tree_sway.core.simulator.live_tuning import LIVE
 from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import Settings
@@ -42,19 +42,19 @@ _FARTHEST_CAMERA = 1e6
 """Distance along each axis [m]."""
 
 _STRONGEST_PUSH, _PUSH_LASTS = 1e5, 0.5
-"""Force [N], and time [s] after which a push ends that is not sent again."""
+"""Largest force [N], and time [s] after which a push ends if it is not repeated."""
 
 
 class SolverNode(TreeSwayNode):
     """Subscribes `wind/filtered`; publishes poses, markers and state, and their description."""
 
     def configure(self) -> None:
-        """Open the tree, reduce it and make its kernels ready."""
+        """Open the tree, reduce it and prepare its kernels."""
         began, log = time.monotonic(), self.get_logger().info
         log(f"opening tree '{self.values['tree']}'")
         source = self._open()
         log(
-            f'reducing {source.tree.n_segments} segments and making the kernels ready (where no '
+            f'reducing {source.tree.n_segments} segments and preparing the kernels (where no '
             'cache has them they are compiled, up to a minute)'
         )
         self._make(source)
@@ -68,7 +68,7 @@ class SolverNode(TreeSwayNode):
         )
 
     def activate(self) -> None:
-        """Sway, from rest."""
+        """Begin to sway from rest."""
         self.run_worker(self.pacer)
         self._state.start()
 
@@ -78,7 +78,7 @@ class SolverNode(TreeSwayNode):
             source = source.of_species(species_named(self.values['species'])).checked()
         x, y, z, yaw = self.values['pose']
         moved = source.moved(x=x, y=y, z=z, yaw=yaw)
-        return dealt(moved, self.values['shard.index'], self.values['shard.count'])
+        return shard_of(moved, self.values['shard.index'], self.values['shard.count'])
 
     def _make(self, source: Any) -> None:
         settings = Settings(
@@ -104,7 +104,7 @@ class SolverNode(TreeSwayNode):
         )
         set_cost_scale(self.simulator.simulators, self._run.warm_up())
         self._set_demand()
-        self.simulator.reset()  # on the model that is asked for
+        self.simulator.reset()  # on the requested model
         self._sway_report = SwayReport()
         leaves = source.leaves(settings.in_leaf, _LEAF_CLUSTERS)
         self.stream = PoseStream(self, source.tree, leaves)
@@ -129,7 +129,7 @@ class SolverNode(TreeSwayNode):
     def _see(self, message: Any) -> None:
         at = message.pose.position
         camera = (at.x, at.y, at.z)
-        if not all(abs(each) <= _FARTHEST_CAMERA for each in camera):  # NaN is not, either
+        if not all(abs(each) <= _FARTHEST_CAMERA for each in camera):  # false for NaN
             self._refuse('camera', 'not finite or too far away')
             return
         self._camera = camera
@@ -140,7 +140,7 @@ class SolverNode(TreeSwayNode):
         components = (force.x, force.y, force.z)
         if name not in self._segments:
             self._refuse('push', f"no segment '{name}'; tree_description names all")
-        elif not math.hypot(*components) <= _STRONGEST_PUSH:  # NaN is not, either
+        elif not math.hypot(*components) <= _STRONGEST_PUSH:  # false for NaN
             self._refuse('push', f'not finite or above {_STRONGEST_PUSH:g} N')
         else:
             self._run.request(lambda: self._push(self._segments[name], components))
@@ -165,11 +165,11 @@ class SolverNode(TreeSwayNode):
         self._run.pull(segment, to, stiffness, lambda why: self._refuse('pull', why))
 
     def _refuse(self, what: str, why: str) -> None:
-        """Count what is refused, for the report."""
+        """Count refused pushes, for the report."""
         self._refused[what] = self._refused.get(what, (0, ''))[0] + 1, why
 
     def check_values(self, values: dict[str, Any]) -> None:
-        """Refuse a change that the trees could not take while they sway."""
+        """Refuse a change that is impossible while the trees sway."""
         if not self.is_active:
             return
         changes = {k: v for k, v in values.items() if k in LIVE and v != self.values[k]}
@@ -183,7 +183,7 @@ class SolverNode(TreeSwayNode):
             self.simulator.check_tuning(**changes)
 
     def on_change(self, values: dict[str, Any]) -> None:
-        """Take new values before the next step."""
+        """Apply new values before the next step."""
         changes = {name: values[name] for name in LIVE if name in values}
         if changes and self.is_active:
             self._run.request(lambda: self.simulator.tune(**changes))
@@ -198,21 +198,21 @@ class SolverNode(TreeSwayNode):
         )
 
     def slip(self, error: Exception) -> None:
-        """Go on from rest: what was amid a step is not to be trusted."""
+        """Continue from rest, as the state within a step is invalid."""
         super().slip(error)
         self._run.request(self.simulator.reset)
 
     def _tick(self, tick: Tick) -> None:
         if tick.restarted:
             self._run.restart(tick.time)
-        if self.pacer.is_simulated:  # of a replay every frame comes, however late
+        if self.pacer.is_simulated:  # in a replay every frame is published, however late
             for later in range(tick.periods - 1, -1, -1):
                 self._frame(tick.time - later * self.pacer.period, 1, may_join=False)
         else:
             self._frame(tick.time, tick.periods, may_join=True)
 
     def _frame(self, now: int, periods: int, *, may_join: bool) -> None:
-        """Solve up to a time in [ns], and publish what is due then."""
+        """Solve up to a time in [ns], and publish due messages."""
         delay = self.values['wind_delay']
         self._run.advance(now, delay=delay, most=periods, may_join=may_join)
         index = now // self.pacer.period

@@ -20,10 +20,10 @@ from tree_sway_ros.wire.tree_state import state_entry, state_template
 
 class StatePublisher:
     """
-    Publishes `tree_state` to those who listen, and has `tree_description` say how to read it.
+    Publishes `tree_state` to subscribers, and its description in `tree_description`.
 
-    The basis takes some seconds to find: it is found on a thread of its own, as soon as the
-    solver sways, so that it is there for the first who listens.
+    The basis takes some seconds to find, on a separate thread, as soon as the solver sways, so
+    that it is known to the first subscriber.
     """
 
     def __init__(self, node: Any, simulator: Simulator, n_leaves: int) -> None:

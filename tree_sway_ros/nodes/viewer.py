@@ -34,10 +34,10 @@ _LIVE = {
 
 
 class ViewerNode(TreeSwayNode):
-    """Serves the page; subscribes `tree_state` from when a page is first connected."""
+    """Serves the page; subscribes `tree_state` once a page is connected."""
 
     def configure(self) -> None:
-        """Subscribe to the description, and prepare what pages may change."""
+        """Subscribe to the description, and prepare the controls."""
         self._settings = PageSettings(
             **self.values('address', 'port', 'token_file', 'certificate', 'private_key'),
             **self.values('max_clients'),
@@ -70,7 +70,7 @@ class ViewerNode(TreeSwayNode):
         self.get_logger().info(f'the page is at {self.server.url}')
 
     def _look(self) -> None:
-        """Ask for the state once somebody looks: until then it need not be computed."""
+        """Subscribe to the state once a page is connected: until then it need not be computed."""
         if self._subscription is None and self.server.n_clients > 0:
             self._subscription = self.subscription(TREE_STATE, self._receive)
 
@@ -109,7 +109,7 @@ class ViewerNode(TreeSwayNode):
         return [Status('page', OK, f'{self.server.n_clients} pages', values)]
 
     def _apply(self, name: str, value: Any) -> None:
-        """Pass a viewer's change on to the node it concerns; its refusal comes later."""
+        """Forward a viewer's change to its node; a refusal arrives later."""
         if name == 'reset':
             self._ask(self._reset, Trigger.Request())
         elif name == 'pause':
@@ -120,7 +120,7 @@ class ViewerNode(TreeSwayNode):
             self._ask(self._setters[_LIVE[name][0]], request)
 
     def _pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
-        """Pass a viewer's pull on to the solver."""
+        """Forward a viewer's pull to the solver."""
         kinds = self._description.header['kinds'] if self._description else ()
         if any(kind['model'] == 'branch' for kind in kinds):
             raise ParameterError("model 'branch' cannot be pulled", where='pull')
@@ -132,7 +132,7 @@ class ViewerNode(TreeSwayNode):
     def _ask(self, client: Any, request: Any) -> None:
         if not client.service_is_ready():
             raise ParameterError(
-                f'nothing offers {client.srv_name}', cure='start the node, or leave this as it is'
+                f'nothing offers {client.srv_name}', cure='start the node, or do not change this'
             )
 
         def answered(future: Any) -> None:
@@ -144,6 +144,6 @@ class ViewerNode(TreeSwayNode):
 
 
 def _controls() -> tuple[Control, ...]:
-    """Make what viewers may change, with the ranges of the nodes' parameters."""
+    """Make the controls of viewers, with the ranges of the nodes' parameters."""
     live = (Control.of(SWAY[name], label) for name, (_, label) in _LIVE.items())
     return (*live, *PAUSE_AND_RESET)

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The wind node: whatever an anemometer sends, as the wind that trees feel."""
+"""The wind node: samples of an anemometer to the wind of the trees."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ _CONVENTION = ('direction_convention', 'speed_scale', 'yaw_offset', 'plane_norma
 _GATE = ('max_speed', 'max_rate', 'longest_refusal', 'frozen_after')
 
 _BACK = 100_000_000
-"""From this step back on time is set back [ns]; less is jitter."""
+"""Smallest step back of time that is a reset [ns]; smaller ones are jitter."""
 
 _RECENT = 5.0
-"""A sample in another frame is reported for this time [s]."""
+"""Time for which a sample in a different frame is reported [s]."""
 
 
 class WindNode(TreeSwayNode):
     """Subscribes `wind`, publishes `wind/filtered` and `wind/force_plane`."""
 
     def configure(self) -> None:
-        """Subscribe and publish; what comes while inactive is dropped."""
+        """Subscribe and publish; samples are dropped while inactive."""
         self._report = WindReport()
         self._convention = WindConvention(**self.values(*_CONVENTION))
         self._intake = WindIntake(self._convention, WindGate(**self.values(*_GATE)))
@@ -53,7 +53,7 @@ class WindNode(TreeSwayNode):
         self.get_logger().info(f'reading wind as {self._convention}')
 
     def activate(self) -> None:
-        """Where simulated time is set back, samples of before say nothing of those to come."""
+        """Reset the gate where simulated time is set back."""
         back = JumpThreshold(
             min_forward=None, min_backward=Duration(nanoseconds=-_BACK), on_clock_change=False
         )
@@ -63,7 +63,7 @@ class WindNode(TreeSwayNode):
         self.on_close(jumps.unregister)
 
     def on_change(self, values: dict[str, Any]) -> None:
-        """Read the wind otherwise from the next sample on."""
+        """Apply a new convention from the next sample on."""
         self._convention = WindConvention(**self.values(*_CONVENTION))
         self._intake.convention = self._convention
 
@@ -78,7 +78,7 @@ class WindNode(TreeSwayNode):
             if self._frames.is_waiting:
                 return
         components = (sample.u, sample.v, sample.w)
-        arrival = self.get_clock().now().nanoseconds or None  # simulated time has not come yet
+        arrival = self.get_clock().now().nanoseconds or None  # simulated time has not begun
         good = self._intake.offer(
             sample.stamp, components, arrival, lead=self.clock_lead, rotation=turn
         )
@@ -93,7 +93,7 @@ class WindNode(TreeSwayNode):
         self._plane.publish(plane_message(time, frame_id, self._attitude))
 
     def _listen_for_frames(self) -> Any:
-        """Load what turns frames, which takes as long as all else here, where there are others."""
+        """Load the listener of transforms, which is slow, when a sample has a different frame."""
         from tree_sway_ros.wire.frames import FrameListener
 
         return FrameListener(self, self.values['frame_id'])
@@ -107,7 +107,7 @@ class WindNode(TreeSwayNode):
         return statuses
 
     def _types_not_read(self) -> list[str]:
-        """Types other than `input_type` that somebody publishes on the topic."""
+        """Types other than `input_type` that are published on the topic."""
         offered = self.get_publishers_info_by_topic(self._topic)
         names = {publisher.topic_type.replace('/msg/', '/') for publisher in offered}
         return sorted(names - {self.values['input_type']})

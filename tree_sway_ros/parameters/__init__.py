@@ -3,6 +3,5 @@
 """
 Parameters of nodes: one table each, from which declaration, checks and documents come.
 
-A refused value keeps the old one.
-What a parameter does is written where it is used.
+After a refusal the old value stays. The meaning of a parameter is in the module that uses it.
 """

@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A table of parameters on a node: declared, checked by our own rules, changed while it runs.
+Parameters of a node by a table: declaration, checks by our own rules, live changes.
 
-ROS kills a node that is started with ``rate:=40`` where the parameter is a double, and silently
-ignores a misspelt name. Parameters are therefore declared with dynamic typing; kinds and ranges
-are checked here, a name that is unknown is reported with the nearest, and a refused change keeps
-the old value and says why.
+ROS ends a node that is started with ``rate:=40`` where the parameter is a double, and ignores a
+misspelt name. Parameters are therefore declared with dynamic typing; types and ranges are checked
+here, an unknown name is reported with the nearest one, and a refused change keeps the old value
+with a reason.
 """
 
 from __future__ import annotations
@@ -40,21 +40,21 @@ class ParameterValues:
     Parameters
     ----------
     node
-        Created with ``automatically_declare_parameters_from_overrides=True``, so that what the
-        user gave can be seen, misspelt names included.
+        Created with ``automatically_declare_parameters_from_overrides=True``, so that all values
+        of the user are known, including misspelt names.
     table
         The node's parameters.
     on_change
-        Called with the new values by name after a live change.
+        Function called with the new values by name after a live change.
     check
-        Called with all values by name, as they would be, before they are taken, at the start and
-        at each change; raises where they do not go together.
+        Function called with all new values by name before they are applied, at the start and at
+        each change; raises for inconsistent values.
 
     Raises
     ------
     ParameterError
-        A refused value among what the user gave. An unknown name is a warning alone: a launch
-        file's ``SetParameter`` and a section ``/**`` of a parameter file reach every node.
+        A refused value of the user. An unknown name is only a warning: a launch file's
+        ``SetParameter`` and a section ``/**`` of a parameter file reach every node.
 
     """
 
@@ -72,7 +72,7 @@ class ParameterValues:
         for name in unknown:
             error = unknown_parameter(table, name, where=f"node '{node.get_name()}'")
             node.get_logger().warning(f'{error}; ignored')
-        for name in given:  # publishers and subscriptions declare the quality of theirs
+        for name in given:  # publishers and subscriptions declare their quality of service
             if name in unknown or name in self._by_name or name.startswith(QOS_PREFIX):
                 node.undeclare_parameter(name)
         self._values = {
@@ -87,7 +87,7 @@ class ParameterValues:
         node.add_post_set_parameters_callback(self._apply)
 
     def __getitem__(self, name: str) -> Value:
-        """Value of a parameter, of its own kind: a float is a float even if ROS was given 40."""
+        """Value of a parameter in its own type: a float is a float even if ROS was given 40."""
         return self._values[name]
 
     def __call__(self, *names: str) -> dict[str, Value]:
@@ -95,10 +95,10 @@ class ParameterValues:
         return {name: self._values[name] for name in names}
 
     def _convert(self, changes: list[Any]) -> list[Any]:
-        """Give each value its parameter's own kind: a double stays one when set to 1."""
+        """Convert each value to the type of its parameter: a double stays one when set to 1."""
         converted = []
         for change in changes:
-            with suppress(ParameterError):  # refused next, with the reason
+            with suppress(ParameterError):  # refused later, with the reason
                 for name, value in self._checked([change]).items():
                     change = type(change)(name, value=_shown(value))
             converted.append(change)
@@ -109,7 +109,7 @@ class ParameterValues:
             self._check_all(self._values | self._checked(changes))
         except TreeSwayError as error:
             return SetParametersResult(successful=False, reason=str(error))
-        except Exception as error:  # the caller gets an answer, whatever a rule stumbles over
+        except Exception as error:  # the caller gets a reply for any error of a rule
             reason = f'cannot be checked: {type(error).__name__}: {error}'
             return SetParametersResult(successful=False, reason=reason)
         return SetParametersResult(successful=True)

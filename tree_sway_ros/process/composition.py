@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Several nodes in one process, over real DDS: for the demo, for tests, for programs of one's own.
+Several nodes in one process, over real DDS: for the demo, tests and other programs.
 
     with Composition({"anemometer": {}, "wind": {}, "solver": {"tree": "goldcrest"}}) as nodes:
         ...
@@ -31,7 +31,7 @@ class Composition:
     """
     Nodes that share a process and an executor, in the order and with the values given.
 
-    The ROS domain is the environment's if None.
+    The ROS domain is that of the environment if None.
 
     Raises
     ------
@@ -72,7 +72,7 @@ class Composition:
         self._thread.start()
 
     def add(self, name: str, values: Mapping[str, Value], namespace: str = '') -> Any:
-        """Start another node of `NODES` in a namespace, with values of its parameters."""
+        """Start a further node of `NODES` in a namespace, with values of its parameters."""
         from rclpy.parameter import Parameter
 
         module, class_name = place_of(name)
@@ -97,7 +97,7 @@ class Composition:
         return tuple(self._nodes.values())
 
     def check(self) -> None:
-        """Raise what the executor or the thread of a node died of; callbacks end neither."""
+        """Raise the error that ended the executor or the thread of a node."""
         if self._failure is not None:
             raise self._failure
         for node in self._nodes.values():
@@ -106,14 +106,14 @@ class Composition:
 
     @property
     def is_done(self) -> bool:
-        """Whether a node has nothing more to do, as a player at the end of its record."""
+        """Whether a node has finished, as a player at the end of its record."""
         return any(node.is_done for node in self._nodes.values())
 
     def close(self) -> None:
         """Stop the threads, then the executor, then leave the graph; may be called twice."""
         for node in self._nodes.values():
             node.stop()
-        # The executor destroys what its thread waits on: end the thread first.
+        # The executor destroys objects that its thread waits on: end the thread first.
         self._is_closing = True
         if self._thread.is_alive():
             self._executor.wake()

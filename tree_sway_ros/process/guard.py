@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The one guard around every callback of a node: what is raised is counted and logged, not passed on.
+Guard around all callbacks of a node: exceptions are counted and logged, not raised.
 
-An exception that leaves a callback ends the executor, and with it every node that shares it; one
-that leaves the callback of a service leaves its caller without an answer.
+An exception that leaves a callback ends the executor, and with it all nodes that share it; one in
+the callback of a service leaves its caller without a reply.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 
 
 class CallbackGuard:
-    """Wraps callbacks; a place that raises is logged once, with its trace, and always counted."""
+    """Wrapper of callbacks; errors are logged once per place, with trace, and counted."""
 
     def __init__(self, log: Callable[[str], None]) -> None:
         self.count = 0
@@ -28,8 +28,8 @@ class CallbackGuard:
         """
         Return a callback that never raises.
 
-        Where the wrapped one raises, it returns its last argument: of a service this is the
-        response as it was made, so that the caller gets an answer.
+        On an exception it returns its last argument: of a service this is the response, so that
+        the caller gets a reply.
         """
 
         @functools.wraps(callback)
@@ -43,7 +43,7 @@ class CallbackGuard:
         return guarded
 
     def note(self, error: Exception) -> None:
-        """Count what was raised; log it if it is the first from its place."""
+        """Count an exception; log the first one of its place."""
         self.count += 1
         self.latest = f'{type(error).__name__}: {error}'
         frames = traceback.extract_tb(error.__traceback__)
@@ -52,6 +52,4 @@ class CallbackGuard:
         if place not in self._places:
             self._places.add(place)
             trace = ''.join(traceback.format_exception(error)).rstrip()
-            self._log(
-                f'a callback failed, and is counted from now on without further words\n{trace}'
-            )
+            self._log(f'a callback failed; further failures are only counted\n{trace}')

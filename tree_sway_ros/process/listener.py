@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A node that a program has beside its own work, spun when the program has time for it."""
+"""A node beside the work of a program, spun when the program has time for it."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Any, TypeVar
 
 from tree_sway_ros.process.spin import create, init, require_rclpy
 
-_LOOK = 0.2  # [s]: so soon a Ctrl-C is seen while nothing comes
+_LOOK = 0.2  # [s]: interval of checks for Ctrl-C while no messages arrive
 
 _Own = TypeVar('_Own', bound='Listener')
 
 
 class Listener:
     """
-    A node with an executor of its own; without a context it has its own, which ends with it.
+    A node with its own executor; without a context it has its own, which ends with it.
 
     Raises
     ------
@@ -44,13 +44,13 @@ class Listener:
         self._executor.add_node(self.node)
 
     def spin(self, seconds: float) -> None:
-        """Take what comes for a time [s]."""
+        """Handle messages for a time [s]."""
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0.0:
             self._executor.spin_once(timeout_sec=min(left, _LOOK))
 
     def spin_once(self, seconds: float) -> None:
-        """Take the next that comes within a time [s]."""
+        """Handle the next message within a time [s]."""
         self._executor.spin_once(timeout_sec=seconds)
 
     def close(self) -> None:

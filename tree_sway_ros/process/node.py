@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What all nodes have in common: parameters, topics from the table, reports, failures."""
+"""Base of all nodes: parameters, topics from the table, reports, failures."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tree_sway_ros.timing.pacer import Pacer, Tick
 from tree_sway_ros.timing.worker import Worker
 
 REPORT_PERIOD = 1.0
-"""From one report to the next [s], of wall time: reports go on while simulated time is paused."""
+"""Interval of reports [s] of wall time, also while simulated time is paused."""
 
 _ENTITIES = {
     'publishers': 'destroy_publisher',
@@ -33,7 +33,7 @@ _ENTITIES = {
     'clients': 'destroy_client',
     'timers': 'destroy_timer',
 }
-"""What a node holds, and what destroys one of it."""
+"""Objects of a node, and the functions that destroy them."""
 
 
 class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
@@ -41,7 +41,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
     A node with a table of parameters, found under the name of its class: `WindNode` is ``wind``.
 
     It is a managed node of ROS, which configures and activates itself unless the parameter
-    `autostart` leaves that to a manager. Options are those of `rclpy.node.Node`.
+    `autostart` is false, for a manager. Options are those of `rclpy.node.Node`.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -64,13 +64,13 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
             raise
 
     def configure(self) -> None:
-        """Open files, compile, create publishers and subscriptions; nothing moves yet."""
+        """Open files, compile, create publishers and subscriptions; without starting them."""
 
     def activate(self) -> None:
-        """Start what moves by itself; `on_close` takes what stops it."""
+        """Start threads and timers; `on_close` registers functions that stop them."""
 
     def on_configure(self, _state: Any) -> TransitionCallbackReturn:
-        """Configure; a node that cannot says why, and stays unconfigured."""
+        """Configure; after a failure the reason is logged, and the node stays unconfigured."""
         self._kept = {each for kind in _ENTITIES for each in getattr(self, kind)}
         if self._succeeds(self.configure):
             return TransitionCallbackReturn.SUCCESS
@@ -78,7 +78,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         return TransitionCallbackReturn.FAILURE
 
     def on_activate(self, _state: Any) -> TransitionCallbackReturn:
-        """Start; a node that cannot says why, and stays inactive."""
+        """Start; after a failure the reason is logged, and the node stays inactive."""
         self.is_active = True
         if self._succeeds(self.activate):
             return TransitionCallbackReturn.SUCCESS
@@ -91,7 +91,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         return TransitionCallbackReturn.SUCCESS
 
     def on_cleanup(self, _state: Any) -> TransitionCallbackReturn:
-        """Destroy all that `configure` made."""
+        """Destroy all objects of `configure`."""
         self.stop()
         for kind, destroy in _ENTITIES.items():
             for each in [each for each in getattr(self, kind) if each not in self._kept]:
@@ -105,13 +105,13 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         return TransitionCallbackReturn.SUCCESS
 
     def _succeeds(self, stage: Callable[[], None]) -> bool:
-        """Whether a stage of the start succeeds; what it raises is stored, and logged."""
+        """Whether a stage of the start succeeds; an exception is stored and logged."""
         self._refusal = None
         try:
             stage()
         except Exception as error:
             self._refusal = error
-            if self.values['autostart']:  # it is raised where the node is made
+            if self.values['autostart']:  # it is raised by the maker of the node
                 return False
             if isinstance(error, TreeSwayError):
                 self.get_logger().error(str(error))
@@ -168,14 +168,14 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     @property
     def clock_lead(self) -> int:
-        """How far stamps may be ahead of the clock in [ns]: simulated time stops between ticks."""
+        """Largest lead of stamps over the clock in [ns]: simulated time stops between ticks."""
         return LARGEST_LEAD if self.get_clock().ros_time_is_active else 0
 
     def report_with(self, hardware: str, collect: Callable[[], list[Status]]) -> None:
         """
         Publish what `collect` returns on `/diagnostics` from now on.
 
-        ``hardware`` is what is reported on, for example the tree's name.
+        ``hardware`` is the subject of the report, for example the tree's name.
         """
         self._hardware, self._collect = hardware, collect
         profile = qos_profile(DIAGNOSTICS)
@@ -199,31 +199,31 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         )
 
     def check_values(self, values: dict[str, Any]) -> None:
-        """Raise `ParameterError` where values that are each in range do not go together."""
+        """Raise `ParameterError` for values that are each in range, but inconsistent."""
 
     def on_change(self, values: dict[str, Any]) -> None:
-        """Take live changes of parameters; by default whoever needs a value reads it again."""
+        """Apply live changes of parameters; by default values are read again when needed."""
 
     def pacer_of(self, work: Callable[[Tick], None]) -> Pacer:
-        """Make what calls `work` at the parameter `rate`, by the clock of the node."""
+        """Make the pacer that calls `work` at the parameter `rate`, by the clock of the node."""
         return Pacer(self.get_clock(), self.values['rate'], work, self.fail, self.slip)
 
     def run_worker(self, worker: Worker) -> None:
-        """Start what works in a thread; it stops with the node."""
+        """Start a worker thread; it stops with the node."""
         self.on_close(worker.stop)
         worker.start()
 
     def on_close(self, closer: Callable[[], None]) -> None:
-        """Have something called when the node closes, last come first served."""
+        """Register a function for the end of the node, called in reverse order."""
         self._closers.append(closer)
 
     def fail(self, error: Exception) -> None:
-        """Note what a thread of the node died of; whoever spins the node raises it."""
+        """Store the error that ended a thread of the node; it is raised by `spin`."""
         self.failure = error
 
     def slip(self, error: Exception) -> None:
-        """Note what one tick of a thread failed of; it goes on with the next."""
-        if self.context.ok():  # otherwise the graph is gone, and the thread about to end
+        """Record the failure of one tick of a thread, which continues with the next."""
+        if self.context.ok():  # otherwise the graph is closed, and the thread will end
             self.guard.note(error)
 
     def stop(self) -> None:

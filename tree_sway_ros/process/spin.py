@@ -3,8 +3,8 @@
 """
 The life of a node's process, written once: start, spin, end.
 
-Exit codes: 0 after Ctrl-C, SIGTERM or the end of the work, 2 with one line where the user can do
-something about it. ROS itself may be missing, so nothing here imports it at the top.
+Exit codes: 0 after Ctrl-C, SIGTERM or the end of the work, 2 with one line for an error that the
+user can correct. ROS itself may be missing, so it is not imported at the top.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ _REFUSALS = ('InvalidNamespaceException', 'InvalidNodeNameException', 'RCLError'
 _CHECK_PERIOD = 0.2
 _SWITCH_INTERVAL = 0.0005
 _M_MMAP_THRESHOLD, _LARGE = -3, 1 << 20
-"""A limit of glibc: what is larger [bytes] goes back to the system when it is freed."""
+"""Limit of glibc [bytes]: larger blocks are returned to the system when freed."""
 _PROFILES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
-"""Name the file of Fast DDS 2 and of 3."""
+"""Variables for the profiles of Fast DDS 2 and 3."""
 
 
 def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
     """
-    Run a node until it is done or asked to end; returns the exit code.
+    Run a node until it has finished or is ended; returns the exit code.
 
     Its module is imported only if ROS is there; the command line is `sys.argv` if None.
     """
-    gc.disable()  # what a start loads stays
+    gc.disable()  # modules loaded at the start stay
     try:
         rclpy = require_rclpy()
         _spin(rclpy, module, node_class, args)
@@ -49,7 +49,7 @@ def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
 
 
 def require_rclpy() -> Any:
-    """Import rclpy; a `MissingDependencyError` says what to do if it is not there."""
+    """Import rclpy; raises a `MissingDependencyError` with a cure if it is missing."""
     try:
         return importlib.import_module('rclpy')
     except ImportError as error:
@@ -63,13 +63,13 @@ def init(
     rclpy: Any, args: Sequence[str] | None = None, profile: str = 'discovery.xml', **options: Any
 ) -> None:
     """
-    Initialise rclpy with one of the profiles beside this file, where the environment names none.
+    Initialise rclpy with one of the profiles beside this file, where the environment has none.
 
     A `TransportError` if the domain or the arguments cannot be used.
     """
-    # Threads that tick must not wait 5 ms for an executor that holds the interpreter.
+    # Pacer threads must not wait 5 ms for an executor that runs in the interpreter.
     sys.setswitchinterval(_SWITCH_INTERVAL)
-    # glibc would raise the threshold to what was last freed, and memory grow for half an hour.
+    # glibc would raise the threshold to the last freed size, and memory would grow.
     if hasattr(ctypes.pythonapi, 'mallopt'):
         ctypes.pythonapi.mallopt(_M_MMAP_THRESHOLD, _LARGE)
     own = Path(__file__).with_name(profile)
@@ -84,9 +84,9 @@ def init(
     given = sys.argv if args is None else [sys.argv[0], *args]
     try:
         rclpy.init(args=given, **options)
-    except Exception as error:  # rclpy has a class an error and no common root
+    except Exception as error:  # rclpy has one class per error and no common root
         first_line = str(error).split('\n', 1)[0]
-        cure = 'name a folder that can be written by ROS_LOG_DIR' if 'log' in first_line else ''
+        cure = 'set ROS_LOG_DIR to a writable folder' if 'log' in first_line else ''
         raise TransportError(f'ROS 2 cannot start: {first_line}', cure=cure) from error
 
 

@@ -17,9 +17,9 @@ class Topic:
     """
     One topic: its relative name, remapped by launch files, and its type ``package/msg/Name``.
 
-    ``reliable``: a sample that was lost is sent again; ``latched``: a late subscriber receives the
-    last one (TRANSIENT_LOCAL); ``depth``: samples stored; ``any_input``: our subscriptions take
-    best effort as well, which is all that drivers of sensors offer.
+    ``reliable``: lost samples are sent again; ``latched``: a late subscriber receives the last one
+    (TRANSIENT_LOCAL); ``depth``: number of stored samples; ``any_input``: our subscriptions accept
+    best effort as well, as of drivers of sensors.
     """
 
     name: str
@@ -64,6 +64,6 @@ def qos_profile(topic: Topic, *, is_input: bool = False) -> Any:
 
 
 def message_class(topic: Topic, type_name: str = '') -> Any:
-    """Class of a topic's messages, or of those of a type that a program chose for it."""
+    """Class of a topic's messages, or of a type that a program chose for it."""
     package, _, name = (type_name or topic.type_name).split('/')
     return getattr(importlib.import_module(f'{package}.msg'), name)

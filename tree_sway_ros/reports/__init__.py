@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Diagnostics: what solver and wind node say of themselves.
+Diagnostics of solver and wind node.
 
-Counts come from below, levels are decided here.
-Nothing is logged from the hot path.
+Counts are from the library, levels are decided here. The hot path does not log.
 """

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The state of a node for people and for `/diagnostics`: a level, a sentence and some values."""
+"""The state of a node for `/diagnostics`: a level, a sentence and some values."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ OK, WARN, ERROR, STALE = 0, 1, 2, 3
 
 @dataclass(frozen=True)
 class Status:
-    """One line of a report of something, as ``wind``: level, a sentence, and figures by name."""
+    """One line of a report of a part, as ``wind``: level, a sentence, and figures by name."""
 
     name: str
     level: int

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Does the stream keep up, and with which model? What the solver says on `/diagnostics`."""
+"""Report of the solver on `/diagnostics`: timing of the stream, wind and model."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from tree_sway_ros.timing.pacer import Pacer, Timing
 _WIND = {
     'none': (WARN, 'no wind yet: the tree is at rest'),
     'live': (OK, 'live'),
-    'holding': (OK, 'a sample is overdue: the last wind goes on'),
+    'holding': (OK, 'a sample is overdue: the last wind is used'),
     'decaying': (WARN, 'no wind: its force decays'),
-    'stale': (STALE, 'no wind: nothing is left of its force'),
+    'stale': (STALE, 'no wind: its force has decayed'),
 }
 
 _SILENCE = 1.0
-"""Without a frame for this time [s], by a clock that goes on, the stream is reported as halted."""
+"""Time without a frame [s], of a running clock, after which the stream is reported as halted."""
 
 
 class SwayReport:
-    """Compares each report with the one before."""
+    """Reports of the solver, each compared with the one before."""
 
     def __init__(self) -> None:
         self._skipped = 0

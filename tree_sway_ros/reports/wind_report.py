@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Is the wind there? Rate and age of the samples, and what to call their state."""
+"""Report of the wind node: rate, age and state of the samples."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
 
 _PERIODS = 3.0
 STALE_AFTER = 5.0
-"""Number of time-outs after which a lost wind is stale, the trees are at rest again."""
+"""Number of time-outs after which a lost wind is stale, and the trees are at rest."""
 
 
 class WindReport:
-    """Good samples by arrival, in wall time: stamps do not show whether a sensor is alive."""
+    """Good samples by arrival in wall time, which shows whether a sensor is live."""
 
     def __init__(self) -> None:
         self._timing, self._newest = SensorTiming(0.0), -math.inf
@@ -36,13 +36,13 @@ class WindReport:
 
     @property
     def rate(self) -> float:
-        """Good samples per second [Hz], 0 where none has come for a second and two periods."""
+        """Good samples per second [Hz], 0 without one for a second and two periods."""
         period = self._timing.period or math.inf
         return 0.0 if self.age > 1.0 + 2.0 * period else 1.0 / max(period, 1e-9)
 
     def status(self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()) -> Status:
         """
-        Report by what the gate refused or found odd, and types on the topic that are not read.
+        Report the counts of the gate, and types on the topic that are not read.
 
         The wind counts as lost when its last good sample is older than a timeout [s]; three
         periods of a sensor that is slower.

@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-When to step and when to send: the pacer, uneven steps, playback of records.
+Times of steps and messages: the pacer, uneven steps, playback of records.
 
-Time is integer nanoseconds.
-What is sent is made in ``wire``.
+Time is integer nanoseconds. Messages are made in ``wire``.
 """

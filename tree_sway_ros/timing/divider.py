@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Which of the solver's frames are published, where only some of them are."""
+"""Choice of frames to publish, where only some of them are."""
 
 from __future__ import annotations
 
 
 class Divider:
-    """Decides when the next frame is due, where only some of the ticks make one."""
+    """Divider of ticks, where only some of them make a frame."""
 
     def __init__(self) -> None:
         self._last: int | None = None

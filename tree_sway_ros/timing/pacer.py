@@ -5,9 +5,9 @@ A thread that works at a fixed rate, on a grid of absolute times of a ROS clock.
 
 Ticks lie at whole multiples of the period since the clock's epoch, so two runs over the same
 record tick at the same times. The number of periods since the last tick is counted from the clock,
-never from the calls: a late tick reports how many it covers, and what was missed is skipped,
-never made up for in a burst. Simulated time is followed: paused, nothing ticks; set back, the next
-tick says so.
+not from the calls: a late tick reports how many it covers, and missed ones are skipped, without a
+burst. Simulated time is followed: there are no ticks while it is paused, and the next tick reports
+if it was set back.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from tree_sway_ros.timing.worker import Worker
 
 LONGEST_STEP = 500_000_000
-"""A tick never covers more time than this [ns]: a clock that jumped forward is no long step."""
+"""Longest time of a tick [ns]: a clock that jumped forward is not a long step."""
 PATIENCE = 10
 """Number of ticks that may fail one after another before the thread gives up."""
 _BACK = 100_000_000
@@ -45,10 +45,10 @@ class Tick(NamedTuple):
 
 class Timing(NamedTuple):
     """
-    How steady the rate was: rate [Hz], lateness [s], work [s], and counts since the start.
+    Timing of the rate: rate [Hz], lateness [s], work [s], and counts since the start.
 
-    `skipped` are frames on the grid that never came, however many at once; `clamped` are jumps of
-    the clock forward, `restarts` jumps back, `silence` is the time since the last tick [s].
+    `skipped` are missing frames of the grid; `clamped` are jumps of the clock forward, `restarts`
+    jumps back, `silence` is the time since the last tick [s].
     """
 
     rate: float
@@ -66,10 +66,10 @@ class Timing(NamedTuple):
 @dataclass(eq=False)
 class Pacer(Worker):
     """
-    Calls `work` with each tick at a fixed rate [Hz] in a thread of its own, by a node's clock.
+    Thread that calls `work` with each tick at a fixed rate [Hz], by a node's clock.
 
-    What it raised in `PATIENCE` ticks one after another goes to `on_error`, and the thread ends;
-    what it raised before that goes to `on_slip`, and the next tick comes as if nothing had been.
+    After exceptions in `PATIENCE` consecutive ticks `on_error` is called, and the thread ends;
+    before that `on_slip` is called, and the next tick follows.
     """
 
     clock: Any
@@ -90,7 +90,7 @@ class Pacer(Worker):
         self._jumps: Any = None
 
     def start(self) -> None:
-        """Start ticking, as if never before; the counts go on."""
+        """Start ticking from the beginning; the counts continue."""
         from rclpy.clock import JumpThreshold
         from rclpy.duration import Duration
 
@@ -121,7 +121,7 @@ class Pacer(Worker):
         return bool(self.clock.ros_time_is_active)
 
     def timing(self) -> Timing:
-        """How steady the rate was over the last 600 ticks."""
+        """Return the timing over the last 600 ticks."""
         silence = 1e-9 * (time.monotonic_ns() - self._last_steady) if self._last_steady else 0.0
         counts = (self._ticks, self._skipped, self._clamped, self._restarts, silence)
         begin, late, work = np.array(list(self._recent) or [(0.0, 0, 0.0)]).T
@@ -156,7 +156,7 @@ class Pacer(Worker):
         self._ticks += 1
 
     def _due(self, now: int) -> Tick | None:
-        """Return the tick that is due, if one is."""
+        """Return the due tick, if there is one."""
         if now <= 0:  # simulated time that has not begun
             return None
         index = now // self.period
@@ -173,7 +173,7 @@ class Pacer(Worker):
         self._last, self._last_steady, self._late = index, steady, now % self.period
         most = max(1, LONGEST_STEP // self.period)
         if not self.is_simulated:
-            # A wall clock that was set forward skips nothing; one that went on as time does, does.
+            # Periods are skipped by elapsed time, not by a wall clock that was set forward.
             self._skipped += min(periods, max(1, round(passed / self.period))) - 1
             self._clamped += periods * self.period > passed + LONGEST_STEP
         elif periods > most:

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A thread that plays a wind record: each sample when it is due, at any speed, around and around.
+A thread that plays a wind record: each sample when it is due, at any rate, once or repeated.
 
-Time goes on over the seam of a loop: a period after the last sample of one round comes the first
-of the next, so whoever follows the stamps or /clock never sees time go back.
+Time is continuous over the end of a loop: the first sample of the next round follows the last one
+after a period, so stamps and /clock never go back.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from tree_sway.errors import FormatError
 from tree_sway_ros.timing.worker import Worker
 
 LONGEST_CLOCK_STEP = 0.25
-"""Longest time between two ticks of /clock [s]; half of what a node takes for a jump."""
+"""Longest time between two ticks of /clock [s]; half of the threshold of nodes for a jump."""
 
 _CLOCK_RATE = 250.0
 """Ticks of /clock per second of the machine [Hz]."""
 
 _LAST_TIME = 2.0**31
-"""The first date after 1970 that a stamp cannot hold [s]."""
+"""The first date after 1970 that a stamp cannot represent [s]."""
 
 _MARGIN = 86_400.0
-"""Loops go on after the end of a record [s]."""
+"""Pause between two loops of a record [s]."""
 
 _SECOND = 1_000_000_000
 _SETTLING, _LATEST, _POLL = 0.5, 0.5, 0.02
 
 
 def is_ros_time(epoch: float | None, time: Floats) -> bool:
-    """Whether the times [s] of a record, after an epoch if any, can be played as its dates."""
+    """Whether the times [s] of a record, after an epoch if any, can be played as dates."""
     if epoch is None or not len(time):
         return True
     return bool(epoch + time[0] >= 1.0 and epoch + time[-1] < _LAST_TIME - _MARGIN)
@@ -47,34 +47,34 @@ def is_ros_time(epoch: float | None, time: Floats) -> bool:
 @dataclass(eq=False)
 class Playback(Worker):
     """
-    Plays a record once somebody listens; should the machine sleep, it goes on without a burst.
+    Playback of a record once there is a subscriber, without bursts after a sleep.
 
     Parameters
     ----------
     times
         Times of the samples in [s], increasing, (n,).
     publish
-        Called with the row of a sample, -1 for a tick of /clock, and its stamp in [ns]: the
-        record's own time with a clock, else the wall time at which the sample is due.
+        Function called with the row of a sample, -1 for a tick of /clock, and its stamp in [ns]:
+        the record's own time with a clock, else the wall time at which the sample is due.
     may_start
-        Whether somebody listens; asked again and again until true.
+        Function that returns whether there is a subscriber; called until true.
     on_end, on_error
-        Called at the end of the record, and with what `publish` raised.
+        Functions called at the end of the record, and with an exception of `publish`.
     rate
         Playback rate: 2 takes half the time.
     epoch
         Date of the record's time 0 in [s] after 1970, None if it has none.
     start_at
-        Time skipped of the record in [s].
+        Skipped time of the record in [s].
     loop
-        Whether it starts again at its end.
+        True to start again at its end.
     has_clock
-        Whether there are ticks of /clock.
+        True for ticks of /clock.
 
     Raises
     ------
     FormatError
-        If nothing of the record is left.
+        If the whole record is skipped.
 
     """
 
@@ -90,7 +90,7 @@ class Playback(Worker):
     has_clock: bool = False
 
     def __post_init__(self) -> None:
-        """Leave out what is skipped, and prepare the thread."""
+        """Remove the skipped part, and prepare the thread."""
         super().__init__('playback')
         first = int(np.searchsorted(self.times - self.times[:1], self.start_at))
         if first >= len(self.times):
@@ -111,7 +111,7 @@ class Playback(Worker):
         return round((self.epoch + float(self.times[self._first_row])) * _SECOND)
 
     def progress(self) -> dict[str, float]:
-        """How far it is, for reports."""
+        """Progress for reports."""
         return {
             'position [s]': self._position % self.round,
             'rounds': float(self._position // self.round),
@@ -140,7 +140,7 @@ class Playback(Worker):
             heard = None
             while heard is None or time.monotonic() < heard + _SETTLING:
                 if self.has_clock:
-                    self.publish(-1, self.begin)  # time stops, for all who come
+                    self.publish(-1, self.begin)  # time stops for later subscribers
                 if heard is None and self.may_start():
                     heard = time.monotonic()
                 if self._stopping.wait(_POLL):

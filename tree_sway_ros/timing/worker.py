@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A thread that is started and stopped with its node, as often as the node is."""
+"""A thread that is started and stopped with its node, repeatedly."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _PATIENCE = 6.0
 
 
 class Worker:
-    """Runs `_run` of its subclass in a thread of a name; `_stopping` is set when it has to end."""
+    """Thread for `_run` of a subclass; `_stopping` is set to end it."""
 
     def __init__(self, name: str) -> None:
         self._stopping = threading.Event()

@@ -3,6 +3,6 @@
 """
 Messages on the wire: CDR blocks, poses, markers, the description, wind.
 
-Arrays become bytes here without one Python object per pose.
-When to send is decided in ``timing``.
+Arrays are converted to bytes without one Python object per pose. Times of messages are decided in
+``timing``.
 """

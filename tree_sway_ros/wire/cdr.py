@@ -3,11 +3,10 @@
 """
 Messages as bytes: serialised once by rclpy, then their numbers overwritten in place.
 
-Building 1000 Python Pose objects per frame costs 400 times what copying their bytes does. So a
-message of the right size is serialised once, with sentinels where its stamps and numbers will
-stand; the sentinels are looked up in the bytes, whatever the layout, and become array views. Every
-float64 of CDR lies 8-aligned from byte 4 on; the buffer is shifted so that the views are aligned
-in memory as well.
+Making 1000 Python Pose objects per frame costs 400 times as much as copying their bytes. So a
+message of the right size is serialised once, with sentinels at its stamps and numbers; the
+sentinels are found in the bytes, for any layout, and become array views. Every float64 of CDR lies
+8-aligned from byte 4 on; the buffer is shifted so that the views are aligned in memory as well.
 """
 
 from __future__ import annotations
@@ -23,8 +22,8 @@ from numpy.typing import NDArray
 from tree_sway.errors import TransportError
 
 _LITTLE_ENDIAN = 1
-# Patterns that no other field of a message holds: both numbers of a stamp, and a number's value.
-# They are longer than the gaps between fields, where the serialiser leaves what was there before.
+# Patterns that no other field of a message has: both numbers of a stamp, and a number's value.
+# They are longer than the gaps between fields, where the serialiser leaves old bytes.
 _STAMP = 0x5EC0_0000
 _NUMBER = struct.unpack('<d', bytes.fromhex('0000c3d2e1f05a41'))[0]
 
@@ -38,12 +37,12 @@ class CdrTemplate:
     message
         A ROS message. `mark_stamp` and `mark_block` must have been called on its parts.
     n_stamps
-        How many stamps are marked, with numbers 0 .. n_stamps - 1.
+        Number of marked stamps, with numbers 0 .. n_stamps - 1.
     shapes
         Shape of each marked block, in the order of their numbers; an empty block needs no mark.
     tail
-        Bytes of the message after its last block, where the serialiser leaves some behind them
-        that strict readers refuse; None to keep all.
+        Bytes of the message after its last block, where the serialiser adds padding that strict
+        readers refuse; None to keep all.
 
     Raises
     ------
@@ -111,12 +110,12 @@ def stamp_of(data: bytes) -> int:
 
 
 def block_mark(number: int = 0) -> float:
-    """Return the value to put into the first field of the float64 block of that number."""
+    """Return the value for the first field of the float64 block of that number."""
     return float(_NUMBER + number)
 
 
 def pose_array_template(n_poses: int, frame_id: str) -> CdrTemplate:
-    """Bytes of a ``geometry_msgs/PoseArray``, whose block (n_poses, 7) holds x y z qx qy qz qw."""
+    """Bytes of a ``geometry_msgs/PoseArray``, whose block (n_poses, 7) has x y z qx qy qz qw."""
     from geometry_msgs.msg import Pose, PoseArray
 
     message = PoseArray()
@@ -133,5 +132,5 @@ def pose_array_template(n_poses: int, frame_id: str) -> CdrTemplate:
 def _find(data: bytes, pattern: bytes) -> int:
     offset = data.find(pattern)
     if offset < 0 or data.find(pattern, offset + 1) >= 0:
-        raise TransportError('a message is not laid out as expected')
+        raise TransportError('a message has an unexpected layout')
     return offset

@@ -3,7 +3,7 @@
 """
 The latest rotations between frames, by /tf and /tf_static: a sensor on a boat or a robot.
 
-Read here and not by tf2's buffer, so that its messages are all that is needed.
+They are read without tf2's buffer, so that only its messages are needed.
 """
 
 from __future__ import annotations
@@ -19,27 +19,27 @@ from tree_sway.core.arrays import Floats
 from tree_sway_ros.process.topics import TF, TF_STATIC
 
 _MOST = 4096
-"""Frames that are stored and reported: whoever may publish can make up any number."""
+"""Largest number of frames that are stored and reported, as publishers can send any number."""
 _LONGEST = 255
-"""Longer names [letters] are no frame's."""
+"""Largest length of a frame's name [letters]."""
 _SHOWN = 60
-"""Letters of a name that a message repeats."""
+"""Number of letters of a name in a log message."""
 _PATIENCE = 2.0
-"""The first transform is awaited for this time [s]."""
+"""Time to wait for the first transform [s]."""
 
 
 class Frames:
-    """The frames that are known: of each its parent, and its latest rotation in it."""
+    """Known frames: the parent of each, and the latest rotation in it."""
 
     def __init__(self) -> None:
         self._links: dict[str, tuple[str, Rotation]] = {}
 
     def take(self, transforms: Iterable[Any]) -> None:
-        """Take `geometry_msgs/TransformStamped`."""
+        """Add a `geometry_msgs/TransformStamped`."""
         for each in transforms:
             q = each.transform.rotation
             turn = (q.x, q.y, q.z, q.w)
-            if not 0.5 < math.hypot(*turn) < 2.0:  # NaN is not, either
+            if not 0.5 < math.hypot(*turn) < 2.0:  # false for NaN
                 continue
             child = each.child_frame_id.strip('/')
             if len(child) <= _LONGEST and (child in self._links or len(self._links) < _MOST):
@@ -47,7 +47,7 @@ class Frames:
                 self._links[child] = (parent, Rotation.from_quat(turn))
 
     def rotation(self, frame: str, base: str) -> Floats | None:
-        """Rotation (3, 3) of vectors of a frame into another; None where no way leads there."""
+        """Rotation (3, 3) of vectors of a frame into a second one; None if not connected."""
         down = self._way_up(base.strip('/'))
         for ancestor, turn in self._way_up(frame.strip('/')).items():
             if ancestor in down:
@@ -55,7 +55,7 @@ class Frames:
         return None
 
     def _way_up(self, frame: str) -> dict[str, Rotation]:
-        """Rotation of a frame in each of those above it; a ring of frames is gone round once."""
+        """Rotation of a frame in each of its ancestors; a cycle of frames is followed once."""
         way, turn = {frame: Rotation.identity()}, Rotation.identity()
         while link := self._links.get(frame):
             frame, turn = link[0], link[1] * turn
@@ -66,7 +66,7 @@ class Frames:
 
 
 class FrameListener:
-    """Listens to /tf from when it is made, and logs once what it makes of each frame."""
+    """Listener of /tf that logs the use of each frame once."""
 
     def __init__(self, node: Any, base: str) -> None:
         self._log, self._base = node.get_logger(), base
@@ -84,7 +84,7 @@ class FrameListener:
 
     @property
     def age(self) -> float:
-        """Time since the last sample in another frame [s]."""
+        """Time since the last sample in a different frame [s]."""
         return time.monotonic() - self._latest
 
     def rotation(self, frame: str) -> Floats | None:
@@ -101,7 +101,7 @@ class FrameListener:
         self.text, self._latest = f"wind is in frame '{shown}', {way}", time.monotonic()
         if self.text not in self._said and len(self._said) < _MOST:
             self._said.add(self.text)
-            # Two places, as a place of the log keeps to one severity.
+            # Two places, as a place of the log has one severity.
             if found is None:
                 self._log.warning(self.text)
             else:

@@ -3,8 +3,8 @@
 """
 The tree for RViz: one LINE_LIST per radius class, with fixed ids, as bytes.
 
-One marker per segment brings RViz to its knees, and DELETEALL makes it flicker. A handful of line
-lists whose points are overwritten in place costs less than the poses do.
+One marker per segment is too slow for RViz, and DELETEALL makes it flicker. A few line lists whose
+points are overwritten in place cost less than the poses.
 """
 
 from __future__ import annotations

@@ -20,11 +20,11 @@ from tree_sway_ros.wire.markers import TreeMarkers
 from tree_sway_ros.wire.tree_description import describe, REPEAT_PERIOD
 
 _MARKER_RATE = 20.0
-"""As many pictures per second as RViz draws of a large tree [Hz]."""
+"""Pictures per second that RViz draws of a large tree [Hz]."""
 
 
 class PoseStream:
-    """Publishes one tree, or a forest as one; what nobody subscribes to is not computed."""
+    """Publisher of one tree, or a forest as one; topics without subscribers are not computed."""
 
     def __init__(self, node: Any, tree: Tree, leaves: LeafClusters | None = None) -> None:
         values = node.values
@@ -51,11 +51,11 @@ class PoseStream:
         self.publish_description()
 
     def publish_description(self) -> None:
-        """Publish what the poses do not say."""
+        """Publish the description."""
         self._description_publisher.publish(self._description)
 
     def publish(self, simulator: Any, index: int, stamp: int, every: int) -> None:
-        """Publish what is due at a tick; the simulator is asked if somebody wants poses."""
+        """Publish due messages at a tick; poses are computed if there are subscribers."""
         poses_due = self._pose_divider.is_due(index, every)
         markers_due = self._marker_divider.is_due(index, self._marker_every)
         poses_due = poses_due and self._pose_publisher.get_subscription_count() > 0

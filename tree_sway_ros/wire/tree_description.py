@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The tree as JSON: what the poses do not say, once, for whoever draws them.
+Description of the tree as JSON: the data beside its poses, for drawing.
 
-Row i of every list belongs to pose i of `segment_poses`. The version is raised when a reader of
-the old form would go wrong; new keys alone do not raise it.
+Row i of every list belongs to pose i of `segment_poses`. The version is raised when the old form
+cannot be read as before; new keys do not raise it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tree_sway.core.tree.tree import Tree
 
 VERSION = 1
 REPEAT_PERIOD = 5.0
-"""Time from one description to the next [s]: bags and bridges lose a latched topic."""
+"""Interval of descriptions [s]: bags and bridges lose a latched topic."""
 
 
 def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> str:

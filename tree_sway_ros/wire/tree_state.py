@@ -3,8 +3,8 @@
 """
 The state of a tree as `sensor_msgs/JointState`: a name per coordinate, the wind first.
 
-With the ``state`` of `tree_description` it is all that poses are rebuilt from; a bag of it plots
-anywhere and takes some 50 MB per hour.
+With the ``state`` of `tree_description` all poses follow from it; a bag of it can be plotted by
+other programs and takes some 50 MB per hour.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ WIND_NAMES = ('wind/x', 'wind/y', 'wind/z')
 
 
 def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
-    """Make the bytes of a state, whose one block holds wind [m/s] and coordinates, (3 + m,)."""
+    """Make the bytes of a state, whose one block has wind [m/s] and coordinates, (3 + m,)."""
     message = JointState()
     message.header.frame_id = frame_id
     mark_stamp(message.header.stamp)
@@ -35,7 +35,7 @@ def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
 
 
 def read_state(message: Any) -> tuple[Floats, Floats]:
-    """Wind (3,) [m/s] and coordinates (m,) of a state; a `FormatError` for names not its own."""
+    """Wind (3,) [m/s] and coordinates (m,) of a state; a `FormatError` for wrong names."""
     if tuple(message.name[:3]) != WIND_NAMES or len(message.name) != len(message.position):
         raise FormatError(
             f'{len(message.position)} positions of {len(message.name)} names',
@@ -49,7 +49,7 @@ def read_state(message: Any) -> tuple[Floats, Floats]:
 
 
 def state_entry(description: bytes) -> dict[str, str]:
-    """Return what `tree_description` says of the state: the description of doc/streaming.md."""
+    """Return the entry of `tree_description` for the state, by doc/streaming.md."""
     return {'format': 'doc/streaming.md', 'base64': base64.b64encode(description).decode('ascii')}
 
 
@@ -57,7 +57,7 @@ def read_state_entry(content: Any) -> bytes | None:
     """
     Binary description in a `tree_description`; None where it has no state yet.
 
-    A `FormatError` is raised for what `state_entry` does not write.
+    A `FormatError` is raised for a different form than that of `state_entry`.
     """
     entry = content.get('state') if isinstance(content, dict) else None
     if entry is None:

@@ -3,8 +3,8 @@
 """
 The wind in a message: the four types of common_interfaces that drivers use, to and from numbers.
 
-There is no standard wind message. All four hold a vector of three numbers; what they mean (unit,
-sign, frame) is for `core.wind_convention` to know.
+There is no standard wind message. All four have a vector of three numbers; unit, sign and frame
+are converted by `core.wind.convention`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SECOND = 1_000_000_000
 
 class WindSample(NamedTuple):
     """
-    A wind vector as a message holds it, in whatever unit and convention the sender uses.
+    A wind vector of a message, in the unit and convention of the sender.
 
     The stamp [ns] is 0, and the frame empty, where the message has none.
     """
@@ -55,8 +55,8 @@ def wind_from_message(message: Any) -> WindSample:
     """
     Read a wind message of any of the four types.
 
-    A covariance that begins with -1 says that there is no reading, as REP-145 has it of an IMU:
-    then the vector is not a number, for the gate to refuse and count.
+    A covariance that begins with -1 means no reading, as in REP-145 for an IMU: then the vector is
+    not a number, which the gate refuses and counts.
     """
     vector = _VECTORS[type(message)](message)
     if type(message) is TwistWithCovarianceStamped and message.twist.covariance[0] == -1.0:
@@ -79,7 +79,7 @@ def wind_to_message(message_class: Any, sample: WindSample) -> Any:
 
 
 class WindWriter:
-    """Writes wind as a driver would: one of the four types, vectors ``to`` or ``from``."""
+    """Writer of wind messages of a driver: one of the four types, vectors ``to`` or ``from``."""
 
     def __init__(self, output_type: str, direction_convention: str, frame_id: str) -> None:
         self.message_class = WIND_CLASSES[output_type]
@@ -93,7 +93,7 @@ class WindWriter:
 
 
 def plane_message(stamp: int, frame_id: str, wxyz: Any) -> Any:
-    """Write the attitude of the force plane as a PoseStamped at the origin."""
+    """Write the orientation of the force plane as a PoseStamped at the origin."""
     message = PoseStamped()
     fill_stamp(message.header.stamp, stamp)
     message.header.frame_id = frame_id

@@ -51,7 +51,7 @@ def test_no_report_is_written_over_in_silence(tmp_path, capsys):
     file = tmp_path / 'battery.json'
     file.write_text('{}')
     assert cli.main(['lab', 'battery', 'T5', '--json', str(file)]) == 2
-    assert 'is there already' in capsys.readouterr().err
+    assert 'exists' in capsys.readouterr().err
     assert cli.main(['lab', 'battery', 'T5', '--json', str(file), '--force']) == 0
     assert 'T5' in file.read_text()
 

@@ -94,6 +94,8 @@ async def _counted(url: str, seconds: float) -> list[Measured]:
         used = 1e3 * (_processor_time(browser) - used) / max(frames, 1)
         left = await browser.run('treeSway.scene.quality.leftOut')
         left = left or {'leaves': 100, 'pixels': 100}
+        # A state of the server beside those of hours ahead would begin a new history.
+        await browser.run('treeSway.connection.close()')
         memory = [await _memory(browser)]
         # Twice: what is stored of a minute is there after the first.
         for _ in range(2):

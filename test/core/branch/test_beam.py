@@ -86,7 +86,7 @@ def test_stiffness_of_a_uniform_branch(stem):
 def test_tip_and_frequency_are_those_of_the_euler_bernoulli_beam(stem, taper):
     length, base, modulus, density = 2.0, 0.02, 9e9, 900.0
     tree = stem(length, base, base * (1 - taper), cuts=6)
-    (model,) = TreeBeams(tree, density).models(carries=False)
+    (model,) = TreeBeams(tree, density).models(subtrees=False)
     shape = model.shape
     stiffness = shape.stiffness(modulus)
     rigidity = modulus * np.pi / 64 * base**4
@@ -100,7 +100,7 @@ def test_tip_and_frequency_are_those_of_the_euler_bernoulli_beam(stem, taper):
 
 def test_the_share_of_inertia_is_what_is_known_of_it(stem):
     shares = [
-        TreeBeams(stem(tip=tip, cuts=12), 900.0).models(carries=False)[0].inertia_share
+        TreeBeams(stem(tip=tip, cuts=12), 900.0).models(subtrees=False)[0].inertia_share
         for tip in (0.02, 0.02 * (1 - 0.9))
     ]
     # Rayleigh's quotient of the static shape, 3.2 * 405 / 104, over the exact 3.516^2; never below

@@ -11,7 +11,7 @@ from tree_sway_lab.validation.truth import FINE, SETTINGS, true_frequencies, WOO
 
 from tree_sway.core.branch import model as branch_model
 from tree_sway.core.branch.beam import Attachments, BranchBeam, RotationField
-from tree_sway.core.branch.shapes import bent_by_weight, Carried
+from tree_sway.core.branch.shapes import bent_by_weight, SubtreeSums
 from tree_sway.core.simulator.simulator import SwaySimulator
 
 LENGTH, DIAMETER, SHEAR_RATIO = 2.0, 0.02, 1.0 / 14.0
@@ -24,13 +24,13 @@ def further(direction, push, weight):
     nodes = np.linspace(0.0, LENGTH, n + 1)[:, None] * np.array(direction)
     foot = Attachments(np.array([n - 1]), np.array([1.0]))
     beam = BranchBeam(nodes[:-1], nodes[1:], np.full(n, DIAMETER), np.full(n, DIAMETER), foot)
-    carried, tip = Carried.of_none(1), nodes[-1]
-    carried.mass[:], carried.mass_moment[:] = 1.0, tip
+    subtrees, tip = SubtreeSums.zeros(1), nodes[-1]
+    subtrees.mass[:], subtrees.mass_moment[:] = 1.0, tip
     none = np.zeros(beam.weight.shape)
     force = np.array(push)[None, None]
     moment = beam.moment_in_space(np.zeros((*none.shape, 1, 3)), force, np.cross(tip, force))
     alone = beam.curvature_in_space(moment, SHEAR_RATIO)
-    bent = bent_by_weight(beam, none, carried, alone, SHEAR_RATIO, weight)
+    bent = bent_by_weight(beam, none, subtrees, alone, SHEAR_RATIO, weight)
     moved = [RotationField(beam, each[:, :, 0]).nodes[-1] @ push for each in (bent, alone)]
     return moved[0] / moved[1]
 

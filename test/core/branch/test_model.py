@@ -17,7 +17,7 @@ from tree_sway.core.tree.building import tree_from_segments
 
 def test_models_stand_in_the_order_of_branches(fork):
     tree = fork()
-    models = TreeBeams(tree, 900.0).models(carries=True)
+    models = TreeBeams(tree, 900.0).models(subtrees=True)
     assert [len(m.beam.length) for m in models] == np.diff(tree.branch_first).tolist()
     assert [m.children.tolist() for m in models] == [[1, 3], [2], [], []]
     for b, model in enumerate(models):
@@ -32,7 +32,7 @@ def test_a_child_sits_at_the_foot_of_its_perpendicular():
     tree = tree_from_segments(
         start, end, [0.1, 0.02, 0.02, 0.02], parent=[-1, 0, 0, 0], branch=range(4)
     )
-    stem = TreeBeams(tree, 900.0).models(carries=True)[0]
+    stem = TreeBeams(tree, 900.0).models(subtrees=True)[0]
     place = dict(zip(tree.source_index[1:], stem.beam.child_place, strict=True))
     assert place == {1: pytest.approx(0.3), 2: pytest.approx(1.0), 3: pytest.approx(0.0)}
 
@@ -40,7 +40,7 @@ def test_a_child_sits_at_the_foot_of_its_perpendicular():
 def test_mass_and_drag_area_are_the_woods_and_the_leaves(fork):
     tree = fork()
     leaf_mass, leaf_area = np.array([0.0, 0.1, 0.2, 0.3]), np.array([0.0, 1.0, 2.0, 3.0])
-    models = TreeBeams(tree, 800.0, leaf_mass=leaf_mass, leaf_area=leaf_area).models(carries=True)
+    models = TreeBeams(tree, 800.0, leaf_mass=leaf_mass, leaf_area=leaf_area).models(subtrees=True)
     frontal = 0.5 * (tree.base_diameter + tree.tip_diameter) * tree.length
     for b, model in enumerate(models):
         own = tree.segments_of(b)
@@ -54,7 +54,7 @@ def test_the_profile_weighs_area_by_the_square_of_speed(fork):
     tree = fork()
     speed = np.linspace(0.5, 1.5, tree.n_segments)
     frontal = 0.5 * (tree.base_diameter + tree.tip_diameter) * tree.length
-    models = TreeBeams(tree, 800.0, speed_profile=speed).models(carries=True)
+    models = TreeBeams(tree, 800.0, speed_profile=speed).models(subtrees=True)
     for b, model in enumerate(models):
         own = tree.segments_of(b)
         weighted = (frontal * speed**2)[own].sum()
@@ -72,8 +72,8 @@ def test_the_model_does_not_depend_on_the_place_of_the_tree(fork):
         branch=tree.branch_of_segment,
     )
     for one, other in zip(
-        TreeBeams(tree, 900.0).models(carries=True),
-        TreeBeams(moved, 900.0).models(carries=True),
+        TreeBeams(tree, 900.0).models(subtrees=True),
+        TreeBeams(moved, 900.0).models(subtrees=True),
         strict=True,
     ):
         assert one.beam.point == pytest.approx(other.beam.point, abs=1e-11)
@@ -134,8 +134,8 @@ def _limbs_of_twigs():
 
 def test_a_branch_that_two_ways_do_not_distinguish_is_modelled_once(fork):
     beams = TreeBeams(fork(), 900.0)
-    carried, alone = beams.models(carries=True), beams.models(carries=False)
-    rich = beams.models(carries=True, enriched=frozenset([0]))
+    carried, alone = beams.models(subtrees=True), beams.models(subtrees=False)
+    rich = beams.models(subtrees=True, enriched=frozenset([0]))
     bears = [len(model.children) > 0 for model in carried]
     assert [one is not other for one, other in zip(carried, alone, strict=True)] == bears
     assert [b for b in range(len(rich)) if rich[b] is not carried[b]] == [0]

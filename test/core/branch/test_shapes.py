@@ -33,7 +33,7 @@ def test_axes_across_a_chord_are_right_handed(seed):
 
 
 def test_positive_coordinates_move_the_tip_along_e1_and_e2(fork):
-    for model in TreeBeams(fork(), 900.0).models(carries=True):
+    for model in TreeBeams(fork(), 900.0).models(subtrees=True):
         e1, e2 = across(model.beam.chord)
         for field, direction in zip(model.fields, (e1, e2), strict=True):
             assert field.nodes[-1] @ direction == pytest.approx(model.beam.chord_length)
@@ -62,7 +62,7 @@ def stem_with_limbs(n_limbs):
 
 
 def test_an_enriched_branch_has_pairs_and_what_carries_turns(fork):
-    models = TreeBeams(fork(), 900.0).models(carries=True, enriched=frozenset(range(4)))
+    models = TreeBeams(fork(), 900.0).models(subtrees=True, enriched=frozenset(range(4)))
     for model in models:
         most = MAX_COORDINATES if len(model.children) > 1 else 2 * N_PAIRS + 1
         assert 2 * N_PAIRS <= len(model.fields) <= most
@@ -80,7 +80,7 @@ def test_limbs_that_swing_apart_have_the_frequencies_of_every_segment(n_limbs):
 
 
 def test_further_fields_are_orthogonal_in_energy(fork):
-    for model in TreeBeams(fork(), 900.0).models(carries=True, enriched=frozenset(range(4))):
+    for model in TreeBeams(fork(), 900.0).models(subtrees=True, enriched=frozenset(range(4))):
         energy = energies(model.fields, 1.0, 1.0 / 14.0)
         scale = 1.0 / np.sqrt(np.diag(energy))
         energy *= np.outer(scale, scale)
@@ -93,7 +93,7 @@ def test_a_uniform_stem_converges_to_the_beams_roots(stem):
     roots = np.array([3.5160, 22.034, 61.697])
     found = {}
     for enriched in (frozenset(), frozenset([0])):
-        models = TreeBeams(tree, 1.0).models(carries=True, enriched=enriched)
+        models = TreeBeams(tree, 1.0).models(subtrees=True, enriched=enriched)
         matrices = reduce_tree(tree, models, 16.0 / 0.02**2, 1.0, 0.0)
         found[len(enriched)] = natural_modes(tree, matrices).circular[::2]
     assert found[0][0] == pytest.approx(3.5160, rel=5e-3)
@@ -108,7 +108,7 @@ def test_stiffness_of_bending_and_of_twist(stem, sketch):
     drawn = sketch()
     drawn.add(None, 0, (0, 0, 1), 2.0, 0.02, 0.02, 4)
     drawn.add(0, 4, (1, 0, 0), 0.5, 0.01, 0.01, 1)
-    stem_model = TreeBeams(drawn.tree(), 900.0).models(carries=True, enriched=frozenset([0]))[0]
+    stem_model = TreeBeams(drawn.tree(), 900.0).models(subtrees=True, enriched=frozenset([0]))[0]
     beam = stem_model.beam
     twist = RotationField(beam, np.broadcast_to([0.0, 0.0, 0.5], (*beam.place.shape, 3)))
     # A shaft turned at its end: G J / L.
@@ -121,8 +121,8 @@ def test_a_carried_crown_bends_the_branch_as_a_tip_load(sketch):
     drawn.add(None, 0, (0, 0, 1), 1.0, 0.002, 0.002, 20)
     for way in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)):
         drawn.add(0, 20, way, 2.0, 0.1, 0.1, 1)
-    model = TreeBeams(drawn.tree(), 900.0).models(carries=True)[0]
+    model = TreeBeams(drawn.tree(), 900.0).models(subtrees=True)[0]
     u = model.beam.place
     assert model.shape.slope == pytest.approx(1.5 * (2 * u - u**2), abs=0.01)
-    alone = TreeBeams(drawn.tree(), 900.0).models(carries=False)[0]
+    alone = TreeBeams(drawn.tree(), 900.0).models(subtrees=False)[0]
     assert alone.shape.slope == pytest.approx(4 / 3 * (3 * u - 3 * u**2 + u**3), abs=1e-9)

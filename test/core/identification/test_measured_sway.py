@@ -136,7 +136,7 @@ def test_too_short_a_release():
 def test_noise_has_no_sway():
     rng = np.random.default_rng(5)
     for colour in (lambda x: x, np.cumsum):
-        with pytest.raises(FormatError, match=r'not die away|motion that decays|peak|cycles'):
+        with pytest.raises(FormatError, match=r'not decay|motion that decays|peak|cycles'):
             estimate_sway(np.arange(6000) / RATE, colour(rng.normal(size=6000)))
 
 
@@ -176,7 +176,7 @@ def test_what_nothing_measures_is_refused(bad):
     time = 0.05 * np.arange(1000.0)
     motion = np.exp(-0.1 * time) * np.cos(3.0 * time)
     motion[9] = bad
-    with pytest.raises(FormatError, match='sample 9: not a finite number, or one that nothing'):
+    with pytest.raises(FormatError, match='sample 9: not a finite number, or an implausible'):
         estimate_sway(time, motion)
 
 

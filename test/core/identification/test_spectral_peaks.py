@@ -42,8 +42,8 @@ def test_a_band_without_a_peak_gives_its_strongest_point():
     ('spectrum', 'band', 'message'),
     [
         (hills(), None, 'no peak in its spectrum'),
-        (hills((0.7, 1.0)), (20.0, 30.0), 'hold nothing in the band'),
-        (hills((0.7, 1.0)), (1e-5, 1e-4), 'hold nothing in the band'),
+        (hills((0.7, 1.0)), (20.0, 30.0), 'have no content in the band'),
+        (hills((0.7, 1.0)), (1e-5, 1e-4), 'have no content in the band'),
     ],
 )
 def test_refusals(spectrum, band, message):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tree_sway_lab.kinds.kinds import kind_called
 
-from tree_sway.core.motion.static_answers import WindMoments
+from tree_sway.core.motion.static_responses import WindMoments
 from tree_sway.core.simulator.simulator import SwaySimulator
 
 pytestmark = pytest.mark.compiled

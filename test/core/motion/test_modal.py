@@ -28,7 +28,7 @@ def modal(tree, **changes):
 
 
 def stiffness_of(tree):
-    models = TreeBeams(tree, WOOD.density, shear_ratio=WOOD.shear_ratio).models(carries=True)
+    models = TreeBeams(tree, WOOD.density, shear_ratio=WOOD.shear_ratio).models(subtrees=True)
     return reduce_tree(tree, models, WOOD.modulus, WOOD.shear_ratio * WOOD.modulus, 0.0).stiffness
 
 

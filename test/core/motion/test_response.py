@@ -9,7 +9,7 @@ from functools import cache, partial
 import numpy as np
 import pytest
 
-from tree_sway.core.motion.response import tip_motion, turn_of_branches
+from tree_sway.core.motion.response import branch_rotations, tip_motion
 from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
@@ -61,7 +61,7 @@ def test_a_branch_turns_with_all_that_it_hangs_on(bank_of):
     bank = bank_of('full')
     rotations = np.zeros(count(bank))
     rotations[0] = 0.1
-    turns = turn_of_branches(bank.branches, rotations)
+    turns = branch_rotations(bank.branches, rotations)
     assert turns[0] == pytest.approx(0.1 * bank.branches['load_rotation'][0, 0])
     for b in range(1, len(bank.branches)):
         limb = b

@@ -71,15 +71,15 @@ def test_a_child_takes_over_the_turn_of_its_parent(loaded):
     outward_pass(loaded.branches, loaded.work, v, v)
     for child in (1, 3):
         twist = loaded.branches['twist'][child, :2, 3:]
-        assert loaded.work['turn'][child] == pytest.approx(v[:2] @ twist)
+        assert loaded.work['rotation'][child] == pytest.approx(v[:2] @ twist)
         assert loaded.work['velocity'][child, 3:] == pytest.approx(v[:2] @ twist)
     # The twig on a stiff limb goes along as one body.
     limb, twig = loaded.work[1], loaded.work[2]
     away = loaded.branches['base'][2] - loaded.branches['base'][1]
     carried = limb['velocity'][:3] + np.cross(limb['velocity'][3:], away)
     assert twig['velocity'][:3] == pytest.approx(carried)
-    assert twig['attitude'] == pytest.approx(limb['attitude'])
-    assert not loaded.work['turn'][0].any()
+    assert twig['orientation'] == pytest.approx(limb['orientation'])
+    assert not loaded.work['rotation'][0].any()
 
 
 def test_still_branches_feel_the_wind_of_the_books(loaded):
@@ -106,14 +106,14 @@ def test_a_branch_that_goes_with_the_wind_feels_none(stem):
 def test_a_turned_branch_faces_the_wind_as_it_is_turned(stem):
     """Laid flat into the wind by its base, an upright stem has no load."""
     tree = Loaded(stem())
-    tree.work['attitude'][0] = [np.cos(np.pi / 4), 0.0, np.sin(np.pi / 4), 0.0]
+    tree.work['orientation'][0] = [np.cos(np.pi / 4), 0.0, np.sin(np.pi / 4), 0.0]
     tree.blow((6.0, 0.0, 0.0))
     assert tree.work['force'][0] == pytest.approx(np.zeros(3), abs=1e-12)
 
 
 def test_the_load_on_a_crooked_branch_is_that_on_its_pieces():
     tree = crooked_tree(4)
-    reduced = TreeReductions(tree, species_named('oak'), Settings(in_leaf=False)).coupled
+    reduced = TreeReductions(tree, species_named('oak'), Settings(in_leaf=False)).with_subtrees
     for wind in np.array([[1.0, 0.0, 0.0], [0.6, -0.8, 0.0]]):
         true, fitted, centred = np.zeros((3, len(reduced.branches), 3))
         for b, (model, record) in enumerate(zip(reduced.models, reduced.branches, strict=True)):
@@ -144,7 +144,7 @@ class _Bent:
         n = len(force)
         turn = np.einsum('bc,bck->bk', x.reshape(-1, 2), loaded.branches['load_rotation'][:, :2])
         into = self.loads[0]
-        into['turned'][:, :n], into['own_force'][:, :n] = turn.T, force.T
+        into['rotation'][:, :n], into['own_force'][:, :n] = turn.T, force.T
         into['force'][:, :n] = np.array(
             [_turned(t, f) for t, f in zip(turn, force, strict=True)]
         ).T

@@ -13,7 +13,7 @@ from tree_sway_lab.bench.sizes import against, gusts_and_turns
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.records import N_AZIMUTHS
-from tree_sway.core.motion.static_answers import WindMoments
+from tree_sway.core.motion.static_responses import WindMoments
 from tree_sway.core.motion.wind_basis_table import direction, SPEEDS
 from tree_sway.core.simulator.simulator import SwaySimulator, WIND_REFUSED
 from tree_sway.core.tree.building import tree_from_segments
@@ -162,7 +162,7 @@ def test_steady_storms_find_a_tree_at_rest_from_every_azimuth(seed):
     still = np.zeros(len(bank.modal.shapes))
     for azimuth in range(0, N_AZIMUTHS, 2):
         ahead = direction(2.0 * np.pi * azimuth / N_AZIMUTHS, 0.0)
-        for speed, at in zip(SPEEDS[1:], table['standing'][azimuth, 1:], strict=True):
+        for speed, at in zip(SPEEDS[1:], table['equilibrium'][azimuth, 1:], strict=True):
             load = (
                 pressure(speed, *law)
                 * speed**2

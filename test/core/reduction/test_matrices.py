@@ -18,8 +18,8 @@ from tree_sway_lab.example_trees import forked_tree
 
 from tree_sway.core.branch.model import TreeBeams
 from tree_sway.core.motion.fill_records import (
+    block_records,
     branch_records,
-    head_records,
     places_of,
     segment_records,
 )
@@ -35,21 +35,21 @@ _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(5)
 class Reduced:
     """A tree with its matrices and the way to place it."""
 
-    def __init__(self, tree, gravity=9.81, enriched=(), carries=True, **leaves):
+    def __init__(self, tree, gravity=9.81, enriched=(), subtrees=True, **leaves):
         self.tree = tree
         beams = TreeBeams(tree, DENSITY, **leaves)
-        self.models = beams.models(carries=carries, enriched=frozenset(enriched))
-        self.reduction = reduce_tree(tree, self.models, MODULUS, SHEAR, gravity, carries=carries)
+        self.models = beams.models(subtrees=subtrees, enriched=frozenset(enriched))
+        self.reduction = reduce_tree(tree, self.models, MODULUS, SHEAR, gravity, subtrees=subtrees)
         even = np.ones(tree.n_segments)
         places = places_of(tree, self.models, self.reduction)
         self.branches = branch_records(tree, self.models, self.reduction, places, even)
         self.segments = segment_records(places)
-        self.heads = head_records(self.branches, self.segments)
+        self.blocks = block_records(self.branches, self.segments)
 
     def poses(self, x):
         out = np.empty((self.tree.n_segments, 7))
         bases = np.zeros((self.tree.n_branches, 8))
-        records, room = (self.segments, self.heads, bases), room_for(len(x))
+        records, room = (self.segments, self.blocks, bases), room_for(len(x))
         place(*GIVEN, *records, 1.0, 0.0, 1.0, room, x, self.tree.start[0], out)
         return out
 
@@ -197,7 +197,7 @@ def test_without_gravity_there_is_no_weight(fork):
 
 
 def test_alone_branches_do_not_feel_each_other(fork):
-    reduction = Reduced(fork(), carries=False).reduction
+    reduction = Reduced(fork(), subtrees=False).reduction
     mass = reduction.mass.toarray()
     for b in range(4):
         mass[2 * b : 2 * b + 2, 2 * b : 2 * b + 2] = 0.0

@@ -26,7 +26,7 @@ TREE_121 = Path(__file__).parents[2] / 'files' / 'data' / 'tree121.csv'
 
 
 def reduced(tree, gravity=9.81, modulus=9e9, enriched=()):
-    models = TreeBeams(tree, 900.0).models(carries=True, enriched=frozenset(enriched))
+    models = TreeBeams(tree, 900.0).models(subtrees=True, enriched=frozenset(enriched))
     return reduce_tree(tree, models, modulus, modulus / 2.6, gravity)
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Stands dealt over solvers: every tree in one shard, and swaying there as in the whole."""
+"""Stands divided among solvers: every tree in one shard, and swaying there as in the whole."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tree_sway.core.scene.shard import dealt
+from tree_sway.core.scene.shard import shard_of
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
 
@@ -31,7 +31,7 @@ def stand(tmp_path):
 
 @pytest.mark.parametrize('shards', [1, 2, 3, 7])
 def test_every_tree_is_in_one_shard_in_the_order_of_the_file(stand, shards):
-    parts = [dealt(stand, shard, shards) for shard in range(shards)]
+    parts = [shard_of(stand, shard, shards) for shard in range(shards)]
     assert [each.name for part in parts for each in part.trees] == [e.name for e in stand.trees]
     assert all(part.trees for part in parts)
 
@@ -40,14 +40,14 @@ def test_a_giant_leaves_no_shard_without_a_tree(stand):
     giant = replace(stand.trees[0], tree=stand.tree)
     scene = replace(stand, trees=[*stand.trees[1:], giant])
     for trees in (scene.trees, scene.trees[::-1]):
-        sizes = [len(dealt(replace(scene, trees=trees), k, 4).trees) for k in range(4)]
+        sizes = [len(shard_of(replace(scene, trees=trees), k, 4).trees) for k in range(4)]
         assert min(sizes) >= 1
         assert sum(sizes) == 7
 
 
 def test_shards_sway_as_the_whole(stand):
     stand = replace(stand, anemometer=(-5.0, 0.0, 0.0))
-    sims = [part.simulator() for part in (stand, dealt(stand, 0, 2), dealt(stand, 1, 2))]
+    sims = [part.simulator() for part in (stand, shard_of(stand, 0, 2), shard_of(stand, 1, 2))]
     for k in range(90):
         for sim in sims:
             sim.step((6.0 + np.sin(0.3 * k), 1.0, 0.0), 1 / 60)
@@ -66,9 +66,9 @@ def test_a_stand_that_is_moved_sways_where_it_is(stand):
 )
 def test_a_shard_that_there_is_not_is_refused(stand, shard, shards, what):
     with pytest.raises(ParameterError, match=what):
-        dealt(stand, shard, shards)
+        shard_of(stand, shard, shards)
 
 
-def test_one_tree_cannot_be_dealt():
+def test_one_tree_cannot_be_divided():
     with pytest.raises(ParameterError, match='2 shards of 1 trees'):
-        dealt(open_scene('benjamina'), 0, 2)
+        shard_of(open_scene('benjamina'), 0, 2)

@@ -128,11 +128,11 @@ def test_it_acts_for_its_time_then_swings_freely(tree):
         assert sim.push_load[0] == 5.0
     sim.step(CALM, DT)
     assert not sim.push_load.any()
-    reach = [np.linalg.norm(moved(sim, segment))]
+    own_chord = [np.linalg.norm(moved(sim, segment))]
     for _ in range(round(30.0 / DT)):
         sim.step(CALM, DT)
-        reach.append(np.linalg.norm(moved(sim, segment)))
-    assert 0.0 < max(reach[-120:]) < 0.1 * max(reach)
+        own_chord.append(np.linalg.norm(moved(sim, segment)))
+    assert 0.0 < max(own_chord[-120:]) < 0.1 * max(own_chord)
 
 
 def test_in_wind_it_adds_to_what_the_wind_does(tree):
@@ -243,7 +243,7 @@ def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
     sim = open_scene(name).simulator(Settings(damping_ratio=0.5), model=60)
     tree, state = sim.tree, SceneState(sim, is_running=False)
     described = decode_description(state.description)
-    factors, n_rotations = sim.reductions.coupled.reduction.factors, len(sim.rotations())
+    factors, n_rotations = sim.reductions.with_subtrees.reduction.factors, len(sim.rotations())
     lengths = np.add.reduceat(tree.length, tree.branch_first[:-1])
     limbs = np.flatnonzero(tree.branch_parent == 0)
     longest = limbs[np.argsort(lengths[limbs])[::-1][:13:3]]

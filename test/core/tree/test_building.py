@@ -167,7 +167,7 @@ def test_the_input_stays_the_callers_own():
 @pytest.mark.parametrize(
     ('change', 'message'),
     [
-        ({'start': [], 'end': [], 'diameter': []}, 'no segments; give at least one'),
+        ({'start': [], 'end': [], 'diameter': []}, 'without segments; give at least one'),
         ({'end': END[:2]}, r'end \(2, 3\) .* do not match; give \(n, 3\)'),
         ({'diameter': [0.1, 0.1]}, 'do not match'),
         ({'start': START[:, :2]}, 'do not match'),
@@ -176,7 +176,7 @@ def test_the_input_stays_the_callers_own():
         ({'end': [END[0], START[1], END[2]]}, r'row 1: zero length \(.*remove the segment'),
         ({'diameter': [0.1, 0.0, 0.1]}, 'row 1: diameter .* is not positive'),
         ({'diameter': [[0.1, 0.1], [0.1, 0.1], [0.1, -0.1]]}, 'row 2: diameter'),
-        ({'parent': [-1, 0, 3]}, 'row 2: orphan: its parent 3 does not exist; name a parent'),
+        ({'parent': [-1, 0, 3]}, 'row 2: orphan: its parent 3 does not exist; give a parent'),
         ({'parent': [-1, 0, -2]}, 'row 2: orphan'),
         ({'parent': [-1, 0, -1]}, 'row 2: 2 roots: .*only row 0'),
         ({'parent': [-1, 2, 1]}, 'row 1: cyclic: .*break the cycle'),
@@ -184,7 +184,7 @@ def test_the_input_stays_the_callers_own():
         ({'parent': [-1.0, 0.0, 0.0]}, 'parent must be 3 integers'),
         ({'parent': [-1, 0]}, r'parent must be 3 integers, not \(2,\)'),
         ({'branch': ['a', 'a', 'b']}, 'branch must be 3 integers'),
-        ({'branch': [0, 0, 0]}, 'row 2: branch 0 is not one chain: .*branch of its own'),
+        ({'branch': [0, 0, 0]}, 'row 2: branch 0 is not one chain: .*its own branch'),
         ({'branch': [0, 1, 0], 'parent': [-1, 0, 1]}, 'row 2: branch 0 is not one chain'),
         ({'branch_names': ['only one']}, '1 branch names for 2 branches'),
     ],

@@ -63,13 +63,13 @@ def test_an_opened_tree_may_be_given_as_it_is(opened, door):
 @pytest.mark.parametrize('wrong', ['benjamina', None, 3.0, sway.Settings()])
 def test_what_is_no_tree_is_refused_everywhere(door, wrong):
     kind = type(wrong).__name__
-    with pytest.raises(ParameterError, match=f'tree: a {kind}, where a tree is asked for; give'):
+    with pytest.raises(ParameterError, match=f'tree: a {kind}, where a tree is expected; give'):
         DOORS[door](wrong)
 
 
 @pytest.mark.parametrize('door', DOORS)
 def test_what_are_no_settings_is_refused_everywhere(opened, door):
-    with pytest.raises(ParameterError, match='settings: a Species, where Settings are asked for'):
+    with pytest.raises(ParameterError, match='settings: a Species, where Settings are expected'):
         DOORS[door](opened, settings=opened.species)
     with pytest.raises(ParameterError, match="unknown setting 'gravit'; did you mean 'gravity'"):
         DOORS[door](opened, gravit=0.0)
@@ -79,7 +79,7 @@ def test_settings_in_the_place_of_the_species_are_refused(opened):
     for door in (sway.make_simulator, SwaySimulator):
         with pytest.raises(ParameterError, match=r'species: a Settings, .* as settings='):
             door(opened, sway.Settings())
-    with pytest.raises(ParameterError, match='species: a str, where a Species is asked for'):
+    with pytest.raises(ParameterError, match='species: a str, where a Species is expected'):
         sway.PlacedTree('one', opened, species='oak')
 
 

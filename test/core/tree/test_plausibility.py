@@ -118,7 +118,7 @@ def test_a_sway_of_no_tree_of_its_size_is_reported() -> None:
         assert sway_oddity(tree, spruce, frequency) == ''
     for frequency in (10.0 * usual, 0.1 * usual):
         said = sway_oddity(tree, spruce, frequency)
-        assert f'{frequency:.3g} Hz, where conifers of its size' in said
+        assert f'{frequency:.3g} Hz, while conifers of its size' in said
         assert sway_oddity(tree, OAK, frequency) == ''
 
 

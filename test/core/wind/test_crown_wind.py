@@ -18,7 +18,7 @@ from tree_sway.errors import ParameterError
 DT = 0.02
 
 
-def felt(crown, wind, dt=DT):
+def delayed(crown, wind, dt=DT):
     """Wind of each delay in each step, (t, d, 3)."""
     return np.array([x + crown.push(*x.tolist(), dt) for x in wind])
 
@@ -30,7 +30,7 @@ def steady(speed, steps):
 def test_the_share_that_is_common_comes_at_once_and_the_rest_after_the_delay():
     spread, coherence = 12.0, 0.7
     wind = np.vstack([steady(6.0, 2000), steady(8.0, 400)])
-    winds = felt(CrownWind(spread, coherence), wind)[2000:, :, 0]
+    winds = delayed(CrownWind(spread, coherence), wind)[2000:, :, 0]
     assert winds[0] == pytest.approx([8.0] + [6.0 + coherence * 2.0] * (N_DELAYS - 1), abs=1e-9)
     share = np.arange(N_DELAYS) / (N_DELAYS - 1)
     arrival = (winds < 7.9).sum(axis=0) * DT
@@ -48,7 +48,7 @@ def test_one_wind_for_all_where_all_of_it_is_common():
 def test_limbs_share_long_gusts_and_not_short_ones():
     rng = np.random.default_rng(3)
     noise = np.repeat(rng.normal((7.0, 0.0, 0.0), 1.0, (4000, 3)), 10, axis=0)
-    winds = felt(CrownWind(10.0, 0.5), noise)[2000:, :, 0]
+    winds = delayed(CrownWind(10.0, 0.5), noise)[2000:, :, 0]
     fast = winds - winds.mean(axis=0)
     far = np.corrcoef(fast[:, 3], fast[:, 11])[0, 1]
     assert far == pytest.approx(0.5, abs=0.05)  # c^2 of c^2 + (1 - c)^2
@@ -60,20 +60,20 @@ def test_limbs_share_long_gusts_and_not_short_ones():
 def test_means_stay_within_the_samples_at_any_step(dt):
     rng = np.random.default_rng(5)
     wind = rng.uniform(-9.0, 9.0, (400, 3))
-    winds = felt(CrownWind(30.0, 0.4), wind, dt)
+    winds = delayed(CrownWind(30.0, 0.4), wind, dt)
     assert (np.abs(winds) <= 9.0 + 1e-9).all()
 
 
 def test_a_crown_that_was_reset_has_felt_nothing():
     crown = CrownWind(15.0, 0.6)
-    felt(crown, np.random.default_rng(6).normal(5.0, 2.0, (500, 3)))
+    delayed(crown, np.random.default_rng(6).normal(5.0, 2.0, (500, 3)))
     crown.reset()
     assert np.abs(crown.push(1.0, 2.0, 3.0, DT)).max() < 1e-12
 
 
 def test_no_delay_is_longer_than_what_is_remembered():
     crown = CrownWind(1e4, 0.0)
-    winds = felt(crown, np.vstack([steady(3.0, 100), steady(4.0, 900)]))[-1, :, 0]
+    winds = delayed(crown, np.vstack([steady(3.0, 100), steady(4.0, 900)]))[-1, :, 0]
     assert winds == pytest.approx(np.full(N_DELAYS, 4.0))
     assert LONGEST_DELAY < 900 * DT
 

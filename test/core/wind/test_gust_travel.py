@@ -18,7 +18,7 @@ from tree_sway.errors import ParameterError
 DT = 1.0 / 60.0
 
 
-def felt(history, winds, dt=DT):
+def delayed(history, winds, dt=DT):
     """Return the wind at each place, (k, t, 3)."""
     return np.array([history.push(wind, dt).copy() for wind in winds])
 
@@ -37,7 +37,7 @@ def test_a_place_feels_a_gust_when_it_has_travelled_there():
     history = GustHistory(
         [[40.0, 0.0, 0.0], [80.0, 300.0, 9.0]], np.zeros(3), averaging_time=3600.0
     )
-    speed = felt(history, winds)[:, :, 0]
+    speed = delayed(history, winds)[:, :, 0]
     for column, way in zip(speed.T, (40.0, 80.0), strict=True):
         above = np.flatnonzero(column > 10.0)
         assert (above[0] - 3600) * DT == pytest.approx(way / 8.0, abs=0.05)
@@ -48,7 +48,7 @@ def test_a_place_feels_a_gust_when_it_has_travelled_there():
 def test_at_the_anemometer_the_wind_is_felt_as_it_is():
     winds = gusts(300)
     history = GustHistory([[0.0, 0.0, 5.0], [0.0, 0.0, -2.0]])
-    assert (felt(history, winds) == winds[:, None]).all()
+    assert (delayed(history, winds) == winds[:, None]).all()
 
 
 def test_gusts_may_travel_faster_than_the_mean_wind():
@@ -57,7 +57,7 @@ def test_gusts_may_travel_faster_than_the_mean_wind():
     delays = []
     for ratio in (1.0, 1.8):
         history = GustHistory(places, np.zeros(3), convection_ratio=ratio)
-        felt(history, winds)
+        delayed(history, winds)
         delays.append(history.delay[0])
     assert delays == pytest.approx([10.0, 10.0 / 1.8])
 
@@ -65,7 +65,7 @@ def test_gusts_may_travel_faster_than_the_mean_wind():
 def test_the_anemometers_place_counts():
     winds = np.tile([0.0, 5.0, 0.0], (10, 1))
     history = GustHistory([[7.0, 20.0, 0.0]], anemometer=[100.0, -5.0, 0.0])
-    felt(history, winds)
+    delayed(history, winds)
     assert history.delay[0] == pytest.approx(5.0)
 
 
@@ -74,14 +74,14 @@ def test_without_an_anemometer_the_first_place_feels_the_wind_at_once(heading):
     toward = np.array([np.cos(heading), np.sin(heading), 0.0])
     places = np.array([-20.0, 0.0, 50.0])[:, None] * toward
     history = GustHistory(places)
-    felt(history, np.tile(5.0 * toward, (10, 1)))
+    delayed(history, np.tile(5.0 * toward, (10, 1)))
     assert history.delay == pytest.approx([0.0, 4.0, 14.0])
 
 
 def test_upwind_of_the_anemometer_the_wind_is_felt_at_once():
     winds = gusts(200)
     history = GustHistory([[-50.0, 0.0, 0.0], [50.0, 0.0, 0.0]], (0.0, 0.0, 0.0))
-    result = felt(history, winds)
+    result = delayed(history, winds)
     assert history.delay[0] == 0.0
     assert (result[:, 0] == winds).all()
 
@@ -90,7 +90,7 @@ def test_beyond_its_memory_the_oldest_wind_is_felt():
     history = GustHistory(
         [[100.0, 0.0, 0.0], [1e6, 0.0, 0.0]], np.zeros(3), memory=20.0, capacity=64
     )
-    result = felt(history, gusts(1000))
+    result = delayed(history, gusts(1000))
     assert history.delay[1] <= 20.0
     assert np.isfinite(result).all()
     assert np.abs(result[:, :, 0]).max() < 40.0
@@ -148,10 +148,10 @@ def test_no_wind_is_lost_or_felt_twice():
 
 def test_calm_is_felt_everywhere_and_delays_die_down_with_the_wind():
     history = GustHistory([[30.0, 0.0, 0.0]], np.zeros(3), averaging_time=1.0)
-    assert (felt(history, np.zeros((100, 3))) == 0.0).all()
-    felt(history, np.tile([2.0 * SLOWEST_GUST, 0.0, 0.0], (6000, 1)))
+    assert (delayed(history, np.zeros((100, 3))) == 0.0).all()
+    delayed(history, np.tile([2.0 * SLOWEST_GUST, 0.0, 0.0], (6000, 1)))
     assert history.delay[0] == pytest.approx(30.0, rel=0.05)
-    felt(history, np.zeros((6000, 3)))
+    delayed(history, np.zeros((6000, 3)))
     assert history.delay[0] == pytest.approx(0.0, abs=1e-6)
 
 
@@ -187,14 +187,14 @@ def test_every_step_of_a_minute_is_kept_as_it_was():
     winds = gusts(4000)
     history = GustHistory([[240.0, 0.0, 0.0]], np.zeros(3), averaging_time=3600.0)
     assert history._finest < 0.25 * DT
-    felt(history, winds)
+    delayed(history, winds)
     assert history._at[1] == 4001
 
 
 def test_a_step_allocates_nothing():
     history = GustHistory(np.random.default_rng(0).uniform(0.0, 100.0, (20, 3)))
     wind = np.array([7.0, 1.0, 0.0])
-    felt(history, [wind])
+    delayed(history, [wind])
     tracemalloc.start()
     for _ in range(50):
         history.push(wind, DT)
@@ -210,9 +210,9 @@ def test_a_step_allocates_nothing():
 
 def test_reset_forgets():
     history = GustHistory([[30.0, 5.0, 0.0]], np.zeros(3))
-    first = felt(history, gusts(500))
+    first = delayed(history, gusts(500))
     history.reset()
-    assert (felt(history, gusts(500)) == first).all()
+    assert (delayed(history, gusts(500)) == first).all()
 
 
 @pytest.mark.parametrize(
@@ -229,7 +229,7 @@ def test_what_would_poison_the_history_is_refused(wind, dt):
     history = GustHistory([[10.0, 0.0, 0.0]], np.zeros(3))
     with pytest.raises(ParameterError):
         history.push(wind, dt)
-    assert (felt(history, np.ones((3, 3))) == 1.0).all()
+    assert (delayed(history, np.ones((3, 3))) == 1.0).all()
 
 
 @pytest.mark.parametrize(

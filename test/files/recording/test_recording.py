@@ -115,7 +115,7 @@ def test_an_mcap_of_a_killed_recorder_can_be_recovered(tmp_path: Path) -> None:
     assert ended.returncode == -signal.SIGKILL
     (file,) = (tmp_path / 'bag').glob('*.mcap')
     assert file.read_bytes().count(bytes(1000)) == 100
-    with pytest.raises(FormatError, match="mend it with 'mcap recover'"):
+    with pytest.raises(FormatError, match="repair it with 'mcap recover'"):
         read_bag(tmp_path / 'bag', [STATE_TYPE])
 
 

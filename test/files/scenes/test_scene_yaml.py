@@ -118,12 +118,10 @@ def test_a_tree_that_cannot_be_opened_is_named(tmp_path):
 def test_a_forest_holds_no_forest_and_is_no_tree(tmp_path):
     path = tmp_path / 'glade.yaml'
     path.write_text('trees:\n- {name: inner, tree: glade.yaml}\n')
-    with pytest.raises(
-        FormatError, match=r"tree 'inner': .*a forest, where one tree is asked for"
-    ):
+    with pytest.raises(FormatError, match=r"tree 'inner': .*a forest, where one tree is expected"):
         open_scene(path)
     with pytest.raises(
-        FormatError, match=r'a forest, where one tree is asked for; name one of its trees'
+        FormatError, match=r'a forest, where one tree is expected; name one of its trees'
     ):
         open_tree(path)
 

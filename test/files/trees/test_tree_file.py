@@ -41,7 +41,7 @@ def test_options_are_checked():
 def test_unknown_content(tmp_path):
     (tmp_path / 'x.bin').write_bytes(b'\x00\x01\x02')
     with pytest.raises(
-        FormatError, match='no known tree format; give one of archi, simpleforest, mtg'
+        FormatError, match='unknown tree format; give one of archi, simpleforest, mtg'
     ):
         read_trees(tmp_path / 'x.bin')
     with pytest.raises(FormatError, match='no such file; check the path'):

@@ -80,7 +80,7 @@ def test_the_means_of_a_station_stay_and_turbulence_is_about_them(
         read_wind(path, seed=-1)
 
 
-NO_COLUMNS = 'no time with u and v, or with speed and direction, among .*; name the columns so'
+NO_COLUMNS = 'no time with u and v, or with speed and direction, among .*; use these names'
 OTHERS = {
     'airports by hours, knots': (
         'station,valid,drct,sknt,gust\n' + stamped('%Y-%m-%d %H:%M', 60, 'DSM,{t},270.00,8,M'),

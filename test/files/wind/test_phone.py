@@ -96,7 +96,7 @@ def test_one_that_has_stopped_is_not_waited_for(
     with phone([answer_of(RECORDED[:100])]) as address:
         words = ['calibrate', 'goldcrest', '--record', address, '--seconds', '3600']
         assert cli.main([*words, '-o', str(tmp_path / 'fitted.yaml')]) == 2
-    assert 'it goes on no more; start the experiment' in capsys.readouterr().err
+    assert 'the measurement has stopped; start the experiment' in capsys.readouterr().err
 
 
 NO_ACCELERATIONS = 'no accelerations in the answer; open phyphox'

@@ -45,7 +45,7 @@ def test_options_and_formats_are_checked():
 
 def test_no_known_format(tmp_path):
     (tmp_path / 'x.bin').write_bytes(b'\x00\x01')
-    with pytest.raises(FormatError, match='no known wind format; give one of toa5'):
+    with pytest.raises(FormatError, match='unknown wind format; give one of toa5'):
         read_wind(tmp_path / 'x.bin')
     with pytest.raises(FormatError, match='no such file'):
         read_wind(tmp_path / 'none.csv')

@@ -112,7 +112,7 @@ def test_ctrl_c_ends_it_with_a_summary(
         second = start(environment, 'demo', 'goldcrest', '--seconds', '1')
         _, err = second.communicate(timeout=DEADLINE)
         assert second.returncode == 2
-        assert 'another program publishes' in err
+        assert 'a different program publishes' in err
     for one in signals:
         process.send_signal(one)
     out, err = process.communicate(timeout=DEADLINE)

@@ -219,7 +219,7 @@ def test_a_machine_that_is_read_only_is_one_line_with_the_cure():
     assert ended.returncode == 2
     assert ended.stderr.count('\n') == 1
     assert '/proc/nowhere' in ended.stderr
-    assert 'name a folder that can be written by ROS_LOG_DIR' in ended.stderr
+    assert 'set ROS_LOG_DIR to a writable folder' in ended.stderr
 
 
 def test_a_domain_that_cannot_be_joined_is_named(monkeypatch):

@@ -62,7 +62,7 @@ def test_a_new_template_is_all_zero():
 
 
 def test_a_mark_that_is_not_there_is_an_error():
-    with pytest.raises(TransportError, match='not laid out'):
+    with pytest.raises(TransportError, match='unexpected layout'):
         CdrTemplate(String(data='no stamp'), 1, [])
 
 
@@ -79,5 +79,5 @@ def test_a_mark_that_is_there_twice_is_an_error():
     from tree_sway_ros.wire.cdr import block_mark
 
     message = PoseArray(poses=[Pose(position=Point(x=block_mark(), y=block_mark()))])
-    with pytest.raises(TransportError, match='not laid out'):
+    with pytest.raises(TransportError, match='unexpected layout'):
         CdrTemplate(message, 0, [(1, 7)])

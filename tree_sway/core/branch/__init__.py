@@ -3,6 +3,5 @@
 """
 One branch as a beam: bending, twist, the shapes it takes and the model made from them.
 
-Closed forms and quadratures along one branch.
-What several branches do together lives in ``reduction``.
+Closed forms and quadratures along one branch. Coupled branches are in ``reduction``.
 """

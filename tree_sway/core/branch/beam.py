@@ -6,8 +6,7 @@ One branch as a beam: quadrature along its segments, bending by a load, slope an
 A segment is one panel, or more where children sit within it. Each panel carries five
 Gauss-Legendre points, at which the diameter is known from the linear taper between the ends of the
 segment. Integrals are taken on those points, so the result does not depend on how finely a branch
-is cut; and as what a child hands over makes a step or a kink at its foot, no panel reaches across
-one.
+is cut; and as the load of a child makes a step or a kink at its base, no panel extends across one.
 
 Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa =
 M / EI curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
@@ -28,7 +27,9 @@ from tree_sway.core.arrays import Floats, Ints
 N_POINTS = 5
 
 _DIGITS = 9
-"""Decimals of places along a segment: feet nearer to each other, or to a node, are one."""
+"""
+Decimals of places along a segment; bases that are closer to each other, or to a node, are merged.
+"""
 
 _ROOTS, _ROOT_WEIGHTS = leggauss(N_POINTS)
 _POINTS = (_ROOTS + 1.0) / 2.0
@@ -47,7 +48,7 @@ _INTEGRALS: Floats = np.vstack([
 @dataclass(frozen=True)
 class Attachments:
     """
-    Where the children of a branch sit, and what they carry.
+    Places of the children of a branch.
 
     Parameters
     ----------
@@ -69,14 +70,14 @@ class BranchBeam:
     Parameters
     ----------
     start, end
-        Nodes of its segments in [m], (m, 3).
+        Nodes of the segments in [m], (m, 3).
     base_diameter, tip_diameter
-        Diameters of its segments in [m], (m,).
+        Diameters of the segments in [m], (m,).
     children
-        Places of its children.
+        Places of the children.
     root_compliance
-        Young's modulus over the stiffness of a spring that holds its base in [1/m^3]; 0 if it is
-        clamped.
+        Young's modulus over the stiffness of the rotational spring at the base in [1/m^3]; 0 for a
+        clamped base.
 
     """
 
@@ -94,7 +95,7 @@ class BranchBeam:
         seats = np.round(children.segment + children.fraction, _DIGITS)
         cuts = np.unique(np.concatenate([np.arange(len(step) + 1.0), seats]))
         self.segment: Ints = cuts[:-1].astype(np.int64)
-        """Segment that each panel is a part of, (p,)."""
+        """Segment of each panel, (p,)."""
         self.segment_length: Floats = np.linalg.norm(step, axis=1)
         share = np.diff(cuts)
         self.length = share * self.segment_length[self.segment]
@@ -108,7 +109,7 @@ class BranchBeam:
         self.diameter = base_diameter[self.segment, None] + thinning * along
         self.point = start[self.segment, None] + step[self.segment, None] * along[..., None]
         self.foot: Ints = np.searchsorted(cuts, seats)
-        """Node between panels that each child sits on, (c,)."""
+        """Node between panels of each child, (c,)."""
         self.child_place = self.node[self.foot]
         self.child_point = (
             start[children.segment] + children.fraction[:, None] * step[children.segment]
@@ -142,7 +143,7 @@ class BranchBeam:
         Parameters
         ----------
         values
-            At the points, (p, 5, ...).
+            Values at the points, (p, 5, ...).
 
         Returns
         -------
@@ -164,8 +165,7 @@ class BranchBeam:
         panels = np.einsum('pg,pg...->p...', self.weight, values)
         first = np.searchsorted(self.segment, np.arange(len(self.segment_length)))
         sums = np.add.reduceat(panels, first, axis=0)
-        mean: Floats = (sums.T / self.segment_length).T
-        return mean
+        return np.asarray((sums.T / self.segment_length).T)
 
     def bending_moment(self, load: Floats, force: Floats, moment: Floats) -> Floats:
         """
@@ -176,12 +176,12 @@ class BranchBeam:
         load
             Load per length at the points, (p, 5).
         force, moment
-            Force and moment that each child hands over, (c,).
+            Force and moment of each child on the branch, (c,).
 
         Returns
         -------
         Floats
-            At the points, (p, 5).
+            Bending moment at the points, (p, 5).
 
         """
         points, nodes, _ = self.from_base(load)
@@ -202,13 +202,13 @@ class BranchBeam:
         load
             Force per length at the points in [N/m] in each of some cases, (p, 5, k, 3).
         force, moment
-            Force that each child hands over, and its moment about the root of the tree, both (c,
+            Force of each child on the branch, and its moment about the root of the tree, both (c,
             k, 3).
 
         Returns
         -------
         Floats
-            Moment of all that acts beyond each point, about that point, (p, 5, k, 3).
+            Moment of the loads beyond each point, about that point, (p, 5, k, 3).
 
         """
         point = self.point[:, :, None]
@@ -218,20 +218,18 @@ class BranchBeam:
         if len(force) > 0:
             handed = np.concatenate([force, moment], axis=-1).reshape(len(force), -1)
             beyond += (self.child_lever[1] @ handed).reshape(beyond.shape)
-        out: Floats = beyond[..., 3:] - cross(point, beyond[..., :3])
-        return out
+        return np.asarray(beyond[..., 3:] - cross(point, beyond[..., :3]))
 
     def curvature_in_space(self, moment: Floats, shear_ratio: float) -> Floats:
         """Curvature by an internal moment, bending and twist, for a modulus of 1, (p, 5, k, 3)."""
         along = self.tangent[:, None, None, :]
         twist = (moment * along).sum(axis=-1, keepdims=True) * along
         bent = moment + (0.5 / shear_ratio - 1.0) * twist
-        out: Floats = bent / self.second_moment[..., None, None]
-        return out
+        return np.asarray(bent / self.second_moment[..., None, None])
 
     @cached_property
     def child_lever(self) -> tuple[Floats, Floats]:
-        """Lever [m] from each point to each child beyond it, and whether it is so, (p, 5, c)."""
+        """Lever [m] from each point to each child, and whether it is beyond, (p, 5, c)."""
         lever = np.maximum(self.child_place - self.place[..., None], 0.0)
         return lever, (lever > 0.0).astype(np.float64)
 
@@ -263,7 +261,7 @@ class SlopeShape:
     Parameters
     ----------
     beam
-        The branch.
+        Beam of the branch.
     curvature
         d psi / d s at the points in [1/m], (p, 5).
 
@@ -278,7 +276,7 @@ class SlopeShape:
         self.deflection, self.node_deflection, self.child_deflection = beam.from_base(self.slope)
 
     def stiffness(self, modulus: float) -> float:
-        """Return twice its bending energy, the integral of E I kappa^2, in [N m/rad]."""
+        """Return twice the bending energy, the integral of E I kappa^2, in [N m/rad]."""
         rigidity = modulus * self.beam.second_moment
         return float(self.beam.integral(rigidity * self.curvature * self.curvature))
 
@@ -290,7 +288,7 @@ class RotationField:
     Parameters
     ----------
     beam
-        The branch.
+        Beam of the branch.
     curvature
         d phi / d s at the points in [1/m], (p, 5, 3).
 
@@ -308,7 +306,7 @@ class RotationField:
 
     @classmethod
     def about(cls, shape: SlopeShape, axis: Floats) -> RotationField:
-        """Turn about one axis, (3,), by the slope of a shape."""
+        """Make the field of rotations about one axis, (3,), by the slope of a shape."""
         return cls(shape.beam, shape.curvature[..., None] * axis)
 
 
@@ -316,8 +314,7 @@ def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: flo
     """
     Energy between fields of one branch in [N m/rad], (k, k).
 
-    It is E I of bending, across the branch as it runs in space, and G J of twist about it, J = 2
-    I.
+    Bending has E I, across the branch in space, and twist about it G J, J = 2 I.
     """
     beam, n = fields[0].beam, len(fields)
     curvature = np.stack([one.curvature for one in fields])
@@ -325,8 +322,7 @@ def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: flo
     measure = beam.weight * beam.second_moment
     whole = (measure[..., None] * curvature).reshape(n, -1) @ curvature.reshape(n, -1).T
     twist = (measure * twisting).reshape(n, -1) @ twisting.reshape(n, -1).T
-    energy: Floats = modulus * (whole - twist) + 2.0 * shear_modulus * twist
-    return energy
+    return np.asarray(modulus * (whole - twist) + 2.0 * shear_modulus * twist)
 
 
 def cross(a: Floats, b: Floats) -> Floats:

@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Branches that turn far in the wind, run in a bow or carry many, cut into several key segments.
+Cut branches that rotate far in the wind, are curved or have many children into key segments.
 
-One key segment bends as one shape and meets the wind as one body. What turns by more than some
-15 degrees takes other shapes in strong wind than in a breeze, and what runs in a bow meets the
-wind otherwise at either end: each is a chain of key segments, as the paper has it (Kanda & Ohya
-2003, 3.2), each piece a branch on the one before.
+One key segment bends as one shape and meets the wind as one body. A branch that rotates by more
+than some 15 degrees has other shapes in strong wind than in a breeze, and the two ends of a curved
+branch meet the wind at different angles. Each such branch is a chain of key segments, as in the
+paper (Kanda & Ohya 2003, 3.2): each piece is a branch on the one before.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.tree.tree import Tree
 
 TURN = np.deg2rad(15.0)
-"""Turn of a branch in [rad] that one key segment may make."""
+"""Largest rotation of one key segment in [rad]."""
 
 BOW = np.deg2rad(25.0)
-"""Angle in [rad] between the ends of a branch at rest that one key segment may span."""
+"""Largest angle between the ends of one key segment at rest in [rad]."""
 
 MOST_PIECES = 3
-"""Pieces of a branch that turns far; more add little."""
+"""Largest number of pieces of a branch that rotates far; more add little."""
 
 CARRIED, MOST_CARRYING = 6, 6
 """
-Branches that one key segment may carry, and the most pieces for them: limbs that swing against
-each other bend a stem between their feet, by more shapes than one key segment has.
+Largest number of children of one key segment, and of pieces for them: limbs that swing against
+each other bend a stem between their bases, by more shapes than one key segment has.
 
 """
 
@@ -41,16 +41,16 @@ _LEAST = 20
 @dataclass(frozen=True)
 class CutTree:
     """
-    A tree whose branches are pieces of those of another.
+    A tree whose branches are pieces of those of a whole tree.
 
     Parameters
     ----------
     tree
         The pieces as branches.
     branch
-        Branch that each is a piece of, (p,).
+        Branch of which each piece is a part, (p,).
     row
-        Each segment's row in the other tree, (n,).
+        Row of each segment in the other tree, (n,).
     share
         Length of each piece over that of its branch, (p,).
 
@@ -70,7 +70,7 @@ def whole_tree(tree: Tree) -> CutTree:
 
 def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
     """
-    Count key segments of branches, (b,), by turn in [rad], (b,), bow and what they carry.
+    Count key segments of branches, (b,), by rotation [rad], (b,), curvature and children.
 
     A piece has two segments or more, a tree of few branches many pieces.
     """
@@ -82,8 +82,7 @@ def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
     carried = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches) / CARRIED
     wanted = np.maximum(np.minimum(most_turned, MOST_PIECES), np.minimum(carried, MOST_CARRYING))
     wanted = np.ceil(np.maximum(wanted, _LEAST / tree.n_branches)).astype(np.int64)
-    pieces: Ints = np.clip(wanted, 1, np.maximum(most, 1))
-    return pieces
+    return np.asarray(np.clip(wanted, 1, np.maximum(most, 1)))
 
 
 def cut_tree(tree: Tree, pieces: Ints) -> CutTree:

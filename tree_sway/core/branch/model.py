@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Every branch as a bending body: its axes, its mass and load along it, the fields it bends by.
+Every branch as a bending body: its axes, its mass and load along it, its fields of bending.
 
 A branch turns about two fixed axes across its chord. Its coordinates are the components of a
-rotation vector, ``x e2 - y e1``: a positive x moves the tip along e1, a positive y along e2. What
-a branch carries loads it and shapes it: the shear force and the moment of each child's subtree
-enter at the child's place.
+rotation vector, ``x e2 - y e1``: a positive x moves the tip along e1, a positive y along e2. The
+subtrees of a branch determine its load and shape: the shear force and the moment of each subtree
+act at the base of the child.
 
 Symbols: b chord direction, e1, e2 across it; psi slope shape; c drag area per length [m]; mu mass
 per length [kg/m].
@@ -20,36 +20,30 @@ from functools import cached_property
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.branch.beam import (
-    Attachments,
-    BranchBeam,
-    cross,
-    RotationField,
-    SlopeShape,
-)
+from tree_sway.core.branch.beam import Attachments, BranchBeam, cross, RotationField, SlopeShape
 from tree_sway.core.branch.shapes import (
     bent_by_weight,
-    Carried,
     FEWER_TURNS,
     N_PAIRS,
     N_TURNS,
     shaken_energies,
     shape_fields,
+    SubtreeSums,
     wind_loads,
 )
 from tree_sway.core.tree.tree import Tree
 
 _LEFT = 1e-4
-"""Share of the energy of all branches but the stem that static fields alone may leave out."""
+"""Largest share of the energy of all branches but the stem that static fields may miss."""
 
 _FEW, _ONE_OF = 24, 50
-"""Branches beside the stem with further shapes: at most this number, or one in this number."""
+"""Largest number of branches beside the stem with further shapes, or one branch in this number."""
 
 _SMALL = 16
 """Branches of a tree that all get further shapes, and one pair more."""
 
 _LIGHT = 1e-3
-"""Share of the mass of a tree below which a branch with all it carries is never asked."""
+"""Share of the mass of a tree below which a branch with its subtree is not considered."""
 
 
 @dataclass(frozen=True)
@@ -60,17 +54,18 @@ class BranchModel:
     Parameters
     ----------
     beam
-        Its quadrature and bending.
+        Quadrature and bending of the branch.
     drag_area
-        Area that the wind meets per length at each point in [m], (p, 5).
+        Drag area per length at each point in [m], (p, 5).
     mass
         Mass per length at each point in [kg/m], (p, 5).
     shape
-        Slope per unit of its key rotation, as a plain branch is drawn.
+        Slope of a plain branch per unit of its key rotation.
     fields
-        How it moves per unit of its key rotation x, y and of what an enriched branch has beyond.
+        Motion per unit of the key rotation x, y and of the further coordinates of an enriched
+        branch.
     children
-        The branches it carries, in the order of ``beam.children``.
+        Children of the branch, in the order of ``beam.children``.
 
     """
 
@@ -84,9 +79,9 @@ class BranchModel:
     @cached_property
     def inertia_share(self) -> float:
         """
-        Inertia that gives its beam's first frequency, over that of the static shape [-].
+        Inertia that gives the first frequency of the beam, over that of the static shape [-].
 
-        Inverse iteration from the static shape: each turn bends the branch by its own inertia.
+        Found by inverse iteration: each step bends the branch by its own inertia.
         """
         beam, shape = self.beam, self.shape
         static = _square_frequency(beam, shape, self.mass)
@@ -99,12 +94,12 @@ class BranchModel:
 
 class TreeBeams:
     """
-    Every branch of a tree as a beam, and what it hands down: the same for every model.
+    Beams of all branches of a tree and the sums over their subtrees, shared by all models.
 
     Parameters
     ----------
     tree
-        The tree.
+        Tree to be modelled.
     density
         Density of green wood in [kg/m^3].
     shear_ratio
@@ -114,11 +109,11 @@ class TreeBeams:
     leaf_mass, leaf_area
         Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
     root_compliance
-        Root compliance of the stem, as `BranchBeam` takes it.
+        Root compliance of the stem in [1/m^3], as in `BranchBeam`.
     gravity
-        Over Young's modulus in [m/s^2/Pa]; 0 leaves weight out.
+        Gravity over Young's modulus in [m/s^2/Pa]; 0 for no weight.
     known
-        Other beams of the same wood, and which of them each branch is, -1 for none, (b,).
+        Known beams of the same wood, and the number of that of each branch, (b,), -1 for none.
 
     """
 
@@ -135,7 +130,7 @@ class TreeBeams:
         gravity: float = 0.0,
         known: tuple[TreeBeams, Ints] | None = None,
     ) -> None:
-        """Sum up what hangs on each branch."""
+        """Make the beams and sum up the subtrees."""
         n = tree.n_branches
         self._tree, self._density, self._shear_ratio = tree, density, shear_ratio
         self._gravity = gravity
@@ -145,7 +140,7 @@ class TreeBeams:
         self._bare: list[tuple[BranchBeam, Floats, Floats, Ints, Floats]] = []
         self._known: dict[tuple[int, ...], BranchModel] = {}
         self._blown: dict[tuple[int, int], Floats] = {}
-        self._sums = Carried.of_none(n)
+        self._sums = SubtreeSums.zeros(n)
         children_of: list[list[int]] = [[] for _ in range(n)]
         for branch in range(1, n):
             children_of[tree.branch_parent[branch]].append(branch)
@@ -162,7 +157,7 @@ class TreeBeams:
             self._bare.append((beam, drag_area, mass, children, loads))
             point = beam.point.reshape(-1, 3)
             dm, load = beam.weight * mass, beam.weight * drag_area
-            own = Carried(
+            own = SubtreeSums(
                 area=load.sum(),
                 area_moment=load.ravel() @ point,
                 force=beam.integral(loads),
@@ -178,7 +173,7 @@ class TreeBeams:
     def _beam(
         self, branch: int, children: Ints, root_compliance: float
     ) -> tuple[BranchBeam, Floats, Floats]:
-        """Lay a branch out: its beam, and drag area [m] and mass [kg/m] per length."""
+        """Make the beam of a branch, and its drag area [m] and mass [kg/m] per length."""
         tree = self._tree
         here = tree.segments_of(branch)
         beam = BranchBeam(
@@ -197,10 +192,10 @@ class TreeBeams:
 
     def turns(self, modulus: float) -> Floats:
         """
-        Bound the turns of the chords [rad] of all branches, (b,).
+        Bound the rotations of the chords [rad] of all branches, (b,).
 
-        By the loads of even winds along x and y of a dynamic pressure of 1 kg/m/s^2, as beams
-        that bend and do not hang.
+        Loads are those of uniform winds along x and y of a dynamic pressure of 1 kg/m/s^2, on
+        beams without weight.
         """
         turns = np.zeros(len(self._bare))
         for branch, (beam, *_, children, _) in enumerate(self._bare):
@@ -210,29 +205,29 @@ class TreeBeams:
             turns[branch] = np.sqrt(np.square(ends).sum(axis=1).max()) / beam.chord_length
         return turns / modulus
 
-    def _curvatures(self, branch: int, n_carried: int) -> Floats:
+    def _curvatures(self, branch: int, n_subtrees: int) -> Floats:
         """Curvatures (p, 5, 3, 3) by `wind_loads` of a branch and its first children."""
-        key = branch, n_carried
+        key = branch, n_subtrees
         if key not in self._blown:
             beam, _, _, children, loads = self._bare[branch]
-            carried = self._sums.of(children[:n_carried])
-            moments = beam.moment_in_space(loads, carried.force, carried.moment)
+            subtrees = self._sums.select(children[:n_subtrees])
+            moments = beam.moment_in_space(loads, subtrees.force, subtrees.moment)
             self._blown[key] = beam.curvature_in_space(moments, self._shear_ratio)
         return self._blown[key]
 
     def models(
-        self, *, carries: bool, enriched: frozenset[int] = frozenset()
+        self, *, subtrees: bool, enriched: frozenset[int] = frozenset()
     ) -> list[BranchModel]:
         """
-        Model each branch; where two models of the sway do not differ, it is the same.
+        Model each branch.
 
         Parameters
         ----------
-        carries
-            Whether children load and shape their parents; if not, every branch is alone (the
+        subtrees
+            Whether children load and shape their parents; if not, every branch is isolated (the
             paper).
         enriched
-            Branches that get further shapes and twists.
+            Branches with further shapes and twists.
 
         Returns
         -------
@@ -241,7 +236,7 @@ class TreeBeams:
 
         """
         return [
-            self._model(branch, len(bare[3]) if carries else 0, *self._richness(branch, enriched))
+            self._model(branch, len(bare[3]) if subtrees else 0, *self._richness(branch, enriched))
             for branch, bare in enumerate(self._bare)
         ]
 
@@ -253,9 +248,9 @@ class TreeBeams:
         ----------
         choice
             ``none``, the ``stem``, all ``carriers`` of others, ``all``, or those ``needed``: the
-            stem and the branches that bend most unlike their static fields when they are shaken,
-            until what is left of that energy is `_LEFT` of that of all branches; all of a tree of
-            `_SMALL` branches.
+            stem and the branches whose static fields miss most of the energy when they are shaken,
+            until the others miss no more than `_LEFT` of the energy of all branches; all of a
+            tree of `_SMALL` branches.
 
         """
         parent = self._tree.branch_parent
@@ -280,26 +275,26 @@ class TreeBeams:
     def _shaken(self, branch: int) -> tuple[float, float]:
         beam, _, mass, children, _ = self._bare[branch]
         fields = self._model(branch, len(children), 1, 0).fields
-        return shaken_energies(beam, mass, self._sums.of(children), self._shear_ratio, fields)
+        return shaken_energies(beam, mass, self._sums.select(children), self._shear_ratio, fields)
 
-    def _model(self, branch: int, n_carried: int, n_pairs: int, n_turns: int) -> BranchModel:
-        """Model a branch, unless that is done."""
-        key = branch, n_carried, n_pairs, n_turns
+    def _model(self, branch: int, n_subtrees: int, n_pairs: int, n_turns: int) -> BranchModel:
+        """Model a branch, or take the known model."""
+        key = branch, n_subtrees, n_pairs, n_turns
         if key not in self._known:
             beam, drag_area, mass, children, _ = self._bare[branch]
-            carried = self._sums.of(children[:n_carried])
+            subtrees = self._sums.select(children[:n_subtrees])
             curvatures = bent_by_weight(
-                beam, mass, carried, self._curvatures(branch, n_carried), self._shear_ratio,
+                beam, mass, subtrees, self._curvatures(branch, n_subtrees), self._shear_ratio,
                 self._gravity,
             )  # fmt: skip
             shape, fields = shape_fields(
-                beam, drag_area, mass, carried, curvatures, self._shear_ratio, n_pairs, n_turns
+                beam, drag_area, mass, subtrees, curvatures, self._shear_ratio, n_pairs, n_turns
             )
             self._known[key] = BranchModel(beam, drag_area, mass, shape, fields, children)
         return self._known[key]
 
     def _richness(self, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
-        """Pairs of a branch, and further fields by what turns about its chord."""
+        """Return the number of pairs of a branch, and of fields of rotation about its chord."""
         if branch not in enriched:
             return 1, 0
         n_pairs = N_PAIRS + (self._tree.n_branches <= _SMALL)
@@ -307,7 +302,7 @@ class TreeBeams:
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
-    """Where children sit on the segments of their parent."""
+    """Return the places of children on the segments of their parent."""
     if len(children) == 0:
         return Attachments(np.zeros(0, dtype=np.int64), np.zeros(0))
     first = tree.branch_first[children]
@@ -316,5 +311,5 @@ def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
 
 
 def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:
-    """Rayleigh's quotient of a shape for a modulus of 1, in [1/s^2]."""
+    """Return Rayleigh's quotient of a shape for a modulus of 1, in [1/s^2]."""
     return shape.stiffness(1.0) / float(beam.integral(mass * shape.deflection**2))

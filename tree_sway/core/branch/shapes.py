@@ -3,12 +3,12 @@
 """
 The fields of rotation by which a branch bends and twists in space.
 
-A plain branch has two: those in which winds bend and twist it with all that it carries, so that
-its chord turns about one axis or the other. An enriched branch has further ones: what the inertia
-of these bends it into, and so on; and how it is twisted by all it carries when that turns about
-the chord as one (load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space
-of its flexibility and inertia). They are orthogonal in bending energy. A crooked branch bends and
-twists in one: no coordinate of its own is spent on twist.
+A plain branch has two: the static responses to winds on it and its subtree in which its chord
+rotates about one axis or the other. An enriched branch has further ones: the responses to the
+inertia of these, and so on; and the twist by the rotation of its subtree about the chord
+(load-dependent Ritz vectors: Wilson, Yuan & Dickens, 1982; a block Krylov space of its flexibility
+and inertia). They are orthogonal in bending energy. A crooked branch bends and twists in the same
+fields: twist has no separate coordinate.
 """
 
 from __future__ import annotations
@@ -20,37 +20,31 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.branch.beam import (
-    BranchBeam,
-    cross,
-    cross_matrix,
-    RotationField,
-    SlopeShape,
-)
+from tree_sway.core.branch.beam import BranchBeam, cross, cross_matrix, RotationField, SlopeShape
 
 N_PAIRS = 3
 """Pairs of fields of an enriched branch: the static ones, then by inertia."""
 
 N_TURNS, FEWER_TURNS = 3, 1
-"""Further fields by what turns about the chord: of a stem, and of any other branch."""
+"""Further fields by rotation about the chord: of a stem, and of any other branch."""
 
 MAX_COORDINATES = 12
-"""Most fields of a branch."""
+"""Largest number of fields of a branch."""
 
 _APART, _LEFT_APART = 24, 1e-4
 """
-Cases in which what a branch carries swings apart, and the share of their energy that the fields
-may leave out.
+Cases of subtrees that swing against each other, and the largest share of their energy that the
+fields may miss.
 
 """
 
 _NEGLIGIBLE = 1e-4
-"""Share of a field that must be new."""
+"""Smallest share of a field that is orthogonal to those before."""
 
 _LIMP, _BLOCKS, _BUCKLED = 0.1, 3, 0.05
 """
-Share of its stiffness that weight may change before a branch counts as limp, Krylov blocks by
-weight of such a branch, and the share of its stiffness that must be left.
+Weight over stiffness from which a branch is limp, its Krylov blocks by weight, and the smallest
+share of its stiffness that weight leaves.
 
 """
 
@@ -58,16 +52,16 @@ _UPWARD = 0.3
 _WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
 
 
-class Carried(NamedTuple):
+class SubtreeSums(NamedTuple):
     """
-    What each child of a branch hands down: sums over its subtree, about the root of the tree.
+    Sums over the subtree of each child of a branch, about the root of the tree.
 
     Parameters
     ----------
     area, area_moment
         Drag area in [m^2], (c,), and its first moment in [m^3], (c, 3).
     force, moment
-        Force of winds along x, y and z, as of `wind_loads`, and its moment about the root of the
+        Force of winds along x, y and z, as in `wind_loads`, and its moment about the root of the
         tree, both (c, 3, 3), the wind first.
     mass, mass_moment, mass_second
         Mass in [kg], (c,), its first moment in [kg m], (c, 3), and second in [kg m^2], (c, 3, 3).
@@ -83,19 +77,19 @@ class Carried(NamedTuple):
     mass_second: Floats
 
     @classmethod
-    def of_none(cls, count: int) -> Carried:
-        """Make sums over a number of subtrees, all of them zero."""
+    def zeros(cls, count: int) -> SubtreeSums:
+        """Return zero sums over a number of subtrees."""
         shapes: tuple[tuple[int, ...], ...] = (), (3,), (3, 3), (3, 3), (), (3,), (3, 3)
         return cls(*(np.zeros((count, *shape)) for shape in shapes))
 
-    def of(self, children: Ints) -> Carried:
-        """Pick some of the subtrees."""
-        return Carried(*(sums[children] for sums in self))
+    def select(self, children: Ints) -> SubtreeSums:
+        """Select some of the subtrees."""
+        return SubtreeSums(*(sums[children] for sums in self))
 
 
 def across(chord: Floats) -> tuple[Floats, Floats]:
     """
-    Two unit vectors across a chord (3,): e1 in the vertical plane, or along x for an upright one.
+    Return unit vectors across a chord (3,): e1 in the vertical plane, along x for an upright one.
 
     (b, e1, e2) is right-handed.
     """
@@ -109,7 +103,7 @@ def shape_fields(
     beam: BranchBeam,
     drag_area: Floats,
     mass: Floats,
-    carried: Carried,
+    subtrees: SubtreeSums,
     curvatures: Floats,
     shear_ratio: float,
     n_pairs: int = 1,
@@ -123,34 +117,33 @@ def shape_fields(
     beam
         The branch.
     drag_area, mass
-        Per length at its points in [m] and [kg/m], (p, 5).
-    carried
-        What its children hand down; none for a branch that is taken alone.
-    curvatures
-        Of the branch by `wind_loads` on it and on these, for a modulus of 1, (p, 5, 3, 3).
+        Drag area and mass per length at the points in [m] and [kg/m], (p, 5).
+    subtrees Sums over the subtrees of the children; none for an isolated branch. curvatures
+        Curvatures of the branch by `wind_loads` on it and its subtrees, for a modulus of 1, (p, 5,
+        3, 3).
     shear_ratio
         Shear modulus over Young's in [-].
     n_pairs, n_turns
-        How many, of either kind; fewer where there are no more.
+        Largest number of fields of either kind.
 
     Returns
     -------
     tuple
-        The slope that a plain branch is drawn by, and what a unit of each coordinate does: of the
-        key rotation x, y, then of further ones.
+        Slope of a plain branch as it is drawn, and the fields per unit of each coordinate: key
+        rotation x, y, then further ones.
 
     """
     e1, e2 = across(beam.chord)
     pair = _static_pair(beam, curvatures, e1, e2)
     if pair is None:
-        drawn = _static_shape(beam, drag_area, carried)
+        drawn = _static_shape(beam, drag_area, subtrees)
         fields = [RotationField.about(drawn, e2), RotationField.about(drawn, -e1)]
     else:
         mean = 0.5 * (pair[0] @ e2 - pair[1] @ e1)
         drawn = beam.slope_shape(mean * beam.second_moment)
         fields = [RotationField(beam, each) for each in pair]
     if n_pairs > 1 or n_turns > 0:
-        fields += _further(beam, mass, carried, shear_ratio, fields, n_pairs, n_turns)
+        fields += _further(beam, mass, subtrees, shear_ratio, fields, n_pairs, n_turns)
     return drawn, tuple(fields)
 
 
@@ -163,54 +156,52 @@ def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
     """
     tangent = beam.tangent
     across = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
-    loads: Floats = (drag_area * exposure(beam)[:, None])[..., None, None] * across[:, None]
-    return loads
+    return np.asarray((drag_area * exposure(beam)[:, None])[..., None, None] * across[:, None])
 
 
 def bent_by_weight(
     beam: BranchBeam,
     mass: Floats,
-    carried: Carried,
+    subtrees: SubtreeSums,
     curvatures: Floats,
     shear_ratio: float,
     gravity: float,
 ) -> Floats:
     """
-    Find how far loads bend a branch whose weight goes with it.
+    Find how far loads bend a branch whose weight moves with it.
 
-    Weight that is moved sideways bends and twists a limp branch further, and straightens one that
-    hangs (second-order theory: Timoshenko & Gere, 1961). The answer is sought among the loads'
-    curvatures and those that follow from them by weight (Galerkin, in a block Krylov space).
+    Weight that is moved sideways bends and twists a limp branch further; it straightens a hanging
+    one (second-order theory: Timoshenko & Gere, 1961). The response is a Galerkin solution in the
+    block Krylov space of the curvatures by the loads and the response to weight.
 
     Parameters
     ----------
-    beam, mass, carried, shear_ratio
-        As of `shape_fields`.
+    beam, mass, subtrees, shear_ratio
+        The same as in `shape_fields`.
     curvatures
-        By the loads alone, (p, 5, k, 3).
+        Curvatures by the loads without weight, (p, 5, k, 3).
     gravity
-        Over Young's modulus in [m/s^2/Pa].
+        Gravity over Young's modulus in [m/s^2/Pa].
 
     Returns
     -------
     Floats
-        Curvatures (p, 5, k, 3), those by the loads alone where weight matters little or would
-        buckle the branch by itself.
+        Curvatures (p, 5, k, 3), unchanged where weight matters little or would buckle the branch.
 
     """
-    below, nodes, _ = beam.from_base(mass)
-    beyond = nodes[-1] - below
-    if len(carried.mass):
-        beyond += beam.child_lever[1] @ carried.mass
-    slenderness = gravity * float(beam.integral(beyond / beam.second_moment))
-    if slenderness * float(beam.node[-1]) < _LIMP:
+    before, nodes, _ = beam.from_base(mass)
+    beyond = nodes[-1] - before
+    if len(subtrees.mass):
+        beyond += beam.child_lever[1] @ subtrees.mass
+    limpness = gravity * float(beam.integral(beyond / beam.second_moment)) * float(beam.node[-1])
+    if limpness < _LIMP:
         return curvatures
 
     def by_weight(vectors: Floats) -> Floats:
         bent = np.moveaxis(_curvature_of(beam, vectors, shear_ratio), 0, 2)
-        moments = gravity * _moment_of_weight(beam, mass, carried, bent, beyond)
-        found = beam.curvature_in_space(moments, shear_ratio)
-        return _energy_vector(beam, np.moveaxis(found, 2, 0), shear_ratio)
+        moments = gravity * _moment_of_weight(beam, mass, subtrees, bent, beyond)
+        response = beam.curvature_in_space(moments, shear_ratio)
+        return _energy_vector(beam, np.moveaxis(response, 2, 0), shear_ratio)
 
     loads = _energy_vector(beam, np.moveaxis(curvatures, 2, 0), shear_ratio)
     blocks = [loads]
@@ -218,46 +209,41 @@ def bent_by_weight(
         block = by_weight(blocks[-1])
         blocks.append(block / max(float(np.linalg.norm(block)), 1e-300))
     basis = np.linalg.qr(np.vstack(blocks).T)[0]
-    left = np.eye(basis.shape[1]) - basis.T @ by_weight(basis.T).T
-    if np.linalg.eigvalsh(left + left.T)[0] < 2.0 * _BUCKLED:
+    stiffness = np.eye(basis.shape[1]) - basis.T @ by_weight(basis.T).T
+    if np.linalg.eigvalsh(stiffness + stiffness.T)[0] < 2.0 * _BUCKLED:
         return curvatures
-    amounts = np.linalg.solve(left, basis.T @ loads.T)
-    out: Floats = np.moveaxis(_curvature_of(beam, (basis @ amounts).T, shear_ratio), 0, 2)
-    return out
+    amounts = np.linalg.solve(stiffness, basis.T @ loads.T)
+    return np.moveaxis(_curvature_of(beam, (basis @ amounts).T, shear_ratio), 0, 2)
 
 
 def _moment_of_weight(
-    beam: BranchBeam, mass: Floats, carried: Carried, curvature: Floats, beyond: Floats
+    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, curvature: Floats, beyond: Floats
 ) -> Floats:
     """
     Return the change of the internal moment by weight as a branch bends, for a gravity of 1.
 
-    It is that in the frame of the cross-section, which turns away from the moment at rest, of
-    curvatures (p, 5, k, 3); beyond each point is a mass in [kg], (p, 5).
+    The moment is in the frame of the cross-section, which rotates from that at rest. Curvatures
+    are (p, 5, k, 3); the mass beyond each point is in [kg], (p, 5).
     """
     slope, _, child_slope = beam.from_base(curvature)
     moved, _, child_moved = beam.from_base(cross(slope, beam.tangent[:, None, None]))
-    moments = np.concatenate([moved, beam.point[:, :, None]], axis=2) * mass[..., None, None]
-    below, nodes, _ = beam.from_base(moments)
-    first = nodes[-1] - below
-    if len(carried.mass):
-        places = beam.child_point[: len(carried.mass)]
-        hung = carried.mass_moment - carried.mass[:, None] * places
-        weighed = carried.mass[:, None, None] * child_moved + cross(child_slope, hung[:, None])
-        handed = np.concatenate([weighed, carried.mass_moment[:, None]], axis=1)
-        first += np.tensordot(beam.child_lever[1], handed, axes=1)
-    first -= beyond[..., None, None] * np.concatenate([moved, beam.point[:, :, None]], axis=2)
-    down = np.array([0.0, 0.0, -1.0])
-    turning = cross(first, down)
-    out: Floats = turning[:, :, :-1] - cross(slope, turning[:, :, -1:])
-    return out
+    places = np.concatenate([moved, beam.point[:, :, None]], axis=2)
+    before, nodes, _ = beam.from_base(places * mass[..., None, None])
+    first = nodes[-1] - before
+    if len(subtrees.mass):
+        feet = beam.child_point[: len(subtrees.mass)]
+        lever = subtrees.mass_moment - subtrees.mass[:, None] * feet
+        weighed = subtrees.mass[:, None, None] * child_moved + cross(child_slope, lever[:, None])
+        sums = np.concatenate([weighed, subtrees.mass_moment[:, None]], axis=1)
+        first += np.tensordot(beam.child_lever[1], sums, axes=1)
+    moments = cross(first - beyond[..., None, None] * places, np.array([0.0, 0.0, -1.0]))
+    return np.asarray(moments[:, :, :-1] - cross(slope, moments[:, :, -1:]))
 
 
 def exposure(beam: BranchBeam) -> Floats:
-    """Mean over winds from all sides of the share of the wind that goes across, (m,)."""
+    """Return the share of the wind across each panel, averaged over winds from all sides, (m,)."""
     level = 1.0 - beam.tangent[:, 2:] ** 2
-    share: Floats = np.sqrt(1.0 - level * _ALL_SIDES).mean(axis=1)
-    return share
+    return np.asarray(np.sqrt(1.0 - level * _ALL_SIDES).mean(axis=1))
 
 
 _ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
@@ -265,12 +251,12 @@ _ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
 
 def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -> Floats | None:
     """
-    Curvatures, (2, p, 5, 3), that turn the chord by 1 about e2 and about -e1 as the winds do.
+    Curvatures, (2, p, 5, 3), by winds, scaled to rotate the chord by 1 about e2 and about -e1.
 
-    Of all that do, these come nearest to what the winds along x, y and z make of the branch, (p,
-    5, 3, 3) (least squares, an upward wind weighted by `_UPWARD`): where winds along the ground
-    turn the chord both ways, what they do is exact, and so is the static sway of a tree. None for
-    a branch whose chord no wind turns.
+    They are the best fit to the curvatures by winds along x, y and z, (p, 5, 3, 3) (least squares,
+    an upward wind weighted by `_UPWARD`). Where horizontal winds rotate the chord about both axes,
+    their curvatures are exact, and so is the static sway of a tree. The result is None for a
+    branch whose chord no wind rotates.
     """
     slopes = beam.from_base(curvatures)[0]
     ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
@@ -279,24 +265,23 @@ def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -
     if not largest[-1] > 0.02 * largest[0]:
         return None
     mix = (winds.T / largest) @ sides.T * _WIND_WEIGHTS
-    pair: Floats = np.ascontiguousarray(np.moveaxis(mix @ curvatures, 2, 0))
-    return pair
+    return np.asarray(np.ascontiguousarray(np.moveaxis(mix @ curvatures, 2, 0)))
 
 
 def _further(
     beam: BranchBeam,
     mass: Floats,
-    carried: Carried,
+    subtrees: SubtreeSums,
     shear_ratio: float,
     pair: list[RotationField],
     n_pairs: int,
     n_turns: int,
 ) -> list[RotationField]:
-    """Ways beyond the static ones, each orthogonal in energy to those before, of unit slope."""
+    """Find fields beyond the static ones, orthogonal in energy, of unit slope."""
     basis: list[Floats] = []
 
     def rest_of(curvature: Floats) -> RotationField | None:
-        """Take what is new in a curvature into the basis, and return it."""
+        """Add the part of a curvature that is new to the basis, and return it."""
         vector = _energy_vector(beam, curvature, shear_ratio)
         whole = float(np.linalg.norm(vector))
         for _ in range(2):
@@ -314,20 +299,20 @@ def _further(
         rest_of(one.curvature)
     found: list[RotationField] = []
     sources: list[RotationField | None] = list(pair)
-    turning: list[RotationField | None] = [None] if len(carried.area) else []
+    turning: list[RotationField | None] = [None] if len(subtrees.area) else []
     for block in range(1, max(n_pairs, n_turns + 1)):
         parts = (sources if block < n_pairs else []), (turning if block <= n_turns else [])
         bent = [
             [rest_of(beam.curvature_in_space(
-                inertial_moment(beam, mass, carried, one)[:, :, None], shear_ratio
+                inertial_moment(beam, mass, subtrees, one)[:, :, None], shear_ratio
             )[:, :, 0]) for one in part]
             for part in parts
         ]  # fmt: skip
         new = [[one for one in part if one is not None] for part in bent]
         found += [*new[0], *new[1]]
         sources, turning = [*new[0]], [*new[1]]
-    if len(carried.area) > 1:
-        apart = np.moveaxis(beam.curvature_in_space(_apart(beam, carried), shear_ratio), 2, 0)
+    if len(subtrees.area) > 1:
+        apart = np.moveaxis(beam.curvature_in_space(_apart(beam, subtrees), shear_ratio), 2, 0)
         left = np.array([_energy_vector(beam, each, shear_ratio) for each in apart])
         whole = float(np.square(left).sum())
         for _ in range(2):
@@ -341,43 +326,43 @@ def _further(
     return found
 
 
-def _apart(beam: BranchBeam, carried: Carried) -> Floats:
+def _apart(beam: BranchBeam, subtrees: SubtreeSums) -> Floats:
     """
-    Return internal moments as what is carried swings apart, in some random cases (p, 5, k, 3).
+    Return internal moments as subtrees swing at random against each other, (p, 5, k, 3).
 
-    Limbs that swing against each other bend and twist a stem between their feet, as no motion of
-    the whole crown does (random vectors find what matters: Halko, Martinsson & Tropp 2011, SIAM
-    Review 53(2), 217-288).
+    Limbs that swing against each other bend and twist a stem between their bases, unlike any
+    motion of the whole crown (random vectors find what matters: Halko, Martinsson & Tropp 2011,
+    SIAM Review 53(2), 217-288).
     """
-    places = beam.child_point[: len(carried.area)]
+    places = beam.child_point[: len(subtrees.area)]
     rng = np.random.default_rng(0)
     moved, turn = rng.choice((-1.0, 1.0), (2, len(places), _APART, 3))
-    hung = carried.mass_moment - carried.mass[:, None] * places
-    trace = np.trace(carried.mass_second, axis1=1, axis2=2)
-    square = trace - (places * (hung + carried.mass_moment)).sum(axis=1)
-    radius = np.sqrt(np.maximum(square, 1e-12) / np.maximum(carried.mass, 1e-300))
+    hung = subtrees.mass_moment - subtrees.mass[:, None] * places
+    trace = np.trace(subtrees.mass_second, axis1=1, axis2=2)
+    square = trace - (places * (hung + subtrees.mass_moment)).sum(axis=1)
+    radius = np.sqrt(np.maximum(square, 1e-12) / np.maximum(subtrees.mass, 1e-300))
     load = np.zeros((*beam.weight.shape, _APART, 3))
     turn = turn / radius[:, None, None]
-    return beam.moment_in_space(load, *_inertial_wrench(places, carried, turn, moved))
+    return beam.moment_in_space(load, *_inertial_wrench(places, subtrees, turn, moved))
 
 
 def _inertial_wrench(
-    places: Floats, carried: Carried, turn: Floats, moved: Floats
+    places: Floats, subtrees: SubtreeSums, turn: Floats, moved: Floats
 ) -> tuple[Floats, Floats]:
     """
-    Force and moment by the inertia of what is carried, about the root of the tree, (c, k, 3).
+    Return force and moment by the inertia of subtrees, about the root of the tree, (c, k, 3).
 
-    Each subtree turns about its place (c, 3) and moves with it, in k cases, both (c, k, 3).
+    Each subtree rotates about its base (c, 3) and moves with it, in k cases, both (c, k, 3).
     """
     at_root = moved - cross(turn, places[:, None])
-    force = carried.mass[:, None, None] * at_root + cross(turn, carried.mass_moment[:, None])
-    trace = np.trace(carried.mass_second, axis1=1, axis2=2)[:, None, None]
-    spin = trace * turn - np.einsum('cij,ckj->cki', carried.mass_second, turn)
-    return force, cross(carried.mass_moment[:, None], at_root) + spin
+    force = subtrees.mass[:, None, None] * at_root + cross(turn, subtrees.mass_moment[:, None])
+    trace = np.trace(subtrees.mass_second, axis1=1, axis2=2)[:, None, None]
+    spin = trace * turn - np.einsum('cij,ckj->cki', subtrees.mass_second, turn)
+    return force, cross(subtrees.mass_moment[:, None], at_root) + spin
 
 
 def _energy_vector(beam: BranchBeam, curvature: Floats, shear_ratio: float) -> Floats:
-    """Curvature (..., p, 5, 3) as vectors whose square is twice its energy, for a modulus of 1."""
+    """Return curvatures (..., p, 5, 3) as vectors, squares twice the energy by modulus."""
     measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
     vector: Floats = measure * _twisted(beam, curvature, math.sqrt(2.0 * shear_ratio))
     return vector.reshape(*curvature.shape[:-3], -1)
@@ -394,37 +379,36 @@ def _twisted(beam: BranchBeam, curvature: Floats, scale: float) -> Floats:
     """Curvature, (..., p, 5, 3), with its twist scaled by a factor."""
     along = beam.tangent[:, None, :]
     about = (curvature * along).sum(axis=-1, keepdims=True) * along
-    out: Floats = curvature + (scale - 1.0) * about
-    return out
+    return np.asarray(curvature + (scale - 1.0) * about)
 
 
 def shaken_energies(
     beam: BranchBeam,
     mass: Floats,
-    carried: Carried,
+    subtrees: SubtreeSums,
     shear_ratio: float,
     fields: Sequence[RotationField],
 ) -> tuple[float, float]:
     """
-    Compute the energy of a branch whose base is shaken, and of what its fields cannot follow.
+    Compute the energy of a branch whose base is shaken, and the part that its fields miss.
 
     Parameters
     ----------
-    beam, mass, carried, shear_ratio
-        As of `shape_fields`.
+    beam, mass, subtrees, shear_ratio
+        Beam, mass, subtrees and shear ratio, as in `shape_fields`.
     fields
-        By which the branch moves.
+        Fields of the branch.
 
     Returns
     -------
     tuple of float
-        Twice the sum of the energies of bending and twist by an acceleration of 1 m/s^2 of all
-        that it carries, along x, y and z, for a modulus of 1 Pa; and the part orthogonal to the
-        fields.
+        Twice the sum of the energies of bending and twist by an acceleration of 1 m/s^2 of the
+        branch and its subtrees along x, y and z, for a modulus of 1 Pa; and the part orthogonal to
+        the fields.
 
     """
-    force = carried.mass[:, None, None] * np.eye(3)
-    moment = cross(carried.mass_moment[:, None], np.eye(3))
+    force = subtrees.mass[:, None, None] * np.eye(3)
+    moment = cross(subtrees.mass_moment[:, None], np.eye(3))
     moments = beam.moment_in_space(mass[..., None, None] * np.eye(3), force, moment)
     curvatures = beam.curvature_in_space(moments, shear_ratio)
     kinds = [*np.moveaxis(curvatures, 2, 0), *(field.curvature for field in fields)]
@@ -435,27 +419,27 @@ def shaken_energies(
 
 
 def inertial_moment(
-    beam: BranchBeam, mass: Floats, carried: Carried, field: RotationField | None
+    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, field: RotationField | None
 ) -> Floats:
     """
-    Return the internal moment by the inertia of a field and of all that it carries, (p, 5, 3).
+    Return the internal moment by the inertia of a field and its subtrees, (p, 5, 3).
 
-    Without a field all that is carried turns about the chord as one.
+    Without a field all subtrees rotate about the chord as one body.
     """
-    places = beam.child_point[: len(carried.area)]
+    places = beam.child_point[: len(subtrees.area)]
     if field is None:
         load = np.zeros((*mass.shape, 3))
         turn, moved = np.broadcast_to(beam.chord, places.shape), np.zeros(places.shape)
     else:
         load = mass[..., None] * field.points
         turn, moved = field.child_slope[: len(places)], field.children[: len(places)]
-    wrench = _inertial_wrench(places, carried, turn[:, None], moved[:, None])
+    wrench = _inertial_wrench(places, subtrees, turn[:, None], moved[:, None])
     return beam.moment_in_space(load[:, :, None], *wrench)[:, :, 0]
 
 
-def _static_shape(beam: BranchBeam, drag_area: Floats, carried: Carried) -> SlopeShape:
-    """Bent by an even wind on the branch and on all it carries."""
-    places = beam.child_point[: len(carried.area)]
-    lever = (carried.area_moment - carried.area[:, None] * places) @ beam.chord
-    bending = beam.bending_moment(drag_area, carried.area, np.maximum(lever, 0.0))
+def _static_shape(beam: BranchBeam, drag_area: Floats, subtrees: SubtreeSums) -> SlopeShape:
+    """Return the shape by a uniform wind on the branch and its subtrees."""
+    places = beam.child_point[: len(subtrees.area)]
+    lever = (subtrees.area_moment - subtrees.area[:, None] * places) @ beam.chord
+    bending = beam.bending_moment(drag_area, subtrees.area, np.maximum(lever, 0.0))
     return beam.slope_shape(bending)

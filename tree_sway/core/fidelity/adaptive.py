@@ -1,21 +1,22 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A tree that takes no more coordinates than its scene needs, and changes their number unseen.
+A tree with the smallest sufficient number of coordinates, changed without a visible jump.
 
 The error and the cost of every number of coordinates, in the wind of the last minute and in the
-wind that blows now, are known beforehand (`estimate`); the cheapest that stays within the
-tolerance in both is taken, or, where none that can be afforded does, the most accurate of those.
+present wind, are estimated (`estimate`). The cheapest number within the tolerance in both is
+chosen, or, where none is within the budget, the most accurate one that is.
 
-All coordinates swing all the time; those that are left out are not shown, and do not turn or damp
-the load of the others. So adding some needs no start: their amounts fade in.
+All coordinates are always stepped; those that are left out are not shown, and do not change the
+load of the others. So added coordinates need no initial state: they fade in.
 
-**Up at once.** A load beyond what the number was chosen for is noticed in the step in which it
-comes; one beyond all of the last minute is met by all coordinates that can be afforded, as nothing
-is known of it yet. They are shown in full within 0.4 s.
+**Up at once.** A load beyond that of the choice is detected in its first step. A load beyond all
+of the last minute is solved with all coordinates within the budget, as it is unknown. They are
+shown in full within 0.4 s.
 
 **Down slowly.** Coordinates that are not needed fade within a second. They are left out only when
-the rest suffices with a third to spare, so that a wind on the border does not flicker.
+the others suffice with a margin of a third, so that a wind at the border does not switch them on
+and off.
 """
 
 from __future__ import annotations
@@ -46,46 +47,49 @@ if TYPE_CHECKING:
     from tree_sway.core.simulator.touch import Spring
 
 LEAVE_IN = 1.0
-"""How long coordinates that are left out take to fade in [s]."""
+"""Time in [s] in which coordinates that are left out fade."""
 
 ADD_IN = 0.4
-"""How long it takes in [s] until added coordinates are shown in full."""
+"""Time in [s] in which added coordinates are shown in full."""
 
 SURPRISE = 1.2
-"""Load over the largest that the number was chosen for, at which it is looked at again."""
+"""Ratio of the load to the largest load of the choice above which the choice is made again."""
 
 LOAD_JUMP = 2.0
-"""Load over the largest of the last minute at which all are taken that are affordable."""
+"""
+Ratio of the load to the largest of the last minute above which all coordinates within the budget
+are used.
+"""
 
 GUST_MEMORY = 5.0
-"""Time in [s] after which a gust counts 1/e."""
+"""Time in [s] after which the weight of a gust is 1/e."""
 
 SWINGS_ON = 20.0
-"""After a push a tree may swing freely for this time [s]."""
+"""Time in [s] that a tree may swing freely after a push."""
 
 REVIEW = 2.0
-"""How often the choice is looked at again in [s]."""
+"""Interval in [s] at which the choice is made again."""
 
 _SPARE = 2.0 / 3.0
 
 
 class AdaptiveSimulator(SwaySimulator):
     """
-    A tree on the fewest coordinates that its scene needs; otherwise as `SwaySimulator`.
+    A tree on the smallest sufficient number of coordinates; otherwise as `SwaySimulator`.
 
     Parameters
     ----------
     tree, species, settings, cache
-        As for `SwaySimulator`; the model of the settings does not matter.
+        Arguments of `SwaySimulator`; the model of the settings does not matter.
     tolerance
         Largest error of the tips in [m], root mean square over time and tips.
     budget
-        Largest cost of a step and a placing in [us]; 0 for none.
+        Largest cost of a step and a placing in [us]; 0 for no limit.
 
     """
 
     choice: Estimate
-    """What is in use, or faded in."""
+    """Number of coordinates in use, or faded in."""
 
     def __init__(
         self,
@@ -97,13 +101,13 @@ class AdaptiveSimulator(SwaySimulator):
         budget: float = 0.0,
         cache: SetUpFiles | None = SET_UPS,
     ) -> None:
-        """Make the tree on all coordinates, and judge how many the expected wind asks for."""
+        """Make the tree on all coordinates, and choose for the expected wind."""
         chosen = replace(settings_with(settings, {}), model=USUAL)
         super().__init__(tree, species, chosen, cache=cache)
         self._estimator = ErrorEstimator(self.tree, self.bank, self.drag_law)
         self.tolerance, self.budget = tolerance, budget
         self.cost_scale = 1.0
-        """Cost here over the cost that is estimated: set it once it is measured."""
+        """Measured cost over estimated cost; set once it is measured."""
         self._touched_for = 0.0
         breeze = simulate_turbulence(
             8.0, rate=20.0, duration=60.0, rng=np.random.default_rng(0), intensity=0.2
@@ -120,26 +124,26 @@ class AdaptiveSimulator(SwaySimulator):
 
     @property
     def frame_cost(self) -> float:
-        """Return what a step and a placing of the chosen number take on this machine in [us]."""
+        """Return the cost of a step and a placing of the chosen number on this machine in [us]."""
         return self.cost_scale * self.choice.cost
 
     def estimates(self, climate: WindClimate) -> list[Estimate]:
-        """Judge every number of coordinates in a wind, of the tree as it is tuned."""
+        """Estimate every number of coordinates of the tuned tree in a wind."""
         return self._estimator.estimates(climate)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Return views of what is carried between steps, and what is shown of each coordinate."""
+        """Return views of the state, and of the shown share of each coordinate."""
         return *super().memory(), self._shares, self._wanted
 
     def set_state(self, state: TreeState) -> None:
-        """Go on from a state, and from what it shows; see `SwaySimulator.set_state`."""
+        """Continue from a state and its shown shares; see `SwaySimulator.set_state`."""
         super().set_state(state)
         estimates = self.estimates(self._tracker.climate)
         self.choice = next(e for e in estimates if e.n_coordinates >= self._wanted[0])
         self._show()
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
-        """Advance one step, as `SwaySimulator.step`; look at the choice again when it is time."""
+        """Advance one step, as `SwaySimulator.step`; choose again when it is time."""
         self._check_load(wind_mean, dt)
         is_tuned = self._tuning is not None and self._tuning.is_moving
         status = super().step(wind_mean, dt)
@@ -156,7 +160,7 @@ class AdaptiveSimulator(SwaySimulator):
     def push(
         self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
     ) -> None:
-        """Push as `SwaySimulator.push`, on most coordinates until the tree has swung freely."""
+        """Push as `SwaySimulator.push`, on most coordinates until the free swing is over."""
         super().push(segment, force, seconds, along=along)
         was_free, self._touched_for = self._touched_for <= 0.0, seconds + SWINGS_ON
         if was_free:
@@ -168,19 +172,19 @@ class AdaptiveSimulator(SwaySimulator):
         climate = self._tracker.climate
         both = self.estimates(climate), self.estimates(self._in_gust(climate))
         estimates = [max(each, key=lambda e: e.error) for each in zip(*both, strict=True)]
-        if self._touched_for > 0.0:  # what a push does is not known beforehand
+        if self._touched_for > 0.0:  # the effect of a push is not estimated
             self.choice = max(self._affordable(estimates), key=lambda e: e.n_coordinates)
         else:
             self.choice = self._choose(estimates, self.choice, at_best=at_best)
         return self.choice
 
     def reset(self) -> None:
-        """Go back to rest and to the expected wind, at once on the number that it asks for."""
+        """Return to rest, with the number of coordinates for the expected wind."""
         super().reset()
         self._expect()
 
     def _expect(self) -> None:
-        """Choose for the wind that is expected."""
+        """Choose for the expected wind."""
         self._tracker = ClimateTracker()
         self._gust, self._bearing, self._since_review = 0.0, np.array([1.0, 0.0, 0.0]), 0.0
         self._judged = float(np.linalg.norm(self._expected_wind.mean))
@@ -188,7 +192,7 @@ class AdaptiveSimulator(SwaySimulator):
         self._fade(math.inf)
 
     def _fade(self, dt: float) -> None:
-        """Bring what is shown nearer to the choice."""
+        """Fade the shown shares towards the choice."""
         shares, count = self._shares, self.choice.n_coordinates
         self._wanted[0] = count
         if not (shares[:count].min(initial=1.0) < 1.0 or shares[count:].max(initial=0.0) > 0.0):
@@ -203,7 +207,7 @@ class AdaptiveSimulator(SwaySimulator):
         dialled(self.bank).show(smooth, int((shares > 0.0).sum()))
 
     def _check_load(self, wind_mean: ArrayLike, dt: float) -> None:
-        """Notice, before its step, a load beyond what the number was chosen for."""
+        """Detect a load beyond that of the choice before its step."""
         x, y, z = three_numbers('wind', wind_mean)
         load = x * x + y * y + z * z
         self._gust *= math.exp(-max(dt, 0.0) / GUST_MEMORY)
@@ -213,12 +217,12 @@ class AdaptiveSimulator(SwaySimulator):
                 self.review(at_best=load > LOAD_JUMP * self._tracker.largest_load)
 
     def _in_gust(self, climate: WindClimate) -> WindClimate:
-        """Forecast until the next look: the last gust lasts, as unsteady as the last minute."""
+        """Forecast the wind from the last gust and the last minute's turbulence."""
         mean = self._bearing * (self._gust / max(float(np.linalg.norm(self._bearing)), 1e-9))
         return replace(climate, mean=mean, speed=math.sqrt(self._gust))
 
     def _affordable(self, estimates: list[Estimate]) -> list[Estimate]:
-        """Find the numbers within the budget; the cheapest where none is."""
+        """Find the numbers within the budget, or the cheapest one."""
         within = [e for e in estimates if self.cost_scale * e.cost <= self.budget]
         return (within or estimates[:1]) if self.budget > 0.0 else estimates
 
@@ -238,5 +242,5 @@ class AdaptiveSimulator(SwaySimulator):
 
 
 def _least(estimates: Sequence[Estimate], tolerance: float) -> Estimate | None:
-    """Find the cheapest within a tolerance, if there is one."""
+    """Find the cheapest number within a tolerance, if there is one."""
     return min((e for e in estimates if e.error <= tolerance), key=lambda e: e.cost, default=None)

@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How much model a scene needs: error and cost of every number of coordinates, known before a step.
+Estimates of error and cost of every number of coordinates, made before a step.
 
-The tree is linear to first order, so what fewer coordinates miss need not be tried: it is the
-response of those left out, summed over the frequencies of the wind's load and joined from the root
-to the tips of all branches. To it comes what no linear model knows: it grows with the largest turn
-that any chain of branches makes in that wind, from whatever side it blows, up and down included.
+The tree is linear to first order, so the error of fewer coordinates follows without a trial: it is
+the response of the coordinates left out, summed over the frequencies of the wind's load and joined
+from the root to the tips of all branches. The nonlinear error is added: it grows with the largest
+rotation of any chain of branches in that wind, for winds from all sides, up and down included.
 
 Symbols: H response of a coordinate, q its load, T the motion of tips by it, S the load's spectrum.
 """
@@ -22,47 +22,47 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.motion.drag import DragLaw, pressure
-from tree_sway.core.motion.response import tip_motion, turn_of_branches
-from tree_sway.core.motion.static_answers import WindMoments
+from tree_sway.core.motion.response import branch_rotations, tip_motion
+from tree_sway.core.motion.static_responses import WindMoments
 from tree_sway.core.simulator.bank import Bank, Oscillators
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import WindClimate
 
 DIAL = (0, 3, 6, 12, 20, 40, 60)
-"""Numbers of coordinates among which is chosen, and all that there are."""
+"""Numbers of coordinates to choose from, beside the number of all."""
 
 MARGIN = 1.4
-"""Estimated over computed error: the wind is not quite linear in its effect."""
+"""Factor of estimated over computed error: the effect of the wind is not quite linear."""
 
 FLOOR = 0.06
-"""Share of the motion by which even all coordinates may err against every segment solved."""
+"""Error of all coordinates against every segment solved, as a share of the motion."""
 
 TURN, MOST_TURN = 0.4, 1.4
 """
-Share of the motion on top of that, per square of the largest turn of a chain in [rad], and how
-that share levels off, per square of it.
+Further share per squared largest rotation of a chain in [rad], and its saturation, per squared
+rotation.
 
 """
 
 LIFT, LIFT_FLOOR = 3.5, 0.05
 """
-Share on top per radian of that turn, and at any turn, in wind straight up or down: it runs along
-what hangs in it, and pushes it over, which no linear model knows.
+Further share per radian of that rotation, and at any rotation, in vertical wind: it blows along
+hanging branches and buckles them, which no linear model has.
 
 """
 
 SOFT = 2.0
 """
-Share on top per radian of turn that weight makes: what nearly buckles leans by more than the
-linear answer.
+Further share per radian of rotation by weight: a tree that nearly buckles leans by more than the
+linear response.
 
 """
 
 _MOST = 2.0
-"""Most that all of these shares come to."""
+"""Largest sum of these shares."""
 
 _FREQUENCIES = np.concatenate([[0.0], np.geomspace(0.01, 30.0, 80)])
-"""In [Hz], beside those around which coordinates swing."""
+"""Frequencies in [Hz], beside those near the coordinates."""
 
 _APART = np.pi / 8.0
 _AXES = [
@@ -70,21 +70,22 @@ _AXES = [
     for b in _APART * np.arange(4)
 ]
 """
-Sides that winds come from: an oblique wind on a branch is no sum of winds along and across it, so
-that the load is linear about the side that is nearest to that of the wind.
+Directions of winds: the load of an oblique wind is not the sum of loads along and across a branch,
+so it is linearised about the nearest of these directions.
 """
 
 _BESIDE = np.array([0.96, 1.0, 1.04])
-"""Shares of the frequency of a coordinate at which its answer is found."""
+"""Multiples of the frequency of a coordinate at which its response is computed."""
 
 
 @dataclass(frozen=True)
 class Estimate:
     """
-    What a number of coordinates is worth in a wind, and costs per step and placing [us].
+    Error of a number of coordinates in a wind, and its cost per step and placing [us].
 
     ``error`` bounds the root mean square over time and tips of the error, ``motion`` is that of
-    the motion of the tips about its mean, both in [m]; ``turn`` is the largest of a chain, [rad].
+    the motion of the tips about its mean, both in [m]; ``turn`` is the largest rotation of a
+    chain, [rad].
     """
 
     n_coordinates: int
@@ -95,12 +96,12 @@ class Estimate:
 
     @property
     def name(self) -> str:
-        """Return what the parameter ``model`` would be for it."""
+        """Return the value of the parameter ``model``."""
         return str(self.n_coordinates)
 
 
 class Dialled(Oscillators, Protocol):
-    """Oscillators of which some can be left out, those that matter most first."""
+    """Oscillators of which the last ones, the least important, can be left out."""
 
     @property
     def air_damping(self) -> Floats:
@@ -112,29 +113,29 @@ class Dialled(Oscillators, Protocol):
 
 class ErrorEstimator:
     """
-    The error of every number of coordinates of one tree, in any wind.
+    Errors of every number of coordinates of one tree, in any wind.
 
     Parameters
     ----------
     tree, bank
-        The tree, and the same on as many coordinates as it ever takes, the important ones first.
+        Tree, and its bank with the largest number of coordinates, the important ones first.
     drag_law
-        Its law of drag.
+        Drag law of the tree.
 
     """
 
     def __init__(self, tree: Tree, bank: Bank, drag_law: DragLaw) -> None:
-        """Find what each coordinate does to the tips."""
+        """Find the motion of the tips by each coordinate."""
         self._bank, self._law = bank, drag_law
         branches, shapes = bank.branches, bank.oscillators.shapes
         m = shapes.shape[1]
         self.dial = tuple(sorted({k for k in DIAL if k < m} | {m}))
-        """Numbers of coordinates that are judged."""
+        """Numbers of coordinates that are estimated."""
         # A branch may be cut: its tip is that of its last piece.
         ends = np.isin(branches['end'], tree.branch_first[1:])
         tips = tip_motion(branches, shapes)[ends].reshape(-1, m)
         self._inner = tips.T @ tips / ends.sum()
-        self._turns = turn_of_branches(branches, shapes)
+        self._turns = branch_rotations(branches, shapes)
         loads = WindMoments(branches).at_rest(np.concatenate(_AXES), shapes)
         self._loads = np.hsplit(loads.T, len(_AXES))
         self._air_damping = dialled(bank).air_damping
@@ -142,7 +143,7 @@ class ErrorEstimator:
         self.refresh()
 
     def refresh(self) -> None:
-        """Take the tree as it is tuned now."""
+        """Take over the present tuning of the tree."""
         tunable = self._bank.oscillators.tunable
         self._stiffness, self._own_damping = tunable.stiffness.copy(), tunable.damping.copy()
         natural = np.sqrt(self._stiffness) / (2.0 * np.pi)
@@ -150,10 +151,10 @@ class ErrorEstimator:
         self._grams = lru_cache(maxsize=8)(self._find_grams)
 
     def estimates(self, climate: WindClimate) -> list[Estimate]:
-        """Judge every number of coordinates in a wind, the fewest first."""
+        """Estimate every number of coordinates in a wind, the fewest first."""
         per_square = pressure(climate.speed, *self._law)
         mean = climate.mean
-        # A wind that turns back has no mean: what it mostly does counts.
+        # A wind that reverses has no mean direction: the root mean square counts.
         squares, ways = np.linalg.eigh(np.outer(mean, mean) + climate.covariance)
         steady = math.sqrt(max(squares[-1], 0.0)) * ways[:, -1]
         bearing = int(np.rint(np.arctan2(steady[1], steady[0]) / _APART)) % len(_AXES)
@@ -172,7 +173,7 @@ class ErrorEstimator:
         upward = abs(ways[2, -1])
         share = FLOOR + TURN * turn**2 / (1.0 + MOST_TURN * turn**2) + SOFT * soft
         share += (LIFT_FLOOR + LIFT * turn) * upward
-        # What turns far gives way to the wind, and goes no farther than its length.
+        # A branch that rotates far yields to the wind, and moves no farther than its length.
         per_square /= math.sqrt(1.0 + turn**2 / 9.0)
         swing, offset = per_square * np.sqrt([swings[0], squares[0]])
         beyond = min(share, _MOST) * offset
@@ -191,14 +192,14 @@ class ErrorEstimator:
         return turn, soft
 
     def _find_grams(self, speed: float, bearing: int) -> Floats:
-        """Inner products of what the last coordinates do to tips, by their number, (k, 9 f)."""
+        """Return inner products of tip motions of the last coordinates, by number, (k, 9 f)."""
         damping = self._own_damping + pressure(speed, *self._law) * speed * self._air_damping
         circular = 2.0 * np.pi * self._frequencies[:, None]
         impedance = self._stiffness - circular**2 + 1j * damping * circular
-        answers = self._loads[bearing] / impedance[:, :, None]
+        responses = self._loads[bearing] / impedance[:, :, None]
         found = []
         for k in self.dial:
-            left = answers[:, k:] if k < self.dial[-1] else answers[:, :0]
+            left = responses[:, k:] if k < self.dial[-1] else responses[:, :0]
             moved = self._inner[k:, k:] @ left if left.size else left
             found.append(np.einsum('fmi,fmj->fij', left.conj(), moved).real.ravel())
         return np.stack(found)
@@ -210,21 +211,21 @@ def dialled(bank: Bank) -> Dialled:
 
 
 _CALL = 4.0
-"""Of a step, and of placing, however small the tree in [us]."""
+"""Fixed cost of a step, and of placing, in [us]."""
 
 _PLACE_BRANCH, _PLACE_ENRICHED, _PLACE_SEGMENT = 0.03, 0.12, 0.013
-"""Of placing: a branch, what further shapes add, a segment."""
+"""Cost of placing a branch, a further shape and a segment in [us]."""
 
 _STEP_SQUARE, _PLACE_SHAPE = 1.0e-3, 1.0e-4
-"""Of stepping: a coordinate on a coordinate; of placing: a shape on a key rotation."""
+"""Cost of stepping a pair of coordinates, and of placing a shape on a key rotation, in [us]."""
 
 _STEP_BRANCH = 0.15
-"""Of stepping a branch by its own load, where there is no table."""
+"""Cost of stepping a branch by its own load, without a table, in [us]."""
 
 
 def frame_cost(bank: Bank, n_coordinates: int | None = None) -> float:
     """
-    Cost in [us] of one step and one placing of a tree, of a number of its coordinates.
+    Return the cost in [us] of one step and one placing of a tree on a number of coordinates.
 
     Prices are fits to trees of 31 to 1,001 branches, timed on one core of a server of 2020.
     """

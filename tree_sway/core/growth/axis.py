@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The line a growing shoot draws in space, given by its heading.
+The line of a growing shoot in space, given by its heading.
 
 A heading is an azimuth (from x towards y) and an elevation above the horizon, both in [rad].
 Habits of growth are plain in these terms: a weeping shoot starts above the horizon and ends below
@@ -67,11 +67,11 @@ def grow_axis(
     Parameters
     ----------
     origin, length, n_segments
-        First node, (3,), and length along the nodes, both in [m], and how many segments.
+        First node, (3,), and length along the nodes, both in [m], and number of segments.
     azimuth, elevation
         Heading of the first segment, and elevation of the first and the last one, in [rad].
     rng
-        Source of what is drawn.
+        Source of randomness.
     wander
         Standard deviation of the change of heading per segment in [rad].
     unevenness
@@ -84,7 +84,7 @@ def grow_axis(
     steps *= length / steps.sum()
     drift = np.cumsum(wander * rng.standard_normal((n_segments, 2)), axis=0)
     elevations = np.linspace(elevation[0], elevation[1], n_segments) + drift[:, 0]
-    # A given turn of azimuth bends a steep shoot less; undo that, but bounded towards the
+    # A given change of azimuth bends a steep shoot less; undo that, but bounded towards the
     # vertical.
     azimuths = azimuth + drift[:, 1] / np.maximum(np.cos(elevations), 0.3)
     path = np.cumsum(steps[:, None] * direction_of(azimuths, elevations), axis=0)

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A broadleaf in the open: a trunk lost in its limbs, and a crown of its species' form.
+A broadleaf in the open: a trunk that divides into limbs, and a crown of its species' form.
 
-Limbs and their branches grow towards the outline of the crown and stop short of it; that alone
-shapes it.
+Limbs and their branches grow towards the outline of the crown and end inside it, which shapes the
+crown.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def grow_broadleaf(
     species: str = 'broadleaf',
 ) -> Tree:
     """
-    Grow a tree with a trunk, limbs, branches and twigs, as of `finished_tree`.
+    Grow a tree with a trunk, limbs, branches and twigs, as in `finished_tree`.
 
     The same state of the source of randomness gives the same tree.
     """

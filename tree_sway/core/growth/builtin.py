@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The trees that come with the package: the paper's two pot plants and a small broadleaf."""
+"""The built-in trees: the paper's two pot plants and a small broadleaf."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def builtin_tree(name: str, seed: int = 0) -> Tree:
     """
     Grow a tree of `BUILTIN_TREES`; the same seed, not negative, gives the same tree.
 
-    Raises a `ParameterError` for a name that no tree has, or a negative seed.
+    Raises a `ParameterError` for an unknown name, or a negative seed.
     """
     one_of('built-in tree', name, BUILTIN_TREES)
     within('seed', seed, 0, 2**63)

@@ -4,9 +4,9 @@
 A conifer in the open: one straight stem, branches in whorls, a crown of its species' form.
 
 Branches near the ground are the oldest and longest; those near the top are short and point
-upwards. Twigs are left and right of each branch. The stem tapers as ``(1 - z / H)^0.7``, between
-a cone and a paraboloid, whatever its branches: its volume is 0.44 to 0.50 of the cylinder of its
-height and diameter at breast height, as yield tables have it.
+upwards. Twigs are left and right of each branch. The stem tapers as ``(1 - z / H)^0.7``, between a
+cone and a paraboloid, whatever its branches. Its volume is 0.44 to 0.50 of the cylinder of its
+height and diameter at breast height, as in yield tables.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from tree_sway.core.tree.tree import Tree
 
 _UPRIGHT = (np.pi / 2.0, np.pi / 2.0)
 STEM_TAPER = 0.7
-"""Power of the distance from the top in the diameter of a conifer's stem."""
+"""Exponent of the distance from the top in the diameter of a conifer's stem."""
 
 
 def grow_conifer(
     rng: np.random.Generator, height: float = 12.0, diameter: float = 0.2, species: str = 'spruce'
 ) -> Tree:
-    """Grow whorls on a straight stem; arguments as of `grow_broadleaf`."""
+    """Grow whorls on a straight stem; arguments are those of `grow_broadleaf`."""
     form, skeleton = conifer_form(species), Skeleton()
 
     def add_branch(at: int, azimuth: float, here: float) -> None:
@@ -47,7 +47,7 @@ def grow_conifer(
             add_twigs(skeleton, branch, twig, 0.85, (0.0, np.pi), first_node=2, **more)
 
     bole = form.outline.base
-    # As many segments below the crown as go with the whorls above it.
+    # Segments below the crown are as long as those of the whorls above it.
     below = max(1, round(form.n_whorls * bole / (1.0 - bole)))
     n_nodes, straight = below + form.n_whorls, {'wander': 0.006, 'unevenness': 0.1}
     stem = skeleton.add(grow_axis(np.zeros(3), 0.0, _UPRIGHT, 1.0, n_nodes, rng, **straight))

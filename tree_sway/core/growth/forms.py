@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What distinguishes a tree of one species from another at a distance: bole, limbs, twigs, outline.
+Habit of each species: bole, limbs, twigs, outline.
 
 Forms are those of trees in the open, drawn from descriptions in field guides (Mitchell
 1974; Roloff 2001); lengths are over the height of the tree, angles in [rad] above the horizon.
@@ -29,11 +29,11 @@ class Outline:
     base
         Height of the lowest leaves.
     half_width
-        Radius where it is widest.
+        Largest radius.
     widest
-        Where it is widest, from 0 at the base to 1 at the top.
+        Relative height of the largest radius, from 0 at the base to 1 at the top.
     below, above
-        Exponents of the outline under and over that: 1 is a cone, 2 an ellipsoid, more a box.
+        Exponents of the outline below and above it: 1 is a cone, 2 an ellipsoid, more a box.
 
     """
 
@@ -52,7 +52,7 @@ class Outline:
         return np.asarray(self.half_width * (1.0 - away**power) ** (1.0 / power))
 
     def reach(self, origin: Floats, way: Floats) -> float:
-        """Distance from a point to where a unit vector leaves the crown; 0 from the outside."""
+        """Distance from a point along a unit vector to the crown's surface; 0 from the outside."""
         steps = np.linspace(0.0, 1.0, 101)
         x, y, z = (origin + steps[:, None] * way).T
         is_out = np.hypot(x, y) > self.radius(z)
@@ -71,7 +71,7 @@ class BroadleafForm:
     bole
         Height of the lowest limb.
     trunk
-        Length of the trunk, which loses itself in the crown.
+        Length of the trunk, which ends in the crown.
     n_limbs
         Limbs on the trunk.
     rise
@@ -81,7 +81,7 @@ class BroadleafForm:
     wander
         Standard deviation of a limb's heading from segment to segment.
     is_opposite
-        Whether limbs and branches come in pairs, or one by one in a spiral.
+        True for limbs and branches in pairs, False for a spiral.
     n_branches
         Branches of a limb.
     spread
@@ -89,15 +89,15 @@ class BroadleafForm:
     branch_turn
         Change of the elevation of a branch to its tip.
     lift
-        How much twigs turn up (positive) or hang (negative); 1 is half-way.
+        Bend of twigs upwards (positive) or downwards (negative); 1 is half-way.
     twig
         Length of the twigs.
     exponent
         Exponent of the pipe model; less makes branches thinner beside their stem. Trees have 1.8
         to 2.3 (Eloy 2011, Physical Review Letters 107, 258101).
     taper
-        Power of the distance from the top that the trunk tapers with on top of that; as a
-        conifer's stem, and hardly where the trunk goes to the very top.
+        Exponent of the distance from the top in a further taper of the trunk, as of a conifer's
+        stem; small where the trunk reaches the top.
     slenderness
         Height over diameter.
 
@@ -139,7 +139,7 @@ class ConiferForm:
     wander
         Standard deviation of a branch's heading from segment to segment.
     lift
-        How much twigs turn up (positive) or hang (negative); 1 is half-way.
+        Bend of twigs upwards (positive) or downwards (negative); 1 is half-way.
     twig
         Length of the twigs over that of their branch.
     exponent
@@ -175,10 +175,10 @@ _CONIFERS = _forms('conifer_forms.csv', ConiferForm)
 
 
 def broadleaf_form(species: str) -> BroadleafForm:
-    """Habit of a species grown as a broadleaf; that of an average one if it has none."""
+    """Habit of a species grown as a broadleaf; that of an average one if it is unknown."""
     return _BROADLEAVES.get(species, _BROADLEAVES['any'])
 
 
 def conifer_form(species: str) -> ConiferForm:
-    """Habit of a species grown as a conifer; that of an average one if it has none."""
+    """Habit of a species grown as a conifer; that of an average one if it is unknown."""
     return _CONIFERS.get(species, _CONIFERS['any'])

@@ -33,7 +33,7 @@ def grow_goldcrest(
     def add_branch(at: int, azimuth: float, here: float) -> None:
         """Add a branch at a relative height of the stem, reaching for the surface of the cone."""
         length = (0.26 * (1.0 - here) + 0.03) * rng.uniform(0.88, 1.08)
-        # The lowest reach out to be under the others; all turn up at the end.
+        # The lowest are the longest, below the others; all turn up at the end.
         spread = rng.uniform(0.55, 0.75) + 0.3 * max(0.0, 1.0 - 4.0 * here)
         ends = (_UPRIGHT - spread, _UPRIGHT - 0.3 * spread)
         segments = 6 if here < 0.6 else 4 if here < 0.85 else 3

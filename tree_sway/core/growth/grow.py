@@ -1,13 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A plausible tree of any size for a user who has no scan of one.
+Grow a plausible tree of any size, for users without a scan.
 
 Without a measured diameter a broadleaf is 45 of its diameters high, as first-order axes of scanned
-trees (allometry of 4,824 branches). The diameter of a conifer goes with the height to the power
-1.5, so that trees of all sizes keep the same reserve against bending over (elastic similarity:
-McMahon 1973); at 20 m it is 60 diameters high, below the 70 that foresters hold for a stable stem
-(Wang, Titus & LeMay 1998), and never more than 90.
+trees (allometry of 4,824 branches). The diameter of a conifer is proportional to the height to the
+power 1.5, so that trees of all sizes keep the same reserve against bending over (elastic
+similarity: McMahon 1973); at 20 m it is 60 diameters high, below the 70 that foresters consider
+stable (Wang, Titus & LeMay 1998), and never more than 90.
 """
 
 from __future__ import annotations
@@ -55,19 +55,19 @@ def grow(
     rng
         Source of randomness; the same state gives the same tree.
     name
-        What the tree is called; the species' key if None.
+        Name of the tree; the key of the species if None.
 
     Returns
     -------
     Tree
-        Of exactly that height and diameter.
+        Tree of exactly that height and diameter.
 
     Raises
     ------
     SpeciesError
-        If no table knows the species.
+        If the species is unknown.
     ParameterError
-        If height or diameter is out of range, or the stem would not stand.
+        If height or diameter is out of range, or the stem would buckle.
 
     """
     wood = species_named(species)
@@ -99,7 +99,7 @@ def _slenderness(kind: str, species: str, height: float) -> float:
 
 
 def height_of_stem(species: str, diameter: float) -> float:
-    """Height [m] at which `grow` gives a species a diameter [m], within what the habit has."""
+    """Height [m] at which `grow` gives a species a diameter [m], within the range of its habit."""
     wood = species_named(species)
     heights = np.linspace(*_HEIGHTS[wood.habit], 200)
     stems = [height / _slenderness(wood.habit, wood.key, height) for height in heights]
@@ -108,11 +108,12 @@ def height_of_stem(species: str, diameter: float) -> float:
 
 def stem_range(wood: Species, height: float) -> tuple[float, float]:
     """
-    Least and largest diameter [m] that `grow` takes for a height [m].
+    Smallest and largest diameter [m] that `grow` accepts for a height [m].
 
-    With the least a bare stem has 0.8 of Greenhill's length: the reserve for a crown.
+    With the smallest a bare stem has 0.8 of Greenhill's length, a reserve for the crown.
     """
-    # EI and the weight per length of a rod of 1 m; the length goes with the diameter to 2/3.
+    # EI and the weight per length of a rod of 1 m; the length is proportional to the diameter to
+    # the power 2/3.
     area = math.pi / 4.0
     of_one = greenhill_length(wood.modulus * area / 16.0, wood.density * _GRAVITY * area)
     return float((height / 0.8 / of_one) ** 1.5), height / 5.0

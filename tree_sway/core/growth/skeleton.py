@@ -3,8 +3,8 @@
 """
 A tree while it grows: shoots as lines of nodes, each on a node of an older one.
 
-Shoots are added parents first, so that a backward pass over them sums from the tips to the root
-and a forward pass goes the other way.
+Shoots are added parents first, so that a backward pass sums from the tips to the root, and a
+forward pass the other way.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tree_sway.core.tree.tree import Tree
 @dataclass
 class Shoot:
     """
-    One branch to be: nodes from base to tip in [m], (k + 1, 3), and the parent's node it sits on.
+    One future branch: nodes from base to tip in [m], (k + 1, 3), and its node on the parent.
 
     The parent is -1 for the stem; ``at`` is 1 .. k of the parent.
     """
@@ -50,7 +50,7 @@ class Skeleton:
     shoots: list[Shoot] = field(default_factory=list)
 
     def add(self, nodes: Floats, parent: int = -1, at: int = 0) -> int:
-        """Add a shoot on a node of another one and return its number."""
+        """Add a shoot on a node of an older one and return its number."""
         self.shoots.append(Shoot(nodes, parent, at))
         return len(self.shoots) - 1
 
@@ -60,7 +60,7 @@ class Skeleton:
         return sum(shoot.n_segments for shoot in self.shoots)
 
     def scale_to_height(self, height: float) -> None:
-        """Scale it about its root, so that its highest node is that far above the root in [m]."""
+        """Scale it about its root to a height of its highest node above the root in [m]."""
         root = self.shoots[0].nodes[0].copy()
         top = max(float(shoot.nodes[:, 2].max()) for shoot in self.shoots)
         factor = height / (top - root[2])
@@ -68,7 +68,7 @@ class Skeleton:
             shoot.nodes = (shoot.nodes - root) * factor
 
     def to_tree(self, diameters: Sequence[Floats], name: str, species: str) -> Tree:
-        """Turn it into a `Tree`, with diameters at the nodes of each shoot in [m], (k + 1,)."""
+        """Make the `Tree`, from diameters at the nodes of each shoot in [m], (k + 1,)."""
         first = np.cumsum([0] + [shoot.n_segments for shoot in self.shoots])
         parents: list[int] = []
         for shoot, begin in zip(self.shoots, first, strict=False):

@@ -1,13 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How thick each branch is: the pipe model, anchored at one measured diameter.
+Diameters of branches: the pipe model, scaled to one measured diameter.
 
 A cross-section carries the conduits of all wood beyond it (Shinozaki et al. 1964). With W the
 length of all shoots beyond a node, its diameter is ``d = d_tip (1 + W / w)^(1/p)``. Exponent p is
-2 where areas add up (da Vinci) and 3 for Murray's law; trees that lack their finest twigs, as
-ours, lie between. The length w follows from the one diameter that is given, at the base or at
-breast height.
+2 where areas add up (da Vinci) and 3 for Murray's law; trees without their finest twigs, as here,
+are between. The length w follows from the given diameter, at the base or at breast height.
 """
 
 from __future__ import annotations
@@ -22,10 +21,10 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
 BREAST_HEIGHT = 1.3
-"""Where foresters measure a stem in [m]."""
+"""Breast height, where foresters measure a stem, in [m]."""
 
 INSERTION_RATIO = 0.76
-"""Largest ratio of a branch's diameter to its parent's where it sits, in [-]."""
+"""Largest ratio of a branch's diameter to its parent's at its base, in [-]."""
 
 
 def carried_length(skeleton: Skeleton) -> list[Floats]:
@@ -66,12 +65,12 @@ def node_diameters(
     exponent
         p above in [-].
     stem_taper
-        Power of the distance from the top that the stem's diameter goes with, if it does not
-        follow the pipe model.
+        Exponent of the distance from the top in the diameter of the stem, if it does not follow
+        the pipe model.
     bole_taper
-        Power of the distance from the top of the tree that the stem's diameter goes with on top of
-        the pipe model, above the height where it is given: pipes of branches that are gone stay in
-        the wood below (Shinozaki et al. 1964).
+        Exponent of the distance from the top of the tree in a further taper of the stem, above the
+        height of the given diameter: pipes of lost branches stay in the wood below (Shinozaki et
+        al. 1964).
 
     Raises
     ------
@@ -99,7 +98,7 @@ def node_diameters(
     own = diameters[0] * np.clip(below_top, 0.0, 1.0) ** bole_taper
     diameters[0] = np.maximum(own, tip_diameter)
     _support(skeleton, diameters)
-    # Between two nodes a segment is a straight cone, not the law's curve: take up that difference.
+    # Between two nodes a segment is a straight cone, not the law's curve: correct that difference.
     diameters[0] *= diameter / _at_height(stem, diameters[0], at_height)
     for shoot, own in zip(skeleton.shoots[1:], diameters[1:], strict=True):
         limit = INSERTION_RATIO * diameters[shoot.parent][shoot.at]
@@ -134,7 +133,7 @@ def finished_tree(
 
 
 def _support(skeleton: Skeleton, diameters: list[Floats]) -> None:
-    """Thicken every shoot where it would be too thin for what sits on it, and below."""
+    """Thicken every shoot that is too thin for its children, and below."""
     for shoot, own in zip(reversed(skeleton.shoots), reversed(diameters), strict=True):
         own[:] = np.maximum.accumulate(own[::-1])[::-1]
         if shoot.parent >= 0:

@@ -3,8 +3,8 @@
 """
 Twigs: shoots of a single segment, in groups that are alike.
 
-Neighbours on the same side of a branch grow the same way and to the same length, so that a solver
-that computes one of them may reuse its motion for the others (Kanda & Ohya, 3.3). Each half of the
+Neighbours on the same side of a branch have the same direction and length, so that a solver that
+computes one of them may reuse its motion for the others (Kanda & Ohya, 3.3). Each half of the
 parent has its own length and direction, as the parent bends.
 """
 
@@ -30,20 +30,20 @@ def add_twigs(
     outer_ratio: float = 0.75,
 ) -> None:
     """
-    Put twigs on the nodes of a shoot, from a first one on.
+    Add twigs on the nodes of a shoot, from a first node on.
 
     Parameters
     ----------
     skeleton, shoot, first_node
-        The shoots, the number of this one, and the first of its nodes to bear twigs.
+        Shoots, number of this shoot, and its first node with twigs.
     length, outer_ratio
-        Length of those on the inner half in [m]; times the ratio [-] on the outer half.
+        Length of the twigs on the inner half in [m], and its ratio on the outer half [-].
     polar
         Angle from the shoot in [rad].
     sides
-        Angles about the shoot in [rad], as `aim` takes them: two for a flat spray.
+        Angles about the shoot in [rad], as in `aim`: two for a flat spray.
     lift
-        How much they turn up (positive) or hang (negative), in [-]; 1 is half-way.
+        Bend of the twigs upwards (positive) or downwards (negative), in [-]; 1 is half-way.
 
     """
     parent = skeleton.shoots[shoot]

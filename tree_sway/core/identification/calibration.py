@@ -3,11 +3,11 @@
 """
 The modulus that gives a tree its measured frequency.
 
-With its weight a tree's square frequency is not proportional to the modulus, but its elastic
-stiffness is: of ``(s K1 + Kg) phi = w^2 M phi`` only the scale s is unknown, so the tree is
-reduced once. The lowest w^2 rises with s and bends down, being the least of functions linear in s,
-with the slope ``phi . K1 phi`` (phi of unit modal mass). So Newton's method comes from below; a
-bracket keeps it off the buckling load, where w is 0.
+The squared frequency of a tree with weight is not proportional to the modulus, but its elastic
+stiffness is: in ``(s K1 + Kg) phi = w^2 M phi`` only the scale s is unknown, so the tree is
+reduced once. The lowest w^2 is an increasing, concave function of s, with the slope ``phi . K1
+phi`` (phi of unit modal mass). So Newton's method converges from below; a bracket keeps it above
+the buckling load, where w is 0.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from tree_sway.errors import nearest, ParameterError, TreeError
 _MODELLINGS = 4
 _TOLERANCE = 1e-9
 _MODES = 24
-"""Slowest modes among which that of a branch is looked for."""
+"""Number of slowest modes among which the mode of a branch is searched."""
 _STANDS = 1.001
-"""A tree is taken to stand up to this share of the weight that buckles it."""
+"""Largest share of the buckling weight at which a tree counts as standing."""
 
 
 @dataclass(frozen=True)
@@ -43,15 +43,15 @@ class Calibration:
     Parameters
     ----------
     species
-        With the modulus, and the damping ratio if one was measured, of the tree.
+        Species with the modulus of the tree, and its damping ratio if measured.
     frequency
-        Slowest sway of the tree with it in [Hz].
+        Frequency of the slowest sway with it in [Hz].
     frequency_before
-        The same before; None if the tree could not stand.
+        Frequency of the slowest sway before; None if the tree buckled.
     modulus_ratio
-        Modulus over the one before in [-].
+        Ratio of the modulus to the modulus before in [-].
     branch
-        Name of the branch that bends most in that sway: the stem's, in most trees.
+        Name of the branch that bends most in that sway; in most trees the stem.
     sensitivity
         Relative change of the modulus over that of the frequency in [-]: 2 without weight, less
         with it.
@@ -95,14 +95,14 @@ def calibrate(
     Returns
     -------
     Calibration
-        The species to use, and what changed.
+        Species to use, and the changes.
 
     Raises
     ------
     ParameterError
         A frequency or a damping ratio out of range, or no such branch.
     TreeError
-        A tree that would buckle before it sways so slowly, or a branch without mass.
+        A tree that buckles at that frequency, or a branch without mass.
 
     """
     within('frequency', frequency, 0.0, 1e3, 'Hz', above=True)
@@ -118,7 +118,7 @@ def calibrate(
         raise TreeError(
             f'{frequency:.4g} Hz is out of reach: the tree sways at {limit.frequency:.3g} Hz '
             f'when branch '
-            f"'{weakest}' is about to buckle under its own weight",
+            f"'{weakest}' nearly buckles under its own weight",
             where=tree.name,
             cure='check the measured frequency, the density and the diameters',
         )
@@ -128,7 +128,7 @@ def calibrate(
         return replace(species, modulus=scale * species.modulus, root_stiffness=scale * roots)
 
     scale, fitted = found.scale, found
-    for _ in range(_MODELLINGS):  # a stiffer branch turns less and may need fewer pieces
+    for _ in range(_MODELLINGS):  # a stiffer branch rotates less and may need fewer pieces
         again = _ScaledTree(tree, stiffened(scale), settings, branch)
         step = again.swaying_at((2.0 * math.pi * frequency) ** 2)
         if step is None:
@@ -152,7 +152,7 @@ def calibrate(
 
 @dataclass(frozen=True)
 class _Sway:
-    """Slowest mode at a scale of the modulus: w^2 [1/s^2], its slope, and what turns most."""
+    """Slowest mode at a scale of the modulus: w^2 [1/s^2], slope, largest coordinate."""
 
     scale: float
     square: float
@@ -171,14 +171,14 @@ class _ScaledTree:
         self, tree: Tree, species: Species, settings: Settings, branch: str | None
     ) -> None:
         self.tree, self._branch = tree, branch
-        self.reduction = TreeReductions(tree, species, settings).coupled.reduction
+        self.reduction = TreeReductions(tree, species, settings).with_subtrees.reduction
         factor, coordinate = buckling_factor(self.reduction)
-        #: Scale at which the tree just holds its weight, and the branch that gives way first.
+        #: Scale at which the tree just carries its weight, and the branch that buckles first.
         self.least = _STANDS / factor
         self.weakest = self.branch_of(coordinate)
 
     def branch_of(self, coordinate: int) -> str:
-        """Name of the branch that a coordinate belongs to."""
+        """Name of the branch of a coordinate."""
         branch = int(np.searchsorted(self.reduction.first, coordinate, side='right')) - 1
         return self.tree.branch_names[branch]
 

@@ -1,13 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Frequency and damping of a tree that was pulled and let go.
+Frequency and damping of a tree that was pulled and released.
 
 A free decay is a sum of damped exponentials, the same ones in every channel. The matrix pencil
-finds them all at once, so that a second mode, the other axis or a shifted rest do not bend the
-first (Hua & Sarkar, 1990). The standard errors come from the curvature of the least-squares fit
-and from how much the answer changes as the decay goes on, for the damping of a real tree depends
-on its amplitude.
+finds them all at once, so that a second mode, the other axis or a shifted rest position do not
+bias the first (Hua & Sarkar, 1990). The standard errors come from the curvature of the
+least-squares fit and from the change of the result during the decay, for the damping of a real
+tree depends on its amplitude.
 
 Symbols: s = -zeta w + i w sqrt(1 - zeta^2) pole in [1/s], w circular frequency, zeta damping
 ratio.
@@ -35,12 +35,12 @@ _LATER_STARTS = (0.5, 1.0, 1.5)
 @dataclass(frozen=True)
 class FreeDecay:
     """
-    One sway that dies away: undamped frequency [Hz], damping ratio with the air's, their errors.
+    Free decay: undamped frequency [Hz], damping ratio including the air's, and their errors.
 
-    The errors are standard errors; the answer rests on a number of cycles. ``explained`` is the
-    share of all motion's energy within the fit that decaying modes explain; ``quiet`` the largest
-    amplitude around the frequency before and after the decay, over the largest of all; ``speed``
-    the largest amplitude around the frequency times that, per second.
+    The errors are standard errors; the fit is over a number of cycles. ``explained`` is the share
+    of the energy within the fit that decaying modes explain; ``quiet`` the largest amplitude
+    around the frequency before and after the decay, over the largest of all; ``speed`` that
+    amplitude times the frequency, per second.
     """
 
     frequency: float
@@ -69,7 +69,7 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
     Parameters
     ----------
     motion
-        Motion at even steps without its mean and drift, one column per axis, (n, c).
+        Motion at equal steps without its mean and drift, one column per axis, (n, c).
     dt
         Time step in [s].
     rough
@@ -91,7 +91,7 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
         what = f'{max(available, 0.0):.1f} cycles of {rough:.3g} Hz after the largest swing'
         cure = 'record 3 cycles after the release, better 10, or name the band of the sway'
         raise FormatError(what, cure=cure)
-    # A window that ends where 5 % are left; how long that is takes a first look to know.
+    # A window that ends where 5 % are left; its length follows from a first fit.
     cycles = min(8.0, available)
     for _ in range(3):
         fit = _pencil(slow[first : first + round(cycles * cycle) : stride], stride * dt, rough)
@@ -122,7 +122,7 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
 
 
 def _filtered(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats]:
-    """Motion (n, c) below three times a frequency, and the envelope (n,) of what is around it."""
+    """Motion (n, c) below three times a frequency, and the envelope (n,) around it."""
     nyquist = 0.5 / dt
     slow = motion
     if 3.0 * rough < 0.8 * nyquist:
@@ -130,7 +130,7 @@ def _filtered(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats]:
         slow = signal.sosfiltfilt(low, motion, axis=0)
     edges = np.array([0.5, min(1.7, 0.9 * nyquist / rough)]) * rough / nyquist
     band = signal.sosfiltfilt(signal.butter(2, edges, 'bandpass', output='sos'), motion, axis=0)
-    # The transform is periodic: zeros behind the end keep a large start out of it.
+    # The transform is periodic: zeros after the end separate it from a large start.
     padded = fft.next_fast_len(len(motion) + round(10.0 / (rough * dt)))
     analytic = signal.hilbert(band, padded, axis=0)[: len(motion)]
     envelope: Floats = np.sqrt((np.abs(analytic) ** 2).sum(axis=1))
@@ -157,7 +157,7 @@ def _pencil(motion: Floats, dt: float, rough: float) -> _Fit:
     energy = (np.abs(powers) ** 2).sum(axis=0) * (np.abs(amplitudes) ** 2).sum(axis=1)
     near = (poles.imag > 0.0) & (poles.real < 0.0)
     near &= np.abs(np.log(np.abs(poles) / (2.0 * np.pi * rough) + 1e-300)) < 0.35
-    # Against what swings, not against a drift of the rest, which slow poles take up.
+    # Relative to the sway, not to a drift of the rest position, which slow poles fit.
     swings = poles.imag > np.pi * rough
     near &= energy > _FAINT * energy[swings].max(initial=0.0)
     if not near.any():

@@ -3,8 +3,8 @@
 """
 From a record of a swaying tree to its natural frequency and damping ratio.
 
-A record is a pull-and-release: one large swing that dies away, quiet before and after. It is
-scale-free: displacement, tilt and acceleration give the same answer.
+A record is a pull-and-release: one large swing that decays, with little motion before and after.
+It is scale-free: displacement, tilt and acceleration give the same result.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> Free
     motion
         Displacement, tilt or acceleration, one column per axis, all of one unit, (n,) or (n, c).
     band
-        Lowest and highest frequency to look at in [Hz]; all if None.
+        Lowest and highest frequency to consider in [Hz]; all if None.
 
     Returns
     -------
@@ -64,7 +64,7 @@ def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> Free
         frequency, power = signal.welch(even, 1.0 / dt, nperseg=min(len(even), 4096), axis=0)
         peak = frequency[np.argmax(power.sum(axis=1) * frequency**2)]
         raise FormatError(
-            f'the motion does not die away from one swing; it is fastest at {peak:.3g} Hz',
+            f'the motion does not decay from one swing; it is fastest at {peak:.3g} Hz',
             cure='record a pull and release on a calm day; of a tree in wind, give that frequency '
             'yourself if it is the sway, and not the damping',
         )
@@ -73,29 +73,29 @@ def estimate_sway(time: ArrayLike, motion: ArrayLike, band: Band = None) -> Free
 
 
 def _is_release(decay: FreeDecay) -> bool:
-    """Wind soon makes a tree swing as far again; a release has a tenth of its swing around it."""
+    """Wind makes a tree swing repeatedly; around a release the motion is a tenth of the swing."""
     return decay.explained > _EXPLAINED and decay.quiet < _QUIET
 
 
 def _refuse_lost(decay: FreeDecay) -> None:
-    """Refuse a swing that the wind's own motion soon drowns: its damping could be anything."""
+    """Refuse a swing that soon falls below the motion by wind: its damping is uncertain."""
     f, z = decay.frequency, decay.damping_ratio
     clear = np.log(1.0 / max(decay.quiet, 1e-9)) / (2.0 * np.pi * z)
     if decay.frequency_error > _UNSURE[0] * f or decay.damping_error > _UNSURE[1] * z:
         what = f'{f:.3g} +- {decay.frequency_error:.2g} Hz'
         what = f'{what}, damping {z:.2g} +- {decay.damping_error:.2g}'
     elif clear < _LEAST_CLEAR:
-        what = f'the swing drowns in other motion after {clear:.1f} cycles, at damping {z:.2g}'
+        what = f'the swing falls below other motion after {clear:.1f} cycles, at damping {z:.2g}'
     else:
         return
     raise FormatError(
-        f'{what}: too much moves beside the swing',
+        f'{what}: too much other motion beside the swing',
         cure='pull farther or on a calmer day, or give frequency and damping yourself',
     )
 
 
 def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
-    """Arrays (n,) and (n, c) that can be worked with."""
+    """Check and return arrays (n,) and (n, c)."""
     t = np.asarray(time, dtype=np.float64)
     x = np.asarray(motion, dtype=np.float64)
     x = x[:, None] if x.ndim == 1 else x
@@ -107,7 +107,7 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
         raise FormatError(f'{len(t)} samples', cure=f'record {_MIN_SAMPLES} at the very least')
     # Far enough from overflow that sums of squares are too.
     for bad in np.flatnonzero(~(np.abs(np.column_stack([t, x])) < _LARGEST).all(axis=1))[:1]:
-        what = 'not a finite number, or one that nothing measures'
+        what = 'not a finite number, or an implausible one'
         raise FormatError(what, where=f'sample {bad}', cure='remove that sample')
     for bad in np.flatnonzero(np.diff(t) <= 0.0)[:1]:
         what = f'time {t[bad + 1]:g} s after {t[bad]:g} s'
@@ -119,7 +119,7 @@ def _checked(time: ArrayLike, motion: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def _even(time: Floats, motion: Floats) -> tuple[Floats, float, float]:
-    """Motion at even steps without its mean and drift, the step and the longest gap in [s]."""
+    """Motion at equal steps without its mean and drift, the step and the longest gap in [s]."""
     steps = np.diff(time)
     dt = float(np.median(steps))
     if time[-1] - time[0] > 4.0 * len(time) * dt:
@@ -137,13 +137,13 @@ def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
     power = (np.abs(np.fft.rfft(motion, padded, axis=0)) ** 2).sum(axis=1) * frequency**2
     peaks, level = spectral_peaks(frequency, power, len(motion) * dt, band)
     strong = level > _STRONG * level.max()
-    # Where the strongest peak has too few cycles, a weaker one is another mode, or noise.
+    # Where the strongest peak has too few cycles, a weaker one is a different mode, or noise.
     found = [_decay_near(motion, dt, gap, float(peaks[np.argmax(level)]))]
     for rough in peaks[strong & (level < level.max())].tolist():
         with suppress(FormatError):
             found.append(_decay_near(motion, dt, gap, rough))
-    # Beside the sway, a step of the rest has slow parts that die away too; they move little per
-    # second.
+    # Beside the sway, a step of the rest position has slow parts that decay too; they move little
+    # per second.
     fastest = max(found, key=lambda decay: decay.speed)
     fast = [one for one in found if one.speed > _FAST * fastest.speed]
     fast.sort(key=lambda decay: decay.frequency)
@@ -152,7 +152,7 @@ def _release(motion: Floats, dt: float, gap: float, band: Band) -> FreeDecay:
 
 
 def _decay_near(motion: Floats, dt: float, gap: float, rough: float) -> FreeDecay:
-    """Fit the decay near a peak [Hz] where samples and gaps [s] let it be seen."""
+    """Fit the decay near a peak [Hz], if samples and gaps [s] resolve it."""
     if gap * rough > 0.25:
         what = f'{gap:.3g} s between samples, for a sway of {rough:.3g} Hz'
         raise FormatError(what, cure='record at least four samples per cycle, without gaps')

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Where a spectrum has peaks, seen with the same relative width at every frequency."""
+"""Peaks of a spectrum, smoothed with the same relative width at every frequency."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
 
 Band: TypeAlias = tuple[float, float] | None
-"""Lowest and highest frequency to look at in [Hz]; all if None."""
+"""Lowest and highest frequency to consider in [Hz]; all if None."""
 
 WIDTH = 0.06
-"""Half of the width over which power is averaged, over the frequency [-]."""
+"""Half width of the average of the power, over the frequency [-]."""
 
 _PROMINENCE = 1.5
 
@@ -28,14 +28,14 @@ def spectral_peaks(
     Find the peaks of a spectrum within a band, rising, and the averaged power there.
 
     Power (m,), of any unit, is that of a record of a duration [s], at even frequencies [Hz] from
-    0; it is averaged over `WIDTH` relative to the frequency on either side. Within a given band
-    without a peak it is its strongest point; raises a `FormatError` for no peak, or a band that
-    the record does not reach.
+    0; it is averaged over `WIDTH` relative to the frequency on either side. In a given band
+    without a peak the strongest point is returned. Raises a `FormatError` for no peak, or a band
+    that the record does not reach.
     """
     low, high = band or (0.0, np.inf)
     low, high = max(low, 0.8 / duration), min(high, 0.9 * float(frequency[-1]))
     if low >= high:
-        what = f'{duration:.3g} s sampled up to {frequency[-1]:.3g} Hz hold nothing in the band'
+        what = f'{duration:.3g} s sampled up to {frequency[-1]:.3g} Hz have no content in the band'
         raise FormatError(what, cure='record longer, sample faster, or name another band')
     grid = np.geomspace(low, high, 2 + int(np.log(high / low) / (0.25 * WIDTH)))
     total = np.concatenate([[0.0], np.cumsum(power)])

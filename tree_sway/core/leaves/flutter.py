@@ -8,10 +8,10 @@ measured on oak, olive, magnolia, camphor and grass, whatever carries the leaf (
 2025, arXiv:2504.10584). A leaf that turns about its stalk by torsional galloping does so near its
 own frequency f (Tadrist et al. 2015, on *Ficus benjamina*), its edge at D/2 from the stalk. Speed
 over ``2 pi f D/2`` is then the angle, and the size drops out: amplitude ``a = sqrt(2) / (740^2 nu
-pi f) U^2``. In strong wind leaves fold together and flutter grows no more (Tadrist et al. 2018):
+pi f) U^2``. In strong wind leaves fold together and flutter does not grow (Tadrist et al. 2018):
 the amplitude levels off at `LARGEST_ANGLE`, which is an estimate.
 
-The law is two constants and one line, so that it can be computed where leaves are drawn.
+The law has two constants, so that it can be computed where leaves are drawn.
 """
 
 from __future__ import annotations

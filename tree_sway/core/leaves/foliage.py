@@ -3,11 +3,11 @@
 """
 Leaves of a tree: mass and area on each branch for the solver, clusters on segments for the viewer.
 
-Leaves are on branches that carry no others, and on the thinner half of the wood by length. A
-tree has as much leaf area as its stem can supply, but no more than six times the ground it covers:
-few stands have a higher index (Asner, Scurlock & Hicke 2003). Of it the wind meets what the sun
-would: leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction in
-a crown of outline F (Monsi & Saeki 1953).
+Leaves are on branches without children, and on the thinner half of the wood by length. A tree has
+as much leaf area as its stem can supply, but at most six times the ground that it covers: few
+stands have a higher index (Asner, Scurlock & Hicke 2003). The wind meets the same part of it as
+sunlight: leaves hide each other, ``F (1 - exp(-A / 2 F))`` for leaves of area A in every direction
+in a crown of outline F (Monsi & Saeki 1953).
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.convention import quaternions_of_axes
 
 MAX_LEAF_AREA_INDEX = 6.0
-"""Leaf area over ground covered that no tree exceeds in [-]."""
+"""Largest leaf area over ground covered in [-]."""
 
 _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 
 
 @dataclass(frozen=True)
 class Foliage:
-    """What leaves add to each branch: fresh mass [kg], one-sided and drag area [m^2], (b,)."""
+    """Leaves of each branch: fresh mass [kg], one-sided and drag area [m^2], (b,)."""
 
     mass: Floats
     area: Floats
@@ -42,12 +42,12 @@ class Foliage:
 @dataclass(frozen=True)
 class LeafClusters:
     """
-    Leaves to be drawn, each cluster carried by one segment; they flutter where they are drawn.
+    Clusters of leaves to be drawn, each on one segment; they flutter where they are drawn.
 
     Parameters
     ----------
     segment
-        Segment that carries each, (m,).
+        Segment of each cluster, (m,).
     offset
         Centre in the segment's frame in [m]: x along it from its root-side node, (m, 3).
     orientation
@@ -68,7 +68,7 @@ class LeafClusters:
 
 
 def leafy_length(tree: Tree) -> Floats:
-    """Length of each segment that bears leaves in [m], (n,): its own on outer or thin wood."""
+    """Length of each segment that bears leaves in [m], (n,)."""
     carries_none = tree.subtree_end == np.arange(1, tree.n_branches + 1)
     carries_none[0] = False
     thin_first = np.argsort(tree.base_diameter, kind='stable')
@@ -87,7 +87,7 @@ def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
     leafy = leafy_length(tree)
     bearing = tree.end[leafy > 0.0]
     high = max(float(np.ptp(bearing[:, 2])), leaf.size)
-    # A pole without branches covers the ground that its leaves do.
+    # A pole without branches covers the ground below its leaves.
     ground = 0.25 * np.pi * max(wide, leaf.size) * max(deep, leaf.size)
     section = 0.25 * np.pi * float(tree.base_diameter[0]) ** 2
     total = min(leaf.area_per_section * section, MAX_LEAF_AREA_INDEX * ground)
@@ -98,7 +98,7 @@ def foliage_of(tree: Tree, *, traits: LeafTraits | None = None) -> Foliage:
 
 
 def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:
-    """Area of wood on each branch that needles clad, which are all round it, in [m^2], (b,)."""
+    """Area of wood on each branch that is clad in needles in [m^2], (b,)."""
     if not traits.are_needles:
         return np.zeros(tree.n_branches)
     area = 0.5 * (tree.base_diameter + tree.tip_diameter) * leafy_length(tree)
@@ -109,9 +109,9 @@ def leaf_clusters(
     tree: Tree, rng: np.random.Generator, *, count: int = 1500, traits: LeafTraits | None = None
 ) -> LeafClusters:
     """
-    Place a number of clusters of leaves on the outer wood of a tree at rest, evenly by its length.
+    Place a number of clusters of leaves evenly along the outer wood of a tree at rest.
 
-    Together they show the tree's leaf area, with traits of its species if None. Raises a
+    Together they have the tree's leaf area, with traits of its species if None. Raises a
     `ParameterError` for a count below 0.
     """
     within('count', count, 0, 1e9)
@@ -153,12 +153,12 @@ def joined_clusters(clusters: Sequence[LeafClusters], n_segments: Sequence[int])
 
 
 def _facing_up(away: Floats, rest: Floats) -> Floats:
-    """Orientations w x y z whose x runs away from the twig and whose z looks up most."""
+    """Orientations w x y z with x away from the twig and z as upright as possible."""
     w, x, y, z = rest.T
     up = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], 1)
     z = up - np.einsum('ij,ij->i', up, away)[:, None] * away
     size = np.linalg.norm(z, axis=1)
-    # A leaf that points straight up may look any way across.
+    # A leaf that points straight up may face any direction.
     z[size < 1e-3] = np.cross(away[size < 1e-3], [1.0, 0.0, 0.0])
     z /= np.linalg.norm(z, axis=1)[:, None]
     return quaternions_of_axes(away, z)

@@ -3,6 +3,6 @@
 """
 The per-step path: load, oscillators, key rotations, placing of every segment.
 
-Structure-of-arrays records and kernels; no allocation per step.
-What decides which model runs lives higher.
+Structure-of-arrays records and kernels; no allocation per step. The choice of the model is made in
+rooms above.
 """

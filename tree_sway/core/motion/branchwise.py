@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What oscillators that meet the wind branch by branch share."""
+"""Base of oscillators that are loaded branch by branch."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from tree_sway.core.arrays import Floats, Records
 
 class Tunable(NamedTuple):
     """
-    Arrays that a tuning writes, one number per oscillator, and what they are made of.
+    Arrays that a tuning writes, one number per oscillator, and their parts.
 
-    ``weight`` is the part of the stiffness that gravity makes, below 0 where it softens;
-    ``inertia`` is 1 of modes; ``others`` go with a power of the stiffness of the wood; ``loss`` is
-    the damping ratio of each over that of the tree.
+    ``weight`` is the part of the stiffness by gravity, negative where it softens; ``inertia`` is 1
+    of modes; ``others`` are proportional to a power of the stiffness of the wood; ``loss`` is the
+    damping ratio of each over that of the tree.
     """
 
     stiffness: Floats
@@ -27,7 +27,7 @@ class Tunable(NamedTuple):
 
 
 class Branchwise:
-    """Oscillators on the loads of all branches: nothing is tabled, so no step is outside."""
+    """Oscillators on the loads of all branches: there is no table, so no step is outside."""
 
     n_outside = 0
     to_place = None

@@ -1,26 +1,26 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What the wind does to a branch: one load centre, so that cost does not depend on how it is cut.
+Wind load on a branch: one load centre, so that its cost does not depend on the segments.
 
 The force on a piece is ``1/2 rho Cd(U) dA |U_n| U_n``, U_n the velocity of the air relative to the
 piece, across it. Summed over a branch it acts at the centre of the load, on the mean displacement
-of the loaded pieces; in wind the branch damps itself at the displacement that gives the same
-damping as the sum. In still air the pieces' own speeds count, which differ: their mean square
-beside the centre's is added, so that there too it damps itself as the sum does. Wood keeps the
-drag of a cylinder; leaves streamline: Cd = C U^-N (Mayhead 1973; Vollsinger et al. 2005) between 4
-and 20 m/s, constant outside. Those are the speeds at which crowns were measured in wind tunnels
-(Rudnicki et al. 2004; Vollsinger et al. 2005).
+of the loaded pieces; in wind its damping acts on the displacement that gives the same damping as
+the sum. In still air the pieces' own speeds count, which differ: their variance is added, so that
+the damping is that of the sum there too. Wood has the drag of a cylinder; leaves streamline: Cd =
+C U^-N (Mayhead 1973; Vollsinger et al. 2005) between 4 and 20 m/s, constant outside. Those are the
+speeds at which crowns were measured in wind tunnels (Rudnicki et al. 2004; Vollsinger et al.
+2005).
 
-**Sheltering is assumed, not modelled.** Leaves hide each other as the outline of the crown has it,
-and shelter each other as in the crowns that their law was measured on; twigs clad in needles
-belong to such a crown. Bare wood and branches that leaves stand on meet the whole wind.
+**Sheltering is assumed, not modelled.** Leaves hide each other by the outline of the crown, and
+shelter each other as in the crowns on which their law was measured; twigs clad in needles are part
+of such a crown. Bare wood and branches of leaves meet the whole wind.
 
 **Implicit in the branch's own motion.** A light twig follows the air within a fraction of a step,
-where an explicit drag would shake it to pieces. With u the velocity the branch would have half a
-step on without the force, and beta the velocity that a unit of force adds by then, the relative
-speed s solves ``s + beta c s^2 = |U - u|`` in closed form: stable for any wind and step, second
-order in the step.
+where an explicit drag would be unstable. With u the velocity of the branch at the middle of the
+step without the force, and beta the velocity per unit of force by then, the relative speed s
+solves ``s + beta c s^2 = |U - u|`` in closed form: stable for any wind and step, second order in
+the step.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import part
 
 AIR_DENSITY = 1.225
-"""Of dry air at 15 degrees C and sea level in [kg/m^3] (ISO 2533)."""
+"""Density of dry air at 15 degrees C and sea level in [kg/m^3] (ISO 2533)."""
 
 STREAMLINING_FROM, STREAMLINING_TO = 4.0, 20.0
 """Wind speeds in [m/s] between which the drag law is measured."""
 
 SHARED_AT = 8.0
-"""Wind in [m/s] in which wood and leaves of each branch share the load as they should."""
+"""Wind speed in [m/s] at which the shares of wood and leaves of each branch are exact."""
 
 
 class DragLaw(NamedTuple):
-    """Drag of a tree, ``Cd = C U^-N + C0``: C and N of what streamlines, C0 of what does not."""
+    """Drag of a tree, ``Cd = C U^-N + C0``: C and N for leaves, which streamline, C0 for wood."""
 
     coefficient: float
     exponent: float
@@ -56,17 +56,17 @@ def crown_drag(
     wood: float, leaves: tuple[float, float],
 ) -> tuple[DragLaw, Floats]:  # fmt: skip
     """
-    Law of a tree whose wood is a cylinder in the wind and whose leaves alone streamline.
+    Return the drag law of a tree whose wood has the drag of cylinders and whose leaves streamline.
 
-    All branches share one law; each has the area that gives it its own share of wood and leaves at
+    All branches share one law; each has the area that gives the right share of wood and leaves at
     `SHARED_AT`.
 
     Parameters
     ----------
     wood_area
-        Of all wood in [m^2].
+        Area of all wood in [m^2].
     leaf_area, clad_wood
-        Of the leaves of each branch, and of the wood that is clad in them, in [m^2], (b,).
+        Area of the leaves of each branch, and of its wood clad in them, in [m^2], (b,).
     wood
         Drag coefficient of bare wood in [-].
     leaves
@@ -75,7 +75,7 @@ def crown_drag(
     Returns
     -------
     law, area
-        The law, and the area of bare wood that the leaves of each branch add in [m^2], (b,).
+        Drag law, and the equivalent area of bare wood of the leaves of each branch in [m^2], (b,).
 
     """
     coefficient, exponent = leaves
@@ -102,21 +102,21 @@ def drag(
     c: float, compliance: float, ux: float, uy: float, uz: float, spread: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """
-    Force on a branch.
+    Return the force on a branch.
 
     Parameters
     ----------
     pxx, pyy, pzz, pxy, pxz, pyz
-        Its projector.
+        Projector of the branch.
     c
-        `pressure` times its area in [kg/m].
+        `pressure` times the area of the branch in [kg/m].
     compliance
         Velocity half a step after a unit of force in [s/kg].
     ux, uy, uz
         Air velocity in the branch's own frame, relative to the motion of the branch without this
         force, in [m/s].
     spread
-        Mean square of the velocity of its pieces beside that of the load centre in [m^2/s^2].
+        Variance of the velocity of the pieces about that of the load centre in [m^2/s^2].
 
     Returns
     -------

@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The table of a tree as it leaves the program, for a receiver that solves the tree by itself.
+Export of the table of a tree, for receivers that solve the tree themselves.
 
 Over azimuths and levels the slopes of the load have a low rank: they are exported as factors,
-``slopes = sqrt(k_i k_j) rows @ shapes``, with the stiffness k of the coordinates in the weight so
-that the share that is left out counts as it bends the tree. Shapes are integers of one step.
-What was exported is a table again by `table_of`, which is what every receiver solves.
+``slopes = sqrt(k_i k_j) rows @ shapes``, weighted with the stiffness k of the coordinates, so that
+the error is that of the bending of the tree. Shapes are integers of one step. `table_of` makes the
+exported arrays a table again, which every receiver solves.
 """
 
 from __future__ import annotations
@@ -26,30 +26,30 @@ LEFT_OUT = 1e-2
 """
 Share of the slopes that their factors leave out, root mean square.
 
-A ten thousandth of the motion of benjamina at 14 m/s: slopes are what turns and damps a lean that
-the table has exactly.
+This is a ten thousandth of the motion of benjamina at 14 m/s, as the equilibria in the table are
+exact.
 """
 
 SLOPES = ('turning', 'damping', 'lean', 'steep_turning', 'steep_damping')
 """Fields of a table that are exported as factors."""
 
-PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'standing', 'amount', 'load',
+PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'equilibrium', 'amount', 'load',
          'cross_damping')  # fmt: skip
 """Fields that are exported as they are, in single precision."""
 
 NUMBERS = ('degree', 'most_pressure', 'most_energy')
 
-_ROUNDED = {'standing': 8, 'load': 8, 'rows': 8, 'cross_damping': 16}
-"""Last bits that some are exported without: to 1.5e-5, and a bound to 0.4 %."""
+_ROUNDED = {'equilibrium': 8, 'load': 8, 'rows': 8, 'cross_damping': 16}
+"""Number of last bits that are left out of some fields: to 1.5e-5, and a bound to 0.4 %."""
 
 _LARGEST_STEP = 32767
 _QUANTISED = 12.0**-0.5
-"""Root mean square of what rounding leaves out, over its step."""
+"""Root mean square rounding error, over its step."""
 
 
 def exported_table(bank: WindBasisBank) -> tuple[dict[str, float], dict[str, NDArray[Any]]]:
     """
-    Return numbers by name, and arrays of float32 and int16, that describe a table.
+    Return numbers by name, and arrays of float32 and int16, of a table.
 
     Beside the `PLAIN` fields of m coordinates, as `table_layout` lists them, there are
     ``own_damping`` (m,) and of each field of `SLOPES` its ``_rows`` and ``_shapes``.
@@ -103,7 +103,7 @@ def rounded(values: Floats, bits: int) -> Singles:
 
 
 def _factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Rows (k, r) and shapes (r, m^2) whose product is the slopes (k, m^2) but for `LEFT_OUT`."""
+    """Return rows (k, r) and shapes (r, m^2) with the product slopes (k, m^2) up to `LEFT_OUT`."""
     rows, sizes, shapes = np.linalg.svd(slopes, full_matrices=False)
     left = np.sqrt(np.maximum(1.0 - np.cumsum(sizes**2) / max(np.sum(sizes**2), 1e-300), 0.0))
     rank = int(np.argmax(left < LEFT_OUT / 2.0)) + 1

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The one place where records are filled: what stepping and placing know of a tree.
+Filling of the records for stepping and placing a tree.
 
-`Places` says how a tree is joined and drawn; whoever has one can place it, as a receiver of the
-stream. `branch_records` adds what the wind does; `head_records` and `load_records` lay it out in
+`Places` has how a tree is joined and drawn, which suffices to place it, as for a receiver of the
+stream. `branch_records` adds the wind load; `block_records` and `load_records` lay the data out in
 slots.
 """
 
@@ -22,8 +22,8 @@ from tree_sway.core.branch.beam import cross, cross_matrix
 from tree_sway.core.branch.model import BranchModel
 from tree_sway.core.branch.shapes import across, exposure, MAX_COORDINATES
 from tree_sway.core.motion.records import (
+    block_layout,
     branch_layout,
-    head_layout,
     load_layout,
     segment_layout,
     WIDTH,
@@ -36,10 +36,10 @@ from tree_sway.core.tree.tree import Tree
 
 class Places(NamedTuple):
     """
-    How branches are joined and drawn: all that placing knows of a tree, before it is laid out.
+    How branches are joined and drawn: the data for placing a tree, before it is laid out.
 
-    Of branches (b,) and segments (n,) in the order of the tree; k is the most coordinates that a
-    branch has.
+    Branches (b,) and segments (n,) are in the order of the tree; k is the largest number of
+    coordinates of a branch.
     """
 
     first: Ints
@@ -53,21 +53,21 @@ class Places(NamedTuple):
     skew: Floats
     tip_skew: Floats
     offset: Floats
-    """Base from its base segment's start, in that one's frame, (b, 3)."""
-    base_turn: Floats
+    """Base from the start of the base segment, in the frame of that segment, (b, 3)."""
+    base_rotation: Floats
     """Rotation of the base per unit of the parent's coordinates, (b, k, 3)."""
     chord: Floats
     rest: Floats
     slope: Floats
     tip_slope: Floats
-    turn: Floats
+    rotation_mode: Floats
     """Rotation vector of each segment per unit of its branch's coordinates, (n, k, 3)."""
 
 
 def segment_records(places: Places) -> Records:
-    """Fill what placing needs of each segment: records of `segment_layout`, in blocks."""
+    """Fill the segments for placing: records of `segment_layout`, in blocks."""
     block, slot, n_records = assign_slots(places.first, places.parent, places.n_coordinates)
-    is_plain = places.turn.shape[1] == 2
+    is_plain = places.rotation_mode.shape[1] == 2
     records = zeros_in_lines(n_records, segment_layout(2) if is_plain else segment_layout())
     records['rest'][:, 0] = 1.0
     size = np.diff(places.first)
@@ -78,13 +78,14 @@ def segment_records(places: Places) -> Records:
     records['slope'][rows, own], records['tip_slope'][rows, own] = places.slope, places.tip_slope
     np.maximum.at(records['n_slots'], rows, own + 1)
     if not is_plain:
-        records['turn'][rows, : places.turn.shape[1], :, own] = places.turn
+        n_modes = places.rotation_mode.shape[1]
+        records['rotation_mode'][rows, :n_modes, :, own] = places.rotation_mode
     return records
 
 
 def fill_places(places: Places, records: Records) -> None:
-    """Fill what placing needs of each branch, in records of `branch_layout`, (b,)."""
-    records['block'], records['slot'], _ = assign_slots(
+    """Fill the fields for placing in records of `branch_layout`, (b,)."""
+    records['first_record'], records['slot'], _ = assign_slots(
         places.first, places.parent, places.n_coordinates
     )
     records['parent'], records['base_segment'] = places.parent, places.base_segment
@@ -92,82 +93,82 @@ def fill_places(places: Places, records: Records) -> None:
     records['coordinate'], records['n_coordinates'] = places.coordinate, places.n_coordinates
     records['frame'], records['offset'] = places.frame, places.offset
     records['skew'], records['tip_skew'] = places.skew, places.tip_skew
-    k = min(places.base_turn.shape[1], records['twist'].shape[1])
-    records['twist'][:, :k, 3:] = places.base_turn[:, :k]
+    k = min(places.base_rotation.shape[1], records['twist'].shape[1])
+    records['twist'][:, :k, 3:] = places.base_rotation[:, :k]
     begin = places.first[:-1]
-    steepest = np.maximum.reduceat(np.square(places.turn).sum(axis=2), begin)
+    steepest = np.maximum.reduceat(np.square(places.rotation_mode).sum(axis=2), begin)
     tips = np.maximum.reduceat(np.square(places.tip_slope), begin)
     records['steepest'][:, : steepest.shape[1]] = steepest
     records['steepest'][:, 0] = np.maximum(records['steepest'][:, 0], tips)
 
 
-def turns_of_segments(branch: np.void, segments: Records) -> Floats:
+def rotation_modes_of(branch: np.void, segments: Records) -> Floats:
     """Rotation vector (m, k, 3) of each segment of a branch per unit of each coordinate."""
-    first, count = int(branch['block']), int(branch['n_coordinates'])
+    first, count = int(branch['first_record']), int(branch['n_coordinates'])
     rows = slice(first, first + int(branch['end'] - branch['first']))
     if branch['load_mode'].shape[0] > 2:
-        turns: Floats = segments['turn'][rows, :count, :, branch['slot']]
-        return turns
+        return np.asarray(segments['rotation_mode'][rows, :count, :, branch['slot']])
     slope, (_, e1, e2) = segments['slope'][rows, branch['slot']], branch['frame']
     return np.multiply.outer(slope, np.stack([e2, -e1]))
 
 
-def head_records(branches: Records, segments: Records) -> Records:
+def block_records(branches: Records, segments: Records) -> Records:
     """
-    Lay out what placing needs to know of `BRANCH` records, whose coordinates are set.
+    Lay the fields for placing out in blocks, from `BRANCH` records whose coordinates are set.
 
-    Records of `head_layout`, one per block of `assign_slots` and one to work in.
+    Records are of `block_layout`, one per block of `assign_slots` and one of scratch memory.
     """
-    first, block = np.unique(branches['block'], return_inverse=True)
+    first, block = np.unique(branches['first_record'], return_inverse=True)
     slot, parent = branches['slot'], branches['parent']
-    heads = zeros_in_lines(len(first) + 1, head_layout(branches.dtype['load_mode'].shape[0]))
-    heads['block'] = [*first, len(segments)]
-    heads['n_records'][:-1] = np.diff(heads['block'])
-    heads['n_slots'][:-1] = segments['n_slots'][first]
-    heads['n_eights'] = -(-heads['n_slots'] // 8)
-    np.maximum.at(heads['n_bearing'], block[parent[1:]], slot[parent[1:]] + 1)
-    np.maximum.at(heads['n_rows'], block, branches['n_coordinates'])
-    heads['branch'][block, slot] = np.arange(len(branches))
-    heads['is_joined'][:-1] = np.logical_and.reduceat(_joined(segments), first)
-    np.maximum.at(heads['n_parent_rows'], block, branches['n_coordinates'][parent])
+    blocks = zeros_in_lines(len(first) + 1, block_layout(branches.dtype['load_mode'].shape[0]))
+    blocks['first_record'] = [*first, len(segments)]
+    blocks['n_records'][:-1] = np.diff(blocks['first_record'])
+    blocks['n_slots'][:-1] = segments['n_slots'][first]
+    blocks['n_eights'] = -(-blocks['n_slots'] // 8)
+    np.maximum.at(blocks['n_parents'], block[parent[1:]], slot[parent[1:]] + 1)
+    np.maximum.at(blocks['n_rows'], block, branches['n_coordinates'])
+    blocks['branch'][block, slot] = np.arange(len(branches))
+    blocks['is_joined'][:-1] = np.logical_and.reduceat(_joined(segments), first)
+    np.maximum.at(blocks['n_parent_rows'], block, branches['n_coordinates'][parent])
     for name in ('parent', 'coordinate', 'base_segment', 'first'):
-        heads[name][block, slot] = branches[name]
+        blocks[name][block, slot] = branches[name]
     for name in ('frame', 'skew', 'tip_skew', 'offset', 'steepest'):
-        heads[name][block, ..., slot] = branches[name]
-    heads['last'][block, slot] = branches['n_coordinates'] - 1
-    heads['parent_coordinate'][block, slot] = branches['coordinate'][parent]
-    heads['is_at_axes'] = (np.abs(heads['offset'][:, 1:]) <= _AS_ONE * heads['offset'][:, :1]).all(
-        axis=(1, 2)
-    )
-    heads['base_turn'][block, ..., slot] = branches['twist'][..., 3:]
-    return heads
+        blocks[name][block, ..., slot] = branches[name]
+    blocks['bound_factor'][block, slot] = branches['n_coordinates'] - 1
+    blocks['parent_coordinate'][block, slot] = branches['coordinate'][parent]
+    ahead, beside = blocks['offset'][:, :1], np.abs(blocks['offset'][:, 1:])
+    blocks['is_at_axes'] = (beside <= _AS_ONE * ahead).all(axis=(1, 2))
+    blocks['base_rotation'][block, ..., slot] = branches['twist'][..., 3:]
+    return blocks
 
 
 _rotated = rotated.py_func  # type: ignore[attr-defined]  # whole arrays at once
 _AS_ONE = 1e-12
-"""Share of a chord by which a segment may miss it and still reach from its start to its end."""
+"""
+Largest deviation of a segment from a chord that it is taken to span, as a share of the chord.
+"""
 
 
 def _joined(segments: Records) -> NDArray[np.bool_]:
-    """Return chords in each segment's own frame, and for which of them it is the x axis."""
+    """Fill chords in the frames of their segments; return where the chord is the x axis."""
     w, x, y, z = np.moveaxis(segments['rest'], 1, 0)
-    reach = _rotated(w, -x, -y, -z, *np.moveaxis(segments['chord'], 1, 0))
-    segments['reach'] = np.stack(reach, axis=1)
-    return (np.hypot(reach[1], reach[2]) <= _AS_ONE * reach[0]).all(axis=1)
+    own_chord = _rotated(w, -x, -y, -z, *np.moveaxis(segments['chord'], 1, 0))
+    segments['own_chord'] = np.stack(own_chord, axis=1)
+    return (np.hypot(own_chord[1], own_chord[2]) <= _AS_ONE * own_chord[0]).all(axis=1)
 
 
 def assign_slots(
     first: Ints, branch_parent: Ints, fields: Ints | None = None
 ) -> tuple[Ints, Ints, int]:
     """
-    Give each branch a slot of a block: parents first, long branches together, few slots empty.
+    Assign a slot of a block to each branch: parents first, similar lengths together.
 
-    Those of many ``fields`` (b,), if they are given, are together as well.
+    Branches of similar numbers of ``fields`` (b,), if given, are together as well.
 
     Returns
     -------
     tuple
-        First record (b,) and slot (b,) of each branch; how many records there are.
+        First record (b,) and slot (b,) of each branch; number of records.
 
     """
     size = np.diff(first)
@@ -177,12 +178,12 @@ def assign_slots(
         children[branch_parent[branch]].insert(0, branch)
         carried[branch_parent[branch]] += carried[branch]
     block, slot = np.zeros((2, len(size)), dtype=np.int64)
-    # Sixteen branches take as long to place as the one with most fields.
+    # The time to place sixteen branches is that of the one with most fields.
     rich = (-fields if fields is not None else 0 * size).tolist()
     begin, ready = 0, [(rich[0], -int(size[0]), -int(carried[0]), 0)]
     while ready:
         together = [heappop(ready)[-1] for _ in range(min(WIDTH, len(ready)))]
-        # Records have segments of the first slots alone.
+        # Records have segments of the first slots only.
         together.sort(key=lambda branch: -int(size[branch]))
         block[together], slot[together] = begin, np.arange(len(together))
         begin += int(size[together[0]])
@@ -193,7 +194,7 @@ def assign_slots(
 
 
 def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Places:
-    """Describe how the branches of a tree are joined and drawn, as they are modelled."""
+    """Find how the modelled branches of a tree are joined and drawn."""
     first, size = tree.branch_first[:-1], np.diff(tree.branch_first)
     on = tree.segment_parent[first]
     following = tree.end.copy()
@@ -205,20 +206,20 @@ def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Pl
     slope, tip_slope = _slopes(tree, models)
     share, skews = tree.length / np.repeat(np.add.reduceat(tree.length, first), size), []
     for each in (slope, tip_slope):
-        off = each - np.repeat(np.add.reduceat(share * each, first), size)
-        # The third cumulant over 6: how far the chord angle lags, per angle cubed.
-        skews.append(np.add.reduceat(share * off**3, first) / 6.0)
+        deviation = each - np.repeat(np.add.reduceat(share * each, first), size)
+        # The third cumulant over 6: the lag of the chord angle, per angle cubed.
+        skews.append(np.add.reduceat(share * deviation**3, first) / 6.0)
     counts = np.array([len(model.fields) for model in models])
     is_plain = (counts == 2).all()
-    turn = np.zeros((tree.n_segments, 2 if is_plain else MAX_COORDINATES, 3))
+    rotation_mode = np.zeros((tree.n_segments, 2 if is_plain else MAX_COORDINATES, 3))
     for branch, model in enumerate(models):
-        turn[tree.segments_of(branch), : counts[branch]] = _drawn_turns(model).swapaxes(0, 1)
+        rotation_mode[tree.segments_of(branch), : counts[branch]] = _drawn_modes(model)
     frame = np.array([(m.beam.chord, *across(m.beam.chord)) for m in models])
     return Places(
         tree.branch_first, tree.branch_parent, on, reduction.first[:-1], counts, frame,
         skews[0], skews[1],
         np.where(on[:, None] >= 0, offset, 0.0), reduction.twist[:, :, 3:],
-        following - tree.start, tree.rest_frame, slope, tip_slope, turn,
+        following - tree.start, tree.rest_frame, slope, tip_slope, rotation_mode,
     )  # fmt: skip
 
 
@@ -230,11 +231,11 @@ def branch_records(
     speed_profile: Floats,
 ) -> Records:
     """
-    All that stepping and placing know of the branches: records of `branch_layout`, (b,).
+    Fill the branches for stepping and placing: records of `branch_layout`, (b,).
 
     The profile is the wind speed at each segment over that at the anemometer, (n,).
     """
-    layout = branch_layout(2) if places.turn.shape[1] == 2 else branch_layout()
+    layout = branch_layout(2) if places.rotation_mode.shape[1] == 2 else branch_layout()
     records = np.zeros(tree.n_branches, dtype=layout)
     alike: dict[tuple[int, int], list[int]] = {}
     for branch, model in enumerate(models):
@@ -255,16 +256,16 @@ def branch_records(
 
 
 _STRAIGHT = 0.03
-"""Share of the wind along a branch below which this is not distinguished from none."""
+"""Smallest share of the wind along a branch that is distinguished from 0."""
 
 
 def _fill_loads(
     models: list[BranchModel], speed_profile: Floats, rows: Ints, records: Records
 ) -> None:
     """
-    Fill what the wind load reads of branches of as many panels, p, and fields, n, as each other.
+    Fill the fields of the wind load of branches that all have p panels and n fields.
 
-    The wind speed at their panels is over that at the anemometer, (k, p).
+    The speed profile is the wind speed at their panels over that at the anemometer, (k, p).
     """
     beams, n = [model.beam for model in models], len(models[0].fields)
     point, tangent = (np.array([getattr(b, name) for b in beams]) for name in ('point', 'tangent'))
@@ -290,14 +291,14 @@ def _fill_loads(
     amounts, axes = np.linalg.eigh(across)
     stored = amounts > _STRAIGHT * amounts[:, -1:]
     amounts = np.divide(1.0, amounts, out=np.zeros_like(amounts), where=stored)
-    into_push = (axes * amounts[:, None]) @ axes.swapaxes(1, 2)
+    into_load_mode = (axes * amounts[:, None]) @ axes.swapaxes(1, 2)
     own = exposed[:, None, :, None] * (share[:, None, ..., None] * fields).sum(axis=3)
     own -= (own * tangent[:, None]).sum(axis=-1, keepdims=True) * tangent[:, None]
     mean = own.sum(axis=2)
-    records['load_mode'][rows, :n] = mean @ into_push
+    records['load_mode'][rows, :n] = mean @ into_load_mode
     along_it = (fields[:, :2] * tangent[:, None, :, None]).sum(axis=-1)
     moved = (np.square(fields[:, :2]).sum(axis=-1) - np.square(along_it)).sum(axis=1)
-    # What moves most does most work, and it is turned most.
+    # Pieces that move most do most work, and are rotated most.
     work = (share * np.sqrt(np.maximum(moved, 0.0))).reshape(len(rows), 1, 1, -1)
     whole = work.sum(axis=-1, keepdims=True)
     work /= np.where(whole > 0.0, whole, 1.0)
@@ -307,17 +308,16 @@ def _fill_loads(
     square, cube = ((share * each).sum(axis=(1, 2)) for each in (moved, _cubes(moved)))
     for k in np.flatnonzero(bows > 1e-9):
         _fit_load(models[k], share[k], records[rows[k]])
-    _fill_flow(records, rows, mean, square, cube)
+    _fill_damping(records, rows, mean, square, cube)
 
 
 def _cubes(squares: Floats) -> Floats:
     """Cubes of displacements from the sum of their squares, as if both axes were alike."""
-    cubes: Floats = 2.0 * np.maximum(0.5 * squares, 0.0) ** 1.5
-    return cubes
+    return np.asarray(2.0 * np.maximum(0.5 * squares, 0.0) ** 1.5)
 
 
 def _fit_load(model: BranchModel, share: Floats, record: np.void) -> None:
-    """Fit projector, push and couple of a crooked branch to the drag on it (least squares)."""
+    """Fit projector, load mode and coupling of a crooked branch to its drag (least squares)."""
     tangent = model.beam.tangent
     slanting = _SlantingWinds(model.beam.chord)
     outer = (np.eye(3) - tangent[:, :, None] * tangent[:, None, :]).reshape(-1, 9)
@@ -338,14 +338,16 @@ def _fit_load(model: BranchModel, share: Floats, record: np.void) -> None:
     record['load_mode'][:k] += (fit @ (pushed - force @ record['load_mode'][:k].T)).T
 
 
-def _fill_flow(records: Records, rows: Ints, mean: Floats, square: Floats, cube: Floats) -> None:
+def _fill_damping(
+    records: Records, rows: Ints, mean: Floats, square: Floats, cube: Floats
+) -> None:
     """
-    Scale the displacement across the branch to that at which drag damps as its mean square does.
+    Scale the mean displacement to the one whose drag damping is that of the mean square.
 
     Both axes of the first shape count as one, so that it does not matter how they are laid.
 
-    In wind this damps as the pieces do. In still air they do so by the mean cube, which needs a
-    speed of mean cube over mean square: what the flow lacks of that is the spread.
+    In wind its damping is that of the pieces. In still air that is the mean cube of their speed:
+    the spread is the missing part of the speed of mean cube over mean square.
     """
     across = np.square(mean[:, :2]).sum(axis=(1, 2))
     ratio = np.divide(square, across, out=np.ones_like(square), where=across > 0.0)
@@ -358,14 +360,14 @@ def _fill_flow(records: Records, rows: Ints, mean: Floats, square: Floats, cube:
 
 class _SlantingWinds:
     """
-    Winds from all sides, along the ground and, as branches bend, aslant.
+    Winds from all sides, horizontal and, as branches bend, oblique.
 
-    The first comes from the side that a direction (3,) points to, so that a tree that is turned as
-    a whole has the same load from the side that is turned with it.
+    The first one follows a direction (3,), so that a rotated tree has the load of the rotated
+    wind.
     """
 
     def __init__(self, direction: Floats) -> None:
-        """Lay 16 bearings on each of three rises."""
+        """Make winds of 16 bearings at each of three elevations."""
         x, y, _ = direction
         points = math.hypot(x, y) > 1e-6 * float(np.linalg.norm(direction))
         bearing = (math.atan2(y, x) if points else 0.0) + np.arange(16) * np.pi / 8.0
@@ -379,30 +381,29 @@ class _SlantingWinds:
 
     def squares(self, projectors: Floats) -> Floats:
         """Return ``u . P u`` of projectors (k, 6) in each wind u, (48, k)."""
-        squares: Floats = np.maximum(self._weights @ projectors.T, 0.0)
-        return squares
+        return np.asarray(np.maximum(self._weights @ projectors.T, 0.0))
 
     def nearest(self, squares: Floats) -> Floats:
-        """Return the projector (6,) whose squares come nearest to these, (48,)."""
-        projector: Floats = np.linalg.lstsq(self._weights, squares, rcond=None)[0]
-        return projector
+        """Return the projector (6,) that fits these squares, (48,), best."""
+        return np.asarray(np.linalg.lstsq(self._weights, squares, rcond=None)[0])
 
 
-def _drawn_turns(model: BranchModel) -> Floats:
+def _drawn_modes(model: BranchModel) -> Floats:
     """
-    Rotation vector of each segment per unit of each coordinate, as it is drawn, (k, m, 3).
+    Rotation vector of each segment per unit of each coordinate, as it is drawn, (m, k, 3).
 
-    A plain branch turns by one slope about the axes across its chord.
+    A plain branch rotates by one slope about the axes across its chord.
     """
     if len(model.fields) == 2:
         e1, e2 = across(model.beam.chord)
-        return np.multiply.outer(model.shape.segment_slope, [e2, -e1]).transpose(1, 0, 2)
-    return np.stack([model.beam.over_segments(one.slope) for one in model.fields])
+        return np.multiply.outer(model.shape.segment_slope, np.stack([e2, -e1]))
+    modes = [model.beam.over_segments(one.slope) for one in model.fields]
+    return np.stack(modes, axis=1)
 
 
 def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
     """
-    Slope of each segment as its branch is drawn, and under a load at the tip, both (n,).
+    Slope of each segment of a plain branch, and under a load at the tip, both (n,).
 
     The latter is the mean over the segment of 1.5 (2 u - u^2), u the arc length over the length.
     """
@@ -419,10 +420,10 @@ def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
 
 def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:
     """
-    Lay out what the wind load knows of `BRANCH` records, (b,), sixteen at a time, (ceil(b / 16),).
+    Lay the wind load of `BRANCH` records, (b,), out in sixteens, (ceil(b / 16),).
 
-    At rest, with no force yet; of `load_fields` with as many rows as the branches have, or of a
-    layout with further fields, which are left zeros.
+    Records are at rest, without force, and of `load_layout` with the rows of the branches, or of a
+    layout with further fields, which are zero.
     """
     if layout is None:
         layout = load_layout(branches.dtype['load_mode'].shape[0])
@@ -433,7 +434,7 @@ def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> 
     for name in ('damping_mode', 'load_rotation', 'load_mode'):
         rows = records.dtype[name].shape[0]
         records[name][block, ..., slot] = branches[name][:, :rows]
-    records['along'][block, :, slot] = branches['lever'][:, None] * branches['frame'][:, 0]
+    records['chord_lever'][block, :, slot] = branches['lever'][:, None] * branches['frame'][:, 0]
     at_base = cross(branches['base'][:, None], np.eye(3)).swapaxes(1, 2)
     records['coupling'][block, ..., slot] = branches['coupling'] - at_base
     np.maximum.at(records['n_rows'], block, branches['n_coordinates'])

@@ -1,11 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Real spherical harmonics of odd degree: what a wind's load on a tree is a sum of.
+Real spherical harmonics of odd degree, by which the wind load on a tree is expanded.
 
-The opposite wind bears the opposite load, so that even degrees have no part in it. The functions
-are written as harmonic polynomials of the direction (Condon & Shortley's order, no sine or root),
-each scaled to a mean square of 1 over the sphere.
+The opposite wind has the opposite load, so that even degrees do not occur. The functions are
+written as harmonic polynomials of the direction (Condon & Shortley's order, no sine or root), each
+scaled to a mean square of 1 over the sphere.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import part
 
 COUNT = {1: 3, 3: 10, 5: 21}
-"""How many functions there are up to each odd degree."""
+"""Number of functions up to each odd degree."""
 
 _A3, _B3, _C3, _D3 = (35.0 / 8.0) ** 0.5, 105.0**0.5, (21.0 / 8.0) ** 0.5, 7.0**0.5 / 2.0
 _A5, _B5, _C5, _D5, _E5, _F5 = (

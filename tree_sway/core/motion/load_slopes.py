@@ -4,9 +4,9 @@
 Slopes of the wind load of a bent tree, by many shapes of motion in one pass.
 
 `tree_passes` differentiated by hand, for all branches at once. A unit of each shape gives every
-base a velocity and a spin; what loads a shape is the power of the changed forces on it, by virtual
-work. Where a force stays as it is and the tree below it turns, it does work on other coordinates
-than before: in a storm that part is as large as the other.
+base a velocity and a spin; the load on a shape is the power of the changed forces on it, by
+virtual work. Where the tree rotates below a constant force, the force does work on other
+coordinates: in a storm that part is as large as the other.
 
 Twists are (velocity, spin) and wrenches (force, moment); both are about the root node and in the
 frame of the tree where no other point and frame are named.
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.motion.plain.numpy_passes import cross_matrices, of_slots
 from tree_sway.core.motion.plain.numpy_rotation import cross, quaternions_of
-from tree_sway.core.motion.response import joint_motion, levels_of, own_motion, summed_outward
+from tree_sway.core.motion.response import joint_motion, levels_of, own_motion, sum_outward
 
 _ONE = np.eye(3)
 _TOGETHER = 256
@@ -32,14 +32,15 @@ _TOGETHER = 256
 
 class LoadSlopes:
     """
-    What the load of a tree on some shapes changes by, as they move.
+    Slopes of the load of a tree on some shapes by their motion.
 
     Parameters
     ----------
     records
-        Branches, work and loads that ``moments`` writes of a pose, as `modal.wind_moments` does.
+        Records of branches, work and loads that ``moments`` writes, as `modal.wind_moments`.
     moments
-        Find the loads at a pose (N,), at rates (N,) and in a wind [m/s], (3,), at 1 kg/m^3.
+        Function that finds the loads at a pose (N,), rates (N,) and a wind [m/s], (3,), of 1
+        kg/m^3.
     shapes
         Key rotations of each shape, (N, m).
 
@@ -51,7 +52,7 @@ class LoadSlopes:
         moments: Callable[[Floats, Floats, Floats], Floats],
         shapes: Floats,
     ) -> None:
-        """Find what a unit of each shape does to each branch on its parent."""
+        """Find the motion of each branch on its parent per unit of each shape."""
         branches, self._work, self._loads = records
         self._branches, count = branches, len(branches)
         bearing, self._on = np.unique(np.maximum(branches['parent'], 0), return_inverse=True)
@@ -64,7 +65,7 @@ class LoadSlopes:
         self._moments = moments
         shapes = shapes.astype(np.float32)
         self._joint = joint_motion(branches, shapes)
-        self._turn, self._loaded, self._damped = (
+        self._load_rotation, self._load_mode, self._damping_mode = (
             own_motion(branches, name, shapes)
             for name in ('load_rotation', 'load_mode', 'damping_mode')
         )
@@ -73,78 +74,81 @@ class LoadSlopes:
         """
         Differentiate modal loads by the amounts of the shapes, and by their rates, both (m, m).
 
-        By the shape that moves, then the one that is loaded; the tree is still at x, (N,).
+        The first axis is the shape that moves, the second the one that is loaded; the tree is at
+        x, (N,), without motion.
         """
         self._moments(x, np.zeros(len(x)), wind)
         branches, work, count = self._branches, self._work, len(self._branches)
         on, parent = self._on, self._bearing[self._on]
-        frame = _rotations(work['attitude'])
-        below = frame[parent]
-        place = (below @ work['arm'][..., None])[..., 0]
+        frame = _rotations(work['orientation'])
+        frames = frame[parent]
+        place = (frames @ work['arm'][..., None])[..., 0]
         place += self._outward(place[self._bearing])[on]
         force = (frame @ work['wrench'][:, :3, None])[..., 0]
         moment = (frame @ work['wrench'][:, 3:, None])[..., 0]
 
-        # Each base on its parent's: its twist by that of the joint, and by how much the force and
-        # moment that it hands on load the joint more as the parent, or the joint itself, moves.
-        leant = -2.0 * branches['per_arm'][:, None, None] * _outer(branches['arm'], work['shift'])
-        slide, spin, curl = self._free + leant @ self._free, np.zeros((count, 3, 6)), work['turn']
-        curl = cross_matrices(curl)
-        spin[:, :, 3:] = _ONE + 0.5 * curl + curl @ curl / 6.0
+        # Each base on its parent's: its twist by that of the joint, and how the force and moment
+        # at the joint change as the parent, or the joint itself, moves.
+        per_arm, moved = branches['per_arm'][:, None, None], work['displacement']
+        leant = -2.0 * per_arm * _outer(branches['arm'], moved)
+        slide, spin = self._free + leant @ self._free, np.zeros((count, 3, 6))
+        skew = cross_matrices(work['rotation'])
+        spin[:, :, 3:] = _ONE + 0.5 * skew + skew @ skew / 6.0
         relative = np.concatenate([slide, spin], axis=1)
-        twist = _blocks(below, cross_matrices(place) @ below, 0.0, below) @ relative
-        pulled, bent = (np.einsum('bji,bj->bi', below, each) for each in (force, moment))
-        carried = cross_matrices(force)
+        twist = _blocks(frames, cross_matrices(place) @ frames, 0.0, frames) @ relative
+        pulled, bent = (np.einsum('bji,bj->bi', frames, each) for each in (force, moment))
+        force_cross = cross_matrices(force)
         about_root = cross_matrices(moment + cross(place, force))
-        by_parent = twist.swapaxes(1, 2) @ _blocks(0.0, carried, carried, about_root)
+        by_parent = twist.swapaxes(1, 2) @ _blocks(0.0, force_cross, force_cross, about_root)
         by_joint = spin.swapaxes(1, 2) @ cross_matrices(pulled) @ slide
         # The second derivatives of slide and spin times both.
         by_joint += (branches['arm'] * pulled).sum(axis=1)[:, None, None] * self._bowed
         bent = cross_matrices(bent)
-        by_joint[:, 3:, 3:] += 0.5 * bent + (bent @ curl - 2.0 * curl @ bent) / 6.0
+        by_joint[:, 3:, 3:] += 0.5 * bent + (bent @ skew - 2.0 * skew @ bent) / 6.0
 
-        # Each branch on its base, in its own frame as it is turned.
-        own = of_slots(self._loads['turned'], count)
+        # Each branch on its base, in its own turned frame.
+        own = of_slots(self._loads['rotation'], count)
         turn = frame @ _rotations(quaternions_of(own))
         back = turn.swapaxes(1, 2)
         moving = _blocks(back, -back @ cross_matrices(place), 0.0, back)
         own = cross_matrices(own)
         seeing = _ONE - 0.5 * own + own @ own / 6.0
-        air = np.einsum('bji,bj->bi', turn, (frame @ self._in_slots('air')[..., None])[..., 0])
+        air = (frame @ self._in_slots('air_velocity')[..., None])[..., 0]
+        air = np.einsum('bji,bj->bi', turn, air)
         drag = self._drag(air)
-        push, couple = self._in_slots('own_force'), self._in_slots('coupling')
-        pushed, coupled = (
-            cross_matrices(each) for each in (push, (couple @ push[..., None])[..., 0])
+        own_force, lever = self._in_slots('own_force'), self._in_slots('coupling')
+        forces, moments = (
+            cross_matrices(each) for each in (own_force, (lever @ own_force[..., None])[..., 0])
         )
         small: list[Any] = [
             each.astype(np.float32) for each in (
-                twist, by_parent, by_joint, moving, seeing, couple.swapaxes(1, 2), pushed, coupled,
+                twist, by_parent, by_joint, moving, seeing, lever.swapaxes(1, 2), forces, moments,
                 drag @ cross_matrices(air), drag,
             )
         ]  # fmt: skip
         bases = self._outward(small[0][self._bearing] @ self._joint[self._bearing])
         m = bases.shape[2]
         turning, damping = np.zeros((2, m, m), dtype=np.float32)
-        for first in range(0, count, _TOGETHER):  # what is in between stays in the cache
-            here = slice(first, first + _TOGETHER)
-            twist, by_parent, by_joint, moving, seeing, couple, pushed, coupled, gain, drag = (
-                each[here] for each in small
+        for first in range(0, count, _TOGETHER):  # intermediate results stay in the cache
+            rows = slice(first, first + _TOGETHER)
+            twist, by_parent, by_joint, moving, seeing, lever, forces, moments, gain, drag = (
+                each[rows] for each in small
             )
-            joint, parents = self._joint[here], bases[on[here]]
+            joint, parents = self._joint[rows], bases[on[rows]]
             moves = moving @ (parents + twist @ joint)
-            seen = seeing @ self._turn[here] + moves[:, 3:]
-            arm = couple @ moves[:, 3:] + moves[:, :3]
-            work_at = arm + self._loaded[here]
+            seen = seeing @ self._load_rotation[rows] + moves[:, 3:]
+            arm = lever @ moves[:, 3:] + moves[:, :3]
+            work_at = arm + self._load_mode[rows]
             turning += _power(by_parent @ parents + by_joint @ joint, joint)
-            turning -= _power(pushed @ seen, moves[:, :3])
-            turning -= _power(coupled @ seen + pushed @ moves[:, :3], moves[:, 3:])
+            turning -= _power(forces @ seen, moves[:, :3])
+            turning -= _power(moments @ seen + forces @ moves[:, :3], moves[:, 3:])
             turning += _power(gain @ seen, work_at)
-            damping -= _power(drag @ (arm + self._damped[here]), work_at)
+            damping -= _power(drag @ (arm + self._damping_mode[rows]), work_at)
         return turning, damping
 
     def _outward(self, joints: NDArray[Any]) -> NDArray[Any]:
-        """Sum what branches that bear others have on their parents from the root on."""
-        return summed_outward(self._on[self._bearing], self._levels, joints)
+        """Sum the joint motion of branches that have children from the root on."""
+        return sum_outward(self._on[self._bearing], self._levels, joints)
 
     def _in_slots(self, name: str) -> Floats:
         return of_slots(self._loads[name], len(self._branches))
@@ -159,7 +163,7 @@ class LoadSlopes:
 
 
 def _power(moved: Singles, loaded: Singles) -> Singles:
-    """Sum products of what shapes move and what they load, both (b, k, m), to (m, m)."""
+    """Sum products of motion and load by shapes, both (b, k, m), to (m, m)."""
     m = moved.shape[2]
     return moved.reshape(-1, m).T @ loaded.reshape(-1, m)
 

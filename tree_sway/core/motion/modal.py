@@ -3,13 +3,13 @@
 """
 Natural modes of the coupled tree as oscillators, on the loads of all branches.
 
-The model `full` steps all modes, a number of coordinates that many. The load is that of the state
-half a step on, and is constant over the step.
+The model `full` steps all modes, a number of coordinates steps that number. The load is that of
+the state at the middle of the step, and is constant over the step.
 
-**Implicit where it must be.** What a load does in a step is felt by the load itself: twigs in a
-storm point along the wind within a fraction of it. So the load is found again until it is that of
-the state it leads to; in light wind, where the last step's is near enough, once. What still turns
-further than a step can follow is clamped, and counted.
+**Implicit load.** The motion in a step changes the load itself: twigs in a storm point along the
+wind within a fraction of a step. So the load is iterated until it is that of the resulting state;
+in light wind, where the last step's load is close enough, once. Rotations beyond the limit of a
+step are clamped and counted.
 
 Symbols: Phi mode shapes (N, m), stored by mode, (m, N), eta modal coordinates, Q moments
 on the key rotations, w circular frequencies.
@@ -36,28 +36,25 @@ from tree_sway.core.reduction.matrices import Reduction
 from tree_sway.core.reduction.modes import Modes
 
 MOST_TRIALS = 12
-"""How often the load of a step is found at most."""
+"""Largest number of iterations for the load of a step."""
 
 ENOUGH = 0.02
-"""By how much the load may miss that of the middle of its step: the turn that it makes [rad]."""
+"""Tolerance of the load, as the rotation that it makes [rad]."""
 
 
 FARTHEST, MOST_TURN = 2.0, 1.0
-"""How far a branch may turn on its parent, and how far in a step, in [rad]."""
+"""Largest rotation of a branch on its parent, and in a step, in [rad]."""
 
 
 class ModalBank(Branchwise):
     """
-    Oscillators of natural modes of a tree, its slowest or all, of one damping ratio.
+    Oscillators of the slowest or all natural modes of a tree, of one damping ratio.
 
     ``made_of`` are the arrays of `modal_arrays`.
     """
 
     def __init__(
-        self,
-        branches: Records,
-        made_of: Mapping[str, Floats],
-        damping_ratio: float,
+        self, branches: Records, made_of: Mapping[str, Floats], damping_ratio: float
     ) -> None:
         """Make room for the coefficients and the state."""
         self._shapes = made_of['shapes']
@@ -69,14 +66,16 @@ class ModalBank(Branchwise):
         self.damping = 2.0 * damping_ratio * self.loss * made_of['circular']
         self.limit = LOAD_MAX * made_of['diagonal']
         self.weight = made_of['weight']
-        """Stiffness by gravity of each mode in [1/s^2], (m,); below 0 where weight softens it."""
+        """Stiffness by gravity of each mode in [1/s^2], (m,); negative where weight softens it."""
         self.compliance = made_of['branch_compliance'], made_of['mode_compliance']
-        """Of every branch by itself, (N, 9), and of the modes if branches were so, (m, m)."""
+        """
+        Compliance of every isolated branch, (N, 9), and of the modes of isolated branches, (m, m).
+        """
         self._momentum = made_of['momentum'].T
         self._participation = made_of['participation']
         self.work = np.zeros(len(branches), dtype=WORK)
         self.loads = load_records(branches)
-        """Records of `load_fields`."""
+        """Records of `load_layout`."""
         self.modal = np.zeros((5, m))
         self.swing = tuple(self.modal[:3])
         """Displacement, rate and force of each mode, (m,)."""
@@ -87,20 +86,19 @@ class ModalBank(Branchwise):
 
     @property
     def mean_square_motion(self) -> Floats:
-        """Mean square motion of what the wind meets, per unit of each mode, (m,)."""
+        """Mean square motion of the loaded pieces, per unit of each mode, (m,)."""
         area = self.branches['area']
-        mean: Floats = 2.0 * area @ self._participation / max(float(area.sum()), 1e-300)
-        return mean
+        return np.asarray(2.0 * area @ self._participation / max(float(area.sum()), 1e-300))
 
     def set_time_step(self, dt: float) -> None:
-        """Refill how the modes go on in a time step [s]."""
+        """Refill the propagator of the modes for a time step [s]."""
         one = np.ones(len(self.stiffness))
         self._fastest[0] = MOST_TURN / dt
         fill_propagator(one, self.damping, self.stiffness, dt, self.whole)
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
 
     def set_step(self, dt: float) -> None:
-        """Refill what depends on the time step [s]."""
+        """Refill the coefficients for a time step [s]."""
         self.set_time_step(dt)
         block, slot = np.divmod(np.arange(len(self.branches)), WIDTH)
         velocity = self.half[:, 6] + self.half[:, 7]
@@ -132,7 +130,7 @@ class ModalBank(Branchwise):
 
     @property
     def tunable(self) -> Tunable:
-        """Return what changes with stiffness, damping and gravity."""
+        """Return the arrays that change with stiffness, damping and gravity."""
         others = (self.limit, 1.0), *((each, -1.0) for each in self.compliance)
         return Tunable(self.stiffness, self.damping, 1.0, self.weight, others, self.loss)
 
@@ -143,11 +141,11 @@ class ModalBank(Branchwise):
         return damping @ self._participation
 
     def memory(self) -> tuple[Floats, ...]:
-        """Return views of what is carried from one step to the next."""
+        """Return views of the state."""
         return self.modal[:3], self.state[0], self.loads['drag_impulse']
 
     def take(self, eta: Floats, rate: Floats, force: Floats) -> None:
-        """Go on from modes, rates and forces (m,)."""
+        """Continue from modes, rates and forces (m,)."""
         self.modal[0], self.modal[1], self.modal[2] = eta, rate, force
         self.state[0] = 0.0
         self.loads['drag_impulse'] = 0.0
@@ -155,20 +153,19 @@ class ModalBank(Branchwise):
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
         self._compiled_expand()
-        rotations: Floats = self.state[1]
-        return rotations
+        return np.asarray(self.state[1])
 
     def motion(self) -> tuple[Floats, Floats]:
         """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
         return self.rotations().copy(), self.shapes @ self.modal[1]
 
     def take_over(self, x: Floats, v: Floats) -> None:
-        """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
+        """Continue from key rotations and rates, (N,), projected on the modes."""
         self.reset()
         self.modal[0], self.modal[1] = self._momentum @ x, self._momentum @ v
 
     def reset(self) -> None:
-        """Go back to rest."""
+        """Return to rest."""
         self.modal[:] = 0.0
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
@@ -176,8 +173,8 @@ class ModalBank(Branchwise):
 
 
 def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[str, Floats]:
-    """Find what a `ModalBank` is made of, all of it arrays that can be stored."""
-    # One mode after another, so that a loop over coordinates is one of vectors.
+    """Find the arrays of a `ModalBank`, which can be stored."""
+    # One mode after the other, so that loops over coordinates are vectorised.
     shapes = np.ascontiguousarray(modes.shapes.T)
     return {
         'circular': modes.circular,
@@ -194,7 +191,7 @@ def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[
 
 @fused
 def _expand(shapes: Floats, modal: Floats, state: Floats) -> None:
-    """Modes to key rotations."""
+    """Expand modes to key rotations."""
     eta, x = modal[0], state[1]
     for i in range(len(x)):
         x[i] = 0.0
@@ -205,7 +202,7 @@ def _expand(shapes: Floats, modal: Floats, state: Floats) -> None:
 
 @part
 def _to_middle(modal: Floats, state: Floats, shapes: Floats, half: Floats) -> None:
-    """Key rotations and rates half a step on, under the last step's load."""
+    """Key rotations and rates at the middle of the step, under the last step's load."""
     eta, rate, force = modal[0], modal[1], modal[2]
     middle_eta, middle_rate, x, v = modal[3], modal[4], state[1], state[2]
     for k in range(len(eta)):
@@ -228,13 +225,13 @@ def wind_moments(
     """
     Find the moments of a wind on the key rotations of a tree that bends and moves.
 
-    They are written as by `bent_loads`; key rotations are in [rad], their rates in [rad/s], (N,).
+    Moments are those of `bent_loads`; key rotations are in [rad], their rates in [rad/s], (N,).
     """
     outward_pass(branches, work, x, v)
     for b in range(len(branches)):
-        here, j, i = loads[b // WIDTH], b % WIDTH, branches[b].coordinate
+        group, j, i = loads[b // WIDTH], b % WIDTH, branches[b].coordinate
         for c in range(branches[b].n_coordinates):
-            here.x[c, j], here.v[c, j] = x[i + c], v[i + c]
+            group.x[c, j], group.v[c, j] = x[i + c], v[i + c]
     set_air(work, loads, wx, wy, wz)
     wind_forces(loads, per_speed_squared)
     bent_loads(branches, work, loads, moment)
@@ -243,26 +240,26 @@ def wind_moments(
 @fused
 def _advance(
     branches: Branches, work: Works, loads: Loads, modal: Floats, state: Floats, shapes: Floats,
-    limit: Floats, whole: Floats, half: Floats, tried: Floats, momentum: Floats, fastest: Floats,
+    limit: Floats, whole: Floats, half: Floats, trials: Floats, momentum: Floats, fastest: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     eta, rate, force = modal[0], modal[1], modal[2]
     moment, x, v = state[0], state[1], state[2]
-    missing, found = tried[0], tried[3]
-    trial, over, total = 0, 0, 0.0
+    residual, found = trials[0], trials[3]
+    trial, clamped, total = 0, 0, 0.0
     while True:
         _to_middle(modal, state, shapes, half)
         wind_moments(branches, work, loads, x, v, found, wx, wy, wz, per_speed_squared)
         most = 0.0
         for i in range(len(moment)):
-            missing[i] = LOAD_MAX * (found[i] - moment[i]) / limit[i]
-            most = max(most, abs(missing[i]))
+            residual[i] = LOAD_MAX * (found[i] - moment[i]) / limit[i]
+            most = max(most, abs(residual[i]))
         trial += 1
         if most <= ENOUGH or trial == MOST_TRIALS:
             break
-        _try_next(tried, trial)
+        _try_next(trials, trial)
         for i in range(len(moment)):
-            moment[i] += tried[2, i] * limit[i] / LOAD_MAX
+            moment[i] += trials[2, i] * limit[i] / LOAD_MAX
             moment[i] = min(max(moment[i], -limit[i]), limit[i])
         for k in range(len(eta)):
             force[k] = 0.0
@@ -271,28 +268,28 @@ def _advance(
     for i in range(len(moment)):
         if most <= ENOUGH:
             moment[i] = found[i]
-        over += not abs(found[i]) <= limit[i]
+        clamped += not abs(found[i]) <= limit[i]
     for k in range(len(eta)):
-        pushed = 0.0
+        load = 0.0
         for i in range(len(moment)):
-            pushed += shapes[k, i] * moment[i]
-        force[k] = pushed
+            load += shapes[k, i] * moment[i]
+        force[k] = load
         c, old = whole[k], eta[k]
-        eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * pushed
-        rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * pushed
+        eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * load
+        rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * load
         total += 0.0 * eta[k] + 0.0 * rate[k]
     if total != 0.0:
         return -1
     for i in range(len(x)):
         if not (abs(x[i]) <= FARTHEST and abs(v[i]) <= fastest[0]):
-            _hold(modal, state, shapes, momentum, fastest[0])
-            return over + 1
-    return over
+            _clamp(modal, state, shapes, momentum, fastest[0])
+            return clamped + 1
+    return clamped
 
 
 @part
-def _hold(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastest: float) -> None:
-    """Let no branch turn further or faster than a step can follow."""
+def _clamp(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastest: float) -> None:
+    """Clamp rotations and rates of branches to the limits of a step."""
     eta, rate, x, v = modal[0], modal[1], state[1], state[2]
     for i in range(len(x)):
         x[i], v[i] = 0.0, 0.0
@@ -311,45 +308,45 @@ def _hold(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastes
 
 
 @part
-def _try_next(tried: Floats, trial: int) -> None:
+def _try_next(trials: Floats, trial: int) -> None:
     """
-    Find the change of the moments after which nothing should be missing, in [rad].
+    Find the change of the moments that should make the residual zero, in [rad].
 
-    Rows of ``tried`` are what is missing now, what was missing before, and the last change, which
-    is written; behind the next one, pairs of what a change brought, orthonormal, and that change
-    (Anderson's mixing; Walker & Ni 2011, SIAM Journal on Numerical Analysis 49, 1715-1735).
+    Rows of ``trials`` are the residual, the one before, and the last change, which is written;
+    after the next row, pairs of an orthonormal response and the change that causes it (Anderson's
+    mixing; Walker & Ni 2011, SIAM Journal on Numerical Analysis 49, 1715-1735).
     """
-    missing, before, change = tried[0], tried[1], tried[2]
+    residual, before, change = trials[0], trials[1], trials[2]
     if trial > 1:
-        brought, made = tried[2 * trial], tried[2 * trial + 1]
-        for i in range(len(missing)):
-            brought[i], made[i] = missing[i] - before[i], change[i]
+        response, step = trials[2 * trial], trials[2 * trial + 1]
+        for i in range(len(residual)):
+            response[i], step[i] = residual[i] - before[i], change[i]
         for other in range(2, trial):
-            _take_off(brought, made, tried[2 * other], tried[2 * other + 1])
+            _project_out(response, step, trials[2 * other], trials[2 * other + 1])
         square = 0.0
-        for i in range(len(missing)):
-            square += brought[i] * brought[i]
+        for i in range(len(residual)):
+            square += response[i] * response[i]
         scale = 1.0 / math.sqrt(max(square, 1e-300))
-        for i in range(len(missing)):
-            brought[i], made[i] = scale * brought[i], scale * made[i]
-    for i in range(len(missing)):
-        before[i], change[i] = missing[i], 0.0
+        for i in range(len(residual)):
+            response[i], step[i] = scale * response[i], scale * step[i]
+    for i in range(len(residual)):
+        before[i], change[i] = residual[i], 0.0
     for other in range(2, trial + 1):
-        _take_off(missing, change, tried[2 * other], tried[2 * other + 1])
+        _project_out(residual, change, trials[2 * other], trials[2 * other + 1])
     most = 0.0
-    for i in range(len(missing)):
-        change[i] += missing[i]
+    for i in range(len(residual)):
+        change[i] += residual[i]
         most = max(most, abs(change[i]))
-    for i in range(len(missing)):
+    for i in range(len(residual)):
         change[i] *= min(1.0, MOST_TURN / most)
 
 
 @part
-def _take_off(brought: Floats, made: Floats, other: Floats, by: Floats) -> None:
-    """Take off what is along another unit vector, and the change that would bring it."""
+def _project_out(response: Floats, step: Floats, other: Floats, by: Floats) -> None:
+    """Project a response orthogonal to a previous one, and its change with it."""
     share = 0.0
-    for i in range(len(brought)):
-        share += brought[i] * other[i]
-    for i in range(len(brought)):
-        brought[i] -= share * other[i]
-        made[i] -= share * by[i]
+    for i in range(len(response)):
+        share += response[i] * other[i]
+    for i in range(len(response)):
+        response[i] -= share * other[i]
+        step[i] -= share * by[i]

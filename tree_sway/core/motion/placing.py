@@ -1,19 +1,19 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Key rotations to poses: segments follow the key of their branch, branches join from the root.
+Key rotations to poses: segments bend with their branch, branches are joined from the root.
 
-A segment turns by its slope times the branch's rotation vector, so a branch bends as one smooth
-curve and keeps its length. The chord of the bent chain turns by a little less than the coordinate
-says (third cumulant of the slope along the branch); the coordinate is stretched by that much, so
-that the chord angle stays. Beyond 30 degrees a tapered branch goes over to the slope of a load
-at the tip.
+A segment rotates by its slope times the rotation vector of the branch, so a branch bends as one
+smooth curve and keeps its length. The chord of the bent chain rotates by a little less than the
+coordinate (third cumulant of the slope along the branch); the coordinate is stretched by the
+difference, so that the chord angle is right. Beyond 30 degrees the slope of a tapered branch is
+blended with that of a load at the tip.
 
-Sixteen branches at a time, parents before their children: how the bases are turned and where they
-stand, then segment after segment up the sixteen branches at once.
+Sixteen branches are placed at a time, parents before their children: first orientation and
+position of the bases, then one segment after the other of the sixteen branches.
 
-The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose
-is at its segment's root-side node, its x axis runs along the segment (REP-103).
+The pose block is (n, 7) float64 in message order: x y z, then the quaternion as x y z w. A pose is
+at its segment's root-side node, its x axis is along the segment (REP-103).
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from tree_sway.core.arrays import Floats, Ints, Singles
 from tree_sway.core.branch.shapes import MAX_COORDINATES
 from tree_sway.core.kernel import fused, part
 from tree_sway.core.motion.records import (
-    Head,
-    Heads,
+    Block,
+    Blocks,
     instance_layout,
     Instances,
     Segment,
@@ -56,7 +56,7 @@ NONE = np.zeros(0)
 
 @fused
 def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
-    """Write key rotations (N,) of the first instance, by shapes as of `shapes_together`."""
+    """Write key rotations (N,) of the first instance, by the shapes of `shapes_together`."""
     instance = instances[0]
     eta, faded, shown = instance.eta, instance.faded, instance.wanted
     for k in range(len(eta)):
@@ -67,13 +67,13 @@ def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
 
 
 def room_for(n_coordinates: int) -> Floats:
-    """Return zeros for `place` to write key rotations to: it reads past the last of a branch."""
+    """Return zeros for `place` to write key rotations to, and some more that kernels read."""
     return np.zeros(n_coordinates + MAX_COORDINATES)
 
 
 @fused
 def place(
-    instances: Instances, shapes: Singles, segments: Segments, heads: Heads, bases: Floats,
+    instances: Instances, shapes: Singles, segments: Segments, blocks: Blocks, bases: Floats,
     cosine: float, sine: float, scale: float, x: Floats, given: Floats, origin: Floats,
     out: Floats,
 ) -> None:  # fmt: skip
@@ -83,20 +83,20 @@ def place(
     Parameters
     ----------
     instances, shapes
-        What key rotations are found from (`expand`), or `GIVEN` where they are given.
-    segments, heads
-        Records of `SEGMENT` and `head_layout`.
+        Coordinates and shapes of the key rotations (`expand`), or `GIVEN` where these are given.
+    segments, blocks
+        Records of `SEGMENT` and `block_layout`.
     bases
-        Written: orientation of each base from rest, w x y z, then half the key rotation,
-        stretched, (b, 8).
+        Orientation of each base from rest, w x y z, then half the stretched key rotation, (b, 8),
+        written.
     cosine, sine
-        Of half the angle that the tree is turned by about the vertical.
+        Cosine and sine of half the rotation of the tree about the vertical.
     scale
-        Its size over that of its records.
+        Size of the tree over that of its records.
     x
-        Written: key rotations in the order of the coordinates, (N,), in a `room_for` them.
+        Key rotations in the order of the coordinates, (N,), in an array of `room_for`, written.
     given
-        Key rotations, (N,), or `NONE` where they are found.
+        Key rotations, (N,), or `NONE` where they are computed.
     origin
         Root node, (3,).
     out
@@ -108,180 +108,181 @@ def place(
     else:
         for i in range(len(given)):
             x[i] = given[i]
-    last = len(heads) - 1
-    scratch = heads[last]
-    for block in range(last):
-        head = heads[block]
-        _read_parents(head, scratch, bases, x, origin, cosine, sine, out)
-        is_near = _turn_on_parents(head, scratch)
-        farthest = _turn_bases(head, scratch, scale, x, is_near)
-        _write_bases(head, scratch, bases)
-        is_short = is_near and farthest <= NEAR_LIMIT and head.n_rows == 2 and head.is_joined == 1
-        for rank in range(head.n_records):
-            segment = segments[head.block + rank]
+    last = len(blocks) - 1
+    scratch = blocks[last]
+    for number in range(last):
+        block = blocks[number]
+        _read_parents(block, scratch, bases, x, origin, cosine, sine, out)
+        is_near = _rotate_on_parents(block, scratch)
+        largest = _rotate_bases(block, scratch, scale, x, is_near)
+        _write_bases(block, scratch, bases)
+        is_short = is_near and largest <= NEAR_LIMIT and block.n_rows == 2 and block.is_joined == 1
+        for rank in range(block.n_records):
+            segment = segments[block.first_record + rank]
             if is_short:
-                _bend_and_join(segment, scratch, scale, head.n_eights)
+                _bend_and_join(segment, scratch, scale, block.n_eights)
             else:
-                _bend(segment, scratch, head.n_rows, farthest, head.n_eights)
-                _join(segment, scratch, scale, head.is_joined, head.n_eights)
-            _write_poses(head, scratch, rank, segment.n_slots, out)
+                _bend(segment, scratch, block.n_rows, largest, block.n_eights)
+                _join(segment, scratch, scale, block.is_joined, block.n_eights)
+            _write_poses(block, scratch, rank, segment.n_slots, out)
 
 
 @part
 def _read_parents(
-    head: Head, scratch: Head, bases: Floats, x: Floats, origin: Floats,
+    block: Block, scratch: Block, bases: Floats, x: Floats, origin: Floats,
     cosine: float, sine: float, out: Floats,
 ) -> None:  # fmt: skip
-    """Collect the keys of sixteen branches and how the parents of these are turned and stand."""
-    key, parent_key, carrier = scratch.key, scratch.parent_key, scratch.carrier
-    base, parents, on = scratch.parent_base, head.parent, head.base_segment
-    own = head.coordinate
-    for j in range(8 * head.n_eights):  # slots that are empty have the keys of the stem
-        i = np.uintp(own[j])
+    """Read the keys of sixteen branches, and the bases and base segments of their parents."""
+    key, parent_key, support = scratch.key, scratch.parent_key, scratch.support
+    base, parents, on = scratch.parent_base, block.parent, block.base_segment
+    coordinate = block.coordinate
+    for j in range(8 * block.n_eights):  # empty slots have the keys of the stem
+        i = np.uintp(coordinate[j])
         key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
-    if parents[0] < 0:  # the stem, alone
-        for j in range(8 * head.n_eights):
+    if parents[0] < 0:  # the stem
+        for j in range(8 * block.n_eights):
             for row in range(7):
-                base[row, j] = carrier[row, j] = 0.0
-            base[0, j], base[3, j], carrier[5, j], carrier[6, j] = cosine, sine, sine, cosine
-            carrier[0, j], carrier[1, j], carrier[2, j] = origin[0], origin[1], origin[2]
+                base[row, j] = support[row, j] = 0.0
+            base[0, j], base[3, j], support[5, j], support[6, j] = cosine, sine, sine, cosine
+            support[0, j], support[1, j], support[2, j] = origin[0], origin[1], origin[2]
         return
-    for j in range(0, head.n_slots, 4):  # what is read of slots that are empty is of no account
+    for j in range(0, block.n_slots, 4):  # values of empty slots are unused
         a, b, c, d = on[j], on[j + 1], on[j + 2], on[j + 3]
-        take_four(out, a, b, c, d, 0, carrier, 0, j)
-        take_four(out, a, b, c, d, 3, carrier, 3, j)
+        take_four(out, a, b, c, d, 0, support, 0, j)
+        take_four(out, a, b, c, d, 3, support, 3, j)
         a, b, c, d = parents[j], parents[j + 1], parents[j + 2], parents[j + 3]
         take_four(bases, a, b, c, d, 0, base, 0, j)
         take_four(bases, a, b, c, d, 4, base, 4, j)
-        if head.n_parent_rows > 2:
-            _take_further(x, head.parent_coordinate, parent_key, j)
+        if block.n_parent_rows > 2:
+            _read_further(x, block.parent_coordinate, parent_key, j)
 
 
 @part
-def _take_further(x: Floats, first: Ints, keys: Floats, j: int) -> None:
-    """Read further coordinates of four slots, and what lies behind those of who has fewer."""
+def _read_further(x: Floats, first: Ints, keys: Floats, j: int) -> None:
+    """Read further coordinates of four slots, or values after the last one of a branch."""
     for c in range(2, keys.shape[0], 4):
         row = min(c, keys.shape[0] - 4)
         take_four(x, first[j], first[j + 1], first[j + 2], first[j + 3], row, keys, row, j)
 
 
 @part
-def _turn_on_parents(head: Head, scratch: Head) -> bool:
+def _rotate_on_parents(block: Block, scratch: Block) -> bool:
     """
-    Find how sixteen branches are turned from the bases of their parents, by half the vector.
+    Find half the rotation vectors of sixteen bases from the bases of their parents.
 
-    Returns whether none is turned, nor bent by its key, beyond the short series.
+    Returns whether all these, and the key rotations, are within the range of the short series.
     """
-    key, per, turned = scratch.parent_key, head.base_turn, scratch.carrier_turn
-    base, own, angle, n_beyond = scratch.parent_base, scratch.key, scratch.angle, 0
-    for j in range(8 * head.n_eights):
+    parent_key, mode, half = scratch.parent_key, block.base_rotation, scratch.base_half
+    base, key, square, n_beyond = scratch.parent_base, scratch.key, scratch.square, 0
+    for j in range(8 * block.n_eights):
         u, v = base[4, j], base[5, j]
         for k in range(3):
-            turned[k, j] = u * per[0, k, j] + v * per[1, k, j]
-    if head.n_parent_rows > 2:
-        for j in range(8 * head.n_eights):
-            hx, hy, hz = turned[0, j], turned[1, j], turned[2, j]
-            for c in range(2, per.shape[0]):
-                u = 0.5 * key[c, j]
-                hx, hy, hz = hx + u * per[c, 0, j], hy + u * per[c, 1, j], hz + u * per[c, 2, j]
-            turned[0, j], turned[1, j], turned[2, j] = hx, hy, hz
-    for j in range(8 * head.n_eights):
-        hx, hy, hz, u, v = turned[0, j], turned[1, j], turned[2, j], own[0, j], own[1, j]
-        angle[j] = hx * hx + hy * hy + hz * hz
-        n_beyond += 1 if angle[j] > NEAR_LIMIT or u * u + v * v > _BLEND_FROM else 0
+            half[k, j] = u * mode[0, k, j] + v * mode[1, k, j]
+    if block.n_parent_rows > 2:
+        for j in range(8 * block.n_eights):
+            hx, hy, hz = half[0, j], half[1, j], half[2, j]
+            for c in range(2, mode.shape[0]):
+                u = 0.5 * parent_key[c, j]
+                hx, hy, hz = hx + u * mode[c, 0, j], hy + u * mode[c, 1, j], hz + u * mode[c, 2, j]
+            half[0, j], half[1, j], half[2, j] = hx, hy, hz
+    for j in range(8 * block.n_eights):
+        hx, hy, hz, u, v = half[0, j], half[1, j], half[2, j], key[0, j], key[1, j]
+        square[j] = hx * hx + hy * hy + hz * hz
+        n_beyond += 1 if square[j] > NEAR_LIMIT or u * u + v * v > _BLEND_FROM else 0
     return n_beyond == 0
 
 
 @part
-def _half_angles(scratch: Head, farthest: float, n_eights: int) -> None:
-    """Find cosine and sine over it of sixteen half angles from their squares, of which one is."""
-    angle, cosine, sinc = scratch.angle, scratch.cosine, scratch.sinc
-    if farthest <= NEAR_LIMIT:
+def _half_angles(scratch: Block, largest: float, n_eights: int) -> None:
+    """Find cosine and sinc of sixteen half angles from squares up to the largest."""
+    square, cosine, sinc = scratch.square, scratch.cosine, scratch.sinc
+    if largest <= NEAR_LIMIT:
         for j in range(8 * n_eights):
-            cosine[j], sinc[j] = half_angle_near(angle[j])
-    elif farthest <= SERIES_LIMIT:
+            cosine[j], sinc[j] = half_angle_near(square[j])
+    elif largest <= SERIES_LIMIT:
         for j in range(8 * n_eights):
-            cosine[j], sinc[j] = half_angle_series(angle[j])
+            cosine[j], sinc[j] = half_angle_series(square[j])
     else:
         for j in range(8 * n_eights):
-            cosine[j], sinc[j] = half_angle(angle[j])
+            cosine[j], sinc[j] = half_angle(square[j])
 
 
 @part
-def _turn_bases(head: Head, scratch: Head, scale: float, x: Floats, is_near: bool) -> float:
+def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, is_near: bool) -> float:
     """
-    Turn the bases of sixteen branches, place them, and set how their shapes bend.
+    Rotate and place the bases of sixteen branches, and set their amounts of bending.
 
-    Returns a bound on the square of half the angle that any segment turns by.
+    Returns a bound on the squared half angle of any segment.
     """
-    key, below, steepest = scratch.key, scratch.parent_base, head.steepest
-    turned, frame, base, swing = scratch.carrier_turn, head.frame, scratch.base, scratch.swing
-    half_turn, half_key, bound = scratch.half_turn, scratch.half_key, scratch.bound
-    _half_angles(scratch, 0.0 if is_near else np.inf, head.n_eights)
-    for j in range(8 * head.n_eights):
+    key, parent, steepest = scratch.key, scratch.parent_base, block.steepest
+    rotation, frame, base, sine = scratch.base_half, block.frame, scratch.base, scratch.sine_part
+    half_rotation, half_key, bound = scratch.half_rotation, scratch.half_key, scratch.bound
+    _half_angles(scratch, 0.0 if is_near else np.inf, block.n_eights)
+    for j in range(8 * block.n_eights):
         u, v = key[0, j], key[1, j]
         t = u * u + v * v
         blend = min(max((t - _BLEND_FROM) * _PER_BLEND, 0.0), 1.0)
         bounded = 0.5 * min(t, _STRETCH_TO)
-        own = 0.5 + bounded * head.skew[j]
-        half = own + bounded * blend * (head.tip_skew[j] - head.skew[j])
+        own = 0.5 + bounded * block.skew[j]
+        half = own + bounded * blend * (block.tip_skew[j] - block.skew[j])
         wx = half * (u * frame[2, 0, j] - v * frame[1, 0, j])
         wy = half * (u * frame[2, 1, j] - v * frame[1, 1, j])
         wz = half * (u * frame[2, 2, j] - v * frame[1, 2, j])
         base[4, j], base[5, j] = own * u, own * v
-        half_turn[0, j], half_turn[1, j], half_turn[2, j] = wx, wy, wz
+        half_rotation[0, j], half_rotation[1, j], half_rotation[2, j] = wx, wy, wz
         half_key[0, j], half_key[1, j] = half * u, half * v
-        scratch.blend[j], scratch.square[j] = blend, half * half * t
+        scratch.blend[j], scratch.rotation_square[j] = blend, half * half * t
         bound[j] = half * half * t * steepest[0, j]
         c, s = scratch.cosine[j], scratch.sinc[j]
         bw, bx, by, bz = product(
-            below[0, j], below[1, j], below[2, j], below[3, j],
-            c, s * turned[0, j], s * turned[1, j], s * turned[2, j],
+            parent[0, j], parent[1, j], parent[2, j], parent[3, j],
+            c, s * rotation[0, j], s * rotation[1, j], s * rotation[2, j],
         )  # fmt: skip
         base[0, j], base[1, j], base[2, j], base[3, j] = bw, bx, by, bz
-        swing[0, j] = -bx * wx - by * wy - bz * wz
-        swing[1, j] = bw * wx + by * wz - bz * wy
-        swing[2, j] = bw * wy - bx * wz + bz * wx
-        swing[3, j] = bw * wz + bx * wy - by * wx
-    _reach(scratch.carrier, scratch.next, scale, head.offset, head.is_at_axes, head.n_eights)
-    if head.n_rows > 2:
+        sine[0, j] = -bx * wx - by * wy - bz * wz
+        sine[1, j] = bw * wx + by * wz - bz * wy
+        sine[2, j] = bw * wy - bx * wz + bz * wx
+        sine[3, j] = bw * wz + bx * wy - by * wx
+    offset, eights = block.offset, block.n_eights
+    _transform(scratch.support, scratch.next, scale, offset, block.is_at_axes, eights)
+    if block.n_rows > 2:
         # The square of a sum of n is at most n times the sum of the squares.
-        for j in range(0, 8 * head.n_eights, 4):
-            _take_further(x, head.coordinate, half_key, j)
-        for j in range(8 * head.n_eights):
+        for j in range(0, 8 * block.n_eights, 4):
+            _read_further(x, block.coordinate, half_key, j)
+        for j in range(8 * block.n_eights):
             most = bound[j]
             for c in range(2, half_key.shape[0]):
                 half = 0.5 * half_key[c, j]
                 half_key[c, j] = half
                 most += half * half * steepest[c, j]
-            bound[j] = most * head.last[j]
-    together, farthest = 0.0, 0.0
-    for j in range(8 * head.n_eights):
-        together += bound[j]
-    if together <= NEAR_LIMIT:
-        return together
-    for j in range(8 * head.n_eights):
-        farthest = max(farthest, bound[j])
-    return farthest
+            bound[j] = most * block.bound_factor[j]
+    total, largest = 0.0, 0.0
+    for j in range(8 * block.n_eights):
+        total += bound[j]
+    if total <= NEAR_LIMIT:
+        return total
+    for j in range(8 * block.n_eights):
+        largest = max(largest, bound[j])
+    return largest
 
 
 @part
-def _write_bases(head: Head, scratch: Head, bases: Floats) -> None:
-    """Leave their turned bases to the children."""
-    branch, base, whole = head.branch, scratch.base, head.n_bearing - head.n_bearing % 4
+def _write_bases(block: Block, scratch: Block, bases: Floats) -> None:
+    """Write the rotated bases for the children."""
+    branch, base, whole = block.branch, scratch.base, block.n_parents - block.n_parents % 4
     for j in range(0, whole, 4):
         a, b, c, d = branch[j], branch[j + 1], branch[j + 2], branch[j + 3]
         put_four(base, 0, j, bases, a, b, c, d, 0)
         put_four(base, 4, j, bases, a, b, c, d, 4)
-    for j in range(whole, head.n_bearing):
+    for j in range(whole, block.n_parents):
         for row in range(6):
             bases[branch[j], row] = base[row, j]
 
 
 @part
-def _write_poses(head: Head, scratch: Head, rank: int, n_slots: int, out: Floats) -> None:
-    """Write the poses of sixteen segments, each behind the one before it on its branch."""
-    pose, first = scratch.pose, head.first
+def _write_poses(block: Block, scratch: Block, rank: int, n_slots: int, out: Floats) -> None:
+    """Write the poses of sixteen segments, each after the one before it on its branch."""
+    pose, first = scratch.pose, block.first
     whole = n_slots - n_slots % 4
     for j in range(0, whole, 4):
         a, b, c, d = first[j] + rank, first[j + 1] + rank, first[j + 2] + rank, first[j + 3] + rank
@@ -293,84 +294,84 @@ def _write_poses(head: Head, scratch: Head, rank: int, n_slots: int, out: Floats
 
 
 @part
-def _reach(
-    pose: Floats, to: Floats, scale: float, own: Floats, is_ahead: int, n_eights: int
+def _transform(
+    pose: Floats, out: Floats, scale: float, local: Floats, is_on_axis: int, n_eights: int
 ) -> None:
-    """Find where points of segments' own frames, all on their x axes or not, are at poses."""
+    """Transform points in frames of segments, all on their x axes or not, by poses."""
     for j in range(8 * n_eights):
         x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
-        length = scale * own[0, j]
+        length = scale * local[0, j]
         twice = length + length
-        to[0, j] = pose[0, j] + length - twice * (y * y + z * z)
-        to[1, j] = pose[1, j] + twice * (x * y + w * z)
-        to[2, j] = pose[2, j] + twice * (x * z - w * y)
-    if not is_ahead:
+        out[0, j] = pose[0, j] + length - twice * (y * y + z * z)
+        out[1, j] = pose[1, j] + twice * (x * y + w * z)
+        out[2, j] = pose[2, j] + twice * (x * z - w * y)
+    if not is_on_axis:
         for j in range(8 * n_eights):
             x, y, z = rotated(
-                pose[6, j], pose[3, j], pose[4, j], pose[5, j], 0.0, own[1, j], own[2, j]
+                pose[6, j], pose[3, j], pose[4, j], pose[5, j], 0.0, local[1, j], local[2, j]
             )
-            to[0, j] += scale * x
-            to[1, j] += scale * y
-            to[2, j] += scale * z
+            out[0, j] += scale * x
+            out[1, j] += scale * y
+            out[2, j] += scale * z
 
 
 @part
-def _join(segment: Segment, scratch: Head, scale: float, is_joined: int, n_eights: int) -> None:
-    """Put sixteen turned segments behind those before them, and find where the next ones are."""
-    pose, following = scratch.pose, scratch.next
+def _join(segment: Segment, scratch: Block, scale: float, is_joined: int, n_eights: int) -> None:
+    """Join sixteen rotated segments to those before them, and find the start of the next ones."""
+    pose, start = scratch.pose, scratch.next
     for j in range(8 * n_eights):
-        pose[0, j], pose[1, j], pose[2, j] = following[0, j], following[1, j], following[2, j]
-    _reach(pose, following, scale, segment.reach, is_joined, n_eights)
+        pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
+    _transform(pose, start, scale, segment.own_chord, is_joined, n_eights)
 
 
 @part
-def _bend_and_join(segment: Segment, scratch: Head, scale: float, n_eights: int) -> None:
-    """Turn and join sixteen straight segments of branches that bend a little about one axis."""
-    base, swing, rest, reach = scratch.base, scratch.swing, segment.rest, segment.reach
-    pose, following = scratch.pose, scratch.next
+def _bend_and_join(segment: Segment, scratch: Block, scale: float, n_eights: int) -> None:
+    """Rotate and join sixteen straight segments of branches that bend a little about one axis."""
+    base, sine, rest, chord = scratch.base, scratch.sine_part, segment.rest, segment.own_chord
+    pose, start = scratch.pose, scratch.next
     for j in range(8 * n_eights):
         slope = segment.slope[j]
-        c, s = half_angle_near(slope * slope * scratch.square[j])
+        c, s = half_angle_near(slope * slope * scratch.rotation_square[j])
         s *= slope
         w, x, y, z = product(
-            c * base[0, j] + s * swing[0, j], c * base[1, j] + s * swing[1, j],
-            c * base[2, j] + s * swing[2, j], c * base[3, j] + s * swing[3, j],
+            c * base[0, j] + s * sine[0, j], c * base[1, j] + s * sine[1, j],
+            c * base[2, j] + s * sine[2, j], c * base[3, j] + s * sine[3, j],
             rest[0, j], rest[1, j], rest[2, j], rest[3, j],
         )  # fmt: skip
-        length = scale * reach[0, j]
+        length = scale * chord[0, j]
         twice = length + length
-        px, py, pz = following[0, j], following[1, j], following[2, j]
+        px, py, pz = start[0, j], start[1, j], start[2, j]
         pose[0, j], pose[1, j], pose[2, j] = px, py, pz
         pose[3, j], pose[4, j], pose[5, j], pose[6, j] = x, y, z, w
-        following[0, j] = px + length - twice * (y * y + z * z)
-        following[1, j] = py + twice * (x * y + w * z)
-        following[2, j] = pz + twice * (x * z - w * y)
+        start[0, j] = px + length - twice * (y * y + z * z)
+        start[1, j] = py + twice * (x * y + w * z)
+        start[2, j] = pz + twice * (x * z - w * y)
 
 
 @part
-def _bend(segment: Segment, scratch: Head, n_rows: int, farthest: float, n_eights: int) -> None:
-    """Turn sixteen segments from rest by all coordinates of their branches."""
-    turn, half, angle, rest = segment.turn, scratch.half, scratch.angle, segment.rest
-    base, half_key, half_turn = scratch.base, scratch.half_key, scratch.half_turn
+def _bend(segment: Segment, scratch: Block, n_rows: int, largest: float, n_eights: int) -> None:
+    """Rotate sixteen segments from rest by all coordinates of their branches."""
+    mode, half, square, rest = segment.rotation_mode, scratch.half, scratch.square, segment.rest
+    base, half_key, rotation = scratch.base, scratch.half_key, scratch.half_rotation
     pose, blend = scratch.pose, scratch.blend
     if n_rows == 2:
         for j in range(8 * n_eights):
             slope = segment.slope[j]
             slope += blend[j] * (segment.tip_slope[j] - slope)
-            hx, hy, hz = slope * half_turn[0, j], slope * half_turn[1, j], slope * half_turn[2, j]
+            hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]
             half[0, j], half[1, j], half[2, j] = hx, hy, hz
-            angle[j] = hx * hx + hy * hy + hz * hz
+            square[j] = hx * hx + hy * hy + hz * hz
     else:
-        # All rows that there is room for: a count known when compiled lets the slots be a vector.
+        # All rows of the record: with a count known at compile time the slots are a vector.
         for j in range(8 * n_eights):
             slope = blend[j] * (segment.tip_slope[j] - segment.slope[j])
-            hx, hy, hz = slope * half_turn[0, j], slope * half_turn[1, j], slope * half_turn[2, j]
-            for c in range(turn.shape[0]):
+            hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]
+            for c in range(mode.shape[0]):
                 u = half_key[c, j]
-                hx, hy, hz = hx + u * turn[c, 0, j], hy + u * turn[c, 1, j], hz + u * turn[c, 2, j]
+                hx, hy, hz = hx + u * mode[c, 0, j], hy + u * mode[c, 1, j], hz + u * mode[c, 2, j]
             half[0, j], half[1, j], half[2, j] = hx, hy, hz
-            angle[j] = hx * hx + hy * hy + hz * hz
-    _half_angles(scratch, farthest, n_eights)
+            square[j] = hx * hx + hy * hy + hz * hz
+    _half_angles(scratch, largest, n_eights)
     for j in range(8 * n_eights):
         c, s = scratch.cosine[j], scratch.sinc[j]
         w, x, y, z = product(

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How far branches and their tips move by small key rotations, joined from the root."""
+"""Motion of branches and their tips by small key rotations, joined from the root."""
 
 from __future__ import annotations
 
@@ -17,16 +17,17 @@ from tree_sway.core.arrays import Floats, Ints, Records
 def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Join small rotations (N, ...) from the root to displacements of branch tips, (b, 3, ...)."""
     bases = base_motion(branches, rotations)
-    return carried_to(bases, branches['tip']) + own_motion(branches, 'tip_mode', rotations)
+    return displacement_at(bases, branches['tip']) + own_motion(branches, 'tip_mode', rotations)
 
 
 def centre_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Displacement of the load centres of branches by small rotations (N, ...), (b, 3, ...)."""
     bases = base_motion(branches, rotations)
-    return carried_to(bases, branches['centre']) + own_motion(branches, 'damping_mode', rotations)
+    own = own_motion(branches, 'damping_mode', rotations)
+    return displacement_at(bases, branches['centre']) + own
 
 
-def turn_of_branches(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
+def branch_rotations(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Rotation vectors (b, 3, ...) in [rad] of branches by small rotations (N, ...)."""
     bases = base_motion(branches, rotations)
     return bases[:, 3:] + own_motion(branches, 'load_rotation', rotations)
@@ -41,21 +42,21 @@ def own_motion(branches: Records, mode: str, rotations: NDArray[Any]) -> NDArray
 
 
 def _moved(branches: Records, rotations: NDArray[Any]) -> Iterator[tuple[NDArray[Any], Ints]]:
-    """Rotations (k, c, ...) of those branches (k,) that have as many coordinates, c."""
+    """Yield rotations (k, c, ...) and rows (k,) of branches by number c of coordinates."""
     for count in np.unique(branches['n_coordinates']):
         rows = np.flatnonzero(branches['n_coordinates'] == count)
         yield rotations[branches['coordinate'][rows, None] + np.arange(count)], rows
 
 
 def _sums(twists: Floats, rotations: NDArray[Any]) -> NDArray[Any]:
-    """Motion (k, d, ...) of branches by what a unit of each coordinate moves, (k, c, d)."""
+    """Sum motions per unit of each coordinate, (k, c, d), to those of branches, (k, d, ...)."""
     flat = rotations.reshape(*rotations.shape[:2], math.prod(rotations.shape[2:]))
     moved = np.swapaxes(twists, 1, 2) @ flat
     return moved.reshape(len(twists), twists.shape[2], *rotations.shape[2:])
 
 
 def joint_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
-    """Motion (v, w) of bases about the root by their parents' rotations alone, (b, 6, ...)."""
+    """Motion (v, w) of bases about the root by their parents' rotations only, (b, 6, ...)."""
     motion = np.zeros((len(branches), 6, *rotations.shape[1:]), dtype=rotations.dtype)
     parents = branches['parent']
     for own, rows in _moved(branches, rotations):
@@ -70,26 +71,26 @@ def joint_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
 def base_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Motion (v, w) about the root of branches' bases, (b, 6, ...), by small turns (N, ...)."""
     parents = branches['parent']
-    return summed_outward(parents, levels_of(parents), joint_motion(branches, rotations))
+    return sum_outward(parents, levels_of(parents), joint_motion(branches, rotations))
 
 
-def summed_outward(parents: Ints, levels: list[Ints], joints: NDArray[Any]) -> NDArray[Any]:
-    """Add to what each branch has on its parent, (b, ...), what that one has from the root on."""
+def sum_outward(parents: Ints, levels: list[Ints], joints: NDArray[Any]) -> NDArray[Any]:
+    """Add the motion of the parent from the root on to that of each branch on it, (b, ...)."""
     total = joints.copy()
-    for level in levels[1:]:  # children of the stem have all that is theirs
+    for level in levels[1:]:  # children of the stem are complete
         total[level] += total[parents[level]]
     return total
 
 
 def levels_of(parent: Ints) -> list[Ints]:
-    """Branches as many steps from the stem as each other, the nearest first, without the stem."""
+    """Sort the branches into levels by their distance from the stem, without the stem."""
     depth = np.zeros(len(parent), dtype=np.int64)
     for b, below in enumerate(parent.tolist()):
         depth[b] = depth[below] + 1 if below >= 0 else 0
     return [np.flatnonzero(depth == k) for k in range(1, int(depth.max()) + 1)]
 
 
-def carried_to(motion: NDArray[Any], points: Floats) -> NDArray[Any]:
+def displacement_at(motion: NDArray[Any], points: Floats) -> NDArray[Any]:
     """Displacement (p, 3, ...) of points (p, 3) of bodies moving by (v, w) about the root."""
     x, y, z = points.T.reshape(3, -1, *(1,) * (motion.ndim - 2))
     wx, wy, wz = motion[:, 3], motion[:, 4], motion[:, 5]

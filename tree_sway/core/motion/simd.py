@@ -1,11 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What compilers do not make vectors of by themselves.
+Operations that compilers do not vectorise.
 
-A branch's pose lies in one row, sixteen branches are computed in slots: number by number, carrying
-them over takes longer than computing them. And the shapes of a tree of many branches are its
-largest table: each is read once, stored in single precision and summed in double.
+The pose of a branch is a row, and sixteen branches are computed in slots: to transpose them number
+by number takes longer than to compute them. The shapes of a tree of many branches are its largest
+table: each is read once, stored in single precision and summed in double.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.records import zeros_in_lines
 
 TOGETHER = 64
-"""Coordinates whose shapes lie together and are summed at once."""
+"""Coordinates whose shapes are contiguous and summed at once."""
 
 
 def put_four(
     slots: Any, row: int, slot: int, array: Any, a: int, b: int, c: int, d: int, first: int
 ) -> None:
     """
-    Write four rows of four slots, from a row and slot on, to rows a to d from an element on.
+    Write four rows of four slots, from a row and slot on, to rows a, b, c and d of an array.
 
-    All lie in one piece.
+    The numbers of a row are written from an element ``first`` on.
     """
     for to, j in ((a, slot), (b, slot + 1), (c, slot + 2), (d, slot + 3)):
         array[to, first : first + 4] = slots[row : row + 4, j]
@@ -37,7 +37,7 @@ def put_four(
 def take_four(
     array: Any, a: int, b: int, c: int, d: int, first: int, slots: Any, row: int, slot: int
 ) -> None:
-    """Read what `put_four` writes, or four numbers each of an array (n,) from an element on."""
+    """Read rows as `put_four` writes them, or four numbers each of an array (n,)."""
     for of, j in ((a, slot), (b, slot + 1), (c, slot + 2), (d, slot + 3)):
         rows = array[of] if array.ndim == 2 else array[of:]
         slots[row : row + 4, j] = rows[first : first + 4]
@@ -47,14 +47,14 @@ def write_past_caches(of: Any, into: Any) -> None:
     """
     Copy an array (n,) to memory that is not read soon, without reading it first.
 
-    What is written to memory beyond the caches is else fetched from there before. `settle` makes
-    it seen by other threads.
+    Ordinary writes to memory beyond the caches read it first. `settle` makes the data visible to
+    other threads.
     """
     into[:] = of
 
 
 def settle() -> None:
-    """Wait until all that was written is seen by other threads."""
+    """Wait until all written data is visible to other threads."""
 
 
 def shapes_together(shapes: Floats) -> Any:
@@ -85,12 +85,12 @@ if not WHY_PLAIN:
         return cgutils.get_item_pointer(context, builder, kind, array, index)
 
     def _place(context: Any, builder: Any, kind: Any, array: Any, *index: Any) -> Any:
-        """Where four numbers begin."""
+        """Return the address of four numbers."""
         element = _element(context, builder, kind, array, *index)
         return builder.bitcast(element, _VECTOR.as_pointer())
 
     def _turned(builder: Any, rows: list[Any]) -> tuple[Any, ...]:
-        """Four vectors of the first, second, third and fourth numbers of four."""
+        """Transpose four vectors of four numbers."""
 
         def mixed(one: Any, other: Any, which: list[int]) -> Any:
             picked = ir.Constant(ir.VectorType(ir.IntType(32), 4), which)
@@ -107,7 +107,7 @@ if not WHY_PLAIN:
             def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
                 kinds = signature.args
                 slots, row, slot, array, *rows, first = values
-                of = [
+                source = [
                     _place(
                         context, builder, kinds[0], slots,
                         builder.add(row, row.type(k)), slot,
@@ -119,8 +119,8 @@ if not WHY_PLAIN:
                 else:
                     at = [builder.add(each, first) for each in rows]
                     to = [_place(context, builder, kinds[3], array, each) for each in at]
-                of, to = (of, to) if is_put else (to, of)
-                read = [builder.load(where, align=8) for where in of]
+                source, to = (source, to) if is_put else (to, source)
+                read = [builder.load(where, align=8) for where in source]
                 for value, where in zip(_turned(builder, read), to, strict=True):
                     builder.store(value, where, align=8)
                 return context.get_dummy_value()

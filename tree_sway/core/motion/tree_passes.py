@@ -1,14 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-One pass outward and one inward: how branches move on each other, and what they hand to each other.
+Outward pass of motion and inward pass of loads through the branches of a tree.
 
-Outward, from the stem to the twigs: each base takes over the motion of its parent, in its own
-frame as it is turned, and the wind's force on each branch is found in the air that passes it.
-Inward, from the twigs to the stem: each branch adds up force and moment of all it carries.
+Outward, from the stem to the twigs: the motion of each base follows from that of its parent, in
+its own turned frame, and the wind's force on each branch from its relative velocity. Inward, from
+the twigs to the stem: forces and moments are summed over subtrees.
 
-**One is the other's transpose.** The velocities that drag is found at are those that its moments
-do work at, however far the tree is bent; so no drag ever feeds motion.
+**The passes are each other's transpose.** The drag does work at the very velocities that it is
+computed from, however far the tree is bent; so drag never adds energy.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from tree_sway.core.rotation import product, quaternion, rotated, turned
 @part
 def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
     """
-    Hand rotation [rad] and velocity [rad/s], (N,), of every parent to the bases of its children.
+    Find the motion of all bases by rotations [rad] and rates [rad/s], (N,), of their parents.
 
-    Where bases are, how they move and how they are turned is written to records of `WORK`, (b,).
-    On its way a base keeps its distance from the parent's base, as the end of a rod does.
+    Position, velocity and orientation of the bases are written to records of `WORK`, (b,). A base
+    keeps its distance from the parent's base, as the end of a rod.
     """
-    work[0].velocity[:], work[0].attitude[:] = 0.0, 0.0
-    work[0].attitude[0] = 1.0
+    work[0].velocity[:], work[0].orientation[:] = 0.0, 0.0
+    work[0].orientation[0] = 1.0
     for b in range(1, len(branches)):
-        branch, here, below = branches[b], work[b], work[branches[b].parent]
-        parent, twist, at = branches[branch.parent], branch.twist, branch.base
-        i, shift, turn, arm = parent.coordinate, here.shift, here.turn, here.arm
+        branch, own, parent_work = branches[b], work[b], work[branches[b].parent]
+        parent, twist, base = branches[branch.parent], branch.twist, branch.base
+        i, moved, rotation, arm = parent.coordinate, own.displacement, own.rotation, own.arm
         sx, sy, sz, tx, ty, tz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         ux, uy, uz, wx, wy, wz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for c in range(parent.n_coordinates):
@@ -42,52 +42,52 @@ def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
             tx, ty, tz = tx + q * row[3], ty + q * row[4], tz + q * row[5]
             ux, uy, uz = ux + rate * row[0], uy + rate * row[1], uz + rate * row[2]
             wx, wy, wz = wx + rate * row[3], wy + rate * row[4], wz + rate * row[5]
-        sx += ty * at[2] - tz * at[1]
-        sy += tz * at[0] - tx * at[2]
-        sz += tx * at[1] - ty * at[0]
-        ux += wy * at[2] - wz * at[1]
-        uy += wz * at[0] - wx * at[2]
-        uz += wx * at[1] - wy * at[0]
-        far = branch.per_arm * (sx * sx + sy * sy + sz * sz)
-        gone = 2.0 * branch.per_arm * (sx * ux + sy * uy + sz * uz)
-        ax = (1.0 - far) * branch.arm[0] + sx
-        ay = (1.0 - far) * branch.arm[1] + sy
-        az = (1.0 - far) * branch.arm[2] + sz
-        shift[0], shift[1], shift[2] = sx, sy, sz
-        turn[0], turn[1], turn[2] = tx, ty, tz
+        sx += ty * base[2] - tz * base[1]
+        sy += tz * base[0] - tx * base[2]
+        sz += tx * base[1] - ty * base[0]
+        ux += wy * base[2] - wz * base[1]
+        uy += wz * base[0] - wx * base[2]
+        uz += wx * base[1] - wy * base[0]
+        shortening = branch.per_arm * (sx * sx + sy * sy + sz * sz)
+        shortening_rate = 2.0 * branch.per_arm * (sx * ux + sy * uy + sz * uz)
+        ax = (1.0 - shortening) * branch.arm[0] + sx
+        ay = (1.0 - shortening) * branch.arm[1] + sy
+        az = (1.0 - shortening) * branch.arm[2] + sz
+        moved[0], moved[1], moved[2] = sx, sy, sz
+        rotation[0], rotation[1], rotation[2] = tx, ty, tz
         arm[0], arm[1], arm[2] = ax, ay, az
         vx, vy, vz, px, py, pz = (
-            below.velocity[0], below.velocity[1], below.velocity[2],
-            below.velocity[3], below.velocity[4], below.velocity[5],
+            parent_work.velocity[0], parent_work.velocity[1], parent_work.velocity[2],
+            parent_work.velocity[3], parent_work.velocity[4], parent_work.velocity[5],
         )  # fmt: skip
-        # A rotation on top of one by t spins by t x w / 2 + t x (t x w) / 6 more than its rate w.
+        # The spin of a rotation vector t exceeds its rate w by t x w / 2 + t x (t x w) / 6.
         gx, gy, gz = ty * wz - tz * wy, tz * wx - tx * wz, tx * wy - ty * wx
         kx = px + wx + 0.5 * gx + (ty * gz - tz * gy) / 6.0
         ky = py + wy + 0.5 * gy + (tz * gx - tx * gz) / 6.0
         kz = pz + wz + 0.5 * gz + (tx * gy - ty * gx) / 6.0
-        vx += py * az - pz * ay + ux - gone * branch.arm[0]
-        vy += pz * ax - px * az + uy - gone * branch.arm[1]
-        vz += px * ay - py * ax + uz - gone * branch.arm[2]
-        mine = here.velocity
-        mine[0], mine[1], mine[2] = turned(-tx, -ty, -tz, vx, vy, vz)
-        mine[3], mine[4], mine[5] = turned(-tx, -ty, -tz, kx, ky, kz)
-        old, new = below.attitude, here.attitude
+        vx += py * az - pz * ay + ux - shortening_rate * branch.arm[0]
+        vy += pz * ax - px * az + uy - shortening_rate * branch.arm[1]
+        vz += px * ay - py * ax + uz - shortening_rate * branch.arm[2]
+        own_velocity = own.velocity
+        own_velocity[0], own_velocity[1], own_velocity[2] = turned(-tx, -ty, -tz, vx, vy, vz)
+        own_velocity[3], own_velocity[4], own_velocity[5] = turned(-tx, -ty, -tz, kx, ky, kz)
+        old, new = parent_work.orientation, own.orientation
         qw, qx, qy, qz = quaternion(tx, ty, tz)
         new[0], new[1], new[2], new[3] = product(old[0], old[1], old[2], old[3], qw, qx, qy, qz)
 
 
 @part
 def set_air(work: Works, loads: Loads, wx: float, wy: float, wz: float) -> None:
-    """Give every branch the wind [m/s] that blows at it, as its turned base sees it."""
+    """Write the wind [m/s] of every branch in the turned frame of its base."""
     for b in range(len(work)):
-        here, j, q = loads[b // WIDTH], b % WIDTH, work[b].attitude
-        speed = here.speed[j]
-        here.air[0, j], here.air[1, j], here.air[2, j] = rotated(
-            q[0], -q[1], -q[2], -q[3], speed * (wx + here.gust[0, j]),
-            speed * (wy + here.gust[1, j]), speed * (wz + here.gust[2, j]),
+        group, j, q = loads[b // WIDTH], b % WIDTH, work[b].orientation
+        speed = group.speed[j]
+        group.air_velocity[0, j], group.air_velocity[1, j], group.air_velocity[2, j] = rotated(
+            q[0], -q[1], -q[2], -q[3], speed * (wx + group.gust[0, j]),
+            speed * (wy + group.gust[1, j]), speed * (wz + group.gust[2, j]),
         )  # fmt: skip
         for k in range(6):
-            here.velocity[k, j] = work[b].velocity[k]
+            group.velocity[k, j] = work[b].velocity[k]
 
 
 @part
@@ -98,58 +98,58 @@ def wind_forces(loads: Loads, per_speed_squared: float) -> None:
     Parameters
     ----------
     loads
-        Records of `load_fields`. They hold key rotations and rates half a step on, under the last
-        step's forces, how bases move then, their wind (`set_air`) and the slip of the last step;
-        forces and slip are written.
+        Records of `load_layout`. Input are key rotations and rates at the middle of the step, the
+        motion of the bases, the wind (`set_air`) and the drag impulse of the last step; forces and
+        drag impulse are written.
     per_speed_squared
         `pressure` of the wind in [kg/m^3].
 
     """
     for block in range(len(loads)):
-        here = loads[block]
-        speed, air, turn, slip, couple = (
-            here.velocity, here.air, here.turned, here.drag_impulse, here.coupling,
+        group = loads[block]
+        base, air, rotation, impulse, coupling = (
+            group.velocity, group.air_velocity, group.rotation, group.drag_impulse, group.coupling,
         )  # fmt: skip
-        flow, lean, p, x, v = (
-            here.damping_mode, here.load_rotation, here.projector, here.x, here.v,
+        damping, mode, p, x, v = (
+            group.damping_mode, group.load_rotation, group.projector, group.x, group.v,
         )  # fmt: skip
-        force, own_force, free = here.force, here.own_force, here.moment
+        force, own_force, own_velocity = group.force, group.own_force, group.moment
         for j in range(WIDTH):
             for k in range(3):
-                turn[k, j] = lean[0, k, j] * x[0, j] + lean[1, k, j] * x[1, j]
-                free[k, j] = flow[0, k, j] * v[0, j] + flow[1, k, j] * v[1, j]
-        for c in range(2, here.n_rows):
+                rotation[k, j] = mode[0, k, j] * x[0, j] + mode[1, k, j] * x[1, j]
+                own_velocity[k, j] = damping[0, k, j] * v[0, j] + damping[1, k, j] * v[1, j]
+        for c in range(2, group.n_rows):
             for k in range(3):
                 for j in range(WIDTH):
-                    turn[k, j] += lean[c, k, j] * x[c, j]
-                    free[k, j] += flow[c, k, j] * v[c, j]
+                    rotation[k, j] += mode[c, k, j] * x[c, j]
+                    own_velocity[k, j] += damping[c, k, j] * v[c, j]
         for j in range(WIDTH):
-            tx, ty, tz = turn[0, j], turn[1, j], turn[2, j]
-            ux, uy, uz = air[0, j] - speed[0, j], air[1, j] - speed[1, j], air[2, j] - speed[2, j]
+            tx, ty, tz = rotation[0, j], rotation[1, j], rotation[2, j]
+            ux, uy, uz = air[0, j] - base[0, j], air[1, j] - base[1, j], air[2, j] - base[2, j]
             ux, uy, uz = turned(-tx, -ty, -tz, ux, uy, uz)
-            wx, wy, wz = turned(-tx, -ty, -tz, speed[3, j], speed[4, j], speed[5, j])
-            beta = here.compliance[j]
+            wx, wy, wz = turned(-tx, -ty, -tz, base[3, j], base[4, j], base[5, j])
+            beta = group.compliance[j]
             ux += (
-                beta * slip[0, j]
-                - free[0, j]
-                - (couple[0, 0, j] * wx + couple[1, 0, j] * wy + couple[2, 0, j] * wz)
+                beta * impulse[0, j]
+                - own_velocity[0, j]
+                - (coupling[0, 0, j] * wx + coupling[1, 0, j] * wy + coupling[2, 0, j] * wz)
             )
             uy += (
-                beta * slip[1, j]
-                - free[1, j]
-                - (couple[0, 1, j] * wx + couple[1, 1, j] * wy + couple[2, 1, j] * wz)
+                beta * impulse[1, j]
+                - own_velocity[1, j]
+                - (coupling[0, 1, j] * wx + coupling[1, 1, j] * wy + coupling[2, 1, j] * wz)
             )
             uz += (
-                beta * slip[2, j]
-                - free[2, j]
-                - (couple[0, 2, j] * wx + couple[1, 2, j] * wy + couple[2, 2, j] * wz)
+                beta * impulse[2, j]
+                - own_velocity[2, j]
+                - (coupling[0, 2, j] * wx + coupling[1, 2, j] * wy + coupling[2, 2, j] * wz)
             )
             fx, fy, fz, f = drag(
                 p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
-                per_speed_squared * here.area[j], beta, ux, uy, uz,
-                here.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j]),
+                per_speed_squared * group.area[j], beta, ux, uy, uz,
+                group.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j]),
             )  # fmt: skip
-            slip[0, j], slip[1, j], slip[2, j] = f * ux, f * uy, f * uz
+            impulse[0, j], impulse[1, j], impulse[2, j] = f * ux, f * uy, f * uz
             own_force[0, j], own_force[1, j], own_force[2, j] = fx, fy, fz
             force[0, j], force[1, j], force[2, j] = turned(tx, ty, tz, fx, fy, fz)
 
@@ -159,17 +159,17 @@ def own_loads(loads: Loads) -> None:
     """
     Turn the wind's own forces on branches into loads on their key rotations.
 
-    A force meets a branch where the branch now points. Records are of `load_fields`, after
+    Forces act on the branch in its bent direction. Records are of `load_layout`, after
     `wind_forces`.
     """
     for block in range(len(loads)):
-        here = loads[block]
-        force, push, along, load = here.force, here.load_mode, here.along, here.load
+        group = loads[block]
+        force, mode, lever, load = group.force, group.load_mode, group.chord_lever, group.load
         for j in range(WIDTH):
             fx, fy, fz = force[0, j], force[1, j], force[2, j]
-            load[0, j] = along[0, j] * fx + along[1, j] * fy + along[2, j] * fz
-            load[1, j] = push[0, 0, j] * fx + push[0, 1, j] * fy + push[0, 2, j] * fz
-            load[2, j] = push[1, 0, j] * fx + push[1, 1, j] * fy + push[1, 2, j] * fz
+            load[0, j] = lever[0, j] * fx + lever[1, j] * fy + lever[2, j] * fz
+            load[1, j] = mode[0, 0, j] * fx + mode[0, 1, j] * fy + mode[0, 2, j] * fz
+            load[2, j] = mode[1, 0, j] * fx + mode[1, 1, j] * fy + mode[1, 2, j] * fz
 
 
 @part
@@ -177,13 +177,13 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
     """
     Turn forces into moments on the coordinates of a tree as it is bent and turned.
 
-    The load of a branch goes with it as it turns, and each branch hands on what acts on it, at the
-    place where its base now is, in the frame of its parent's base: `outward_pass` transposed.
+    The load of a branch rotates with it, and its force and moment act on the parent at the bent
+    position of its base: `outward_pass` transposed.
 
     Parameters
     ----------
     branches, work, loads
-        Records of `BRANCH` and `WORK`, (b,), after `outward_pass`, and of `load_fields`, after
+        Records of `BRANCH` and `WORK`, (b,), after `outward_pass`, and of `load_layout`, after
         `wind_forces`.
     moment
         Moments on the coordinates in [N m], (N,), written.
@@ -192,35 +192,36 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
     for block in range(len(loads)):
         _turned_loads(loads[block])
     for b in range(len(branches)):
-        here, j, i = loads[b // WIDTH], b % WIDTH, branches[b].coordinate
+        group, j, i = loads[b // WIDTH], b % WIDTH, branches[b].coordinate
         for c in range(branches[b].n_coordinates):
-            moment[i + c] = here.load[1 + c, j]
+            moment[i + c] = group.load[1 + c, j]
         wrench = work[b].wrench
         for k in range(3):
-            wrench[k], wrench[3 + k] = here.force[k, j], here.moment[k, j]
-        q, world = work[b].attitude, work[b].force
+            wrench[k], wrench[3 + k] = group.force[k, j], group.moment[k, j]
+        q, world = work[b].orientation, work[b].force
         world[0], world[1], world[2] = rotated(
             q[0], q[1], q[2], q[3], wrench[0], wrench[1], wrench[2]
         )
     for b in range(len(branches) - 1, 0, -1):
-        branch, base = branches[b], work[b]
-        wrench, turn, shift, now = base.wrench, base.turn, base.shift, base.arm
-        tx, ty, tz, dx, dy, dz = turn[0], turn[1], turn[2], shift[0], shift[1], shift[2]
+        branch, own = branches[b], work[b]
+        wrench, rotation, moved, bent_arm = own.wrench, own.rotation, own.displacement, own.arm
+        tx, ty, tz = rotation[0], rotation[1], rotation[2]
+        dx, dy, dz = moved[0], moved[1], moved[2]
         fx, fy, fz = turned(tx, ty, tz, wrench[0], wrench[1], wrench[2])
         mx, my, mz = turned(tx, ty, tz, wrench[3], wrench[4], wrench[5])
-        arm, at, twist = branch.arm, branch.base, branch.twist
-        ax, ay, az = now[0], now[1], now[2]
-        below = work[branch.parent].wrench
-        below[0], below[1], below[2] = below[0] + fx, below[1] + fy, below[2] + fz
-        below[3] += mx + ay * fz - az * fy
-        below[4] += my + az * fx - ax * fz
-        below[5] += mz + ax * fy - ay * fx
-        pull = 2.0 * branch.per_arm * (arm[0] * fx + arm[1] * fy + arm[2] * fz)
-        fx, fy, fz = fx - pull * dx, fy - pull * dy, fz - pull * dz
+        arm, base, twist = branch.arm, branch.base, branch.twist
+        ax, ay, az = bent_arm[0], bent_arm[1], bent_arm[2]
+        total = work[branch.parent].wrench
+        total[0], total[1], total[2] = total[0] + fx, total[1] + fy, total[2] + fz
+        total[3] += mx + ay * fz - az * fy
+        total[4] += my + az * fx - ax * fz
+        total[5] += mz + ax * fy - ay * fx
+        axial = 2.0 * branch.per_arm * (arm[0] * fx + arm[1] * fy + arm[2] * fz)
+        fx, fy, fz = fx - axial * dx, fy - axial * dy, fz - axial * dz
         gx, gy, gz = my * tz - mz * ty, mz * tx - mx * tz, mx * ty - my * tx
-        px = mx + 0.5 * gx + (gy * tz - gz * ty) / 6.0 + at[1] * fz - at[2] * fy
-        py = my + 0.5 * gy + (gz * tx - gx * tz) / 6.0 + at[2] * fx - at[0] * fz
-        pz = mz + 0.5 * gz + (gx * ty - gy * tx) / 6.0 + at[0] * fy - at[1] * fx
+        px = mx + 0.5 * gx + (gy * tz - gz * ty) / 6.0 + base[1] * fz - base[2] * fy
+        py = my + 0.5 * gy + (gz * tx - gx * tz) / 6.0 + base[2] * fx - base[0] * fz
+        pz = mz + 0.5 * gz + (gx * ty - gy * tx) / 6.0 + base[0] * fy - base[1] * fx
         parent = branches[branch.parent]
         i = parent.coordinate
         for c in range(parent.n_coordinates):
@@ -233,19 +234,19 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
 @part
 def _turned_loads(loads: Load) -> None:
     """Turn the wind's forces on sixteen branches into loads and moments about their bases."""
-    force, push, load, couple = loads.own_force, loads.load_mode, loads.load, loads.coupling
-    turn, moment = loads.turned, loads.moment
+    force, mode, load, coupling = loads.own_force, loads.load_mode, loads.load, loads.coupling
+    rotation, moment = loads.rotation, loads.moment
     for j in range(WIDTH):
         fx, fy, fz = force[0, j], force[1, j], force[2, j]
-        load[1, j] = push[0, 0, j] * fx + push[0, 1, j] * fy + push[0, 2, j] * fz
-        load[2, j] = push[1, 0, j] * fx + push[1, 1, j] * fy + push[1, 2, j] * fz
+        load[1, j] = mode[0, 0, j] * fx + mode[0, 1, j] * fy + mode[0, 2, j] * fz
+        load[2, j] = mode[1, 0, j] * fx + mode[1, 1, j] * fy + mode[1, 2, j] * fz
         moment[0, j], moment[1, j], moment[2, j] = turned(
-            turn[0, j], turn[1, j], turn[2, j],
-            couple[0, 0, j] * fx + couple[0, 1, j] * fy + couple[0, 2, j] * fz,
-            couple[1, 0, j] * fx + couple[1, 1, j] * fy + couple[1, 2, j] * fz,
-            couple[2, 0, j] * fx + couple[2, 1, j] * fy + couple[2, 2, j] * fz,
+            rotation[0, j], rotation[1, j], rotation[2, j],
+            coupling[0, 0, j] * fx + coupling[0, 1, j] * fy + coupling[0, 2, j] * fz,
+            coupling[1, 0, j] * fx + coupling[1, 1, j] * fy + coupling[1, 2, j] * fz,
+            coupling[2, 0, j] * fx + coupling[2, 1, j] * fy + coupling[2, 2, j] * fz,
         )  # fmt: skip
     for c in range(2, loads.n_rows):
         for j in range(WIDTH):
             fx, fy, fz = force[0, j], force[1, j], force[2, j]
-            load[1 + c, j] = push[c, 0, j] * fx + push[c, 1, j] * fy + push[c, 2, j] * fz
+            load[1 + c, j] = mode[c, 0, j] * fx + mode[c, 1, j] * fy + mode[c, 2, j] * fz

@@ -1,13 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The model `branch`, the paper's: every branch an oscillator of its own, on two axes.
+The model `branch`, the paper's: every branch a separate oscillator on two axes.
 
 A branch meets its own wind with its own inertia, as if its base were at rest.
 
-The load is found once per step, at the state half a step on (exponential midpoint rule), and
-constant over the step; what depends on the branch's own angle is corrected once within the step
-(`two_axis.step_branch`).
+The load is found once per step, at the state at the middle of the step (exponential midpoint
+rule), and is constant over the step; its dependence on the branch's own angle is corrected once
+within the step (`two_axis.step_branch`).
 """
 
 from __future__ import annotations
@@ -62,12 +62,12 @@ class UncoupledBank(Branchwise):
         self.state = np.zeros((2, 2 * n))
         self.x, self.v = self.state
         self.tunable = Tunable(stiffness, damping, inertia, weight)
-        """What changes with stiffness, damping and gravity."""
+        """Arrays that change with stiffness, damping and gravity."""
         self.loads = load_records(branches, OSCILLATORS)
-        """Records of `load_fields`, and what the oscillators add."""
+        """Records of `OSCILLATORS`."""
 
     def set_step(self, dt: float) -> None:
-        """Refill what depends on the time step [s]."""
+        """Refill the coefficients for a time step [s]."""
         n = len(self.branches)
         whole, half, guard = np.zeros((n, 8)), np.zeros((n, 8)), np.zeros((n, 3))
         fill_propagator(self.inertia, self.damping, self.stiffness, dt, whole)
@@ -76,10 +76,10 @@ class UncoupledBank(Branchwise):
         constant = half[:, [0, 1, 2, 4, 5, 6]]
         constant[:, [2, 5]] += half[:, [3, 7]]
         block, slot = np.divmod(np.arange(n), WIDTH)
-        flow = np.square(self.branches['damping_mode'][:, :2]).sum(axis=(1, 2)) / 2.0
+        damping_square = np.square(self.branches['damping_mode'][:, :2]).sum(axis=(1, 2)) / 2.0
         for name, rows in (('whole', whole), ('half', constant), ('guard', guard)):
             self.loads[name][block, :, slot] = rows
-        self.loads['compliance'][block, slot] = flow * constant[:, 5]
+        self.loads['compliance'][block, slot] = damping_square * constant[:, 5]
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """
@@ -95,7 +95,7 @@ class UncoupledBank(Branchwise):
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Return views of what is carried from one step to the next."""
+        """Return views of the state."""
         return self.x, self.v, self.loads['drag_impulse'], self.loads['load']
 
     def rotations(self) -> Floats:
@@ -107,12 +107,12 @@ class UncoupledBank(Branchwise):
         return self.x.copy(), self.v.copy()
 
     def take_over(self, x: Floats, v: Floats) -> None:
-        """Go on from key rotations and rates, (2 b,)."""
+        """Continue from key rotations and rates, (2 b,)."""
         self.reset()
         self.x[:], self.v[:] = x, v
 
     def reset(self) -> None:
-        """Go back to rest."""
+        """Return to rest."""
         self.state[:] = 0.0
         self.work[:] = np.zeros((), dtype=WORK)
         self.loads['drag_impulse'] = self.loads['load'] = 0.0
@@ -126,9 +126,9 @@ def _advance(
     x, v = state[0], state[1]
     n = len(branches)
     for b in range(n):
-        here, j = banks[b // WIDTH], b % WIDTH
+        group, j = banks[b // WIDTH], b % WIDTH
         for k in range(2):
-            here.now_x[k, j], here.now_v[k, j] = x[2 * b + k], v[2 * b + k]
+            group.now_x[k, j], group.now_v[k, j] = x[2 * b + k], v[2 * b + k]
     for block in range(len(banks)):
         _to_middle(banks[block])
     set_air(work, banks, wx, wy, wz)
@@ -138,18 +138,18 @@ def _advance(
     for block in range(len(banks)):
         clamped += _step(banks[block])
     for b in range(n):
-        here, j = banks[b // WIDTH], b % WIDTH
+        group, j = banks[b // WIDTH], b % WIDTH
         for k in range(3):
-            work[b].force[k] = here.force[k, j]
+            work[b].force[k] = group.force[k, j]
         for k in range(2):
-            x[2 * b + k], v[2 * b + k] = here.now_x[k, j], here.now_v[k, j]
+            x[2 * b + k], v[2 * b + k] = group.now_x[k, j], group.now_v[k, j]
             total += 0.0 * x[2 * b + k] + 0.0 * v[2 * b + k]
     return clamped if total == 0.0 else -1
 
 
 @part
 def _to_middle(bank: Oscillators) -> None:
-    """State of sixteen branches half a step on, under the last step's load."""
+    """State of sixteen branches at the middle of the step, under the last step's load."""
     x, v, load, h = bank.now_x, bank.now_v, bank.load, bank.half
     middle_x, middle_v = bank.x, bank.v
     for j in range(WIDTH):

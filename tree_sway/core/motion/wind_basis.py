@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Model `wind_basis`: a tree as a few oscillators, driven by a table of all even winds.
+Model `wind_basis`: a tree as a few oscillators, driven by a table of all uniform winds.
 
-What a step costs does not depend on the tree's size. The coordinates do most of what the tree does
-in steady winds and gusts (`reduction.modes.leading_modes`); each has its inertia, so that nothing
-follows a wind at once. The load is that of the state half a step on. It comes from a table
-(`wind_basis_table`) and not from the branches. A wind or a lean beyond the table is
+The cost of a step does not depend on the size of the tree. The coordinates cover most of the
+motion in steady winds and gusts (`reduction.modes.leading_modes`); each has its inertia, so that
+none follows a wind at once. The load is that of the state at the middle of the step. It comes from
+a table (`wind_basis_table`) and not from the branches. A wind or a lean beyond the table is
 clamped to its limit, and counted as ``outside``.
 """
 
@@ -39,13 +39,13 @@ from tree_sway.core.motion.simd import shapes_together, TOGETHER
 from tree_sway.core.motion.wind_basis_force import wind_force
 from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
-CARRIED = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside')
-"""Fields of an instance that a state holds."""
+STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside')
+"""Fields of an instance that are its state."""
 
 
 class WindBasisBank:
     """
-    Oscillators of natural modes in even winds: a table of what the wind does to them.
+    Oscillators of a tree in uniform winds, loaded by a table.
 
     ``modal`` are the same modes on the loads of all branches.
     """
@@ -53,12 +53,12 @@ class WindBasisBank:
     loads: Records | None = None
 
     def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
-        """Stand at rest."""
+        """Begin at rest."""
         self.modal, self.table = modal, table
         self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
         self.compliance, self.limit = modal.compliance, modal.limit
         self.tunable, self.air_damping = modal.tunable, modal.air_damping
-        # Rounded where they are read most, and so everywhere.
+        # Rounded everywhere, as kernels read them in single precision.
         self.all_shapes = modal.shapes.T.astype(np.float32).astype(np.float64)
         self.lay_out(modal.shapes.shape[1])
         self._filled_x = self.room_for_rotations()
@@ -86,11 +86,11 @@ class WindBasisBank:
         self.instance['left_out'] = len(shares) - count
 
     def room_for_rotations(self) -> Floats:
-        """Zeros for `expand` to write key rotations to, (N,) and some more."""
+        """Return zeros for `expand` to write key rotations to, (N,) and some more."""
         return room_for(len(self.laid_shapes) * TOGETHER)
 
     def set_step(self, dt: float) -> None:
-        """Refill what depends on the time step [s]."""
+        """Refill the coefficients for a time step [s]."""
         self.modal.set_step(dt)
         fill_time_step(self.time_step[0], self.modal.whole, self.modal.half)
 
@@ -107,11 +107,11 @@ class WindBasisBank:
     def swing(self) -> tuple[Floats, ...]:
         """Displacement, rate and force of each coordinate, (m,)."""
         m = self.modal.shapes.shape[1]
-        return tuple(self.instance[name][0, :m] for name in CARRIED[:3])
+        return tuple(self.instance[name][0, :m] for name in STATE_FIELDS[:3])
 
     @property
     def whole(self) -> Floats:
-        """Coefficients of a force that is added to a step, (m, 8), as of `fill_propagator`."""
+        """Coefficients of a force that is added to a step, (m, 8), as in `fill_propagator`."""
         time_step, m = self.time_step[0], self.modal.shapes.shape[1]
         # The step was implicit in the damping of each coordinate.
         implicit = 1.0 - self.instance['diagonal'][0, :m] * time_step['half'][5, :m]
@@ -131,7 +131,7 @@ class WindBasisBank:
 
     @property
     def to_place(self) -> tuple[Records, Singles, Floats]:
-        """Return what `place` finds the key rotations from: instance, shapes and room for them."""
+        """Return instance, shapes and memory of the key rotations for `place`."""
         return self.instance, self.laid_shapes, self._filled_x
 
     @cached_property
@@ -139,8 +139,8 @@ class WindBasisBank:
         return partial(entry_of(expand, *self.to_place), *self.to_place)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Return views of what is carried from one step to the next."""
-        return tuple(self.instance[name] for name in CARRIED)
+        """Return views of the state."""
+        return tuple(self.instance[name] for name in STATE_FIELDS)
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -158,21 +158,21 @@ class WindBasisBank:
         return self.rotations().copy(), self.modal.shapes @ self.instance[0]['rate'][:m]
 
     def take_over(self, x: Floats, v: Floats) -> None:
-        """Go on from key rotations and rates, (N,), as far as the modes can follow them."""
+        """Continue from key rotations and rates, (N,), projected on the modes."""
         self.reset()
         self.modal.take_over(x, v)
         m = self.modal.shapes.shape[1]
         self.instance['eta'][0, :m], self.instance['rate'][0, :m] = self.modal.modal[:2]
 
     def reset(self) -> None:
-        """Go back to rest."""
+        """Return to rest."""
         for array in self.memory():
             array[...] = 0.0
         self.modal.reset()
 
 
 def fill_time_step(time_step: np.void, whole: Floats, half: Floats) -> None:
-    """Take coefficients of a step and of half of it, (m, 8), over into a `time_step_layout`."""
+    """Write coefficients of a step and of half a step, (m, 8), into a `time_step_layout`."""
     m = len(whole)
     time_step['whole'], time_step['half'] = 0.0, 0.0
     time_step['whole'][:, :m] = whole.T
@@ -181,7 +181,7 @@ def fill_time_step(time_step: np.void, whole: Floats, half: Floats) -> None:
 
 
 def step_branches(instance: np.void, modal: ModalBank) -> int:
-    """Step the modes from where an instance is, in its wind, on the loads of all branches."""
+    """Step the modes from the state of an instance, in its wind, on the loads of all branches."""
     m = modal.shapes.shape[1]
     eta, rate, force = (instance[name][:m] for name in ('eta', 'rate', 'force'))
     modal.take(eta, rate, force)
@@ -202,7 +202,7 @@ def step_instance(
     table, time_step, instance
         Records of `table_layout`, `time_step_layout` and `instance_layout`.
     is_clamped
-        Whether the table is followed beyond what it was made for.
+        Whether the wind was clamped to the limit of the table before.
     wx, wy, wz
         Mean wind over the step in [m/s].
     per_speed_squared
@@ -211,16 +211,16 @@ def step_instance(
     Returns
     -------
     int
-        1 where the wind or the lean was beyond the table, and was clamped to its limit.
+        1 where the wind or the lean was clamped to the limit of the table, 0 elsewhere.
 
     """
     speed = math.sqrt(wx * wx + wy * wy + wz * wz)
     x, y, z = 1.0, 0.0, 0.0
     if speed > 0.0:
         x, y, z = wx / speed, wy / speed, wz / speed
-    push = per_speed_squared * speed * speed
-    instance.outside = 0 if is_clamped or push <= table.most_pressure else 1
-    push = min(push, table.most_pressure)
+    dynamic_pressure = per_speed_squared * speed * speed
+    instance.outside = 0 if is_clamped or dynamic_pressure <= table.most_pressure else 1
+    dynamic_pressure = min(dynamic_pressure, table.most_pressure)
     eta, rate, force = instance.eta, instance.rate, instance.force
     half, whole = time_step.half, time_step.whole
     middle, middle_rate, wanted = instance.middle, instance.middle_rate, instance.wanted
@@ -232,14 +232,14 @@ def step_instance(
         middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
     diagonal = instance.diagonal
     wind_force(
-        table, x, y, z, push, per_speed_squared, middle, middle_rate, instance.values,
+        table, x, y, z, dynamic_pressure, per_speed_squared, middle, middle_rate, instance.values,
         instance.scratch, wanted, diagonal, table.n_modes - instance.left_out,
     )  # fmt: skip
     instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
     instance.pressure = per_speed_squared
     energy = 0.0
     for i in range(len(eta)):
-        # Implicit in all damping, as if the others moved with it: stable for any wind and step.
+        # Implicit in all damping, with equal rates of the others: stable for any wind and step.
         own = diagonal[i] * half[5, i]
         f = (wanted[i] - own * force[i]) / (1.0 - own)
         q, v = eta[i], rate[i]
@@ -249,7 +249,7 @@ def step_instance(
         energy += table.stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i]
     most = max(before, table.most_energy)
     if not energy <= most:
-        # A hand may pull it further over than any wind does; no wind takes it further.
+        # A pull may bend it more than any wind; no wind adds to that.
         share = math.sqrt(most / energy)
         for i in range(len(eta)):
             eta[i], rate[i] = share * eta[i], share * rate[i]
@@ -274,23 +274,23 @@ def step_in_wind(
     x: float, y: float, z: float,
 ) -> int:  # fmt: skip
     """
-    Take a wind and step the first record of each array.
+    Check a wind and step the first record of each array.
 
     Parameters
     ----------
     tables, time_steps, instances
-        As of `step_instance`.
+        Records, as in `step_instance`.
     limits
         Speed above which a wind is refused in [m/s], then C, N and C0 of a `DragLaw`, (4,).
     stored
         The wind of the last step in [m/s], (3,); written unless the new one is refused.
     x, y, z
-        The wind in [m/s].
+        Components of the wind in [m/s].
 
     Returns
     -------
     int
-        1 if the wind was refused, and 2 more where it was clamped to the limit of the table.
+        Sum of 1 if the wind was refused, and 2 if it was clamped to the limit of the table.
 
     """
     refused = 1

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Modal forces of an even wind, out of the table of a tree."""
+"""Modal forces of a uniform wind from the table of a tree."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tree_sway.core.motion.harmonics import fill_harmonics
 from tree_sway.core.motion.records import N_AZIMUTHS, N_LEVELS, Table
 
 STEEP = math.sin(math.radians(45.0))
-"""Sine of the elevation from which on a wind goes over to one straight up or down."""
+"""Sine of the elevation above which slopes are blended with those of vertical wind."""
 
 
 @part
@@ -22,7 +22,7 @@ def table_corners(
     table: Table, x: float, y: float, eta: Floats
 ) -> tuple[int, int, int, float, float]:
     """
-    Where a wind and a lean are in a table.
+    Locate a wind and a lean in a table.
 
     Returns
     -------
@@ -53,30 +53,30 @@ def table_corners(
 
 @part
 def wind_force(
-    table: Table, x: float, y: float, z: float, push: float, per_speed_squared: float,
+    table: Table, x: float, y: float, z: float, dynamic_pressure: float, per_speed_squared: float,
     eta: Floats, rate: Floats, values: Floats, scratch: Singles, force: Floats, diagonal: Floats,
-    n_felt: int,
+    n_coupled: int,
 ) -> None:  # fmt: skip
     """
-    Find the modal forces of an even wind.
+    Find the modal forces of a uniform wind.
 
     Parameters
     ----------
     table
         Record of `table_layout`.
     x, y, z
-        Where the wind goes, a unit vector.
-    push, per_speed_squared
+        Unit vector of the wind.
+    dynamic_pressure, per_speed_squared
         Dynamic pressure ``p U^2`` in [kg/m/s^2] and p in [kg/m^3].
     eta, rate
         Coordinates and their rates, (m,).
     values, scratch
-        Harmonics, (h,), and room to work in, single precision (4, m), both written.
+        Harmonics, (h,), and scratch memory in single precision, (4, m), both written.
     force, diagonal
-        Modal forces, and the slope by its rate that each is found with, (m,), both written: its
-        own, and that by the others as if they moved with it.
-    n_felt
-        Coordinates whose motion turns and damps all; each of the others damps itself alone.
+        Modal forces, and their slopes by the rate of the coordinate, (m,), both written; the
+        slopes include those by the others, with equal rates.
+    n_coupled
+        Number of coordinates whose motion loads all; each of the others damps only itself.
 
     """
     m = len(eta)
@@ -87,12 +87,12 @@ def wind_force(
     e, f = level * (1.0 - share), level * share
     a, b, c, d = e * (1.0 - up), e * up, f * (1.0 - up), f * up
     turned, damped, off, rates = scratch[0], scratch[1], scratch[2], scratch[3]
-    moving = push / per_speed_squared if per_speed_squared > 0.0 else 0.0
+    moving = dynamic_pressure / per_speed_squared if per_speed_squared > 0.0 else 0.0
     for i in range(m):
         off[i] = eta[i] - (1.0 - share) * (
-            (1.0 - up) * table.standing[first, j, i] + up * table.standing[first, j + 1, i]
+            (1.0 - up) * table.equilibrium[first, j, i] + up * table.equilibrium[first, j + 1, i]
         ) - share * (
-            (1.0 - up) * table.standing[second, j, i] + up * table.standing[second, j + 1, i]
+            (1.0 - up) * table.equilibrium[second, j, i] + up * table.equilibrium[second, j + 1, i]
         )  # fmt: skip
         rates[i] = rate[i]
         moving += table.motion[i] * rate[i] * rate[i]
@@ -107,7 +107,7 @@ def wind_force(
             force[i] += values[k] * table.harmonics[k, i]
     a4, b4, c4, d4 = np.float32(a), np.float32(b), np.float32(c), np.float32(d)
     e4, f4 = np.float32(e * slant), np.float32(f * slant)
-    for k in range(n_felt):
+    for k in range(n_coupled):
         moved, moving_at, slow = off[k], rates[k], np.float32(eta[k])
         am, bm, cm, dm = a4 * moved, b4 * moved, c4 * moved, d4 * moved
         av, bv, cv, dv = a4 * moving_at, b4 * moving_at, c4 * moving_at, d4 * moving_at
@@ -129,17 +129,17 @@ def wind_force(
         )  # fmt: skip
     if steep > 0.0:
         s4 = np.float32(steep)
-        for k in range(n_felt):
+        for k in range(n_coupled):
             moved, moving_at = s4 * np.float32(eta[k]), s4 * rates[k]
             for i in range(m):
                 turned[i] += moved * table.steep_turning[pole, k, i]
                 damped[i] += moving_at * table.steep_damping[pole, k, i]
             diagonal[k] += drag * steep * table.steep_damping[pole, k, k]
     for i in range(m):
-        # Slopes hold near a pose. However far it is from there, a wind loads a tree no more.
+        # Slopes are valid near a pose; the load far from it is bounded by that of any wind.
         load = min(max(force[i] + turned[i], -table.limit[i]), table.limit[i])
-        force[i] = push * load + drag * damped[i]
-    for i in range(n_felt, m):
+        force[i] = dynamic_pressure * load + drag * damped[i]
+    for i in range(n_coupled, m):
         force[i] += diagonal[i] * rate[i]
     for i in range(m):
         diagonal[i] -= drag * (

@@ -1,23 +1,23 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The table of the model `wind_basis`: what every even wind does to the coordinates of a tree.
+Table of the model `wind_basis`: loads of all uniform winds on the coordinates of a tree.
 
-In one even wind U = |U| d all branches feel one direction d, and the load is ``Q = s L(d)`` with
-the dynamic pressure ``s = p(|U|) |U|^2``. L is a smooth function on the sphere, and so is each
-projection of it on a mode (Diener, Rodriguez, Baboud & Reveret 2009, *Wind projection basis for
-real-time animation of trees*, Computer Graphics Forum 28(2), 533-540). Here it is a sum of
-harmonics Y.
+In a uniform wind U = |U| d all branches have one wind direction d, and the load is ``Q = s L(d)``
+with the dynamic pressure ``s = p(|U|) |U|^2``. L is a smooth function on the sphere, and so is
+each projection of it on a mode (Diener, Rodriguez, Baboud & Reveret 2009, *Wind projection basis
+for real-time animation of trees*, Computer Graphics Forum 28(2), 533-540). Here it is a sum of
+harmonics Y, and the effect of the tree's own motion is added.
 
-To it comes what the tree's own motion changes. In steady winds of an azimuth, calm to storm, a
-tree is at rest in poses e, each further over than the one before; its lean, a mean of its
-coordinates, says between which two of them it is. The table has the load there, its slope by the
-coordinates (the load turns and leans with the tree) and by their rates (aerodynamic damping):
+ In steady winds of an azimuth, calm to storm, a
+tree has equilibria e, each with more lean than the one before; its lean, a mean of its
+coordinates, is between those of two of them. The table has the load there, its slope by the
+coordinates (the load rotates with the tree) and by their rates (aerodynamic damping):
 
     F = s [Y C + load + turning (eta - e) + d_z lean eta] + p W damping eta'
 
-with W the root mean square of wind and of what the branches move at. A steep wind goes over to
-slopes of its own, those of winds straight up and down.
+with W the root mean square of wind and velocity of the branches. For steep winds the slopes are
+blended with those of vertical winds.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway.core.motion.modal import ModalBank
 from tree_sway.core.motion.records import N_AZIMUTHS, N_LEVELS, table_layout
-from tree_sway.core.motion.static_answers import WindMoments
+from tree_sway.core.motion.static_responses import WindMoments
 
 SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
 """Steady winds in [m/s] at the levels of the table."""
 
 BEYOND = 1.1
-"""Dynamic pressure up to which the table goes on, over that of the last of `SPEEDS`."""
+"""Largest dynamic pressure of the table, over that of the last of `SPEEDS`."""
 
 _ELEVATIONS = np.deg2rad([-90.0, -60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0, 90.0])
 _ELEVATION_SPREAD = 0.25
@@ -49,8 +49,9 @@ _STEPS, _FARTHEST, _AT_REST, _NEAR_REST = 20, 0.3, 0.01, 0.05
 
 _BREEZE, _FLUTTER = 10.0, 3.0
 """
-Norm of what feeds sways over what damping takes from them, in winds above these [m/s]: from some
-three on trees of hanging twigs flutter, as eigenvalues of their tables say.
+Largest ratio of energy that slopes add to a sway over energy that damping takes, in winds above
+this speed [m/s]: from some three on, eigenvalues of tables of trees with hanging twigs show
+flutter.
 
 """
 
@@ -60,29 +61,29 @@ _LARGE = 2000
 
 class WindBasisTable:
     """
-    What an even wind does to a tree, found once.
+    Loads of all uniform winds on a tree, computed once.
 
     Parameters
     ----------
     bank
-        The coordinates of the tree.
+        Bank of the coordinates of the tree.
     wind_moments
         Loads of the tree.
     drag_law
         C and N of the species.
     degree
-        Of the harmonics, 1, 3 or 5.
+        Degree of the harmonics, 1, 3 or 5.
 
     Attributes
     ----------
     record
-        Of `table_layout`, (1,).
+        Record of `table_layout`, (1,).
 
     """
 
     @classmethod
     def of_arrays(cls, stored: Mapping[str, Any]) -> WindBasisTable:
-        """Return the table whose ``record`` is among arrays that were stored."""
+        """Return the table whose ``record`` is among stored arrays."""
         made = object.__new__(cls)
         made.record = stored['table']
         return made
@@ -98,9 +99,9 @@ class WindBasisTable:
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m, COUNT[degree]))
         table = self.record[0]
-        # Loads are found at some azimuths; those between follow, for loads are smooth there.
+        # Loads are computed at some azimuths and interpolated, for they are smooth.
         each = 2 if len(wind_moments.branches) <= _LARGE else 3
-        self._asked = 2.0 * np.pi * np.arange(0, N_AZIMUTHS, each) / N_AZIMUTHS
+        self._azimuths = 2.0 * np.pi * np.arange(0, N_AZIMUTHS, each) / N_AZIMUTHS
         table['n_modes'], table['degree'] = m, degree
         table['stiffness'] = 1.0
         table['stiffness'][:m] = bank.stiffness
@@ -110,11 +111,11 @@ class WindBasisTable:
         self._fill_standing(table, pressures)
         self._fill_aslant(table)
         table['most_pressure'] = BEYOND * pressures[-1]
-        energy = table['standing'][:, -1] ** 2 @ table['stiffness']
+        energy = table['equilibrium'][:, -1] ** 2 @ table['stiffness']
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
 
     def _fit_harmonics(self, table: np.void, degree: int) -> None:
-        """Fit the load at rest in winds of all azimuths, level ones to count for most."""
+        """Fit the load at rest in winds of all azimuths, horizontal ones with most weight."""
         elevation, azimuth = np.meshgrid(
             _ELEVATIONS, 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, indexing='ij'
         )
@@ -128,69 +129,70 @@ class WindBasisTable:
         table['harmonics'][:, : table['n_modes']] = fitted
 
     def _fill_standing(self, table: np.void, pressures: list[float]) -> None:
-        """Find the loads of the tree, and their slopes, where winds of each speed hold it."""
+        """Find loads and their slopes at the equilibria in winds of each speed."""
         shapes, m = self._shapes, int(table['n_modes'])
         stiffness = table['stiffness'][:m]
-        standing, load = np.zeros((2, len(self._asked), N_LEVELS, m))
-        amount = np.zeros((len(self._asked), m))
-        turning, damping = np.zeros((2, *standing.shape, m))
-        winds = direction(self._asked, 0.0)
+        equilibrium, load = np.zeros((2, len(self._azimuths), N_LEVELS, m))
+        amount = np.zeros((len(self._azimuths), m))
+        turning, damping = np.zeros((2, *equilibrium.shape, m))
+        winds = direction(self._azimuths, 0.0)
         at_rest = self._moments.at_rest(winds, shapes)
         for k, (ahead, upright) in enumerate(zip(winds, at_rest, strict=True)):
             amount[k] = upright / max(float(upright @ (upright / stiffness)), 1e-300)
             at = np.zeros(m)
-            for j, push in enumerate(pressures):
-                weaker, at = at, self._held(at, push, ahead, turning[k, j - 1]) if j > 0 else at
+            for j, s in enumerate(pressures):
+                weaker = at
+                at = self._equilibrium(at, s, ahead, turning[k, j - 1]) if j > 0 else at
                 x = shapes @ at
-                standing[k, j] = at
+                equilibrium[k, j] = at
                 load[k, j] = self._moments(x, self._still, ahead) @ shapes
                 if j > 0 and at is weaker:
                     turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
                     continue
                 turning[k, j], damping[k, j] = self._slopes(x, ahead)
                 if SPEEDS[j] > _BREEZE:
-                    air = self._damping - push / SPEEDS[j] * np.diag(damping[k, j])
-                    turning[k, j] -= self._feeding(push * turning[k, j], air) / push
+                    air = self._damping - s / SPEEDS[j] * np.diag(damping[k, j])
+                    turning[k, j] -= self._feeding(s * turning[k, j], air) / s
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
         load -= load[:, :1]
-        for name, values in (('standing', standing), ('amount', amount), ('load', load)):
+        for name, values in (('equilibrium', equilibrium), ('amount', amount), ('load', load)):
             table[name][..., :m] = _between(values)
         table['turning'][..., :m, :m] = _between(turning)
         table['damping'][..., :m, :m] = _between(damping)
         table['cross_damping'] = np.abs(table['damping']).sum(axis=2)
         table['cross_damping'] -= np.abs(np.einsum('ajii->aji', table['damping']))
-        levels = np.einsum('ajm,am->aj', table['standing'], table['amount'])
+        levels = np.einsum('ajm,am->aj', table['equilibrium'], table['amount'])
         least = 1e-6 * np.abs(levels).max() * np.arange(N_LEVELS)
         table['levels'] = np.maximum.accumulate(levels, axis=1) + least
 
     def _feeding(self, slopes: Floats, damping: Floats) -> Floats:
         """
-        Find by how much slopes (m, m) [1/s^2] feed sways that damping (m,) [1/s] cannot stop.
+        Find the part of slopes (m, m) [1/s^2] that adds more energy than damping (m,) [1/s] takes.
 
-        The part of slopes that no potential has feeds a sway by what it has of two coordinates,
-        and damping takes from both. Hanging twigs would flutter in gales.
+        The antisymmetric part of slopes adds energy to a sway of two coordinates, and damping
+        takes energy from both. Without this bound, hanging twigs flutter in gales.
         """
         circulating = 0.5 * (slopes - slopes.T)
         scale = 1.0 / np.sqrt(np.maximum(damping, 1e-6 * self._root) * self._root)
         scaled = circulating * scale * scale[:, None]
-        if float(np.linalg.norm(scaled)) <= _FLUTTER:  # no less than the norm that counts
+        if float(np.linalg.norm(scaled)) <= _FLUTTER:  # at least the spectral norm
             return np.zeros_like(slopes)
         return circulating * max(0.0, 1.0 - _FLUTTER / float(np.linalg.norm(scaled, 2)))
 
-    def _held(self, at: Floats, push: float, ahead: Floats, turning: Floats) -> Floats:
+    def _equilibrium(self, at: Floats, s: float, ahead: Floats, turning: Floats) -> Floats:
         """
         Find the coordinates (m,) of a tree at rest under a dynamic pressure [kg/m/s^2].
 
-        From where it was at rest, by Broyden's method (Broyden 1965, Mathematics of Computation
-        19, 577-593) with the slopes there, or new ones where these lead no further. Where a branch
-        flips, no path of rests leads on: slopes keep to the way that a tree without inertia goes
-        (Kelley & Keyes 1998, SIAM Journal on Numerical Analysis 35, 508-523). Where that ends far
-        from any rest the table has the pose of the weaker wind again.
+        It is found from the last equilibrium, by Broyden's method (Broyden 1965, Mathematics of
+        Computation 19, 577-593) with the slopes there, or new ones where these do not converge.
+        Where a branch flips, the path of equilibria ends: slopes follow the motion of a tree
+        without inertia (Kelley & Keyes 1998, SIAM Journal on Numerical Analysis 35, 508-523).
+        Where that ends far from any equilibrium, the pose of the weaker wind is repeated.
         """
         start, nearest, least, before, step, rest = at, at, np.inf, np.inf, at, at
         inverse: Floats = np.eye(len(at))
         for turn in range(_STEPS):
-            load = push * (self._moments(self._shapes @ at, self._still, ahead) @ self._shapes)
+            load = s * (self._moments(self._shapes @ at, self._still, ahead) @ self._shapes)
             load, missed = load / self._root, rest
             rest = self._root * at - load
             size = float(np.linalg.norm(rest)) / max(float(np.linalg.norm(load)), 1e-300)
@@ -202,7 +204,7 @@ class WindBasisTable:
                 inverse += np.outer(step - change, step @ inverse) / float(step @ change)
             else:
                 changes = self._slopes(self._shapes @ at, ahead)[0] if turn else turning
-                slope = np.eye(len(at)) - push * (changes / self._root / self._root[:, None]).T
+                slope = np.eye(len(at)) - s * (changes / self._root / self._root[:, None]).T
                 lowest = float(np.linalg.eigvalsh(0.5 * (slope + slope.T))[0])
                 inverse[:] = np.linalg.inv(slope + max(0.0, 0.1 - 1.5 * lowest) * np.eye(len(at)))
             before, step = size, -inverse @ rest
@@ -212,8 +214,8 @@ class WindBasisTable:
         return nearest if least < _NEAR_REST else start
 
     def _fill_aslant(self, table: np.void) -> None:
-        """Fill what winds aslant change in the slopes of an upright tree, and steep winds."""
-        m, azimuths = int(table['n_modes']), self._asked
+        """Fill the change of slopes by oblique winds at rest, and slopes of steep winds."""
+        m, azimuths = int(table['n_modes']), self._azimuths
         rising = [self._slopes(self._still, direction(a, _SLOPE_AT))[0] for a in azimuths]
         # A falling wind is the opposite of one that rises from the other side.
         falling = -np.roll(rising, len(azimuths) // 2, axis=0)
@@ -224,11 +226,11 @@ class WindBasisTable:
         table['steep_damping'][:, :m, :m] = damping
 
 
-def _between(asked: Floats) -> Floats:
-    """Values at `N_AZIMUTHS`, first axis, of a smooth function known at every other one."""
-    waves = np.fft.rfft(asked, axis=0)
+def _between(values: Floats) -> Floats:
+    """Interpolate values at every other azimuth, the first axis, to `N_AZIMUTHS`."""
+    waves = np.fft.rfft(values, axis=0)
     waves[-1] *= 0.5
-    return np.asarray(np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(asked)))
+    return np.asarray(np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(values)))
 
 
 def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:

@@ -3,6 +3,5 @@
 """
 One linear or two-axis oscillator over one step: exact propagator, matrix exponential, step rules.
 
-Everything the solver steps with; what methods do side by side is in ``study/methods``.
-Nothing here knows of branches.
+The solver steps with these; other methods are in the laboratory. Nothing here knows of branches.
 """

@@ -3,11 +3,11 @@
 """
 Divided differences of the exponential at 0, 0 and a pair of eigenvalues, without cancellation.
 
-The pair is mu = -alpha +- sqrt(delta), delta = alpha^2 - kappa, real or complex. Three ways, each
-where it loses no digits: the Taylor series of small pairs, differences of phi functions for real
-pairs far apart, closed forms for the rest. The phase of a lightly damped pair stays in
-double-double, so that a thousand turns in one step are as exact as one (Dekker 1971, A
-floating-point technique for extending the available precision).
+The pair is mu = -alpha +- sqrt(delta), delta = alpha^2 - kappa, real or complex. There are three
+methods, each used where it loses no digits: the Taylor series of small pairs, differences of phi
+functions for real pairs far apart, closed forms for the rest. The phase of a lightly damped pair
+is computed in double-double, so that a thousand periods in one step are as exact as one (Dekker
+1971, A floating-point technique for extending the available precision).
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def exponential_differences(
     alpha: Floats, kappa: Floats, delta: Floats, phase: Floats, phase_low: Floats
 ) -> Floats:
     """
-    Everything that one step of oscillators needs, for unit step and unit inertia, (6, n).
+    Find the functions for a step of oscillators, of unit step and unit inertia, (6, n).
 
     Returns
     -------
@@ -119,7 +119,7 @@ def _by_decay(alpha: Floats, kappa: Floats, sigma: Floats) -> Floats:
 
 
 def _by_phase(alpha: Floats, kappa: Floats, phase: Floats, low: Floats) -> Floats:
-    """Complex pair (or a double one): decaying turns."""
+    """Complex pair (or a double one): decaying oscillation."""
     decay = np.exp(-alpha)
     sine = np.sin(phase) + low * np.cos(phase)
     cosine = np.cos(phase) - low * np.sin(phase)

@@ -4,7 +4,7 @@
 The exact propagator of a bank of oscillators, the kernel of every model.
 
 One row of eight coefficients advances ``I x'' + k2 x' + k1 x = M(t)`` over a step h, exactly, for
-a moment M that runs linearly from M0 to M1 (first-order hold)::
+a moment M that changes linearly from M0 to M1 (first-order hold)::
 
     x1 = c0 x + c1 v + c2 M0 + c3 M1
     v1 = c4 x + c5 v + c6 M0 + c7 M1
@@ -32,7 +32,7 @@ from tree_sway.errors import ParameterError
 
 Floats = NDArray[np.float64]
 
-_NO_MOTION = 'inertia, damping and stiffness are all zero: nothing resists the moment'
+_NO_MOTION = 'inertia, damping and stiffness are all zero'
 
 
 def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt: float) -> Floats:
@@ -54,14 +54,14 @@ def propagator(inertia: ArrayLike, damping: ArrayLike, stiffness: ArrayLike, dt:
     Returns
     -------
     Floats
-        c0 .. c7 of the module's text, (n, 8). Where I and k2 are zero, the static answer: x1 = M1
-        / k1 with the velocity of the line between the two answers.
+        c0 .. c7 of the module's text, (n, 8). Where I and k2 are zero, they give the static
+        response: x1 = M1 / k1, and the velocity of the line between the two responses.
 
     Raises
     ------
     ParameterError
-        A step that is not positive, a value that is negative or not finite, or an oscillator with
-        nothing but zeros, named by its index.
+        A step that is not positive, a value that is negative or not finite, or an oscillator whose
+        coefficients are all zero, named by its index.
 
     """
     refuse_time_step(dt)
@@ -82,10 +82,10 @@ def fill_propagator(
     inertia: Floats, damping: Floats, stiffness: Floats, dt: float, out: Floats
 ) -> int:
     """
-    Refill coefficients (n, 8) in place, for a step [s] that changes; computed in float64.
+    Refill coefficients (n, 8) in place, for a new step [s]; computed in float64.
 
     Arguments are those of `propagator`, not checked. Returned is the index of the first oscillator
-    with nothing but zeros (its row is set to stand still), or -1.
+    whose coefficients are all zero (its row is set to no motion), or -1.
     """
     i, c, k, most = inertia, damping, stiffness, max(dt, 1.0)
     with np.errstate(all='ignore'):
@@ -116,7 +116,7 @@ def _second_order(i: Floats, c: Floats, k: Floats, h: float) -> Floats:
 
 
 def _first_order(c: Floats, k: Floats, h: float) -> Floats:
-    """No inertia, (8, n): k2 x' + k1 x = M, so that the velocity is what the moments leave it."""
+    """No inertia, (8, n): k2 x' + k1 x = M, so that the velocity follows from the moments."""
     z, none = -k / c * h, np.zeros_like(c)
     f1, f2, decay = phi1(z), phi2(z), np.exp(z)
     return np.stack(

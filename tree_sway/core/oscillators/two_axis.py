@@ -5,26 +5,25 @@ A branch on two axes: its force, its gyroscopic term and one guarded step of the
 
 The state is the rotation vector (x, y) in [rad] in the branch's own rest frame (b along the chord,
 e1 and e2 across): the chord points along ``u = cos|e| b + sinc|e| (x e1 + y e2)``. In steady wind
-it moves in one plane, the paper's; when the wind turns it needs no plane and has no singular
-direction. With t = x^2 + y^2 and W the force times its lever, in [N m], Lagrange's equations on
-the sphere are::
+it moves in one plane, the paper's; in other winds it has no singular direction. With t = x^2 + y^2
+and W the force times its lever, in [N m], Lagrange's equations on the sphere are::
 
     I (e'' - gyroscopic) + k2 e' + k1 e = true_force
     true_force = W_perp / sinc + e (e.W)(cos - 1 / sinc) / t - W_b sinc e
     gyroscopic = E L^2 e + 2 B L (-vy, vx),   L = x vy - y vx
 
 The second line of the kinetic energy, T = I/2 (|v|^2 + (sinc^2 - 1) L^2 / t), is analytic in (x,
-y); so is what follows from it, and in this form nothing is divided by t. With sinc = 1 + t s and
+y), and so are its derivatives, which in this form have no division by t. With sinc = 1 + t s and
 cos = 1 + t c: A = s + c + t s c, B = (s - c) / sinc, E = (A + 2 B) / t.
 
-**Series.** s and c are polynomials in t (Chebyshev fits, degree 4 after their first term), right
-to 3e-9 up to the guard; no root, sine or cosine is taken.
-**Guard.** For these terms (x, y) is clamped to sinc >= 0.3 (2.36 rad): beyond it they are the
-circle's. The load is clamped to |W| <= s_max k1 (counted by the caller), the whole moment at 1.5
-s_max k1, and the gyroscopic term is left out where w h >= 0.5, where a step sees no ellipse. A
-bounded moment on an exact, stable propagator is a bounded motion, for any wind and any step. s_max
-= 3 / (w h)^2 between 0.8 and 10: up to there one corrector contracts, and a steady load bends the
-branch to the right side and angle; at 4 / (w h)^2 it no longer does.
+**Series.** s and c are polynomials in t (Chebyshev fits, degree 4 after their first term), with
+errors up to 3e-9 within the guard; there is no root, sine or cosine. **Guard.** For these terms
+(x, y) is clamped to sinc >= 0.3 (2.36 rad): beyond it they have their values on the circle. The
+load is clamped to |W| <= s_max k1 (counted by the caller), the whole moment at 1.5 s_max k1, and
+the gyroscopic term is left out where w h >= 0.5, where a step does not resolve the motion. A
+bounded moment on an exact, stable propagator gives a bounded motion, for any wind and step. s_max
+= 3 / (w h)^2 between 0.8 and 10: within it one corrector converges, and a steady load gives the
+right angle; at 4 / (w h)^2 it does not.
 """
 
 from __future__ import annotations
@@ -39,15 +38,15 @@ from tree_sway.core.kernel import fused, part
 Floats = NDArray[np.float64]
 
 T_MAX = 5.5528  # square of the angle [rad^2] at which sinc = 0.3
-LOAD_MAX = 3.0  # load over stiffness that is followed at w h = 1, |W| / k1 [rad]
-LOAD_FINE, LOAD_COARSE = 10.0, 0.8  # bounds on it at fine and at coarse steps
+LOAD_MAX = 3.0  # largest load over stiffness at w h = 1, |W| / k1 [rad]
+LOAD_FINE, LOAD_COARSE = 10.0, 0.8  # bounds on it at long and at short steps
 MOMENT_MARGIN = 1.5  # the whole moment is clamped to this number of times s_max k1
 GYRO_STEP = 0.5  # w h from which the gyroscopic term is left out
 
 
 @part
 def within_guard(x: float, y: float) -> tuple[float, float, float]:
-    """Return x, y and t, pulled back to the guard's circle where they lie beyond it."""
+    """Return x, y and t, clamped to the circle of the guard."""
     t = x * x + y * y
     limit = T_MAX
     if t > limit:
@@ -97,7 +96,7 @@ def true_force(x: float, y: float, wb: float, w1: float, w2: float) -> tuple[flo
 @part
 def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
     """
-    Acceleration [rad/s^2] that the sphere itself asks for: great circles at constant speed.
+    Acceleration [rad/s^2] of motion along great circles of the sphere at constant speed.
 
     It follows from the rotation vector [rad] and its rate [rad/s], and is zero for motion in one
     plane.
@@ -116,9 +115,9 @@ def gyroscopic(x: float, y: float, vx: float, vy: float) -> tuple[float, float]:
 @part
 def limit_load(wb: float, w1: float, w2: float, limit: float) -> tuple[float, float, float, int]:
     """
-    Hold the length of a load at a limit in [N m]; the last value is whether it was clamped.
+    Clamp the length of a load to a limit in [N m]; the last value is whether it was clamped.
 
-    What is not a number, or so large that its square is not, counts as clamped and pulls nowhere.
+    A load that is not a number, or whose square overflows, counts as clamped and becomes zero.
     """
     square = wb * wb + w1 * w1 + w2 * w2
     if square <= limit * limit:
@@ -152,7 +151,7 @@ def step_branch(
     gyro_inertia: float, load_limit: float, moment_limit: float,
 ) -> tuple[float, float, float, float, int]:  # fmt: skip
     """
-    One step of one branch under a force that is constant over the step: predictor and corrector.
+    Step one branch under a force that is constant over the step: predictor and corrector.
 
     Parameters
     ----------
@@ -161,9 +160,9 @@ def step_branch(
     wb, w1, w2
         Mean force over the step times lever, along b, e1, e2, in [N m].
     c0, c1, c2, c3, c4, c5, c6, c7
-        The branch's row of `oscillators.propagator`.
+        Row of the branch in `oscillators.propagator`.
     gyro_inertia, load_limit, moment_limit
-        The branch's row of `guards`.
+        Row of the branch in `guards`.
 
     Returns
     -------
@@ -187,7 +186,7 @@ def fill_guards(
     inertia: Floats, stiffness: Floats, dt: float, load_max: float, out: Floats
 ) -> None:
     """
-    Refill the guards in place, for a step that changes.
+    Refill the guards in place, for a new step.
 
     Parameters
     ----------
@@ -196,7 +195,7 @@ def fill_guards(
     dt
         Time step in [s].
     load_max
-        Largest load over stiffness to follow at w h = 1 in [rad]: `LOAD_MAX`.
+        Largest load over stiffness at w h = 1 in [rad]: `LOAD_MAX`.
     out
         gyro_inertia in [kg m^2], load_limit and moment_limit in [N m], (n, 3). A branch without
         stiffness has no limits.

@@ -3,10 +3,10 @@
 """
 The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
 
-A child is carried by its parent's curve: a unit of a parent's coordinate moves everything the
-child carries as one rigid body, a twist (v, w) about the root of the tree. With H_j, the momentum
-(linear, angular) of a unit rate of coordinate j with all that it carries, the entries for an
-ancestor's coordinate i are
+A child moves with its parent: a unit of a parent's coordinate moves the subtree of the child as
+one rigid body, by a twist (v, w) about the root of the tree. With H_j, the momentum (linear,
+angular) of a unit rate of coordinate j with its subtree, the entries for an ancestor's coordinate
+i are
 
     M_ij = (v, w)_i . H_j          mass
     Kg_ij = g e_z . (w_i x p_j)     gravity, p_j the linear part of H_j
@@ -47,14 +47,14 @@ class Reduction:
         Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root,
         (b, 9, 6).
     compliance
-        Inverse of ``branchwise``, of each row what is within its branch, (N, 9) in [rad/(N m)].
+        Inverse of ``branchwise``, the block of its branch in each row, (N, 9) in [rad/(N m)].
     mass, gravity
         Symmetric sparse matrices (N, N) in [kg m^2] and [N m/rad].
     elastic
-        Of bending and twist, symmetric sparse (N, N) in [N m/rad]; couples the coordinates of one
-        branch.
+        Stiffness of bending and twist, symmetric sparse (N, N) in [N m/rad]; it couples the
+        coordinates of one branch.
     branchwise
-        Stiffness of every branch by itself, symmetric sparse (N, N).
+        Stiffness of the isolated branches, symmetric sparse (N, N).
 
     """
 
@@ -68,7 +68,7 @@ class Reduction:
 
     @property
     def n_coordinates(self) -> int:
-        """N."""
+        """Number of coordinates, N."""
         return int(self.first[-1])
 
     @property
@@ -105,8 +105,7 @@ class Factors:
 
     def solve(self, right: Floats) -> Floats:
         """Solve for one right side, (N,)."""
-        solved: Floats = self._factors.solve(right[::-1])[::-1]
-        return solved
+        return np.asarray(self._factors.solve(right[::-1])[::-1])
 
 
 def reduce_tree(
@@ -116,7 +115,7 @@ def reduce_tree(
     shear_modulus: float,
     gravity: float,
     *,
-    carries: bool = True,
+    subtrees: bool = True,
 ) -> Reduction:
     """
     Assemble the matrices of the key rotations.
@@ -124,15 +123,15 @@ def reduce_tree(
     Parameters
     ----------
     tree
-        The tree.
+        Tree to be reduced.
     models
-        Its branches.
+        Models of its branches.
     modulus, shear_modulus
         E and G of the wood in [Pa].
     gravity
-        In [m/s^2]; 0 leaves weight out.
-    carries
-        Whether children move with their parents and load them; if not, every branch is alone.
+        Gravity in [m/s^2]; 0 leaves weight out.
+    subtrees Whether children move with their parents and load them; if not, every branch is
+    isolated.
 
     Returns
     -------
@@ -161,7 +160,7 @@ def reduce_tree(
         for number, child in enumerate(model.children):
             base_twists = twists[:, number]
             twist[child, : len(base_twists)] = base_twists
-            if not carries:
+            if not subtrees:
                 continue
             carried = base_twists @ body[child]
             own_mass += carried @ base_twists.T
@@ -179,7 +178,7 @@ def reduce_tree(
         elastic.add(own, own, bent)
         apart.add(own, own, bent + own_weight)
         compliance[own, : len(fields)] = np.linalg.inv(bent + own_weight)
-        if carries:
+        if subtrees:
             body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
     shape = (int(first[-1]), int(first[-1]))
     matrices = (each.symmetric(shape) for each in (mass, weight, elastic, apart))
@@ -187,7 +186,7 @@ def reduce_tree(
 
 
 class _Blocks:
-    """Collects dense blocks of a sparse symmetric matrix, each above or on the diagonal."""
+    """Dense blocks of a sparse symmetric matrix, each above or on the diagonal."""
 
     def __init__(self) -> None:
         self.rows: list[Ints] = []
@@ -207,7 +206,7 @@ class _Blocks:
             self.values.append(values.ravel())
 
     def symmetric(self, shape: tuple[int, int]) -> Any:
-        from scipy import sparse  # it takes long to load, and a set-up that is stored needs none
+        from scipy import sparse  # it takes long to load, and a stored set-up does not need it
 
         entries = np.concatenate(self.values)
         where = np.concatenate(self.rows), np.concatenate(self.columns)
@@ -241,15 +240,15 @@ def _spatial_inertia(model: BranchModel) -> Floats:
 
 def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     """
-    Second-order lift per unit of gravity of all that a branch carries, between its coordinates.
+    Return the second-order lift of a branch and its subtrees per unit of gravity, (k, k).
 
-    Every piece ds turns what lies beyond it: with m the mass beyond, the entry is the integral of
-    psi_i psi_j m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each
-    child's subtree about its base takes the place of m t for the child.
+    Every piece ds rotates the mass beyond it: with m that mass, the entry is the integral of psi_i
+    psi_j m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each child's
+    subtree about its base takes the place of m t for the child.
 
-    Rotations about unlike axes do not add up: what is first bent and then twisted is turned by
-    half of the cross product of the two as well, and the weight, whose moment the branch bears at
-    rest, does work on that (as when a beam gives way sideways: Timoshenko & Gere, 1961).
+    Rotations about different axes do not add up: bending followed by twist adds half of their
+    cross product, and the weight, whose moment the branch bears at rest, does work on that (as in
+    lateral buckling of beams: Timoshenko & Gere, 1961).
     """
     beam = model.beam
     own, nodes, _ = beam.from_base(model.mass)
@@ -277,5 +276,4 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     curvatures = np.stack([one.curvature for one in model.fields]).reshape(n, -1)
     about = np.stack([cross(borne, slope) for slope in slopes]).reshape(n, -1)
     unlike = about @ curvatures.T
-    lift: Floats = 0.5 * (once + once.T + unlike + unlike.T) - both
-    return lift
+    return np.asarray(0.5 * (once + once.T + unlike + unlike.T) - both)

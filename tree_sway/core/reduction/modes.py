@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Natural modes of the coupled tree, and the refusal of a tree that cannot stand.
+Natural modes of the coupled tree, and the refusal of a tree that buckles.
 
 Few modes of a big tree come from Lanczos iteration on ``M y = mu K y``, mu = 1 / w^2 (Lehoucq,
 Sorensen & Yang, 1998); all modes of a small one from the dense problem. A tree whose stiffness
@@ -25,18 +25,18 @@ from tree_sway.errors import ParameterError, TreeError
 
 MOST_ALL_MODES = 3000
 """
-A tree of more coordinates than this is not solved in all its modes: that takes minutes and gains
-nothing.
+Largest number of coordinates of a tree that is solved in all its modes: more take minutes without
+gain.
 
 """
 
 _DENSE_UP_TO = 400
 
 _ENOUGH = 1e-6
-"""Relative error at which Lanczos iteration ends: that of a ratio is far less."""
+"""Relative error at which Lanczos iteration ends; that of eigenvalues is far smaller."""
 
 _NEW = 1e-12
-"""Share of the largest squared motion of the tips that a shape must bring."""
+"""Smallest squared motion of the tips of a further shape, over the largest."""
 
 
 @dataclass(frozen=True)
@@ -49,17 +49,16 @@ class Modes:
     @property
     def frequencies(self) -> Floats:
         """Natural frequencies in [Hz], (m,)."""
-        frequencies: Floats = self.circular / (2.0 * np.pi)
-        return frequencies
+        return np.asarray(self.circular / (2.0 * np.pi))
 
     def slowest(self, count: int) -> Modes:
-        """Leave out all but the slowest."""
+        """Return the slowest modes."""
         return Modes(self.circular[:count], np.ascontiguousarray(self.shapes[:, :count]))
 
 
 @contextmanager
 def solvable(tree: Tree) -> Iterator[None]:
-    """Turn what linear algebra cannot solve, as in a broken scan, into a `TreeError`."""
+    """Raise a `TreeError` where linear algebra fails, as for a broken scan."""
     try:
         yield
     except (np.linalg.LinAlgError, RuntimeError) as error:
@@ -90,7 +89,7 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
         raise ParameterError(
             f'all {n} modes of a tree of {tree.n_branches} branches',
             where="model 'full'",
-            cure='give a number of coordinates: 60 are as near for most trees',
+            cure='give a number of coordinates: 60 suffice for most trees',
         )
     if not 1 <= wanted <= n:
         raise ParameterError(
@@ -111,7 +110,7 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
         inverse_squares, shapes = _largest(
             reduction.mass, reduction.stiffness, reduction.factors, wanted
         )
-    # Below rounding a mode is as good as rigid.
+    # Below rounding a mode is rigid.
     inverse_squares = np.maximum(inverse_squares, 1e-16 * inverse_squares.max())
     slowest_first = np.argsort(-inverse_squares)
     circular = 1.0 / np.sqrt(inverse_squares[slowest_first])
@@ -122,26 +121,24 @@ def leading_modes(
     reduction: Reduction, answers: Floats, moved: Callable[[Floats], Floats], count: int
 ) -> Modes:
     """
-    Find the coordinates that do most of what a tree does in winds.
+    Find the coordinates that cover most of the motion of a tree in winds.
 
-    Proper orthogonal decomposition of what the tips do (Berkooz, Holmes & Lumley, 1993), and the
-    modes of the tree as far as the shapes that it finds allow any (Rayleigh-Ritz).
+    They are the proper orthogonal decomposition of the motion of the tips (Berkooz, Holmes &
+    Lumley, 1993), and the modes of the tree within these shapes (Rayleigh-Ritz).
 
     Parameters
     ----------
     reduction
-        Of the tree.
-    answers
-        Key rotations [rad], (N, k), each weighed by what it counts.
-    moved
+        Reduction of the tree.
+    responses Key rotations [rad], (N, k), multiplied by their weights. moved
         Motion of the tips, (any, k), by key rotations (N, k).
     count
-        How many coordinates there are to be at most.
+        Largest number of coordinates.
 
     Returns
     -------
     Modes
-        Orthogonal in mass and stiffness, by how far they move the tips, the farthest first; their
+        Coordinates, orthogonal in mass and stiffness, those that move the tips most first; their
         frequencies are Rayleigh's quotients.
 
     """
@@ -164,7 +161,7 @@ def leading_modes(
 
 
 def buckling_factor(reduction: Reduction) -> tuple[float, int]:
-    """Critical over real weight, infinite without gravity; the coordinate that gives way most."""
+    """Return critical over real weight, infinite without gravity, and its coordinate."""
     from scipy import linalg
 
     n = reduction.n_coordinates
@@ -198,7 +195,7 @@ def refuse_buckling(tree: Tree, reduction: Reduction) -> None:
     diagonal = reduction.mass.diagonal()
     for coordinate in np.flatnonzero(~(diagonal > 0.0))[:1]:
         raise TreeError(
-            'massless: it has a length but nothing that could swing',
+            'massless: it has a length but no mass',
             where=_branch_name(tree, reduction, int(coordinate)),
             cure='give its segments a diameter and the wood a density above 0',
         )

@@ -1,11 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Linear algebra on one thread, so that a tree is the same bit for bit however many a machine has.
+Linear algebra on one thread, for the same bits on any number of processors.
 
-OpenBLAS divides sums among its threads, so that the last bits of modes depend on their number.
-What numpy and scipy are linked with is asked through the libraries that they have loaded; where it
-is another BLAS nothing is changed.
+OpenBLAS divides sums among its threads, so that the last bits of modes depend on their number. The
+OpenBLAS libraries that numpy and scipy have loaded are set; other BLAS libraries are not changed.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ _NAMES = ('scipy_openblas_{}64_', 'scipy_openblas_{}', 'openblas_{}64_', 'openbl
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Run what is within on one thread of each OpenBLAS; other threads of the program too."""
+    """Run a block with one thread of each OpenBLAS, in other threads of the program too."""
     before = [(put, get()) for put, get in _switches()]
     try:
         for put, _ in before:
@@ -35,7 +34,7 @@ def one_thread() -> Iterator[None]:
 
 @cache
 def _switches() -> tuple[tuple[Callable[[int], object], Callable[[], int]], ...]:
-    """Functions that set and return the number of threads, of each OpenBLAS there is."""
+    """Functions that set and return the number of threads, for each OpenBLAS."""
     from scipy.linalg import _fblas  # it takes long to load
 
     found = []

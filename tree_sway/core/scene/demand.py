@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a scene asks of its trees: an error too small to be seen, a time that a frame may take."""
+"""Demands of a scene on its trees: an invisible error, and a budget of time per frame."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def set_demand(
     tolerance_angle: float = 5e-4,
 ) -> None:
     """
-    Set what is asked of the trees that choose their model; the others do not mind.
+    Set tolerance and budget of trees that choose their model.
 
     Parameters
     ----------
@@ -33,9 +33,9 @@ def set_demand(
     budget
         Largest cost of a frame of all these trees in [us], shared by segments; 0 for none.
     camera
-        Its position [m], (3,); None without a camera.
+        Position of the camera [m], (3,); None without a camera.
     tolerance_angle
-        Largest error as the camera sees it, in [rad].
+        Largest error as an angle from the camera, in [rad].
 
     """
     adaptive = adaptive_among(simulators)
@@ -45,14 +45,14 @@ def set_demand(
         each.budget = budget * tree.n_segments / total
         each.tolerance = tolerance
         if camera is not None:
-            # The nearest branch tip or the root is seen, from 1 cm at the nearest.
+            # The distance is that of the nearest branch tip or the root, at least 1 cm.
             seen = np.vstack([tree.start[:1], tree.end[tree.branch_first[1:] - 1]])
             away = np.linalg.norm(seen - np.asarray(camera, dtype=np.float64), axis=1)
             each.tolerance = tolerance_angle * max(float(away.min()), 0.01)
 
 
 def set_cost_scale(simulators: Iterable[SwaySimulator], spent: float) -> None:
-    """Give the trees that choose their model what a frame of them alone takes here, in [us]."""
+    """Give trees that choose their model the measured cost of a frame of them, in [us]."""
     adaptive = adaptive_among(simulators)
     expected = sum(each.choice.cost for each in adaptive)
     for each in adaptive:
@@ -60,5 +60,5 @@ def set_cost_scale(simulators: Iterable[SwaySimulator], spent: float) -> None:
 
 
 def adaptive_among(simulators: Iterable[object]) -> list[AdaptiveSimulator]:
-    """Return those trees that choose their model."""
+    """Return the trees that choose their model."""
     return [each for each in simulators if isinstance(each, AdaptiveSimulator)]

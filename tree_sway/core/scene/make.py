@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""One way to every model of a tree, by its name; what only one needs is loaded for that one."""
+"""Making of simulators by the name of the model; modules of a model are loaded when needed."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ def make_simulator(
     Parameters
     ----------
     tree, species, settings
-        As for `SwaySimulator`, on any model.
+        Arguments of `SwaySimulator`, for any model.
     tolerance
-        Largest error of the tips in [m] that ``auto`` may allow itself.
+        Largest error of the tips in [m] for ``auto``.
     budget
-        Largest cost of a frame in [us] that ``auto`` may allow itself, which comes before the
-        tolerance; 0 for none.
+        Largest cost of a frame in [us] for ``auto``, with priority over the tolerance; 0 for no
+        limit.
     cache
         Where set-ups are written and found again, on disk if left out; nowhere if None.
     **changes
@@ -44,7 +44,7 @@ def make_simulator(
     Raises
     ------
     ParameterError
-        An unknown model, a setting out of its range, or an argument that is something else.
+        An unknown model, a setting out of its range, or an argument of a wrong type.
     TreeError
         A tree that buckles under its own weight.
 

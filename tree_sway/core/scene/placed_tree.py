@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree of a scene: its name, what it is, where it is, how large and how turned."""
+"""A tree of a scene: its name, kind, place, size and yaw."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import inside, ParameterError, TreeError
 
 SMALLEST, LARGEST = 0.2, 5.0
-"""Scales that a placed tree may have."""
+"""Smallest and largest scale of a placed tree."""
 
 MOST_SEGMENTS = 5_000_000
-"""Segments in one record of all trees of a scene, some 1 GB."""
+"""Largest number of segments in one record of all trees of a scene, some 1 GB."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,19 +37,19 @@ class PlacedTree:
     name
         Name in the scene.
     tree
-        The tree in a frame of its own; one with its species, as `open_tree` gives, is taken apart.
+        Tree in its own frame, with or without its species.
     x, y, z
-        Place of its root node in [m].
+        Place of the root node in [m].
     scale
-        Its height over that of `tree`.
+        Height over that of `tree`.
     yaw
-        Turn about the vertical, counterclockwise seen from above, in [rad].
+        Rotation about the vertical, counterclockwise seen from above, in [rad].
     species
-        Wood, damping and drag; by the tree's own species if None.
+        Species for wood, damping and drag; the tree's own if None.
     model
-        Its model, as of `Settings`; the scene's if None.
+        Model, as in `Settings`; the scene's if None.
     leaf_on
-        Whether it bears leaves; as the scene, or as its species, if None.
+        Whether it bears leaves; if None, by the scene or by its species.
 
     Raises
     ------
@@ -72,7 +72,7 @@ class PlacedTree:
     leaf_on: bool | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be placed."""
+        """Check the values."""
         tree, species = tree_and_species(self.tree, self.species)
         object.__setattr__(self, 'tree', tree)
         object.__setattr__(self, 'species', species)
@@ -87,7 +87,7 @@ class PlacedTree:
 
     @property
     def kind(self) -> Kind:
-        """What it shares with the trees of its kind."""
+        """Objects that it shares with the trees of its kind."""
         return Kind(self.tree, self.species, self.leaf_on)
 
     def placed(self) -> Tree:
@@ -99,8 +99,7 @@ class PlacedTree:
         turn = self.scale * np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
         def moved(nodes: Floats) -> Floats:
-            out: Floats = here + (nodes - root) @ turn.T
-            return out
+            return np.asarray(here + (nodes - root) @ turn.T)
 
         return replace(
             tree,
@@ -112,18 +111,18 @@ class PlacedTree:
         )
 
     def settings_where_it_stands(self, scene: Settings) -> Settings:
-        """Return its settings in a scene: its model, leaves, and the ground of the profile."""
+        """Return its settings in a scene: with model, leaves, and ground of the profile."""
         raised = scene.profile.ground + self.z - float(self.tree.start[0, 2])
         profile = replace(scene.profile, ground=raised)
         return replace(self.kind.settings(scene), profile=profile, model=self.model or scene.model)
 
     def bears_leaves(self, otherwise: bool | None = None) -> bool:
-        """Whether it bears leaves, ``otherwise`` where neither it nor its species decides."""
+        """Whether it bears leaves; ``otherwise`` where this is not determined."""
         return is_in_leaf(self.species, otherwise if self.leaf_on is None else self.leaf_on)
 
 
 class Kind(NamedTuple):
-    """What the trees of one kind share."""
+    """Objects that the trees of one kind share."""
 
     tree: Tree
     species: Species
@@ -140,8 +139,8 @@ def joined(trees: Sequence[Tree], name: str = 'scene') -> Tree:
     """
     Join trees in one frame to one record, to be described or drawn as one; a `TreeError` if none.
 
-    Segments are one tree after another, names ``tree/branch``. It has several roots, so it cannot
-    be solved.
+    Segments are one tree after another, names ``tree/branch``. The record has several roots, so it
+    cannot be solved.
     """
     if not trees:
         raise TreeError('no trees', where=name, cure='give at least one')
@@ -167,6 +166,6 @@ def joined(trees: Sequence[Tree], name: str = 'scene') -> Tree:
 
 
 def _moved_on(columns: list[Ints], by: list[int]) -> Ints:
-    """Join indices of each tree; those of roots stay -1."""
+    """Join the indices of trees; those of roots stay -1."""
     moved = [np.where(c < 0, -1, c + at) for c, at in zip(columns, by[:-1], strict=True)]
     return np.concatenate(moved)

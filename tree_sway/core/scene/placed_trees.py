@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Trees that are placed in one frame, and the kinds that they are of."""
+"""Trees that are placed in one frame, and their kinds."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tree_sway.errors import ParameterError, TreeError
 @dataclass(frozen=True, eq=False)
 class PlacedTrees:
     """
-    The trees of a scene, where their wind is measured, and where they came from.
+    The trees of a scene, the place of its anemometer, and its source.
 
     Parameters and errors are those of `Scene`.
     """
@@ -33,13 +33,13 @@ class PlacedTrees:
     convection_ratio: float = 1.0
 
     def __post_init__(self) -> None:
-        """Refuse what is no scene."""
+        """Check the trees."""
         object.__setattr__(self, 'trees', tuple(self.trees))
         if not self.trees:
             raise TreeError('no trees', where=self.name, cure='give at least one')
         for number, each in enumerate(self.trees):
             if not isinstance(each, PlacedTree):
-                what = f'a {type(each).__name__}, where a PlacedTree is asked for'
+                what = f'a {type(each).__name__}, where a PlacedTree is expected'
                 cure = 'give PlacedTree(name, tree, x, y) each'
                 raise ParameterError(what, where=f'trees[{number}]', cure=cure)
         name, count = Counter(each.name for each in self.trees).most_common(1)[0]
@@ -66,12 +66,12 @@ class PlacedTrees:
 
     @property
     def is_one_tree(self) -> bool:
-        """Whether the scene has one tree alone."""
+        """Whether the scene has a single tree."""
         return len(self.trees) == 1
 
     @cached_property
     def _sorted(self) -> tuple[list[Kind], Ints]:
-        # By what they share, not by what is equal to it: trees are large.
+        # By identity, not by equality: trees are large.
         keys = [(id(each.tree), id(each.species), each.leaf_on) for each in self.trees]
         kinds = {key: each.kind for key, each in zip(keys[::-1], self.trees[::-1], strict=True)}
         order = {key: number for number, key in enumerate(dict.fromkeys(keys))}

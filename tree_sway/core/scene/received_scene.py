@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A scene that is solved where it was received: exported tables, and where the trees are.
+A scene that is solved by the receiver: exported tables, and the places of the trees.
 
-It is the solver of ``static/sway.js`` in Python, and what holds that one to this.
+It is the solver of ``static/sway.js`` in Python, and its reference in tests.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from numpy.typing import ArrayLike, NDArray
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.motion.exported_table import table_of
 from tree_sway.core.motion.records import instance_layout, time_step_layout
-from tree_sway.core.motion.standing import step_standing
+from tree_sway.core.motion.stand import step_stand
 from tree_sway.core.motion.wind_basis import fill_time_step
 from tree_sway.core.oscillators.propagator import propagator
-from tree_sway.core.scene.standing_rows import own_steps, standing_rows
+from tree_sway.core.scene.placement_records import own_steps, placement_records
 from tree_sway.core.wind.gust_travel import GustHistory
 
 _SLOWEST = 0.3
-"""Share of the way of the slowest that a rate is taken to go within a time step, at least."""
+"""Smallest response to a rate within a time step, over that of the slowest coordinate."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class ReceivedScene:
     Parameters
     ----------
     kinds
-        The tables.
+        Tables of the kinds.
     kind_of
         The table of each tree, (t,).
     places
@@ -53,7 +53,7 @@ class ReceivedScene:
     speeds
         Wind of each tree over that of its kind, (t,).
     anemometer, convection_ratio
-        As of `GustHistory`.
+        Arguments of `GustHistory`.
     dt
         Time step in [s].
 
@@ -84,8 +84,8 @@ class ReceivedScene:
             arrays = kinds[number].arrays
             law = 1.0, arrays['own_damping'], arrays['stiffness']
             fill_time_step(own, propagator(*law, own_dt), propagator(*law, 0.5 * own_dt))
-        self._standing = standing_rows(self._kind_of, places, speeds)
-        self._standing['time_step'] = step
+        self._placed = placement_records(self._kind_of, places, speeds)
+        self._placed['time_step'] = step
         self.gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
         self._states = [kind.arrays['state'].astype(np.float64) for kind in kinds]
         self._corrections = [kind.arrays['correction'].astype(np.float64) for kind in kinds]
@@ -93,19 +93,18 @@ class ReceivedScene:
         self._first = np.concatenate([[0], np.cumsum(described[self._kind_of])])
 
     def step(self, wind: ArrayLike) -> int:
-        """Advance by a step of mean wind (3,) in [m/s]; count trees beyond their tables' edge."""
-        felt = self.gusts.push(wind, self._dt)
-        arrays = self.tables, self._time_steps, self._standing, self.instances, self._laws
-        return step_standing(*arrays, felt)[0]
+        """Advance by a step of mean wind (3,) in [m/s]; count trees whose wind was clamped."""
+        winds = self.gusts.push(wind, self._dt)
+        arrays = self.tables, self._time_steps, self._placed, self.instances, self._laws
+        return step_stand(*arrays, winds)[0]
 
     def coordinates(self, tree: int) -> Floats:
         """Modal coordinates of a tree, (m,)."""
         size = self._sizes[int(self._kind_of[tree])]
-        found: Floats = self.instances['eta'][tree, :size]
-        return found
+        return np.asarray(self.instances['eta'][tree, :size])
 
     def state(self) -> Floats:
-        """Coordinates by which all trees are described, (M,)."""
+        """Coordinates of the description of all trees, (M,)."""
         states = []
         for own, kind in zip(self.instances['eta'], self._kind_of.tolist(), strict=True):
             states.append(own[: self._sizes[kind]] @ self._states[kind])
@@ -113,9 +112,9 @@ class ReceivedScene:
 
     def correct(self, values: Floats, first: int = 0, steps: float = math.inf) -> None:
         """
-        Bring described coordinates from the first on to values (c,).
+        Set the first described coordinates to values (c,).
 
-        Rates change by what would have brought them there within a number of time steps.
+        Rates change as if that took a number of time steps.
         """
         change = np.zeros(self._first[-1])
         part = slice(first, first + len(values))
@@ -123,12 +122,12 @@ class ReceivedScene:
         for tree, kind in enumerate(self._kind_of.tolist()):
             own = change[self._first[tree] : self._first[tree + 1]] @ self._corrections[kind]
             instance, size = self.instances[tree], self._sizes[kind]
-            whole = self._time_steps['whole'][self._standing['time_step'][tree], :, :size]
+            whole = self._time_steps['whole'][self._placed['time_step'][tree], :, :size]
             instance['eta'][:size] += own
             way = np.maximum(whole[1], _SLOWEST * whole[1].max())
             instance['rate'][:size] += own * whole[5] / (way * steps)
 
     def reset(self) -> None:
-        """Go back to rest, without wind."""
+        """Return to rest, without wind."""
         self.instances[:] = np.zeros((), dtype=self.instances.dtype)
         self.gusts.reset()

@@ -1,19 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A scene in a live wind: samples in through the gate, steps on a grid of time out.
+A scene in a live wind: samples pass the gate, steps are on a grid of time.
 
 Steps end at whole multiples of the period since the clock's epoch, and each is solved with the
-mean wind over that very period. A sample is handed on when the steps reach its time, not when it
-arrives: as long as it arrives before, runs over the same samples take the same steps, whatever the
-network did. While samples are overdue the last one is used, then the wind dies down
-(`WindAverage`).
+mean wind over that very period. A sample is used when the steps reach its time, not when it
+arrives: if it arrives before, runs over the same samples have the same steps, whatever the network
+did. While samples are overdue the last one is used, then the wind decays (`WindAverage`).
 
-Periods that are late are solved one by one, so that lateness leaves no trace in the motion; only
-where a step costs more than half a period may they be joined to one long step, which the exact
-propagator takes without harm. A clock that jumps forward is no long wind: what is farther away
-than `LONGEST_JUMP` is skipped and counted. Whoever calls has the clock: times are whole
-nanoseconds of one clock, given by the caller.
+Late periods are solved one by one, so that lateness does not change the motion; only where a step
+costs more than half a period may they be joined to one long step, for which the propagator is
+exact. Jumps of the clock beyond `LONGEST_JUMP` are skipped and counted. The caller has the clock:
+times are whole nanoseconds of one clock.
 """
 
 from __future__ import annotations
@@ -34,13 +32,13 @@ from tree_sway.core.wind.intake import GoodWind, WindIntake
 from tree_sway.errors import ParameterError
 
 LONGEST_JUMP = 500_000_000
-"""Most time that one `Run.advance` solves [ns]; what was before it is skipped."""
+"""Longest time that one `Run.advance` solves [ns]; time before it is skipped."""
 
 _BACK = 1_000_000_000
-"""Step back of the clock in [ns] after which everything begins again."""
+"""Step back of the clock in [ns] after which the run restarts."""
 
 _BLOCK = 10_000_000_000_000
-"""Times are counted in seconds from a multiple of this [ns]: few digits, the same in every run."""
+"""Times in seconds are relative to a multiple of this [ns]: few digits, the same in every run."""
 
 _QUEUE = 4096
 _PULL_LASTS = 0.5
@@ -59,13 +57,13 @@ class Run:
     rate
         Steps per second in [Hz].
     intake
-        What samples pass; a `WindGate` as the wind node has it if None.
+        Intake that samples pass; by default a `WindGate` as in the wind node.
     make_wind
-        Makes an empty `WindAverage`; called again whenever the clock was set back.
+        Function that makes an empty `WindAverage`; called again whenever the clock was set back.
     stepped
-        Called after each step with its end [ns] and its mean wind [m/s], (3,).
+        Function called after each step with its end [ns] and its mean wind [m/s], (3,).
     timer
-        A clock in [s] to find what a step costs; None to never join steps.
+        Clock in [s] to measure the cost of a step; None to never join steps.
 
     """
 
@@ -82,12 +80,12 @@ class Run:
         self.simulator, self.period = simulator, round(1e9 / rate)
         self.intake = WindIntake() if intake is None else intake
         self.counts: GateCounts = self.intake.counts
-        """Samples that were accepted and refused, by reason."""
+        """Counts of accepted and refused samples, by reason."""
         self.is_paused = False
         self.clamped = 0
-        """Jumps forward that were cut to `LONGEST_JUMP`."""
+        """Number of forward jumps that were cut to `LONGEST_JUMP`."""
         self.wind_state = 'none'
-        """What the wind is: none, live, holding, decaying or stale, as `WindAverage.state`."""
+        """State of the wind: none, live, holding, decaying or stale, as `WindAverage.state`."""
         self._make_wind, self._stepped, self._timer = make_wind, stepped, timer
         self._wind = make_wind()
         self._samples: deque[GoodWind] = deque(maxlen=_QUEUE)
@@ -101,7 +99,7 @@ class Run:
         return None if self._index is None else self._index * self.period
 
     def warm_up(self) -> float:
-        """Have kernels ready; return what a frame of the trees on ``auto`` takes in [us]."""
+        """Prepare kernels; return the cost of a frame of the trees on ``auto`` in [us]."""
         adaptive, spent = adaptive_among(self.simulator.simulators), []
         wind, dt = np.array([1.0, 0.0, 0.0]), self.period * 1e-9
         for _ in range(_WARM_FRAMES):
@@ -123,32 +121,32 @@ class Run:
         arrival: int | None = None,
         **how: Any,
     ) -> GoodWind | None:
-        """Take a sample as `WindIntake.offer`; returns the good one, or None if it is refused."""
+        """Check a sample as `WindIntake.offer`; returns it if accepted, else None."""
         good = self.intake.offer(stamp, components, arrival, **how)
         if good is not None:
             self._samples.append(good)
         return good
 
     def request(self, action: Callable[[], object]) -> None:
-        """Have something done before the next step, in its thread."""
+        """Call a function before the next step, in its thread."""
         self._requests.append(action)
 
     def pull(
         self, segment: int, to: ArrayLike, stiffness: float, refused: Callable[[str], object]
     ) -> None:
         """
-        Pull at a segment by a spring before the next step, for half a second unless said again.
+        Pull at a segment by a spring before the next step, for half a second unless repeated.
 
         Parameters
         ----------
         segment
-            Its row in the pose block.
+            Row of the segment in the pose block.
         to
-            The place that it is pulled to in [m], (3,).
+            Target place in [m], (3,).
         stiffness
-            Stiffness of the spring in [N/m]; 0 lets go.
+            Stiffness of the spring in [N/m]; 0 releases it.
         refused
-            Called with the reason if it cannot be, from the thread of the steps.
+            Function called with the reason of a refusal, from the thread of the steps.
 
         """
         from tree_sway.core.simulator.touch import Spring
@@ -174,23 +172,23 @@ class Run:
         self, to: int, *, delay: float = 0.0, most: int | None = None, may_join: bool = True
     ) -> int:
         """
-        Take every step that ends by a time.
+        Solve every step that ends by a time.
 
         Parameters
         ----------
         to
             The time in [ns].
         delay
-            How much later the wind is felt, in [s]; below 0 where samples to come are known.
+            Delay of the wind in [s]; negative where later samples are known.
         most
-            Periods that are solved at most, the last ones; as `LONGEST_JUMP` says if None.
+            Largest number of periods that are solved, the last ones; by `LONGEST_JUMP` if None.
         may_join
-            Whether dear steps may be joined to a long one.
+            Whether expensive steps may be joined to a long one.
 
         Returns
         -------
         int
-            Periods that were solved.
+            Number of periods that were solved.
 
         """
         while self._requests:
@@ -210,12 +208,12 @@ class Run:
         dt = length * 1e-9
         for later in range(n_steps - 1, -1, -1):
             self._step(index * self.period - later * length, dt, delay)
-        # Asked for here, in the thread that changes it: reports come from another.
+        # Read here, in the thread that changes it: reports are made in a different one.
         self.wind_state = self._wind.state(self._felt)
         return periods
 
     def step(self, wind: Floats) -> None:
-        """Take the next step in a mean wind (3,) in [m/s] that is known, whatever was offered."""
+        """Solve the next step in a known mean wind (3,) in [m/s], without the samples."""
         self._index = 1 if self._index is None else self._index + 1
         self._solve(self._index * self.period, wind, self.period * 1e-9)
 

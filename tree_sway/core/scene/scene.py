@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A scene: one tree, a forest or a stand of thousands, as a file gave it or as it was made."""
+"""A scene: one tree, a forest or a stand of thousands, from a file or from a program."""
 
 from __future__ import annotations
 
@@ -11,12 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.leaves.foliage import (
-    foliage_of,
-    joined_clusters,
-    leaf_clusters,
-    LeafClusters,
-)
+from tree_sway.core.leaves.foliage import foliage_of, joined_clusters, leaf_clusters, LeafClusters
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import Kind
 from tree_sway.core.scene.placed_trees import PlacedTrees
@@ -36,16 +31,16 @@ class Scene(PlacedTrees):
     Parameters
     ----------
     trees
-        The trees, each with a name of its own.
+        Trees, each with its own name.
     name
         Name of the scene.
     source
-        Where it came from: a path, or the name of a built-in tree.
+        Source: a path, or the name of a built-in tree.
     notes
-        What the importer changed or left out, one sentence each.
+        Changes and omissions by the importer, one sentence each.
     anemometer
-        Where the wind is measured in [m], (3,), best upwind of all trees; at the tree that the
-        wind reaches first if None.
+        Place of the anemometer in [m], (3,), best upwind of all trees; by default at the tree that
+        the wind reaches first.
     convection_ratio
         Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
         everywhere.
@@ -53,9 +48,9 @@ class Scene(PlacedTrees):
     Raises
     ------
     ParameterError
-        Two trees of one name, or something that is no `PlacedTree`.
+        Two trees of one name, or an object that is not a `PlacedTree`.
     TreeError
-        No trees.
+        A scene without trees.
 
     Examples
     --------
@@ -74,21 +69,21 @@ class Scene(PlacedTrees):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is odd about the trees, one sentence per kind each."""
+        """Implausible values of the trees, one sentence per kind each."""
         found = []
         for label, kind in self._labelled():
             found += [f'{label}{oddity}' for oddity in oddities(kind.tree, kind.species)]
         return tuple(found)
 
     def checked(self) -> Scene:
-        """Return the same scene if every tree's numbers can be those of one, else raise."""
+        """Return the scene if the numbers of every tree are plausible, else raise."""
         for label, kind in self._labelled():
             with inside(f'{self.source}: {label}'.removesuffix(': ')):
                 refuse_implausible(kind.tree, kind.species)
         return self
 
     def of_species(self, species: Species) -> Scene:
-        """Return the same scene, all of one wood."""
+        """Return the scene with all trees of one species."""
         kinds = [replace(kind.tree, species=species.key) for kind in self.kinds]
         trees = [
             replace(each, tree=kinds[number], species=species)
@@ -98,9 +93,9 @@ class Scene(PlacedTrees):
 
     def moved(self, x: float = 0.0, y: float = 0.0, z: float = 0.0, yaw: float = 0.0) -> Scene:
         """
-        Return the same scene with its origin somewhere else in [m], turned about it by yaw [rad].
+        Return the scene with a different origin in [m], rotated about it by yaw [rad].
 
-        The turn is about the vertical, counterclockwise seen from above.
+        The rotation is about the vertical, counterclockwise seen from above.
         """
         if (x, y, z, yaw) == (0.0, 0.0, 0.0, 0.0):
             return self
@@ -131,16 +126,16 @@ class Scene(PlacedTrees):
         Parameters
         ----------
         settings, **changes
-            How trees are modelled, but for what a tree has of its own.
+            Settings of the trees, except values that a tree has itself.
         tolerance, cache
-            As for `make_simulator`, for each tree.
+            Arguments of `make_simulator`, for each tree.
         progress
-            Called with the number of kinds and trees that are ready.
+            Function called with the number of kinds and trees that are ready.
 
         Raises
         ------
         TreeSwayError
-            As `make_simulator`; of several trees it names the one.
+            An error of `make_simulator`, with the name of the tree.
 
         """
         chosen = settings_with(settings, changes)
@@ -156,8 +151,8 @@ class Scene(PlacedTrees):
         """
         Place clusters of leaves, on each tree by its leaf area; None without leaves.
 
-        ``in_leaf`` is whether trees bear leaves of which the scene does not say, None to leave it
-        to their species.
+        ``in_leaf`` is for trees whose leaves the scene does not determine; None is by their
+        species.
         """
         kinds = [float(foliage_of(k.tree, traits=k.species.leaves).area.sum()) for k in self.kinds]
         area = np.array(kinds)[self.kind_numbers]
@@ -167,17 +162,14 @@ class Scene(PlacedTrees):
         counts = np.ceil(count * area / area.sum() - 1e-9).astype(np.int64).tolist()
         clusters = [
             leaf_clusters(
-                each.placed(),
-                np.random.default_rng(number),
-                count=own,
-                traits=each.species.leaves,
+                each.placed(), np.random.default_rng(number), count=own, traits=each.species.leaves
             )
             for number, (each, own) in enumerate(zip(self.trees, counts, strict=True))
         ]
         return joined_clusters(clusters, [each.tree.n_segments for each in self.trees])
 
     def _labelled(self) -> list[tuple[str, Kind]]:
-        """Each kind, and how a message about it begins: with the name of its first tree."""
+        """Yield each kind, and the beginning of a message about it: the name of its first tree."""
         if self.is_one_tree:
             return [('', self.kinds[0])]
         _, first, counts = np.unique(self.kind_numbers, return_index=True, return_counts=True)

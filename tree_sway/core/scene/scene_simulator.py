@@ -5,8 +5,8 @@ The simulator of a scene of several trees in one wind.
 
 Trees on a number of coordinates share the table and the rest geometry of their kind: each is a
 state, a pose, a scale and the delay with which gusts reach it. All of them are solved in one call.
-Trees on other models are solved one after another, each by a simulator that is set up where the
-tree is, so that no wind need be turned into its frame.
+Trees on other models are solved one after another, each by a simulator at the place of the tree,
+so that the wind need not be rotated into its frame.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.placing import GIVEN, place
 from tree_sway.core.motion.records import instance_layout, time_step_layout, zeros_in_lines
-from tree_sway.core.motion.standing import place_standing, STANDING, step_standing
+from tree_sway.core.motion.stand import place_stand, PLACEMENT, step_stand
 from tree_sway.core.motion.wind_basis import fill_time_step, WindBasisBank
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
-from tree_sway.core.scene.standing_rows import own_steps, standing_rows
+from tree_sway.core.scene.placement_records import own_steps, placement_records
 from tree_sway.core.simulator.live_tuning import Tuning
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import (
@@ -52,7 +52,7 @@ from tree_sway.set_up_files import SET_UPS, SetUpFiles
 if TYPE_CHECKING:
     from tree_sway.core.simulator.touch import Spring
 
-_NO_TABLES: Records = np.zeros(0, dtype=STANDING)
+_NO_TABLES: Records = np.zeros(0, dtype=PLACEMENT)
 _CROWN = 0.7
 
 
@@ -63,16 +63,16 @@ class SceneSimulator:
     Parameters
     ----------
     scene
-        The trees, and where their wind is measured.
+        Trees and the place of the anemometer.
     settings
-        How trees are modelled, but for what a tree has of its own.
+        Settings of the trees, except values that a tree has itself.
     tolerance, cache, progress
-        As of `Scene.simulator`.
+        Arguments of `Scene.simulator`.
 
     Raises
     ------
     TreeSwayError
-        What is wrong with a tree, under its name.
+        Error of a tree, with its name.
 
     """
 
@@ -91,7 +91,7 @@ class SceneSimulator:
         models = [settings.model if each.model is None else each.model for each in trees]
         kind = scene.kind_numbers
         counts = np.array([each if isinstance(each, int) else -1 for each in models])
-        # Without a compiler there is no table: each tree is stepped on its branches.
+        # Without a compiler there are no tables: each tree is stepped branch by branch.
         is_own = np.ones(len(models), dtype=bool) if WHY_PLAIN else counts < 0
         used = np.unique(kind[~is_own]).tolist()
         self._models: list[SwaySimulator] = []
@@ -106,10 +106,10 @@ class SceneSimulator:
         self._banks: list[WindBasisBank] = [_oscillators(model) for model in self._models]
         places = [(each.x, each.y, each.z, each.yaw, each.scale) for each in trees]
         tables = np.where(is_own, -1, np.searchsorted(used, kind))
-        self._standing = standing_rows(tables, np.array(places), self._speeds())
-        self.speeds: Floats = self._standing['speed']
+        self._placed = placement_records(tables, np.array(places), self._speeds())
+        self.speeds: Floats = self._placed['speed']
         """Wind of each tree over that of its kind, (t,)."""
-        self._standing['is_still'] = is_own | (counts == 0)
+        self._placed['is_still'] = is_own | (counts == 0)
         self._make_tables()
         self._numbers, self._is_shared = counts, ~is_own
         self._show()
@@ -127,11 +127,11 @@ class SceneSimulator:
         sizes = np.array([each.tree.n_segments for each in scene.kinds])
         self._ends = np.concatenate([[0], np.cumsum(sizes[kind])])
         self.gusts = GustHistory(
-            self._standing['at'], scene.anemometer, convection_ratio=scene.convection_ratio
+            self._placed['at'], scene.anemometer, convection_ratio=scene.convection_ratio
         )
         self._counts = Counts()
         self.pushed: dict[int, SwaySimulator] = {}
-        """Trees that are pushed, or where something is left of it, by their numbers."""
+        """Trees on which pushes have an effect, by their numbers."""
         self.wind, self._dt = np.zeros(3), math.nan
         """Wind at the anemometer in the last step in [m/s], (3,)."""
 
@@ -143,7 +143,7 @@ class SceneSimulator:
 
     @property
     def counts(self) -> Counts:
-        """Return what was refused at the anemometer, and clamped or restarted in any tree."""
+        """Return counts of the wind, and of clamped or restarted trees."""
         own, counts = [sim.counts for sim in self.own.values()], self._counts
         return replace(
             counts,
@@ -178,7 +178,7 @@ class SceneSimulator:
         Returns
         -------
         int
-            As `SwaySimulator.step`, of all trees together.
+            Result of `SwaySimulator.step`, of all trees together.
 
         Raises
         ------
@@ -188,7 +188,7 @@ class SceneSimulator:
         """
         refuse_time_step(dt)
         status = OK
-        # The history must not remember what no tree would take.
+        # The history must not contain winds that the trees refuse.
         wind = three_numbers('wind', wind_mean)
         if is_wind(*wind, self.settings.max_wind):
             self.wind[:] = wind
@@ -198,17 +198,17 @@ class SceneSimulator:
         has_glided = [model.glide(dt) for model in self._models]
         if dt != self._dt or any(has_glided):
             self._set_step(dt)
-        felt = self.gusts.push(self.wind, dt)
+        winds = self.gusts.push(self.wind, dt)
         clamped = restarted = 0
         if self._models:
-            clamped, restarted = step_standing(
-                self._tables, self._time_steps, self._standing, self._instances, self._laws, felt
+            clamped, restarted = step_stand(
+                self._tables, self._time_steps, self._placed, self._instances, self._laws, winds
             )
         for number, simulator in self.own.items():
-            status |= simulator.step(felt[number].tolist(), dt)
+            status |= simulator.step(winds[number].tolist(), dt)
         for number, one in list(self.pushed.items()):
             if number not in self.own:
-                own = self._standing['time_step'][number]
+                own = self._placed['time_step'][number]
                 _oscillators(one).time_step = self._time_steps[own : own + 1]
                 clamped += one.touched(dt) > 0
             if one.touch is None:
@@ -239,8 +239,8 @@ class SceneSimulator:
             raise
 
     def _one_of_kind(self, number: int) -> SwaySimulator:
-        """Return a simulator of a tree's kind on the tree's own state, to push at."""
-        model = self._models[self._standing['kind'][number]]
+        """Return a simulator of a tree's kind with the state of the tree, for pushes."""
+        model = self._models[self._placed['kind'][number]]
         one, bank = copy(model), copy(_oscillators(model))
         bank.__dict__.pop('_expand', None)
         bank.instance = self._instances[number : number + 1]
@@ -251,21 +251,21 @@ class SceneSimulator:
         """
         Return a force or a spring on a tree as it is on one of its kind.
 
-        A tree scaled by k is moved k times as far by the same angles, against k^3 times the
-        stiffness: a force counts 1 / k^2, a spring's stiffness 1 / k.
+        A tree scaled by k moves k times as far by the same angles, against k^3 times the
+        stiffness: a force is scaled by 1 / k^2, the stiffness of a spring by 1 / k.
         """
         from tree_sway.core.simulator.touch import Spring
 
-        one, k = self.scene.trees[number], float(self._standing['scale'][number])
+        one, k = self.scene.trees[number], float(self._placed['scale'][number])
         c, s = math.cos(one.yaw), math.sin(one.yaw)
         back = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
         if not isinstance(force, Spring):
             return back @ array_to_read('push', force, (3,)) / k**2
-        away = array_to_read('push', force.to, (3,)) - self._standing['at'][number]
+        away = array_to_read('push', force.to, (3,)) - self._placed['at'][number]
         return Spring(back @ away / k + one.tree.start[0], force.stiffness / k)
 
     def check_tuning(self, **changes: float) -> Tuning:
-        """Refuse what any tree could not take, as `SwaySimulator.check_tuning`."""
+        """Check changes for all trees, as `SwaySimulator.check_tuning`."""
         trees = (*self._models, *self.own.values())
         return [each.check_tuning(**changes) for each in trees][-1]
 
@@ -292,7 +292,7 @@ class SceneSimulator:
         Raises
         ------
         ParameterError
-            An array that cannot hold the poses.
+            An array of a wrong shape or type.
 
         """
         shape = (int(self._ends[-1]), 7)
@@ -315,15 +315,15 @@ class SceneSimulator:
         self._tables = np.concatenate([bank.record for bank in banks]) if banks else _NO_TABLES
         self._laws = np.array([model.drag_law for model in self._models])
         self._scratch = []
-        """What each kind is placed in."""
+        """Scratch memory for placing each kind."""
         for model, bank in zip(self._models, banks, strict=True):
-            heads = zeros_in_lines(len(model.bank.heads), model.bank.heads.dtype)
-            heads[:] = model.bank.heads
+            blocks = zeros_in_lines(len(model.bank.blocks), model.bank.blocks.dtype)
+            blocks[:] = model.bank.blocks
             block, bases = np.zeros((model.tree.n_segments, 7)), np.zeros_like(model.bank.bases)
-            self._scratch.append((heads, bases, bank.room_for_rotations(), block))
+            self._scratch.append((blocks, bases, bank.room_for_rotations(), block))
 
     def _show(self) -> None:
-        """Leave out of each tree what it has fewer coordinates than the table of its kind."""
+        """Hide the coordinates of the table that a tree does not have."""
         for _, bank, those in self.shared:
             left_out = np.maximum(bank.shapes.shape[1] - self._numbers[those], 0)
             m = self._instances['faded'].shape[1]
@@ -333,37 +333,36 @@ class SceneSimulator:
 
     @property
     def shared(self) -> list[tuple[SwaySimulator, WindBasisBank, Ints]]:
-        """Each model in a frame of its own, its table, and the trees that share it."""
-        kinds = np.where(self._is_shared, self._standing['kind'], -1)
+        """Models in their own frames, with their tables and trees."""
+        kinds = np.where(self._is_shared, self._placed['kind'], -1)
         pairs = enumerate(zip(self._models, self._banks, strict=True))
         return [(model, bank, np.flatnonzero(kinds == k)) for k, (model, bank) in pairs]
 
     def shares(self, numbers: Ints) -> Floats:
-        """How much trees of one kind bend in each shape, (t, m)."""
-        n_modes = self._banks[self._standing['kind'][numbers[0]]].shapes.shape[1]
+        """Coordinates of trees of one kind, (t, m)."""
+        n_modes = self._banks[self._placed['kind'][numbers[0]]].shapes.shape[1]
         shown = (1.0 - self._instances['faded'][numbers]) * self._instances['eta'][numbers]
-        shares: Floats = shown[:, :n_modes]
-        return shares
+        return np.asarray(shown[:, :n_modes])
 
     def _place_kind(self, kind: int, rows: Ints, out: Floats) -> None:
         """Place trees of one table: their numbers and first rows in a pose block, (w, 2)."""
         records, bank = self._models[kind].bank, self._banks[kind]
-        heads, bases, x, block = self._scratch[kind]
-        place_standing(
-            self._standing, self._instances, rows, bank.laid_shapes, records.segments, heads,
+        blocks, bases, x, block = self._scratch[kind]
+        place_stand(
+            self._placed, self._instances, rows, bank.laid_shapes, records.segments, blocks,
             bases, x, block, out,
         )  # fmt: skip
         for number, first in rows.tolist() if self.pushed else ():
             if number in self.pushed:
-                at, keys = self._standing[number], self.pushed[number].rotations()
+                at, keys = self._placed[number], self.pushed[number].rotations()
                 turned = at['cosine'], at['sine'], at['scale'], x, keys, at['at']
-                bent = *GIVEN, records.segments, heads, bases, *turned
+                bent = *GIVEN, records.segments, blocks, bases, *turned
                 place(*bent, out[first : first + len(block)])
 
     @cached_property
     def _highest(self) -> tuple[int, Tree]:
         """Number of the tree whose tip is the highest, and the tree where it is."""
-        tops = self._standing['at'][:, 2] + self._standing['scale'] * self._heights()
+        tops = self._placed['at'][:, 2] + self._placed['scale'] * self._heights()
         number = int(np.argmax(tops))
         return number, self.scene.trees[number].placed()
 
@@ -374,9 +373,8 @@ class SceneSimulator:
         if number in self.own:
             return self.own[number].tip_displacement
         top, poses = int(np.argmax(tree.end[:, 2])), np.empty((tree.n_segments, 7))
-        self._place_kind(int(self._standing['kind'][number]), np.array([[number, 0]]), poses)
-        tip: Floats = ends_of_poses(poses, tree.length)[1][top] - tree.end[top]
-        return tip
+        self._place_kind(int(self._placed['kind'][number]), np.array([[number, 0]]), poses)
+        return np.asarray(ends_of_poses(poses, tree.length)[1][top] - tree.end[top])
 
     def reset(self) -> None:
         """Bring every tree to rest and forget the wind; the counts stay."""
@@ -400,20 +398,20 @@ class SceneSimulator:
         return np.array([each.tree.height for each in self.scene.kinds])[self.scene.kind_numbers]
 
     def _set_step(self, dt: float) -> None:
-        """Fill the coefficients of every kind and scale that there is, to a hundredth."""
+        """Fill the coefficients of every kind and scale, rounded to a hundredth."""
         rows = np.flatnonzero(self._is_shared)
-        found, number = own_steps(self._standing['kind'][rows], self._standing['scale'][rows], dt)
+        found, number = own_steps(self._placed['kind'][rows], self._placed['scale'][rows], dt)
         self._time_steps = np.zeros(len(found), dtype=self._time_steps.dtype)
         for time_step, (kind, own_dt) in zip(self._time_steps, found, strict=True):
             modal = self._banks[kind].modal
             modal.set_time_step(own_dt)
             fill_time_step(time_step, modal.whole, modal.half)
-        self._standing['time_step'][rows] = number
+        self._placed['time_step'][rows] = number
         self._dt = dt
 
 
 Simulator: TypeAlias = SwaySimulator | SceneSimulator
-"""A tree that sways, whatever its model, or the trees of a scene: both are used alike."""
+"""Simulator of a tree on any model, or of the trees of a scene, with the same interface."""
 
 
 def _oscillators(model: SwaySimulator) -> WindBasisBank:

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A scene dealt over several solvers, each of which has its own trees and no others."""
+"""A scene divided among several solvers, each with its own trees."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.errors import ParameterError
 
 
-def dealt(scene: Scene, shard: int = 0, shards: int = 1) -> Scene:
+def shard_of(scene: Scene, shard: int = 0, shards: int = 1) -> Scene:
     """
-    Return the trees of one shard, from 0 on: a run of the scene's, as many in each.
+    Return the trees of one shard, from 0 on: consecutive trees, of equal numbers.
 
-    Names and order stay, so that the pose blocks of all shards, one after another, are that of
-    the whole. All time gusts from one place: the anemometer, or the first tree of the scene.
+    Names and order stay, so that the pose blocks of all shards, one after another, are that of the
+    whole. Delays of gusts are from the same place in all shards: the anemometer, or the first tree
+    of the scene.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree taken through a wind from rest, in one call: what happens without clock and ROS."""
+"""Simulation of a tree in a wind from rest in one call, without clock and ROS."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from tree_sway.errors import ParameterError
 
 @runtime_checkable
 class WindSamples(Protocol):
-    """Wind over time, as `read_wind` gives."""
+    """Wind over time, as `read_wind` returns it."""
 
     @property
     def time(self) -> Floats:
@@ -62,16 +62,16 @@ def simulate(
     tree
         A tree, or one with its species.
     wind
-        A record with ``time`` and ``velocity``, which passes the gate and fades in gaps as a live
-        one does (`Run`); or the mean wind of each step in [m/s], (t, 3), as it is.
+        Record with ``time`` and ``velocity``, which passes the gate and decays in gaps like a live
+        wind (`Run`); or the mean wind of each step in [m/s], (t, 3).
     rate
         Steps per second in [Hz].
     seconds
-        Length of what is simulated in [s]; all of the wind if None.
+        Duration of the simulation in [s]; that of the wind if None.
     branches
-        Branches whose tips are recorded; the one that bears the highest tip if None.
+        Branches whose tips are recorded; the one with the highest tip if None.
     settings, **changes
-        The model, as for `make_simulator`.
+        Settings, as for `make_simulator`.
 
     Returns
     -------
@@ -81,10 +81,10 @@ def simulate(
     Raises
     ------
     ParameterError
-        A wind that is empty, not finite or of another shape, a branch that is not there, or a
-        setting out of its range.
+        A wind that is empty, not finite or of a wrong shape, an unknown branch, or a setting out
+        of its range.
     TreeError
-        A tree that cannot stand.
+        A tree that buckles.
 
     """
     rig = Rig(tree, settings, **changes)
@@ -92,12 +92,12 @@ def simulate(
 
 
 class Rig:
-    """A tree set up once as for `simulate`, to be taken through wind after wind from rest."""
+    """A tree set up once for several simulations from rest, as by `simulate`."""
 
     def __init__(
         self, tree: Tree | GrownTree, settings: Settings | None = None, **changes: Any
     ) -> None:
-        """Reduce the tree, once for the simulator and for what is measured on it."""
+        """Reduce the tree, once for the simulator and for its strain."""
         self.simulator = make_simulator(tree, settings=settings, **changes)
         self.tree, self.reductions = self.simulator.tree, self.simulator.reductions
 
@@ -109,7 +109,7 @@ class Rig:
         seconds: float | None = None,
         branches: Sequence[int] | None = None,
     ) -> SwayRecord:
-        """Sway the tree in a wind from rest, as `simulate`, whatever it went through before."""
+        """Sway the tree in a wind from rest, as `simulate`."""
         tree, simulator, chosen = self.tree, self.simulator, _chosen(self.tree, branches)
         simulator.reset()
         gauge, per_rotation = StrengthGauge(self.reductions), moment_per_rotation(self.reductions)
@@ -156,7 +156,7 @@ class Rig:
         speeds
             Mean speeds in [m/s], (n,).
         rng
-            Where the turbulence comes from; all speeds have the same gusts, faster.
+            Random numbers of the turbulence; all speeds have the same gusts, faster.
         seconds
             Length of each wind in [s].
 
@@ -173,8 +173,8 @@ def moment_per_rotation(reductions: TreeReductions) -> Floats:
     """
     Bending moment at the base of the stem per key rotation of it, in [N m/rad], (k, 3).
 
-    It is by the curvature of the stem's shapes there, and so what a strain gauge measures: the
-    moment of wind and inertia together, as the wood carries it.
+    It follows from the curvature of the stem's shapes there, so it is the moment of wind and
+    inertia together that a strain gauge measures.
     """
     stem = reductions.reduced(reductions.settings.model).models[0]
     along, found = stem.beam.tangent[0], []
@@ -191,7 +191,7 @@ def _steps(
     rate: float,
     measure: Callable[[int, Floats], None],
 ) -> tuple[int, Iterator[None]]:
-    """Return the number of steps in a wind, and an iterator that takes them."""
+    """Return the number of steps in a wind, and an iterator over them."""
     if isinstance(wind, WindSamples):
         duration = float(wind.time[-1] - wind.time[0]) if len(wind.time) else 0.0
         count, what = int(duration * rate + 1e-6), f'a wind record of {duration:g} s'
@@ -216,7 +216,7 @@ def _through_record(
     rate: float,
     measure: Callable[[int, Floats], None],
 ) -> Iterator[None]:
-    """Step through a record as through a live wind, but with each sample known before its time."""
+    """Step through a record like a live wind, with all samples known in advance."""
     ahead = float(np.median(np.diff(wind.time)))
     hold = max(LONGEST_HOLD, 3.0 * ahead) + ahead
     run = Run(

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a tree did in a wind, as arrays over time: tips, the moment and the strain at its base."""
+"""Sway of a tree in a wind as arrays over time: tips, moment and strain at the base."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ class SwayRecord:
     branches
         Branches whose tips are recorded, (k,).
     branch_names
-        Their names.
+        Names of these branches.
     tips
         Displacement of each of these tips from rest in [m], east, north, up, (t, k, 3).
     base_moment
-        Bending moment that the wood carries at the base of the stem, beyond that at rest, in
-        [N m], (t, 3): the moment on the stem about the x, y and z axis.
+        Change of the bending moment in the wood at the base of the stem from rest in [N m], (t,
+        3): the moment on the stem about the x, y and z axis.
     base_strain
-        Strain of the outermost fibre at the base of the stem, beyond that at rest, on its east
-        and on its north side [-], (t, 2); positive where the fibre is drawn out.
+        Strain of the outermost fibre at the base of the stem, beyond that at rest, on its east and
+        on its north side [-], (t, 2); positive in tension.
     strain
         Largest strain of a fibre along each of these branches, beyond that at rest [-], (t, k).
     strength
-        The largest share of its strength that the tree used.
+        Largest used share of the strength of the tree.
 
     """
 

@@ -3,6 +3,6 @@
 """
 A tree that sways: settings, calibration, ``step`` and ``place``.
 
-One class per kind of simulator, all with the same protocol.
-No choice of model by itself: that is the room ``fidelity``.
+One class per kind of simulator, all with the same protocol. The choice of the model is in the room
+``fidelity``.
 """

@@ -3,7 +3,7 @@
 """
 From the reductions of a tree to the oscillators that step it, for every model.
 
-What only one model needs is imported where that model is made.
+Modules of one model are imported where that model is made.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, TYPE_CHECKING
 import numpy as np
 
 from tree_sway.core.arrays import Records
-from tree_sway.core.motion.fill_records import head_records
+from tree_sway.core.motion.fill_records import block_records
 from tree_sway.core.motion.records import in_lines
 from tree_sway.core.reduction.modes import refuse_buckling, solvable
 from tree_sway.core.reduction.one_thread import one_thread
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 EVENLY_DAMPED = 40
 """
-Natural modes of an even damping ratio; above them it grows with the frequency, as by dampers in
-the wood that go with its stiffness.
+Number of natural modes of equal damping ratio; above them it grows with the frequency, as by
+damping proportional to the stiffness of the wood.
 
 """
 
@@ -42,20 +42,21 @@ def assembled(
     """
     Build the oscillators of a model: a number of coordinates, ``branch`` or ``full``.
 
-    It is that of the settings if None. What steps modes is looked for in the cache, and put there.
+    The model is that of the settings if None. Set-ups of modes are read from the cache, and
+    written there.
 
     Raises
     ------
     TreeError
         A tree that buckles under its own weight, or a branch without mass.
     ParameterError
-        A model that has no oscillators of its own.
+        A model without oscillators.
 
     """
     model = reductions.settings.model if model is None else model
     if model == 'auto':
         raise ParameterError(
-            "model 'auto' has no oscillators of its own",
+            "model 'auto' has no oscillators",
             where='model',
             cure='make it by make_simulator, or give a number of coordinates',
         )
@@ -66,7 +67,7 @@ def assembled(
 
 
 def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFiles | None) -> Bank:
-    """Take a set-up from the cache, or make one; the same bits either way."""
+    """Read a set-up from the cache, or make one; both have the same bits."""
     digest, found = '', None
     if cache is not None:
         settings = replace(reductions.settings, model=model)
@@ -101,10 +102,10 @@ def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFil
 
 @one_thread()
 def _modal_arrays(reductions: TreeReductions, model: int | str) -> dict[str, Any]:
-    """Find all that modes are stepped and placed by."""
+    """Find the arrays by which modes are stepped and placed."""
     from tree_sway.core.motion.modal import modal_arrays
 
-    reduced = reductions.coupled
+    reduced = reductions.with_subtrees
     arrays = modal_arrays(reduced.branches, reduced.reduction, reductions.modes(model))
     n_even = min(EVENLY_DAMPED, reduced.reduction.n_coordinates)
     even = reductions.natural_modes(n_even).circular
@@ -130,12 +131,12 @@ def _table(reductions: TreeReductions, modal: ModalBank) -> WindBasisTable:
 def _bank_of_branches(reductions: TreeReductions) -> Bank:
     """Each branch's own oscillator: the mean of its two axes."""
     from tree_sway.core.motion.uncoupled import UncoupledBank
-    from tree_sway.core.reduction.carried_inertia import carried_inertia
+    from tree_sway.core.reduction.subtree_inertia import subtree_inertia
 
     tree, settings, reduced = reductions.tree, reductions.settings, reductions.isolated
     matrices, branches = reduced.reduction, reduced.branches.copy()
     refuse_buckling(tree, matrices)
-    inertia = carried_inertia(tree, matrices).reshape(-1, 2).mean(axis=1)
+    inertia = subtree_inertia(tree, matrices).reshape(-1, 2).mean(axis=1)
     inertia = inertia * np.array([model.inertia_share for model in reduced.models])
     stiffness = np.asarray(matrices.stiffness.diagonal()).reshape(-1, 2).mean(axis=1)
     weight = np.asarray(matrices.gravity.diagonal()).reshape(-1, 2).mean(axis=1)
@@ -156,5 +157,5 @@ def _bank_of_branches(reductions: TreeReductions) -> Bank:
 def _laid_out(
     oscillators: Oscillators, branches: Records, segments: Records, mass: float, plain: bool
 ) -> Bank:
-    heads = head_records(branches, segments)
-    return Bank(oscillators, branches, segments, heads, mass, plain)
+    blocks = block_records(branches, segments)
+    return Bank(oscillators, branches, segments, blocks, mass, plain)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Oscillators(Protocol):
-    """What every model offers: key rotations that a wind moves."""
+    """Protocol of all models: key rotations moved by a wind."""
 
     n_outside: int
     """Steps outside of its table, if it has one."""
@@ -32,14 +32,14 @@ class Oscillators(Protocol):
 
     @property
     def loads(self) -> Records | None:
-        """Return the records of `load_fields`; None where only an even wind is known."""
+        """Return the records of `load_layout`; None for a model of uniform winds."""
 
     @property
     def tunable(self) -> Tunable:
-        """Return what changes with stiffness, damping and gravity."""
+        """Return the arrays that change with stiffness, damping and gravity."""
 
     def set_step(self, dt: float) -> None:
-        """Refill what depends on the time step [s]."""
+        """Refill the coefficients for a time step [s]."""
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step under a mean wind [m/s]; returns how many loads were clamped."""
@@ -50,14 +50,14 @@ class Oscillators(Protocol):
         """Return a step as one compiled call of a wind's components [m/s], if there is one."""
 
     def step_outside(self) -> int:
-        """Make the step that such a call could not make; returns as `advance`."""
+        """Make the step that such a call could not make; returns the same as `advance`."""
 
     @property
     def to_place(self) -> tuple[Records, Singles, Floats] | None:
-        """Return what `place` finds key rotations from, where it does."""
+        """Return the arguments by which `place` finds key rotations, if it does."""
 
     def memory(self) -> tuple[Floats, ...]:
-        """Return views of what is carried from one step to the next."""
+        """Return views of the state."""
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -66,33 +66,33 @@ class Oscillators(Protocol):
         """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
 
     def take_over(self, x: Floats, v: Floats) -> None:
-        """Go on from key rotations and rates, (N,)."""
+        """Continue from key rotations and rates, (N,)."""
 
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch in [N], (b, 3)."""
 
     def reset(self) -> None:
-        """Go back to rest."""
+        """Return to rest."""
 
 
 @dataclass(frozen=True)
 class Bank:
     """
-    A tree ready to be stepped and placed: oscillators, and records of branches, segments, heads.
+    A tree ready to be stepped and placed: oscillators, and records of branches, segments, blocks.
 
-    ``mass`` is of wood and leaves in [kg]; ``plain`` says that nothing is compiled.
+    ``mass`` is that of wood and leaves in [kg]; with ``plain`` nothing is compiled.
     """
 
     oscillators: Oscillators
     branches: Records
     segments: Records
-    heads: Records
+    blocks: Records
     mass: float
     plain: bool = bool(WHY_PLAIN)
 
     @cached_property
     def bases(self) -> Floats:
-        """Return what `place` writes of bases, (b, 8)."""
+        """Return memory for the bases of `place`, (b, 8)."""
         return np.zeros((len(self.branches), 8))
 
     @cached_property
@@ -106,7 +106,7 @@ class Bank:
         """
         Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7).
 
-        Nothing is checked: arrays must be of float64, in one piece and of these shapes.
+        Arrays are not checked: they must be contiguous, of float64 and of these shapes.
         """
         if self.plain:
             return self._plain_placing.place
@@ -118,14 +118,14 @@ class Bank:
     def _placing(self, instance: Records, shapes: Singles, x: Floats) -> Callable[..., None]:
         from tree_sway.core.motion.placing import place
 
-        arrays = instance, shapes, self.segments, self.heads, self.bases
+        arrays = instance, shapes, self.segments, self.blocks, self.bases
         first = *arrays, 1.0, 0.0, 1.0, x
         given = np.zeros(1), np.zeros(3), np.zeros((1, 7))
         return partial(entry_of(place, *first, *given), *first)
 
     @cached_property
     def place_now(self) -> Callable[[Floats, Floats], None]:
-        """Place every segment as the oscillators are, from a root node (3,) on, as `place`."""
+        """Place every segment by the present state, from a root node (3,) on, as `place`."""
         from tree_sway.core.motion.placing import NONE
 
         oscillators = self.oscillators

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Gusts that reach the limbs of a tree one after another, handed to the model in use.
+Gusts that reach the limbs of a tree one after another.
 
-`segments` and the models that step branches give each limb its own wind. `wind_basis` knows even
-winds alone and takes the mean of the limbs' winds, weighted by their loads.
+Models that step branches give each limb its own wind. `wind_basis` has uniform winds only, and
+uses the mean of the limbs' winds, weighted by their loads.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tree_sway.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind
 
 
 def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
-    """Deal delays to the branches of a tree, whose leaves catch as much as areas (b,) of wood."""
+    """Assign delays to the branches of a tree, with leaves equivalent to areas (b,) of wood."""
     first = tree.branch_first[:-1]
     area = tree.length * 0.5 * (tree.base_diameter + tree.tip_diameter)
     middle = 0.5 * (tree.start + tree.end) * area[:, None]
@@ -29,7 +29,7 @@ def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
 
 
 class CrownGusts:
-    """The wind of a crown and the loads it goes to; None for a model of even winds alone."""
+    """The wind of a crown and the loads it acts on; None for a model of uniform winds."""
 
     def __init__(self, reductions: TreeReductions, loads: Records | None) -> None:
         """Start without wind."""
@@ -39,11 +39,11 @@ class CrownGusts:
         self._delays = delays = whole._replace(of_branch=whole.of_branch[pieces])
         self.wind, self._loads = CrownWind(delays.spread, settings.crown_coherence), loads
 
-    def felt(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
+    def winds_of_step(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
         """
-        Hand the mean wind [m/s] of a step of dt [s] to the limbs; the wind to step with.
+        Set the limbs' winds by the mean wind [m/s] of a step of dt [s]; return the wind to use.
 
-        That is what was given, or the mean of the limbs' where the model knows even winds alone.
+        That is the given wind, or the mean of the limbs' winds for a model of uniform winds.
         """
         apart = self.wind.push(x, y, z, dt)
         if self._loads is not None:

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Finding the basis of a tree's shapes: singular values of what the tips do in seeded winds.
+Finding the basis of a tree's shapes: singular values of the motion of the tips in seeded winds.
 
-Four winds, calm to storm, turn once about the tree each; each run counts alike, whatever its
-strength. What the basis leaves out is found by a run in another wind.
+Four winds, calm to storm, turn once about the tree each; all runs have the same weight. The error
+of the basis is found by a run in another wind.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ COUNTS = (16, 24, 32)
 """Numbers of coordinates that are tried."""
 
 LEFT_OUT = 0.004
-"""Share of the motion that may then be left out, root mean square of all segments."""
+"""Largest share of the motion that is left out, root mean square of all segments."""
 
 SPEEDS = (3.0, 9.0, 15.0, 22.0)
-"""Mean winds in [m/s] of the runs that the basis is made from."""
+"""Mean winds in [m/s] of the runs for the basis."""
 
 TRIAL_SPEED = 20.0
-"""Mean wind in [m/s] of the run, not seen before, that its error is found in."""
+"""Mean wind in [m/s] of a further run for its error."""
 
 _DT, _STEPS, _EVERY, _RUN_IN = 1.0 / 60.0, 960, 4, 60
 
@@ -40,10 +40,9 @@ _DT, _STEPS, _EVERY, _RUN_IN = 1.0 / 60.0, 960, 4, 60
 @one_thread()
 def state_basis(simulator: SwaySimulator) -> StateBasis:
     """
-    Find the coordinates that hold a tree's shapes: the least of `COUNTS` that suffice.
+    Find coordinates for a tree's shapes: the smallest number of `COUNTS` that suffices.
 
-    The simulator is run, and then set back to the state that it was in. The same simulator gives
-    the same basis.
+    The simulator is run, and then set back to its state. The same simulator gives the same basis.
     """
     before = simulator.state()
     runs = [
@@ -80,7 +79,7 @@ def _run(simulator: SwaySimulator, speed: float, seed: int, turns: float) -> Ite
 
 
 def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Floats]:
-    """Shapes by falling share in the motion of the tips, (N, m), and the way back, (m, N)."""
+    """Shapes by decreasing share in the motion of the tips, (N, m), and their inverse, (m, N)."""
     shapes, projections = [], []
     for rotations in runs:
         tips = tip_motion(joints, rotations).reshape(-1, rotations.shape[1])
@@ -115,7 +114,7 @@ def tip_moments(joints: Records, forces: Floats) -> Floats:
 def _errors(
     simulator: SwaySimulator, basis: StateBasis, trial: list[Floats]
 ) -> tuple[float, float]:
-    """Share of the motion that a basis leaves out, root mean square, and its error in [m]."""
+    """Share of the motion outside of a basis, root mean square, and its error in [m]."""
     rest = simulator.place_rotations(np.zeros(len(basis.matrix)))[:, :3]
     left_out, motion, greatest = 0.0, np.finfo(np.float64).tiny, 0.0
     for rotations in trial:

@@ -3,9 +3,9 @@
 """
 Stiffness, damping and weight of a tree changed while it sways, without building it again.
 
-A change is gone over in `GLIDE`, so that no pose jumps. Modes keep their shapes: a mode of elastic
+A change takes the time `GLIDE`, so that no pose jumps. Modes keep their shapes: a mode of elastic
 stiffness k_e and of weight k_g per unit of gravity has ``w^2 = s k_e + g k_g``, Rayleigh's
-quotient, which errs by the square of what the shapes would change by.
+quotient, whose error is of the order of the squared change of the shapes.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tree_sway.core.simulator.settings import Settings
 from tree_sway.errors import ParameterError
 
 GLIDE = 0.5
-"""Time in [s] over which a change is taken on."""
+"""Duration of a change in [s]."""
 
 _RANGES = {
     'damping_ratio': (0.0, 1.0, ''),
@@ -31,20 +31,20 @@ _RANGES = {
 }
 
 LIVE = tuple(_RANGES)
-"""What may change while a tree sways."""
+"""Values that may change while a tree sways."""
 
 
 @dataclass(frozen=True)
 class Tuning:
     """
-    What may change while a tree sways.
+    Values that may change while a tree sways.
 
     Parameters
     ----------
     damping_ratio
         Damping ratio of every oscillator in [-], 0 to 1.
     stiffness_factor
-        Elastic stiffness over that which the tree was made with in [-], 0.1 to 10.
+        Factor on the elastic stiffness of the tree as it was made in [-], 0.1 to 10.
     gravity
         Gravity in [m/s^2], 0 to 30.
 
@@ -56,7 +56,7 @@ class Tuning:
 
 
 class LiveTuning:
-    """Takes the oscillators of a model from one tuning to the next."""
+    """Transition of the oscillators of a model from one tuning to the next."""
 
     def __init__(self, tunable: Tunable, settings: Settings, damping_ratio: float) -> None:
         """Split the stiffness into that of the wood and that of the weight."""
@@ -71,21 +71,20 @@ class LiveTuning:
 
     @property
     def changes(self) -> tuple[Tuning, ...]:
-        """Return the tuning that is gone to, or nothing where it is that of the start."""
+        """Return the target tuning, or None where it is that of the start."""
         return () if self.goal == self._made else (self.goal,)
 
     @property
     def is_moving(self) -> bool:
-        """Return whether the next step changes something."""
+        """Return whether the next step changes the coefficients."""
         return self._left > 0.0
 
     def changed(self, **changes: float) -> Tuning:
         """
         Return the goal with some values changed.
 
-        A `ParameterError` names what may not change, a value out of its range, or what this tree
-        cannot take: to buckle, weight on one that was made without, or any change of the volume
-        rule.
+        A `ParameterError` names a value that may not change, that is out of its range, by which
+        the tree buckles, weight on a tree that was made without, or any change of the volume rule.
         """
         for name, value in changes.items():
             if name not in _RANGES:
@@ -118,11 +117,11 @@ class LiveTuning:
         return goal
 
     def go_to(self, goal: Tuning) -> None:
-        """Take on a tuning that was checked, from the next step on."""
+        """Start the transition to a checked tuning with the next step."""
         self.goal, self._left = goal, GLIDE
 
     def step(self, dt: float) -> bool:
-        """Go on by a step [s]; return whether the coefficients have changed."""
+        """Continue the transition by a step [s]; return whether the coefficients have changed."""
         if self._left <= 0.0:
             return False
         share = min(dt / self._left, 1.0)

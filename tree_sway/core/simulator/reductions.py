@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What a tree is reduced to, once for all of its models: beams, key segments, matrices, modes.
+Reductions of a tree, shared by its models: beams, key segments, matrices, modes.
 
-Models differ in two ways of reduction: with subtrees, where a branch moves with all that it
-carries, or isolated, where each is by itself (the paper's).
+Models differ in two ways of reduction: with subtrees, where a branch moves with its subtree, or
+isolated (the paper's).
 """
 
 from __future__ import annotations
@@ -23,12 +23,7 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.drag import crown_drag, DragLaw, pressure
 from tree_sway.core.motion.fill_records import branch_records, places_of, segment_records
 from tree_sway.core.reduction.matrices import reduce_tree, Reduction
-from tree_sway.core.reduction.modes import (
-    leading_modes,
-    Modes,
-    natural_modes,
-    solvable,
-)
+from tree_sway.core.reduction.modes import leading_modes, Modes, natural_modes, solvable
 from tree_sway.core.reduction.one_thread import one_thread
 from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings
@@ -36,24 +31,27 @@ from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 
 if TYPE_CHECKING:
-    from tree_sway.core.motion.static_answers import WindMoments
+    from tree_sway.core.motion.static_responses import WindMoments
 
 CUT_FOR = 15.0
-"""Wind in [m/s] whose turns branches are cut for."""
+"""Wind in [m/s] for whose rotations branches are cut."""
 
 _STEADY = 2.0
-"""Root mean square of what steady winds do over that of gusts, as of a turbulence of some 0.25."""
+"""
+Weight of steady responses over gust responses, root mean square, as for a turbulence intensity of
+some 0.25.
+"""
 
 _CANDIDATES = 120
-"""Natural modes by which answers to gusts are found."""
+"""Number of natural modes by which responses to gusts are computed."""
 
 
 @dataclass(frozen=True)
 class ReducedTree:
     """
-    A tree reduced in one of the two ways that models differ in.
+    A tree reduced in one of the two ways.
 
-    Its branches may be pieces of those of the tree as it is given: ``branch`` are these, (p,).
+    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,).
     """
 
     tree: Tree
@@ -67,9 +65,9 @@ class ReducedTree:
 
 class TreeReductions:
     """
-    The reductions of a tree of a species, each made when it is first asked for.
+    The reductions of a tree of a species, each made at its first use.
 
-    Nothing is compiled for it if ``plain``.
+    With ``plain`` nothing is compiled.
     """
 
     def __init__(
@@ -81,9 +79,12 @@ class TreeReductions:
         self.settings = in_season(tree, species, settings)
         self.plain = plain or bool(WHY_PLAIN)
         self.drag_law, self.leaf_load_area = _crown_drag(tree, species, self.settings)
-        """Law of the whole tree; bare wood that leaves of each branch are worth in [m^2], (b,)."""
+        """
+        Law of the whole tree; equivalent area of bare wood of the leaves of each branch in [m^2],
+        (b,).
+        """
         self.circular = np.zeros(0)
-        """Lowest natural circular frequencies that are known in [rad/s]."""
+        """Lowest known natural circular frequencies in [rad/s]."""
         self._slowest: Modes | None = None
 
     @property
@@ -95,10 +96,10 @@ class TreeReductions:
 
     def natural_modes(self, count: int | None = None) -> Modes:
         """Return the slowest natural modes of the tree, or all, found once."""
-        wanted = self.coupled.reduction.n_coordinates if count is None else count
+        wanted = self.with_subtrees.reduction.n_coordinates if count is None else count
         if self._slowest is None or len(self._slowest.circular) < wanted:
             with solvable(self.tree):
-                reduced = self.coupled
+                reduced = self.with_subtrees
                 self._slowest = natural_modes(reduced.tree, reduced.reduction, count)
             self.circular = self._slowest.circular
         return self._slowest.slowest(wanted)
@@ -106,74 +107,74 @@ class TreeReductions:
     def natural_frequencies(self, count: int) -> Floats:
         """Lowest natural frequencies in [Hz], (count,) or fewer."""
         if count > len(self.circular):
-            self.natural_modes(min(count, self.coupled.reduction.n_coordinates))
+            self.natural_modes(min(count, self.with_subtrees.reduction.n_coordinates))
         return np.asarray(self.circular[:count] / (2.0 * np.pi))
 
     def modes(self, model: int | str) -> Modes:
-        """All modes, or as many as do most of what the tree does in winds."""
-        reduction = self.coupled.reduction
+        """Return all modes, or the leading ones in winds."""
+        reduction = self.with_subtrees.reduction
         n = reduction.n_coordinates
         count = n if isinstance(model, str) else min(model, n)
         if count in (0, n):
             return self.natural_modes(1 if count == 0 else None).slowest(count)
-        from tree_sway.core.motion.gust_answers import gust_answers
+        from tree_sway.core.motion.gust_responses import gust_responses
         from tree_sway.core.motion.response import tip_motion
 
         candidates = min(n, _CANDIDATES)
         natural = self.natural_modes(None if candidates == n else candidates)
-        branches = self.coupled.branches
+        branches = self.with_subtrees.branches
 
         def moved(rotations: Floats) -> Floats:
             return np.asarray(tip_motion(branches, rotations).reshape(-1, rotations.shape[1]))
 
         loss = self.damping_ratio * np.ones(candidates)
-        gusts = gust_answers(branches, natural, loss, self.drag_law)
+        gusts = gust_responses(branches, natural, loss, self.drag_law)
         squares, mixes = np.linalg.eigh(gusts @ gusts.T)
         gusts = natural.shapes @ (mixes * np.sqrt(np.maximum(squares, 0.0)))
-        steady = self._static_answers()
+        steady = self._static_responses()
         steady *= _STEADY * np.linalg.norm(moved(gusts)) / np.linalg.norm(moved(steady))
         return leading_modes(reduction, np.hstack([gusts, steady]), moved, count)
 
-    def _static_answers(self) -> Floats:
-        """Key rotations by which the tree answers to winds, for a pressure of 1 kg/m/s^2."""
-        from tree_sway.core.motion.static_answers import static_answers
+    def _static_responses(self) -> Floats:
+        """Responses of the tree to winds as key rotations, per pressure of 1 kg/m/s^2."""
+        from tree_sway.core.motion.static_responses import static_responses
 
-        law, solve = self.drag_law, self.coupled.reduction.factors.solve
-        return static_answers(self.wind_moments, solve, lambda u: pressure(u, *law) * u * u)
+        law, solve = self.drag_law, self.with_subtrees.reduction.factors.solve
+        return static_responses(self.wind_moments, solve, lambda u: pressure(u, *law) * u * u)
 
     @cached_property
     def wind_moments(self) -> WindMoments:
         """Return the loads of the tree that is reduced with its subtrees."""
-        from tree_sway.core.motion.static_answers import WindMoments
+        from tree_sway.core.motion.static_responses import WindMoments
 
-        return WindMoments(self.coupled.branches, plain=self.plain)
+        return WindMoments(self.with_subtrees.branches, plain=self.plain)
 
     def reduced(self, model: int | str) -> ReducedTree:
-        """Reduction that a model starts from."""
-        return self.isolated if model == 'branch' else self.coupled
+        """Return the reduction for a model."""
+        return self.isolated if model == 'branch' else self.with_subtrees
 
     @cached_property
     def isolated(self) -> ReducedTree:
-        """Every branch on its own."""
+        """Reduction of isolated branches."""
         whole = whole_tree(self.tree)
-        return self._reduced(whole, self._beams.models(carries=False), carries=False)
+        return self._reduced(whole, self._beams.models(subtrees=False), subtrees=False)
 
     @cached_property
-    def coupled(self) -> ReducedTree:
+    def with_subtrees(self) -> ReducedTree:
         """
-        Branches that carry their children, those of the enriched ones with further shapes.
+        Reduction with subtrees, enriched branches with further shapes.
 
-        Those that turn far are cut into key segments.
+        Branches that rotate far are cut into key segments.
         """
-        push = pressure(CUT_FOR, *self.drag_law) * CUT_FOR**2
-        turns = push * self._beams.turns(self.species.modulus)
+        dynamic_pressure = pressure(CUT_FOR, *self.drag_law) * CUT_FOR**2
+        turns = dynamic_pressure * self._beams.turns(self.species.modulus)
         cut, beams = cut_tree(self.tree, pieces_by_turn(self.tree, turns)), self._beams
         if cut.tree.n_branches > self.tree.n_branches:
             same = np.where(cut.share == 1.0, cut.branch, -1)
             beams = self._beams_of(cut, (self._beams, same))
         enriched = beams.enriched(self.settings.enrich)
-        models = beams.models(carries=True, enriched=enriched)
-        return self._reduced(cut, models, carries=True)
+        models = beams.models(subtrees=True, enriched=enriched)
+        return self._reduced(cut, models, subtrees=True)
 
     @cached_property
     def _speed(self) -> Floats:
@@ -205,15 +206,15 @@ class TreeReductions:
         )
 
     @one_thread()
-    def _reduced(self, cut: CutTree, models: list[BranchModel], *, carries: bool) -> ReducedTree:
+    def _reduced(self, cut: CutTree, models: list[BranchModel], *, subtrees: bool) -> ReducedTree:
         tree, species = cut.tree, self.species
         shear = species.shear_ratio * species.modulus
         reduction = reduce_tree(
-            tree, models, species.modulus, shear, self.settings.gravity, carries=carries
+            tree, models, species.modulus, shear, self.settings.gravity, subtrees=subtrees
         )
         places = places_of(tree, models, reduction)
         records = branch_records(tree, models, reduction, places, self._speed[cut.row])
-        # Poses are those of the whole branches' segments.
+        # Poses are those of the segments of whole branches.
         row, on = cut.row[records['first']], records['base_segment']
         records['end'] += row - records['first']
         records['first'], records['base_segment'] = row, np.where(on < 0, -1, cut.row[on])
@@ -223,7 +224,7 @@ class TreeReductions:
 
 
 def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:
-    """Find the drag law of wood and leaves, and the area that leaves add to each branch, (b,)."""
+    """Find the drag law of wood and leaves, and the equivalent area of leaves by branch, (b,)."""
     if not settings.in_leaf or settings.leaf_area is None:
         law = DragLaw(*species.drag_law(bool(settings.in_leaf)))
         return law, np.zeros(tree.n_branches)

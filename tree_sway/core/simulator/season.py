@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a tree bears leaves, decided in one place, and what they weigh, catch and damp."""
+"""Whether a tree bears leaves; mass, area and damping of its leaves."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 
 LEAVES: dict[str, bool | None] = {'auto': None, 'on': True, 'off': False}
-"""What a user may say of leaves; ``auto`` leaves it to the species: evergreens bear them."""
+"""Choices of leaves; with ``auto`` it depends on the species: evergreens bear them."""
 
 
 def is_in_leaf(species: Species, asked: bool | None = None) -> bool:
-    """Whether a tree bears leaves, as asked for; if None, evergreen species do."""
+    """Return whether a tree bears leaves; if None, evergreen species do."""
     return species.leaves.is_evergreen if asked is None else asked
 
 
@@ -24,7 +24,7 @@ def in_season(tree: Tree, species: Species, settings: Settings) -> Settings:
     Return the settings with the leaves that the tree of a species bears.
 
     Leaves add mass and area to their branches, damp them as the species in leaf, and let the crown
-    streamline. Leaves that are given stay; what this has returned it returns again as it is.
+    streamline. Given leaves are kept; the result is a fixed point of the function.
     """
     are_given = settings.leaf_mass is not None or settings.leaf_area is not None
     in_leaf = are_given or is_in_leaf(species, settings.in_leaf)

@@ -17,19 +17,19 @@ from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import nearest, ParameterError
 
 USUAL = 60
-"""Coordinates that are stepped where no number is asked for."""
+"""Default number of coordinates."""
 
 MODELS = ('auto', 'branch', 'full')
-"""Models that have a name; the others are numbers of coordinates."""
+"""Models with a name; other models are numbers of coordinates."""
 
 MOST = 1000
-"""Coordinates that may be asked for."""
+"""Largest number of coordinates."""
 
 STIFFEST = 1e7
-"""Stiffness in [N/m] up to which a spring may pull at a segment."""
+"""Largest stiffness in [N/m] of a spring at a segment."""
 
 ENRICHED = ('none', 'stem', 'needed', 'carriers', 'all')
-"""Which branches may get further shapes."""
+"""Choices of branches with further shapes."""
 
 _RANGES = {
     'volume_stiffness': (0.0, 1e9, 'N m/rad/m^3', False),
@@ -40,20 +40,20 @@ _RANGES = {
     'root_stiffness': (0.0, math.inf, 'N m/rad', True),
     'max_wind': (0.0, FASTEST_WIND, 'm/s', True),
 }
-"""Least and largest value, unit, and whether the least itself is refused."""
+"""Smallest and largest value, unit, and whether the smallest itself is refused."""
 
 
 @dataclass(frozen=True, eq=False)
 class Settings:
     """
-    How a tree is modelled; what it is made of is its species.
+    How a tree is modelled; its material is that of its species.
 
     Parameters
     ----------
     model
-        How many coordinates the tree has in the wind, or all if there are fewer; 0 does not move.
-        Or ``branch``, the paper's, each branch by itself; ``full``, all coordinates and the load
-        of every branch; or ``auto``, which takes as many coordinates as the scene needs.
+        Number of coordinates of the tree, or all if there are fewer; 0 does not move. Or
+        ``branch``, the paper's, isolated branches; ``full``, all coordinates and the load of every
+        branch; or ``auto``, the smallest number that suffices for the scene.
     degree
         Degree of the harmonics of the wind's direction: 1, 3 or 5.
     volume_stiffness, volume_damping
@@ -63,16 +63,16 @@ class Settings:
     damping_ratio
         Damping ratio of every oscillator in [-]; that of the species if None.
     in_leaf
-        Whether the tree bears leaves; None leaves it to the species, of which evergreens do.
+        Whether the tree bears leaves; if None, evergreen species do.
     gravity
         Gravity in [m/s^2]; 0 leaves weight out.
     profile
-        Wind over height.
+        Profile of the wind over height.
     crown_coherence
         Share of a gust in [-] that reaches the whole crown at once; the rest reaches each limb
-        after a delay of its own (`crown_wind`). 1 is one wind for the whole crown.
+        after its own delay (`crown_wind`). 1 is one wind for the whole crown.
     enrich
-        Branches that get further shapes and twists, on all models but ``branch``: ``none``, the
+        Branches with further shapes and twists, on all models but ``branch``: ``none``, the
         ``stem``, those ``needed`` (`TreeBeams.enriched`), all ``carriers`` of others, or ``all``.
     root_stiffness
         Stiffness of the roots against tilting in [N m/rad], infinite if they are rigid; the tree's
@@ -101,7 +101,7 @@ class Settings:
     max_wind: float = FASTEST_WIND
 
     def __post_init__(self) -> None:
-        """Refuse what is out of range."""
+        """Raise a `ParameterError` for a value out of its range."""
         object.__setattr__(self, 'model', model_of(self.model))
         for name, (low, high, unit, above) in _RANGES.items():
             value = getattr(self, name)
@@ -125,7 +125,7 @@ class Settings:
         return isinstance(other, Settings) and digest_of(self) == digest_of(other)
 
     def __hash__(self) -> int:
-        """Hash what `__eq__` compares."""
+        """Hash the fields that `__eq__` compares."""
         return hash(digest_of(self))
 
 
@@ -133,11 +133,12 @@ def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Sett
     """
     Return settings, the defaults if None, with some fields changed.
 
-    A `ParameterError` names what is not settings, an unknown field, or a value out of its range.
+    A `ParameterError` names an object that is not settings, an unknown field, or a value out of
+    its range.
     """
     if not isinstance(settings, Settings | None):
         raise ParameterError(
-            f'a {type(settings).__name__}, where Settings are asked for',
+            f'a {type(settings).__name__}, where Settings are expected',
             where='settings',
             cure='give Settings(...), or its fields as keywords',
         )
@@ -151,15 +152,15 @@ def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Sett
 
 def model_of(given: object) -> int | str:
     """
-    Return a model as `Settings` keeps it: one of `MODELS` or a number, which may be given as text.
+    Return a model as a field of `Settings`: one of `MODELS` or a number, also from text.
 
-    A `ParameterError` names what there is.
+    A `ParameterError` lists the models.
     """
     if isinstance(given, str) and given in MODELS:
         return given
     number = int(given) if isinstance(given, str) and given.isdecimal() else given
     if isinstance(number, float) and number.is_integer():
-        number = int(number)  # files of numbers have no whole ones
+        number = int(number)  # files of numbers have floats
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number <= MOST:
         return number
     near = nearest(str(given), MODELS)

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The tree in the wind: owns the order of work, and no clock."""
+"""The simulator of a tree: the order of work of a step."""
 
 from __future__ import annotations
 
@@ -35,15 +35,15 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.gust_travel import GustHistory
 
 OK, WIND_REFUSED, LOAD_CLAMPED, RESTARTED = 0, 1, 2, 4
-"""What `SwaySimulator.step` returns, as bits."""
+"""Bits of the result of `SwaySimulator.step`."""
 
 
 @dataclass
 class Counts:
     """
-    What became of the steps since the start.
+    Counts of the steps since the start.
 
-    ``refused``: the wind was not finite or faster than the limit, and the last one goes on;
+    ``refused``: the wind was not finite or faster than the limit, and the last one was used;
     ``clamped``: loads at the limit of the model; ``restarted``: the motion was not finite, and the
     tree continued from rest; ``refused_pushes``: calls of `SwaySimulator.push` that were refused.
     """
@@ -62,15 +62,15 @@ class SwaySimulator:
     Parameters
     ----------
     tree
-        The tree, alone or with its species.
+        Tree, with or without its species.
     species
-        Its wood, damping and drag; the tree's own if None.
+        Species for wood, damping and drag; the tree's own if None.
     settings
-        How it is modelled, on any model but ``auto``; `make_simulator` makes that too.
+        Settings, on any model but ``auto``; `make_simulator` makes that too.
     cache
-        Where set-ups are written and found again, on disk if left out; nowhere if None.
+        Cache of set-ups, on disk by default; no cache if None.
     plain
-        Whether it runs in numpy, as it does where numba is missing.
+        Whether to run in numpy, as where numba is missing.
     **changes
         Fields of the settings, as keywords: ``SwaySimulator(tree, model="branch")``.
 
@@ -79,7 +79,7 @@ class SwaySimulator:
     ParameterError
         A setting out of its range.
     SpeciesError
-        A species that no table knows.
+        An unknown species.
     TreeError
         A tree that buckles under its own weight.
 
@@ -105,7 +105,7 @@ class SwaySimulator:
         plain: bool = False,
         **changes: Any,
     ) -> None:
-        """Reduce the tree; nothing is left to do at the first step but to compile."""
+        """Reduce the tree; the first step only compiles."""
         self.tree, self.species = tree, species = tree_and_species(tree, species)
         chosen = settings_with(settings, changes)
         self.reductions = TreeReductions(tree, species, chosen, plain=plain)
@@ -115,7 +115,7 @@ class SwaySimulator:
         self.mass = self.bank.mass
         """Mass of wood and leaves in [kg]."""
         self.joints: Records = self.bank.branches
-        """Records of `BRANCH` that give the key rotations their meaning, (b,)."""
+        """Records of `BRANCH`, whose coordinates are the key rotations, (b,)."""
         self.drag_law = self.reductions.drag_law
         self._advance = self.bank.oscillators.advance
         self._in_one_call: Callable[[float, float, float], int] | None = None
@@ -128,7 +128,7 @@ class SwaySimulator:
             self._gusts = crown_gusts.CrownGusts(self.reductions, loads)
         self._tuning: LiveTuning | None = None
         self.touch: Touch | None = None
-        """Pushes, until nothing is left of them."""
+        """Pushes, until their effect is gone."""
         self._dt = math.nan
         self._wind = np.zeros(3)
         self._expected = (int(self.bank.branches['n_coordinates'].sum()),)
@@ -156,7 +156,7 @@ class SwaySimulator:
         """
         Lowest natural frequencies of the tree in [Hz], without air, (count,) or fewer.
 
-        On the model ``branch`` those of its branches, each by itself.
+        On the model ``branch`` they are those of the isolated branches.
         """
         if self.settings.model == 'branch':
             tunable = self.bank.oscillators.tunable
@@ -165,26 +165,26 @@ class SwaySimulator:
         return self.reductions.natural_frequencies(count)
 
     def digest(self) -> str:
-        """Digest of tree, species, settings and what was tuned since."""
+        """Digest of tree, species, settings and tuning."""
         tuned = () if self._tuning is None else self._tuning.changes
         return digest_of(self.tree, self.species, self.settings, *tuned)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Return views of what is carried between steps, the wind of the last step first."""
+        """Return views of the state, the wind of the last step first."""
         crown = () if self._gusts is None else self._gusts.wind.memory()
         return self._wind, *self.bank.oscillators.memory(), *crown
 
     def state(self) -> TreeState:
-        """Return a copy of all that is carried from one step to the next."""
+        """Return a copy of the state."""
         values = np.concatenate([np.ravel(array) for array in self.memory()])
         return TreeState(self.tree.name, self.digest(), self.model, values)
 
     def set_state(self, state: TreeState) -> None:
         """
-        Go on from a state.
+        Continue from a state.
 
-        Raises a `StateError` for another tree or model, or what is not finite; what was before
-        stays.
+        Raises a `StateError` for a different tree or model, or a state that is not finite, and
+        keeps the present state.
         """
         arrays = self.memory()
         n_values = sum(array.size for array in arrays)
@@ -234,9 +234,9 @@ class SwaySimulator:
         Returns
         -------
         int
-            0, or the sum of `WIND_REFUSED` (not finite or too fast: the last wind goes on),
-            `LOAD_CLAMPED` (a load beyond what the model follows was clamped) and
-            `RESTARTED` (the motion was not finite: the tree goes on from rest).
+            0, or the sum of `WIND_REFUSED` (not finite or too fast: the last wind was used),
+            `LOAD_CLAMPED` (a load beyond the limit of the model was clamped) and `RESTARTED` (the
+            motion was not finite: the tree continued from rest).
 
         Raises
         ------
@@ -266,18 +266,18 @@ class SwaySimulator:
         wx, wy, wz = self._wind.tolist()
         load = pressure(math.hypot(wx, wy, wz), *self.drag_law)
         if self._gusts is not None:
-            wx, wy, wz = self._gusts.felt(wx, wy, wz, dt)
+            wx, wy, wz = self._gusts.winds_of_step(wx, wy, wz, dt)
         return status | self._count(self._advance(wx, wy, wz, load)) | self.touched(dt)
 
     def push(
         self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
     ) -> None:
         """
-        Push or pull at a segment while the tree goes on swaying.
+        Push or pull at a segment while the tree sways.
 
-        The force moves with the tree and keeps its direction. A new one on the same segment takes
-        the place of the one before, so that who drags a branch says so again and again; after the
-        last one the tree swings freely. A state knows nothing of pushes.
+        The force moves with the tree and keeps its direction. A new force on the same segment
+        replaces the one before, so that dragging a branch is a series of calls; after the last one
+        the tree swings freely. A state has no pushes.
 
         Parameters
         ----------
@@ -286,15 +286,15 @@ class SwaySimulator:
         force
             Force in [N], (3,), or a `Spring` to a place.
         seconds
-            How long it acts from the next step on in [s].
+            Duration of the force from the next step on in [s].
         along
-            Where on the segment, as a share of its length from the root side.
+            Place on the segment, as a share of its length from the root side.
 
         Raises
         ------
         ParameterError
-            A segment that the tree lacks, a force that is not finite, a time that is not above 0,
-            or the model ``branch``; `Counts.refused_pushes` counts it, and nothing changes.
+            A segment that does not exist, a force that is not finite, a time that is not above 0,
+            or the model ``branch``; it is counted as `Counts.refused_pushes`, and nothing changes.
 
         """
         from tree_sway.core.simulator.touch import Touch
@@ -314,18 +314,18 @@ class SwaySimulator:
 
     @property
     def pushed(self) -> dict[int, SwaySimulator]:
-        """This tree by the number 0 if it is pushed, or something is left of that."""
+        """This tree under the number 0 while a push has an effect."""
         return {} if self.touch is None else {0: self}
 
     def touched(self, dt: float) -> int:
-        """Let the pushes act over the step [s] that was made; returns what `step` says of it."""
+        """Add the effect of pushes over the last step [s]; returns bits as `step`."""
         if self.touch is None or self.touch.is_gone:
             self.touch = None
             return OK
         return self._count(self.touch.step(lambda: self.place(self._poses), self._origin, dt))
 
     def _count(self, clamped: int) -> int:
-        """Take what an advance returned; returns what `step` reports of it."""
+        """Count the result of `advance`; returns bits as `step`."""
         if clamped > 0:
             self.counts.clamped += clamped
             return LOAD_CLAMPED
@@ -342,7 +342,7 @@ class SwaySimulator:
         Parameters
         ----------
         out
-            Where to write, (n, 7) float64, to be fast; a new array if None.
+            Array to write to, (n, 7) float64, for speed; a new array if None.
 
         Returns
         -------
@@ -353,7 +353,7 @@ class SwaySimulator:
         Raises
         ------
         ParameterError
-            An array that cannot hold the poses.
+            An array of a wrong shape or type.
 
         """
         out = self._to_fill(out)
@@ -379,20 +379,19 @@ class SwaySimulator:
     @property
     def base_moment(self) -> Floats:
         """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
-        couple, force = self.bank.branches['coupling'], self.bank.oscillators.forces()
-        moment: Floats = np.einsum('bij,bj->i', couple, force)
-        return moment
+        coupling, force = self.bank.branches['coupling'], self.bank.oscillators.forces()
+        return np.asarray(np.einsum('bij,bj->i', coupling, force))
 
     def motion(self) -> tuple[Floats, Floats]:
         """Key rotations in [rad] and their rates in [rad/s] in the model in use, both (N,)."""
         return self.bank.oscillators.motion()
 
     def take_over(self, x: Floats, v: Floats) -> None:
-        """Go on from key rotations and rates, (N,), instead of from rest."""
+        """Continue from key rotations and rates, (N,), instead of from rest."""
         self.bank.oscillators.take_over(x, v)
 
     def check_tuning(self, **changes: float) -> Tuning:
-        """Refuse what `tune` would refuse; returns all values as they would be."""
+        """Check changes as `tune`; returns all values after the changes."""
         from tree_sway.core.simulator.live_tuning import LiveTuning
 
         if self._tuning is None:
@@ -402,18 +401,18 @@ class SwaySimulator:
 
     def tune(self, **changes: float) -> None:
         """
-        Change the tree while it sways; poses go over to the change within half a second.
+        Change the tree while it sways; the change takes half a second.
 
         Parameters
         ----------
         **changes
-            ``damping_ratio``, ``stiffness_factor`` or ``gravity``, as of `Tuning`. What is not
-            named stays.
+            Fields of `Tuning`: ``damping_ratio``, ``stiffness_factor`` or ``gravity``. Others
+            stay.
 
         Raises
         ------
         ParameterError
-            A value that is out of range or that this tree cannot take; nothing changes.
+            A value that is out of range or impossible for this tree; nothing changes.
 
         """
         goal = self.check_tuning(**changes)
@@ -421,11 +420,11 @@ class SwaySimulator:
             self._tuning.go_to(goal)
 
     def glide(self, dt: float) -> bool:
-        """Go on towards what `tune` asked for; returns whether the coefficients have changed."""
+        """Continue a transition of `tune`; returns whether the coefficients have changed."""
         return self._tuning is not None and self._tuning.step(dt)
 
     def reset(self) -> None:
-        """Go back to rest, with no wind; the counts stay."""
+        """Return to rest, with no wind; the counts stay."""
         self.bank.oscillators.reset()
         if self._gusts is not None:
             self._gusts.wind.reset()

@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Forces that people and machines put on a tree for a while.
+Forces of limited duration on segments of a tree, as by a hand.
 
-A force f at a place p does ``J^T f`` to the key rotations x, ``J = dp/dx`` as the tree is bent
-now. Only the branches between the place and the root move it, so that J is found by placing the
-tree once for each of their coordinates. By what these branches give way beyond the shapes of the
-model (`Push.residual`) they follow the force within `SETTLES`.
+A force f at a place p acts on the key rotations x by ``J^T f``, with ``J = dp/dx`` in the present
+pose. Only the branches between the place and the root move it, so that J is found by placing the
+tree once for each of their coordinates. The static correction for shapes outside of the model
+(`Push.residual`) follows the force within `SETTLES`.
 """
 
 from __future__ import annotations
@@ -29,22 +29,22 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
 LONGEST_PUSH = 3600.0
-"""Longest time in [s] that a push may be asked to last."""
+"""Longest duration of a push in [s]."""
 
 MOST_PUSHES = 64
-"""Segments of a tree that are pushed at once, at most."""
+"""Largest number of segments of a tree that are pushed at once."""
 
 _RENEWED = 0.1
-"""Time in [s] after which the lever of a push is found again, as the tree has moved."""
+"""Time in [s] after which the lever of a push is computed again, as the tree moves."""
 
 _TURN = 1e-6
-"""Turn in [rad] by which derivatives are found."""
+"""Rotation in [rad] for difference quotients."""
 
 SETTLES = 0.05
-"""Time in [s] in which branches go over to what a force does to them beyond the model's shapes."""
+"""Time constant in [s] of the static correction for shapes outside of the model."""
 
 _GONE = 1e-3
-"""Share of that, and turn in [rad], below which it is left."""
+"""Share of the correction, and rotation in [rad], below which a push is over."""
 
 
 def row_of(segment: int, count: int) -> int:
@@ -59,7 +59,7 @@ class Spring(NamedTuple):
     """
     A spring from a segment to a place ``to`` [m], (3,), of a stiffness [N/m].
 
-    It pulls no more stiffly than a time step can follow, as a hand at a branch does.
+    Its stiffness is limited by the time step.
     """
 
     to: ArrayLike
@@ -71,9 +71,10 @@ class Push:
     """
     A force [N] on a segment at a distance from its root side [m], for a time left [s].
 
-    ``lever`` is J, (3, N), found again after the time ``renewed_in``. With a ``stiffness`` [N/m]
-    it is a spring to the place ``force`` [m]. ``by_mode`` is J on the model's coordinates, (3, m),
-    ``residual`` what key rotations between it and the root turn by beyond these per force, (N, 3).
+    ``lever`` is J, (3, N), computed again after the time ``renewed_in``. With a ``stiffness``
+    [N/m] it is a spring to the place ``force`` [m]. ``by_mode`` is J on the model's coordinates,
+    (3, m), ``residual`` the static correction of key rotations between it and the root per force,
+    (N, 3).
     """
 
     segment: int
@@ -100,7 +101,7 @@ class Touch:
         self._tree, self._bank = tree, bank
         self._oscillators: Any = bank.oscillators
         self.pushes: dict[int, Push] = {}
-        """Those that act, by their segments."""
+        """Active pushes by their segments."""
         self._poses = np.zeros((tree.n_segments, 7))
         if not hasattr(bank.oscillators, 'compliance'):
             cure = 'use a number of coordinates, auto or full'
@@ -108,26 +109,26 @@ class Touch:
         self.load = np.zeros(6)
         """Force [N] and moment about the root node [N m] of the last step's pushes."""
         self.residual = np.zeros(len(bank.oscillators.rotations()))
-        """What the pushed branches are turned by beyond the model's shapes [rad], (N,)."""
+        """Static correction of the pushed branches [rad], (N,)."""
         self._keys: list[int] = []
         self._share = 0.0
 
     @property
     def is_gone(self) -> bool:
-        """Whether nothing of a push is left but the swing of the model."""
+        """Whether pushes have no effect beyond the state of the model."""
         return not self.pushes and max(self._share, np.abs(self.residual).max()) < _GONE
 
     def beyond(self, rotations: Floats) -> Floats:
         """
-        Return what pushed branches turn by beyond key rotations (N,) in [rad].
+        Return the corrections of pushed branches to key rotations (N,) in [rad].
 
-        Pairs of the number of a key rotation and a turn [rad], (k, 2).
+        They are pairs of the number of a key rotation and a rotation [rad], (k, 2).
         """
         missed = self._share * (self._oscillators.rotations() - rotations) + self.residual
         return np.stack([self._keys, missed[self._keys]], axis=1)
 
     def add(self, segment: int, force: ArrayLike | Spring, seconds: float, along: float) -> None:
-        """Begin a push, or change that on the same segment; a `ParameterError` as of `push`."""
+        """Begin a push, or change that on the same segment; raises as `push`."""
         stiffness = 0.0
         if isinstance(force, Spring):
             force, stiffness = force
@@ -147,7 +148,7 @@ class Touch:
         self.pushes[row] = replace(push, force=given, left=left, stiffness=stiffness)
 
     def step(self, place_all: Callable[[], Floats], origin: Floats, dt: float) -> int:
-        """Push for a step [s] in the poses (n, 7) of now; how many moments were clamped."""
+        """Apply the pushes for a step [s]; returns how many moments were clamped."""
         moments = np.zeros(len(self.residual))
         self.load[:] = 0.0
         settled = 1.0 - math.exp(-dt / SETTLES)
@@ -162,7 +163,8 @@ class Touch:
                 self._renew(push, place, origin, self._oscillators.rotations() + residual)
             force = (share := min(1.0, push.left / dt)) * push.force
             if push.stiffness:
-                # Implicit, by the force at the end of the step, and no stiffer than it can follow.
+                # Implicit, by the force at the end of the step, with the stiffness that it can
+                # follow.
                 give = per_force * push.by_mode @ push.by_mode.T
                 k = share * min(push.stiffness, 0.5 / float(np.trace(give)))
                 give += settled * push.lever @ push.residual
@@ -176,22 +178,22 @@ class Touch:
                 del self.pushes[push.segment]
         np.clip(self.residual, -FARTHEST, FARTHEST, out=self.residual)
         limit = self._oscillators.limit
-        felt = self._oscillators.shapes.T @ np.clip(moments, -limit, limit)
-        eta += per_force * felt
-        rate += whole[:, 6:8].sum(axis=1) * felt
-        total += felt
+        modal_force = self._oscillators.shapes.T @ np.clip(moments, -limit, limit)
+        eta += per_force * modal_force
+        rate += whole[:, 6:8].sum(axis=1) * modal_force
+        total += modal_force
         return int((np.abs(moments) > limit).sum())
 
     def _renew(self, push: Push, place: Floats, origin: Floats, x: Floats) -> None:
-        """Find how a place (3,) of the tree moves as it is bent, by key rotations x (N,)."""
+        """Find the motion of a place (3,) by key rotations x (N,)."""
         branches = self._bank.branches
-        # A branch that is cut has a record per piece.
-        holds = (branches['first'] <= push.segment) & (push.segment < branches['end'])
-        branch, keys, residual = int(np.flatnonzero(holds)[0]), list[int](), push.residual
+        # A branch that is cut has one record per piece.
+        has_segment = (branches['first'] <= push.segment) & (push.segment < branches['end'])
+        branch, keys, residual = int(np.flatnonzero(has_segment)[0]), list[int](), push.residual
         by_branch, modes = self._oscillators.compliance
         while branch >= 0:
-            here = branches[branch]
-            first, count = int(here['coordinate']), int(here['n_coordinates'])
+            record = branches[branch]
+            first, count = int(record['coordinate']), int(record['n_coordinates'])
             for i in (own := range(first, first + count)):
                 x[i] += _TURN
                 self._bank.place(x, origin, self._poses)
@@ -199,9 +201,9 @@ class Touch:
                 x[i] -= _TURN
             residual[own] = by_branch[own, :count] @ push.lever[:, own].T
             keys += own
-            branch = int(here['parent'])
+            branch = int(record['parent'])
         push.by_mode = push.lever @ (shapes := self._oscillators.shapes)
-        # Residual flexibility (MacNeal 1971), as if only the branches to the root turned.
+        # Residual flexibility (MacNeal 1971) of the branches to the root.
         residual[keys] -= shapes[keys] @ (modes @ push.by_mode.T)
         push.renewed_in = _RENEWED
         self._keys = list(dict.fromkeys([*self._keys, *keys]))

@@ -1,13 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A tree's shape as a few numbers: a basis of the key rotations.
+The shape of a tree as a few numbers: a basis of the key rotations.
 
-However many branches a tree has, wind moves them together. A handful of coordinates holds all
-shapes that it takes in any wind: ``x = B c``, ``c = P x``. A coordinate is measured by what it
-does to the tips of all branches, so that what is left out is what is seen least (proper orthogonal
-decomposition; Holmes et al. 2012, *Turbulence, Coherent Structures, Dynamical Systems and
-Symmetry*, 3.1).
+Wind moves all branches of a tree together, so that few coordinates describe its shapes in any
+wind: ``x = B c``, ``c = P x``. A coordinate is weighted by the motion of the tips of all branches,
+so that the error is the least visible motion (proper orthogonal decomposition; Holmes et al. 2012,
+*Turbulence, Coherent Structures, Dynamical Systems and Symmetry*, 3.1).
 """
 
 from __future__ import annotations
@@ -20,12 +19,12 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 
 FULL_SCALE = 32767
-"""Greatest int16 that a coordinate is sent as."""
+"""Largest int16 of a coordinate that is sent."""
 
 MARGIN = 5.0
 """
-Full scale of a coordinate over its greatest value in the runs that a basis was made from: beyond
-that the error of the basis is not known.
+Full scale of a coordinate over its largest value in the runs for the basis; beyond them the error
+of the basis is unknown.
 
 """
 
@@ -33,19 +32,19 @@ that the error of the basis is not known.
 @dataclass(frozen=True)
 class StateBasis:
     """
-    Coordinates that hold the shape of one tree on one model.
+    Coordinates of the shape of one tree on one model.
 
     Parameters
     ----------
     matrix
         Key rotations per unit of each in [rad], (N, m).
     projection
-        Its inverse, (m, N).
+        Inverse of the matrix, (m, N).
     scale
         Value of each coordinate at `FULL_SCALE`, (m,).
     error
-        Farthest that a segment was from where the model has it in [m], with coordinates as int16,
-        over a run that the basis was not made from.
+        Largest error of the place of a segment in [m], with coordinates as int16, over a run that
+        is not one of those for the basis.
 
     """
 
@@ -56,17 +55,17 @@ class StateBasis:
 
     @property
     def n_coordinates(self) -> int:
-        """How many coordinates there are, m."""
+        """Number of coordinates, m."""
         return len(self.scale)
 
     @property
     def digest(self) -> str:
-        """Digest of matrix and scale, 16 hexadecimal digits: frames belong to one basis."""
+        """Digest of matrix and scale, 16 hexadecimal digits, that identifies the basis."""
         parts = self.matrix.tobytes() + self.scale.tobytes()
         return hashlib.sha256(parts).hexdigest()[:16]
 
     def coordinates(self, rotations: Floats) -> Floats:
-        """Coordinates (m,) that come nearest to key rotations (N,) in [rad]."""
+        """Coordinates (m,) that fit key rotations (N,) in [rad] best."""
         return np.asarray(self.projection @ rotations)
 
     def rotations(self, coordinates: Floats) -> Floats:
@@ -74,6 +73,6 @@ class StateBasis:
         return np.asarray(self.matrix @ coordinates)
 
     def rounded(self, coordinates: Floats) -> Floats:
-        """Coordinates (m,) as they are once sent as int16."""
+        """Coordinates (m,) after rounding to int16."""
         steps = np.rint(coordinates * (FULL_SCALE / self.scale))
         return np.clip(steps, -FULL_SCALE, FULL_SCALE) * (self.scale / FULL_SCALE)

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-All that a simulator carries from one step to the next, to be stored and set again.
+The state of a simulator between steps, to be stored and set again.
 
-A simulator that is set to a state goes on bit for bit as the one that gave it. A state says which
-tree, settings and model it belongs to, by a digest of all of them, and is refused by any other.
+A simulator that is set to a state continues bit for bit as the one it was read from. A state has a
+digest of its tree, settings and model, and others refuse it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tree_sway.core.arrays import Floats
 @dataclass(frozen=True)
 class TreeState:
     """
-    A tree at one moment: what its model carries from step to step, the last wind [m/s] first.
+    State of a tree: that of its model, after the last wind [m/s].
 
     The digest is that of tree, species and settings.
     """
@@ -33,7 +33,7 @@ class TreeState:
 
 
 def digest_of(*header: Any) -> str:
-    """Digest of trees and of frozen dataclasses that say how they are modelled, 16 hex digits."""
+    """Digest of trees and of frozen dataclasses such as settings, 16 hexadecimal digits."""
     digest = hashlib.sha256()
     for each in header:
         for field in fields(each):

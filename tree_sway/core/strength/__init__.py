@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How much of its strength a tree uses: the wood by its strain, the roots by the moment at the foot.
+Used share of the strength of a tree: of the wood by its strain, of the roots by the base moment.
 
-Strain along every branch, shares and their bands.
-There is no verdict here.
+Strain along every branch, shares and their bands. This is no verdict on safety.
 """

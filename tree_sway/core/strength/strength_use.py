@@ -5,12 +5,12 @@ The largest share of its strength that a tree has used.
 
 Wood breaks where its stress, Young's modulus times strain, reaches its modulus of rupture. Small
 clear specimens scatter by 16 % (Forest Products Laboratory, Wood Handbook, 2010, table 5-6), and
-knots take 15 % off a stem's (Gardiner et al. 2000, Ecological Modelling 129, 1-23). Roots give way
-at a moment of 77 to 146 N m for each kg of the stem, by species and soil (Byrne 2005; winching
-tests of near 2,000 conifers: Nicoll et al. 2006).
+knots reduce that of a stem by 15 % (Gardiner et al. 2000, Ecological Modelling 129, 1-23). Roots
+fail at a moment of 77 to 146 N m for each kg of the stem, by species and soil (Byrne 2005;
+winching tests of near 2,000 conifers: Nicoll et al. 2006).
 
-Left out: rot, wounds and forks, a soil that is wet or shallow, the stress of growth and of the
-tree's own weight, fatigue, sheltering by neighbours. It is no verdict on a tree's safety.
+Rot, wounds and forks, a wet or shallow soil, the stress of growth and of the tree's own weight,
+fatigue, and sheltering by neighbours are left out. It is no verdict on a tree's safety.
 """
 
 from __future__ import annotations
@@ -28,23 +28,24 @@ WOOD_BAND = (0.85 * (1.0 - 0.16), 1.0 + 0.16)
 """Modulus of rupture of a tree's wood over that of its species' mean [-]."""
 
 ROOT_MOMENT, ROOT_BAND = 110.0, (77.0, 146.0)
-"""Moment that roots hold per mass of the stem, the middle and the band in [N m/kg]."""
+"""Strength of roots as a moment per mass of the stem, mean and band in [N m/kg]."""
 
 
 @dataclass(frozen=True)
 class StrengthUse:
     """
-    The largest shares of strength that a tree used.
+    Largest used shares of the strength of a tree.
 
     Parameters
     ----------
     wood
-        Largest share of the modulus of rupture [-], its least and its most by `WOOD_BAND`, (3,).
+        Largest share of the modulus of rupture [-], with its lower and upper bound by `WOOD_BAND`,
+        (3,).
     branch, height
-        Branch it was reached in, and how high above the foot of the tree in [m].
+        Branch with that share, and its height above the base of the tree in [m].
     roots
-        Largest share of the moment that roots hold [-], its least and its most, (3,); nan in a
-        pot.
+        Largest share of the strength of the roots [-], with its lower and upper bound, (3,); nan
+        in a pot.
 
     """
 
@@ -54,12 +55,12 @@ class StrengthUse:
     roots: Floats
 
     def plain(self) -> dict[str, Any]:
-        """Return the same as plain numbers, for JSON; ``roots`` is None in a pot."""
+        """Return the fields as plain numbers, for JSON; ``roots`` is None in a pot."""
         roots = self.roots.tolist() if np.isfinite(self.roots).all() else None
         return {**vars(self), 'wood': self.wood.tolist(), 'roots': roots}
 
     def __str__(self) -> str:
-        """Say both with their bands on one line."""
+        """Return both with their bands as one line."""
         wood, roots = (
             '{:.3g} % ({:.3g} to {:.3g} %)'.format(*100.0 * share)
             for share in (self.wood, self.roots)
@@ -70,7 +71,7 @@ class StrengthUse:
 
 
 class StrengthGauge:
-    """The largest strain of each segment and the largest moment at the foot, as a tree sways."""
+    """Largest strain of each segment and largest base moment of a swaying tree."""
 
     def __init__(self, reductions: TreeReductions) -> None:
         """Begin at rest."""
@@ -80,14 +81,14 @@ class StrengthGauge:
 
     def read(self, rotations: Floats, base_moment: Floats) -> Floats:
         """
-        Take in one step.
+        Add one step.
 
         Parameters
         ----------
         rotations
             Key rotations in [rad], (N,).
         base_moment
-            At the foot of the stem in [N m], (3,).
+            Moment at the base of the stem in [N m], (3,).
 
         Returns
         -------
@@ -103,7 +104,7 @@ class StrengthGauge:
         return of_branch
 
     def use(self) -> StrengthUse:
-        """Return what was used since the beginning."""
+        """Return the used shares since the beginning."""
         tree, species = self._reductions.tree, self._reductions.species
         at = int(np.argmax(self._largest))
         stem_mass = species.density * float(tree.volume[tree.segments_of(0)].sum())

@@ -18,17 +18,17 @@ class WoodStrain:
     Parameters
     ----------
     reductions
-        The tree's reductions, of which that of the model of its settings is taken.
+        Reductions of the tree; the one for the model of its settings is used.
 
     """
 
     branch: Ints
-    """Branch of the tree that each segment is a part of, (m,)."""
+    """Branch of each segment, (m,)."""
     height: Floats
-    """Height of the middle of each segment above the foot of the tree, at rest in [m], (m,)."""
+    """Height of the middle of each segment above the base of the tree at rest in [m], (m,)."""
 
     def __init__(self, reductions: TreeReductions) -> None:
-        """Gather what each coordinate bends."""
+        """Find the curvature by each coordinate."""
         reduced = reductions.reduced(reductions.settings.model)
         blocks, radii = [], []
         for model in reduced.models:
@@ -50,5 +50,4 @@ class WoodStrain:
     def of(self, rotations: Floats) -> Floats:
         """Largest strain over a section, mean over each segment, (m,), by key rotations (N,)."""
         curvature = (self._curvature @ rotations).reshape(-1, 3)
-        strain: Floats = np.sqrt(np.einsum('mi,mi->m', curvature, curvature)) * self._radius
-        return strain
+        return np.asarray(np.sqrt(np.einsum('mi,mi->m', curvature, curvature)) * self._radius)

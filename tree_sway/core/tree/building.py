@@ -1,11 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-From segments in any order to a `Tree`: check, infer what is missing, group, order depth-first.
+From segments in any order to a `Tree`: checks, inference of parents and branches, order.
 
 The input is the paper's: start point, end point and thickness of each segment (Kanda & Ohya, 3.1).
-Parents may be given; if not, a segment sits on the one whose end node is where it starts. Branches
-may be given; if not, the thickest child that goes on from a segment's end continues its branch.
+Parents may be given; if not, the parent of a segment is the one that ends at its start. Branches
+may be given; if not, the thickest child at the end of a segment continues its branch.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TreeError
 
 MAX_COORDINATE = 1e8
-"""No map has coordinates beyond this [m]; a file with wrong columns soon does."""
+"""Largest coordinate of a node [m]: no map exceeds it, but files with wrong columns do."""
 
 
 def tree_from_segments(
@@ -46,27 +46,27 @@ def tree_from_segments(
     diameter
         Diameter of each segment in [m], (n,), or at its start and end, (n, 2).
     parent
-        Segment that each one sits on, -1 for the root, (n,); inferred from the nodes if None.
+        Parent of each segment, -1 for the root, (n,); inferred from the nodes if None.
     branch
         Branch key of each segment, any integers, (n,); inferred if None. Segments of one branch
         must be one chain.
     branch_names
         Names by sorted branch key; ``stem``, ``b1`` ... in depth-first order if None.
     name, species
-        What the tree is called, and the key of its wood.
+        Name of the tree, and key of its species.
     labels
-        How errors call each segment, for example ``line 12``; its number if None.
+        Names of the segments in errors, for example ``line 12``; their numbers if None.
 
     Returns
     -------
     Tree
-        With segments and branches in depth-first order.
+        Tree with segments and branches in depth-first order.
 
     Raises
     ------
     TreeError
-        Wrong shapes, numbers that are not finite, a segment of no length or no thickness, a
-        parent that does not exist, a cycle, more than one root, a branch that is not a chain.
+        Wrong shapes, numbers that are not finite, a segment without length or thickness, a parent
+        that does not exist, a cycle, more than one root, a branch that is not a chain.
 
     """
     starts, ends, diameters = (np.array(each, dtype=np.float64) for each in (start, end, diameter))
@@ -133,7 +133,7 @@ def _check_geometry(
 ) -> None:
     n = len(starts)
     if n == 0:
-        raise TreeError('a tree of no segments', cure='give at least one segment')
+        raise TreeError('a tree without segments', cure='give at least one segment')
     if starts.shape != (n, 3) or ends.shape != (n, 3) or diameters.shape != (n, 2):
         raise TreeError(
             f'start {starts.shape}, end {ends.shape} and diameter {diameters.shape} do not match',
@@ -151,13 +151,13 @@ def _check_geometry(
 
 
 def check_numbers(rows: Floats, labels: Sequence[str]) -> None:
-    """Raise a `TreeError` for the first row (n, k) with what is not finite or no metres."""
+    """Raise a `TreeError` for the first row (n, k) that is not finite or too large."""
     for index in np.flatnonzero(~(np.abs(rows) <= MAX_COORDINATE).all(axis=1))[:1]:
         what = 'too large for metres' if np.isfinite(rows[index]).all() else 'that is not finite'
         raise TreeError(
             f'a number {what}: {rows[index].tolist()}',
             where=labels[index],
-            cure='check that the columns are what they should be, in metres',
+            cure='check the order of the columns and their unit, metres',
         )
 
 
@@ -169,11 +169,11 @@ def _integers(values: ArrayLike, n: int, what: str) -> Ints:
 
 
 def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
-    """Sit each segment on the one whose end is nearest to its start, within 1e-4 of the size."""
+    """Find the segment that ends nearest to the start of each, within 1e-4 of the size."""
     from scipy.spatial import cKDTree  # it takes long to load, and most files name parents
 
     extent = float(np.ptp(np.vstack([starts, ends]), axis=0).max())
-    # Two are asked for, as the end nearest to the start of a very short root is its own.
+    # Two are searched, as the end nearest to the start of a very short root is its own.
     distance, index = cKDTree(ends).query(starts, k=2, distance_upper_bound=1e-4 * extent)
     distance[index == np.arange(len(starts))[:, None]] = np.inf
     nearest = np.argmin(distance, axis=1)[:, None]
@@ -185,7 +185,7 @@ def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
 def _continuations(
     starts: Floats, ends: Floats, diameters: Floats, parents: Ints, depth_order: Ints
 ) -> Ints:
-    """Return who goes on from each segment's end: the thickest, the straightest on a tie, (n,)."""
+    """Return the continuation of each segment: the thickest child, or the straightest, (n,)."""
     rank = np.empty(len(parents), dtype=np.int64)
     rank[depth_order] = np.arange(len(parents))
     axis = ends - starts
@@ -205,7 +205,7 @@ def _chains(keys: Ints, parents: Ints, depth_order: Ints, labels: Sequence[str])
     broken = by_key[1:][has_predecessor & (parents[by_key[1:]] != by_key[:-1])]
     for segment in depth_order[np.isin(depth_order, broken)][:1]:
         what = f'branch {keys[segment]} is not one chain: the segment before is not its parent'
-        cure = 'give the side shoot a branch of its own'
+        cure = 'give the side shoot its own branch'
         raise TreeError(what, where=labels[segment], cure=cure)
     return np.split(by_key, np.flatnonzero(~has_predecessor) + 1)
 

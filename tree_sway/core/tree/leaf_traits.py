@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Leaves of a species: how large, how many, how heavy, how quick to flutter.
+Leaves of a species: size, number, mass and frequency of flutter.
 
 Fresh mass is dry mass over dry-matter content. The mean of 85 woody species of Estonia is 68.6
-g/m^2 dry (Niinemets & Kull 1994); leaves of woody plants are about 0.35 dry matter. Needles carry
+g/m^2 dry (Niinemets & Kull 1994); leaves of woody plants are about 0.35 dry matter. Needles have
 two to three times that per square metre. Leaf area follows the conducting section of the stem
 (pipe model: Shinozaki et al. 1964); its ratio varies by three orders of magnitude over the world's
 species (Mencuccini et al. 2019), so ratios are estimates within a factor of two, and so are
@@ -32,11 +32,11 @@ class LeafTraits:
     flutter_frequency
         Frequency at which a leaf turns on its stalk in [Hz].
     is_evergreen
-        Whether it keeps them in winter.
+        Whether the species keeps them in winter.
     are_needles
-        Whether they are drawn as needles, or as blades.
+        Whether they are drawn as needles instead of blades.
     green
-        Their colour in pictures, red, green and blue from 0 to 1.
+        Colour of the leaves in pictures, red, green and blue from 0 to 1.
 
     """
 

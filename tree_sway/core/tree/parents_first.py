@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The order in which parents come before what they carry."""
+"""Order in which parents come before their children."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def parents_first(parents: Iterable[int]) -> list[int]:
     """
     Order the numbers of a tree from its roots (negative parents) on, generation by generation.
 
-    Those that follow from no root, as they go in a circle, are left out.
+    Members of a cycle are left out.
     """
     children: dict[int, list[int]] = {}
     for number, parent in enumerate(parents):
@@ -30,14 +30,14 @@ def parents_first(parents: Iterable[int]) -> list[int]:
 
 def checked_order(parents: ArrayLike, labels: Sequence[str]) -> Ints:
     """
-    Order numbers as `parents_first`, all of them; labels are what an error calls each.
+    Order all numbers as `parents_first`; labels are their names in errors.
 
     A `TreeError` reports a parent that does not exist, or a cycle.
     """
     above, n = np.asarray(parents, dtype=np.int64), len(labels)
     for index in np.flatnonzero((above < -1) | (above >= n))[:1]:
         what = f'orphan: its parent {above[index]} does not exist'
-        cure = f'name a parent from 0 to {n - 1}, or -1 for the root'
+        cure = f'give a parent from 0 to {n - 1}, or -1 for the root'
         raise TreeError(what, where=labels[index], cure=cure)
     order = np.array(parents_first(above.tolist()), dtype=np.int64)
     for lost in np.setdiff1d(np.arange(n), order)[:1]:
@@ -48,7 +48,7 @@ def checked_order(parents: ArrayLike, labels: Sequence[str]) -> Ints:
 
 
 def first_of_each(parents: Ints, candidates: Ints, *ranks: Floats | Ints) -> Ints:
-    """Return the candidate of least rank on each parent, -1 where none is, (n,)."""
+    """Return the candidate of lowest rank on each parent, -1 without any, (n,)."""
     by_rank = candidates[np.lexsort((*ranks[::-1], parents[candidates]))]
     found = np.full(len(parents), -1, dtype=np.int64)
     above, first = np.unique(parents[by_rank], return_index=True)
@@ -57,7 +57,7 @@ def first_of_each(parents: Ints, candidates: Ints, *ranks: Floats | Ints) -> Int
 
 
 def chain_starts(parents: Ints, continuations: Ints) -> Ints:
-    """Return the first of the chain that each is in, along continuations, (n,)."""
+    """Return the first member of the chain of each, along continuations, (n,)."""
     number = np.arange(len(parents))
     start = np.where((parents >= 0) & (continuations[parents] == number), parents, number)
     while not np.array_equal(start[start], start):

@@ -1,14 +1,14 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Numbers that no tree has: what is impossible is refused, what is only odd is reported.
+Plausible values of trees: impossible ones are refused, unusual ones are reported.
 
-Both are nearly always a unit, so both name the likely one and the option that mends it. Trees are
+The cause is nearly always a unit, so messages name the likely one and the option for it. Trees are
 at most 116 m high (Sequoia sempervirens) and 14 m thick (Taxodium mucronatum), green wood of
-living stems has 3 to 20 GPa and 400 to 1300 kg/m^3, and stems are 10 to 150 times as high as
-thick. What lies ten times and more beyond that is refused. The slowest sway of a tree of its size
-is that of 602 measured conifers, ``f = 0.0766 + 3.1219 D / H^2`` in [Hz], D in [cm], H in [m]
-(Moore & Maguire 2004).
+living stems has 3 to 20 GPa and 400 to 1300 kg/m^3, and stems have 10 to 150 times the height of
+their diameter. Values beyond ten times that are refused. The slowest sway of a tree of its size is
+that of 602 measured conifers, ``f = 0.0766 + 3.1219 D / H^2`` in [Hz], D in [cm], H in [m] (Moore
+& Maguire 2004).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, TreeError
 
 _WOOD = {'modulus': ('Pa', 1e7, 5e11), 'density': ('kg/m^3', 40.0, 10_000.0)}
-"""Unit, and what wood has at the very most."""
+"""Unit and limits of the values of wood."""
 _HEIGHT_LIMIT, _DIAMETER_LIMIT, _SLENDERNESS_LIMIT = 250.0, 20.0, (2.0, 2000.0)
 _LEAN = 60.0
 _SWAY_FACTOR = 5.0
@@ -30,7 +30,7 @@ _SWAY_FACTOR = 5.0
 
 def refuse_implausible(tree: Tree, species: Species) -> None:
     """
-    Refuse a tree whose numbers are in another unit than SI.
+    Refuse a tree whose numbers are not in SI units.
 
     Raises a `ParameterError` for modulus or density of the wood, a `TreeError` for height or
     diameter.
@@ -53,7 +53,7 @@ def refuse_implausible(tree: Tree, species: Species) -> None:
 
 
 def oddities(tree: Tree, species: Species) -> tuple[str, ...]:
-    """Report what is odd about a tree and its wood against others, one sentence each."""
+    """Report unusual values of a tree and its wood, one sentence each."""
     height, diameter, slenderness = _size(tree)
     rows = (
         ('modulus', species.modulus / 1e9, ' GPa', 'green wood has', (3.0, 20.0),
@@ -61,11 +61,11 @@ def oddities(tree: Tree, species: Species) -> tuple[str, ...]:
         ('density', species.density, ' kg/m^3', 'green wood has', (400.0, 1300.0),
          'check --density'),
         ('height', height, ' m', 'trees have', (0.05, 116.0),
-         'if the file is not in metres, add --option length_unit=0.01 for cm, or what it is'),
+         'if the file is not in metres, add --option length_unit=0.01 for cm, or its unit'),
         ('diameter at the ground', diameter, ' m', 'trees have', (0.0, 5.0),
          'if diameters are in cm, add --option diameter_unit=0.01'),
         ('height over diameter', slenderness, '', 'stems have', (8.0, 200.0),
-         'its diameters may be too thick or too thin; --option diameter_unit says their unit'),
+         'its diameters may be too thick or too thin; --option diameter_unit sets their unit'),
         ('lean', _lean(tree), ' degrees', 'trees have', (0.0, _LEAN),
          'if the y axis of its file points up, add --option up=y'),
     )  # fmt: skip
@@ -77,7 +77,7 @@ def oddities(tree: Tree, species: Species) -> tuple[str, ...]:
 
 
 def sway_oddity(tree: Tree, species: Species, frequency: float) -> str:
-    """Say whether a conifer sways, in [Hz], far off others of its size; empty if it does not."""
+    """Report a conifer whose sway [Hz] is far from that of others of its size; else empty."""
     if species.habit != 'conifer':
         return ''
     height, diameter, _ = _size(tree)
@@ -85,13 +85,13 @@ def sway_oddity(tree: Tree, species: Species, frequency: float) -> str:
     if usual / _SWAY_FACTOR <= frequency <= usual * _SWAY_FACTOR:
         return ''
     return (
-        f'its slowest sway has {frequency:.3g} Hz, where conifers of its size have some '
+        f'its slowest sway has {frequency:.3g} Hz, while conifers of its size have some '
         f'{usual:.2g} Hz: check --modulus, --density and the diameters (--option twig_diameter)'
     )
 
 
 def _size(tree: Tree) -> tuple[float, float, float]:
-    """Height, or length if it lies, diameter at the ground, both [m], and their ratio."""
+    """Height, or length if horizontal, diameter at the ground, both [m], and their ratio."""
     nodes = np.vstack([tree.start, tree.end]) - tree.start[0]
     height = max(tree.height, float(np.abs(nodes).max()) if _lean(tree) > _LEAN else 0.0)
     diameter = float(tree.base_diameter[0])

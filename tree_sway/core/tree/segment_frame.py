@@ -1,10 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The frame of a segment: x along it, turned from the axes of the world as little as possible.
+Frame of a segment: x along it, with the smallest rotation from the axes of the world.
 
-Every pose, file and picture that speaks of the frame of a segment means this one, and
-the ends of segments follow from their poses.
+All poses, files and pictures use this frame, and the ends of segments follow from their poses.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from tree_sway.core.arrays import Floats
 
 def quaternions_from_x(direction: Floats) -> Floats:
     """
-    Orientations w x y z (n, 4), turned as little as possible, whose x axis has directions (n, 3).
+    Orientations w x y z (n, 4) of smallest rotation whose x axes have directions (n, 3).
 
     It is half a turn about z where the direction is -x.
     """

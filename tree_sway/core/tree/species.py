@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Species by name: a new one is one row of ``species.csv``, for all of the program.
+Species by name; a new species is one row of ``species.csv``.
 
 Modulus and density are of green wood: ForestGALES species tables, the BIOMASS wood density table
 and the field table of Jackson et al. (2019). Maple (mean of sugar and red maple), lime (American
@@ -16,9 +16,9 @@ small clear specimens of green wood: Lavers (1983, The strength properties of ti
 trees, tables 5-3 and 5-5 of the Wood Handbook for the others. Diameters of twigs are means of the
 species or of its genus in the table of Morales & MacFarlane (2024, Forestry; R package rTwig 1.4):
 Thuja for goldcrest, its moderately slender twigs for broadleaf, Douglas-fir and alder, its slender
-ones for benjamina, willow and eucalyptus, spruces for conifer. Entries marked as estimates have no
-measurement behind them. Where leaves come from is said in `leaf_traits`. Names are what species
-are called besides by their keys: genus, Latin and other names, abbreviations.
+ones for benjamina, willow and eucalyptus, spruces for conifer. Entries marked as estimates are not
+measured. Sources of leaves are in `leaf_traits`. Besides their keys, species have names: genus,
+Latin and other names, abbreviations.
 """
 
 from __future__ import annotations
@@ -57,16 +57,16 @@ _CONIFEROUS = re.compile(r'conifer|nadel|cypress|cedar|yew|hemlock|redwood|(fir|
 
 def species_named(name: str) -> Species:
     """
-    Look a species up by its key, or by a name or a genus of it, whatever the case.
+    Look a species up by its key, a name or its genus, in any case of letters.
 
     Raises
     ------
     SpeciesError
-        If no species has that name; the error lists those that exist.
+        If no species has that name; the error lists the species.
 
     """
     if not isinstance(name, str):
-        what = f'a {type(name).__name__}, where the name of a species is asked for'
+        what = f'a {type(name).__name__}, where the name of a species is expected'
         raise SpeciesError(what, cure="give it as 'oak'")
     if name in SPECIES:
         return SPECIES[name]
@@ -80,14 +80,14 @@ def species_named(name: str) -> Species:
 
 def species_like(name: str) -> tuple[Species, str]:
     """
-    Look a species up; one that no table has is what its last word is, as a silver maple a maple.
+    Look a species up, an unknown one by its last word, as a silver maple as a maple.
 
-    Any other is a conifer or a broadleaf of no known species.
+    Any other name is taken as a conifer or a broadleaf of unknown species.
 
     Returns
     -------
     Species, str
-        The species, and what was assumed; empty if nothing was.
+        The species, and the assumption made; empty without one.
 
     """
     try:
@@ -107,7 +107,7 @@ def species_keys() -> tuple[str, ...]:
 
 
 def bark_color(key: str) -> tuple[float, float, float]:
-    """Colour of a species' bark; that of an average tree if the table does not have it."""
+    """Colour of a species' bark; that of an average tree if it is unknown."""
     return SPECIES[key].bark if key in SPECIES else Species.bark
 
 
@@ -115,15 +115,15 @@ def typical_root_stiffness(stem_mass: float) -> float:
     """
     Stiffness against tilting in [N m/rad] of the roots of a tree with a stem of a mass [kg].
 
-    Conifers go over at a moment in proportion to the mass of their stem (winching tests on near
-    2,000 trees: Nicoll et al. 2006), of 77 to 146 N m per kg in four species (Byrne 2005), of
-    which 120 is taken. They tilt by a quarter of a degree at 40 % of that (280 trees: Detter, Rust
-    & Krisans 2023, Forests 14, 533). Soils differ by a factor of two. That broadleaves are like
-    conifers is assumed.
+    Conifers fall at a moment proportional to the mass of their stem (winching tests on near 2,000
+    trees: Nicoll et al. 2006), of 77 to 146 N m per kg in four species (Byrne 2005); 120 is used.
+    They tilt by a quarter of a degree at 40 % of that (280 trees: Detter, Rust & Krisans 2023,
+    Forests 14, 533). Soils differ by a factor of two. That broadleaves are like conifers is
+    assumed.
     """
     return 0.4 * 120.0 * stem_mass / math.radians(0.25)
 
 
 def leaf_traits(key: str) -> LeafTraits:
-    """Leaves of a species; those of an average broadleaf if the table does not have it."""
+    """Leaves of a species; those of an average broadleaf if it is unknown."""
     return SPECIES[key].leaves if key in SPECIES else LeafTraits()

@@ -3,10 +3,9 @@
 """
 The tree: read-only arrays of segments, grouped in branches, in depth-first order.
 
-Order is the data structure here. Segments of a branch are contiguous; branches are in
-depth-first order, so that a branch comes after its parent and everything it carries is one
-contiguous slice. Sums over subtrees are then one backward pass and joining from the root is one
-forward pass.
+The order is the data structure: segments of a branch are contiguous; branches are in depth-first
+order, so that a branch comes after its parent and its subtree is one contiguous slice. Sums over
+subtrees are then one backward pass and joining from the root is one forward pass.
 
 Symbols: n segments, b branches. SI units; z points up, the frame is ENU (REP-103).
 """
@@ -38,20 +37,20 @@ class Tree:
     base_diameter, tip_diameter
         Diameter at the start and at the end of each segment in [m], (n,).
     segment_parent
-        The segment each one sits on, -1 for the root, (n,).
+        Parent of each segment, -1 for the root, (n,).
     branch_first
         First segment of each branch, and n at the end, (b + 1,).
     branch_parent
-        The branch each one sits on, -1 for the stem, (b,).
+        Parent of each branch, -1 for the stem, (b,).
     subtree_end
-        One past the last branch that each branch carries, (b,): branch i carries itself and
-        ``i + 1 .. subtree_end[i] - 1``.
+        One past the last branch of the subtree of each branch, (b,): that of branch i is ``i ..
+        subtree_end[i] - 1``.
     source_index
         Position of each segment in the input it was built from, (n,).
     branch_names
         One name per branch.
     name, species
-        What the tree is called, and the key of its wood in the species table.
+        Name of the tree, and key of its species in the table.
 
     """
 
@@ -69,7 +68,7 @@ class Tree:
     species: str = 'broadleaf'
 
     def __post_init__(self) -> None:
-        """Keep every array read-only; one that others may write is copied."""
+        """Make every array read-only; a writable one is copied."""
         for name, value in list(vars(self).items()):
             if isinstance(value, np.ndarray) and value.flags.writeable:
                 object.__setattr__(self, name, _read_only(value.copy()))
@@ -102,10 +101,9 @@ class Tree:
     @cached_property
     def place_on_parent(self) -> Floats:
         """
-        Where each segment sits along its parent: 0 its start, 1 its end, and the root's, (n,).
+        Place of each segment along its parent: 0 at the start, 1 at the end, (n,).
 
-        It is the foot of the perpendicular from the start of the segment onto the parent, within
-        its ends.
+        It is the projection of the start of the segment on the parent, between its ends.
         """
         parent = self.segment_parent
         chord = self.end[parent] - self.start[parent]

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What a tree is made of: wood, damping, drag and leaves of a species."""
+"""Wood, damping, drag and leaves of a species."""
 
 from __future__ import annotations
 
@@ -24,31 +24,31 @@ class Species:
     density
         Density of green wood in [kg/m^3].
     damping_bare, damping_in_leaf
-        Damping ratio without and with leaves in [-]; air drag on moving branches comes on top.
+        Damping ratio without and with leaves in [-]; damping by drag is added.
     drag_coefficient
         C of the drag law Cd = C U^-N in leaf, U in [m/s].
     drag_exponent
-        N of the drag law in [-]: how much the crown streamlines.
+        N of the drag law in [-], by which the crown streamlines.
     bare_drag_coefficient
         Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, 0.82 to
         1.2.
     shear_ratio
         Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood
-        is nearer to 1/14 (Forest Products Laboratory, Wood Handbook, 2010), which softens the
-        twist of stems alone.
+        is nearer to 1/14 (Forest Products Laboratory, Wood Handbook, 2010), which makes only the
+        twist of stems softer.
     root_stiffness
-        Stiffness of the roots against tilting of the stem in [N m/rad]; infinite where they do not
-        give way. Belongs to one tree; `typical_root_stiffness` gives that of a size.
+        Stiffness of the roots against tilting of the stem in [N m/rad]; infinite for rigid roots.
+        It is that of one tree; `typical_root_stiffness` gives that of a size.
     leaves
-        Its leaves; evergreen ones are there unless a simulator is set otherwise.
+        Leaves of the species; evergreen ones are present by default.
     rupture
         Modulus of rupture of green wood in [Pa]: small clear specimens in bending.
     twig_diameter
-        Diameter of its last twigs in [m], to which scans are corrected.
+        Diameter of the last twigs in [m], to which scans are corrected.
     bark
-        Colour of its bark in pictures, red, green and blue from 0 to 1.
+        Colour of the bark in pictures, red, green and blue from 0 to 1.
     habit
-        How `grow` shapes it: ``conifer``, ``broadleaf`` or ``pot``.
+        Habit by which `grow` makes the tree: ``conifer``, ``broadleaf`` or ``pot``.
     is_estimate
         True where modulus or density is a guess to be calibrated.
 

@@ -1,19 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-From samples of a sensor to what a solver needs: the mean of the wind over each of its steps.
+From samples of a sensor to the mean of the wind over each step of a solver.
 
-The samples become a curve of straight lines, which can be drawn only once the next sample is
-there: the curve runs one sensor period late, and later still by as much as samples are seen to
-arrive after the solver has passed their stamp. The solver gets the exact mean of the curve over
-its step, which keeps second order where a sample of it would not.
+The samples are interpolated linearly, which needs the next sample: the curve has a delay of one
+sensor period, and more if samples arrive after the solver has passed their stamp. The solver uses
+the exact mean of the curve over its step, which is of second order.
 
-What the solver has been given is never redrawn, so that nothing jumps, whatever comes late, early
-or not at all: over a short dropout the last wind goes on; a long one decays to calm; after either,
-what was given fades over into the new samples. Every mean is one of samples and of calm, and never
-beyond them.
-Times are those of one clock, handed in by the caller; it may jump ahead, and begins again with
-`WindAverage.reset` where it is set back.
+The curve is never changed before the end of the last step, so that the wind does not jump, whether
+samples are late, early or missing: in a short dropout the last wind is used; in a long one it
+decays to calm; after either, it fades into the new samples. Every mean is within the range of
+samples and calm. Times are those of one clock, given by the caller; it may jump ahead, and
+restarts with `WindAverage.reset` where it is set back.
 """
 
 from __future__ import annotations
@@ -31,19 +29,19 @@ from tree_sway.errors import ParameterError
 
 BLEND = 0.5
 """
-Longest time in [s] over which the first sample after a dropout is faded in; a dropout shorter than
-that fades in over its own length.
+Longest time in [s] over which the first sample after a dropout is faded in; after a shorter
+dropout it is the length of that.
 
 """
 
 LONGEST_HOLD = 2.0
-"""Time in [s] for which the last sample is used, where no other is given."""
+"""Default of the time in [s] for which the last sample is used."""
 
 CAPACITY = 512
 """Number of samples in memory. A step must not span more."""
 
 _CALM = np.zeros(3)
-_STALE_DECAYS = 5.0  # decay times after which the wind counts as gone
+_STALE_DECAYS = 5.0  # decay times after which the wind counts as stale
 
 
 class WindAverage:
@@ -55,7 +53,7 @@ class WindAverage:
     timeout
         Age of the newest sample in [s] up to which it is used; at least three sensor periods.
     decay
-        Time constant in [s] with which the wind then dies down.
+        Time constant in [s] with which the wind then decays.
 
     Raises
     ------
@@ -72,12 +70,12 @@ class WindAverage:
         self.reset()
 
     def reset(self) -> None:
-        """Forget every sample and every step; keep the count of the refused ones."""
+        """Forget every sample and every step, but not the count of refused ones."""
         self._curve = WindCurve(CAPACITY)
         self._before, self._fade_start, self._fade_end = _CALM, -math.inf, -math.inf
         self._timing = SensorTiming(self._timeout)
         self._newest = -math.inf  # time of the newest sample
-        self._passed = -math.inf  # end of the latest step: before it nothing may change
+        self._passed = -math.inf  # end of the latest step: the curve before it does not change
         self._is_new_clock = False  # the clock has jumped since the newest sample
 
     @property
@@ -119,7 +117,7 @@ class WindAverage:
         if self._timing.is_dropout(silence):
             self._begin_curve(time, value, silence)
         elif self._timing.period is None:
-            # The first holds to the second.
+            # The first sample is used until the second.
             self._curve.append(max(time, self._passed), self._curve.last)
         self._timing.note_interval(gap)
         self._timing.note_lateness(max(0.0, self._passed - time), gap)
@@ -157,16 +155,16 @@ class WindAverage:
 
     def state(self, time: float) -> str:
         """
-        Return what the wind is at a time in [s].
+        Return the state of the wind at a time in [s].
 
         Returns
         -------
         str
             ``none`` before the first sample; ``live``; ``holding`` the last one; ``decaying``;
-            ``stale`` when nothing is left of it.
+            ``stale`` when it has decayed.
 
         """
-        # Another thread may ask: what changes under it is read once.
+        # A different thread may call this: changing values are read once.
         newest, timing = self._newest, self._timing
         if newest == -math.inf:
             return 'none'
@@ -178,7 +176,7 @@ class WindAverage:
         return 'decaying' if overdue <= _STALE_DECAYS * self._decay else 'stale'
 
     def _draw_to(self, time: float, value: Floats) -> None:
-        """Draw the curve on to a new sample, from where the solver has passed at the earliest."""
+        """Extend the curve to a new sample, not before the end of the last step."""
         knot = time + (self._timing.period or 0.0) + self._timing.lateness
         if self._curve.end < self._passed:
             self._curve.append(self._passed, self._curve.last)
@@ -190,7 +188,7 @@ class WindAverage:
         self._curve.append(max(knot, self._fade_end), value)
 
     def _begin_curve(self, time: float, value: Floats, silence: float) -> None:
-        """Start a new curve; what there was until now fades over into the samples to come."""
+        """Start a new curve; the previous wind fades into the next samples."""
         since = self._passed
         before = self._mean(since, since)
         self._curve = WindCurve(CAPACITY)
@@ -216,7 +214,7 @@ class WindAverage:
         return total / (end - start)
 
     def _clamp_clock(self, time: float) -> None:
-        """Take a clock that jumps forward for one that was paused."""
+        """Treat a clock that jumps forward like one that was paused."""
         jump = time - max(self._passed, self._newest)
         if self._passed > -math.inf and jump > self._timing.longest_hold:
             self._curve.shift(jump)

@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The wind of the last while as a choice of model needs it: how its load swings, and how fast.
+Statistics of the last wind for the choice of a model, spectrum and mean of its load.
 
-A load goes with ``|U| U``, up and down too.
+A load is proportional to ``|U| U``, also in vertical wind.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class WindClimate:
     speed
         Mean speed in [m/s].
     record, rate
-        ``|U| U`` as it was measured in [m^2/s^2], (n, 3), and how often in [Hz].
+        Measured ``|U| U`` in [m^2/s^2], (n, 3), and its rate in [Hz].
 
     """
 
@@ -42,24 +42,24 @@ class WindClimate:
 
     @staticmethod
     def of_samples(velocity: Floats, rate: float) -> WindClimate:
-        """Take a wind that is known in [m/s], (n, 3), at a rate in [Hz]."""
+        """Make the statistics of a known wind in [m/s], (n, 3), at a rate in [Hz]."""
         speed = np.linalg.norm(velocity, axis=1)
         return _of_loads(speed[:, None] * velocity, float(speed.mean()), rate)
 
     def power(self, frequencies: Floats) -> Floats:
         """
-        Mean square of the load's swings [m^4/s^4], (f, 3, 3), at frequencies [Hz] from 0, (f,).
+        Spectrum of the load [m^4/s^4], (f, 3, 3), at frequencies [Hz] from 0, (f,).
 
-        A record is taken alone, with calm before and after it, so that what sets in with it is
-        counted too: what a linear model answers to this power is no less than the mean square of
-        its motion from rest in that time (Parseval's theorem).
+        A record has calm before and after it, so that transients are included: the response of a
+        linear model to this power is at least the mean square of its motion from rest in that time
+        (Parseval's theorem).
         """
         n = len(self.record)
         lines = np.fft.rfft(self.record, 2 * n, axis=0)
         lines[1:-1] *= math.sqrt(2.0)
         squares = np.einsum('fi,fj->fij', lines.conj(), lines).real / (2 * n * n)
         at = np.arange(n + 1) * self.rate / (2 * n)
-        # Each line is shared by the frequencies next below and above it.
+        # Each line is divided between the frequencies next below and above it.
         below = np.searchsorted(frequencies, at, side='right') - 1
         below = np.minimum(below, len(frequencies) - 2)
         low, high = frequencies[below], frequencies[below + 1]
@@ -73,7 +73,7 @@ class WindClimate:
 
 
 class ClimateTracker:
-    """The wind as it comes, in cells of even length, remembered for ``memory`` [s]."""
+    """The wind in cells of equal length, stored for ``memory`` [s]."""
 
     def __init__(self, memory: float = 60.0) -> None:
         """Start with no wind."""
@@ -83,7 +83,7 @@ class ClimateTracker:
         self._sum, self._open = np.zeros(4), 0.0
 
     def add(self, wind: Floats, dt: float) -> None:
-        """Take in the wind [m/s] of a step of dt [s]."""
+        """Add the wind [m/s] of a step of dt [s]."""
         speed, left = float(np.linalg.norm(wind)), min(dt, self._memory)
         load = speed * np.append(wind, 1.0)
         while left > 0.0:
@@ -98,7 +98,7 @@ class ClimateTracker:
 
     @property
     def climate(self) -> WindClimate:
-        """Return what is remembered."""
+        """Return the statistics of the stored wind."""
         cells = np.roll(self._cells, -self._count, axis=0)[max(-self._count, -len(self._cells)) :]
         cells = cells if self._count else cells[:0]
         if self._open > 0.0 or not len(cells):
@@ -107,12 +107,12 @@ class ClimateTracker:
 
     @property
     def largest_load(self) -> float:
-        """Largest ``|U| U`` of a cell that is remembered in [m^2/s^2]."""
+        """Largest ``|U| U`` of a stored cell in [m^2/s^2]."""
         return float(np.linalg.norm(self._cells[:, :3], axis=1).max())
 
     @property
     def _cell(self) -> Floats:
-        """Means of the cell that is open, (4,)."""
+        """Means of the current cell, (4,)."""
         return np.asarray(self._sum / max(self._open, 1e-12))
 
 

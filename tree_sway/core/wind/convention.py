@@ -1,11 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How to read wind: sign, unit, yaw of the mast and force plane.
+Convention of a wind source: sign, unit, yaw of the mast and force plane.
 
 ROS vectors are velocities in ENU (REP-103): a wind vector points where the air goes. Meteorology
-names the wind by where it comes from. A source that does the latter has every sign the other way
-round.
+names the wind by where it comes from, with opposite signs.
 """
 
 from __future__ import annotations
@@ -23,17 +22,19 @@ from tree_sway.core.checks import one_of, within
 from tree_sway.errors import ParameterError
 
 CALM_SPEED = 0.05
-"""Speed in [m/s] below which no direction is computed: sonics repeat their last one there."""
+"""
+Speed in [m/s] below which no direction is computed: sonics repeat their last direction there.
+"""
 
 
 def velocity_of_bearing(
     speed: float, bearing: float, direction_convention: str = 'from'
 ) -> tuple[float, float, float]:
     """
-    Velocity east, north, up to which a wind blows in [m/s], by speed and bearing.
+    Velocity east, north, up of a wind in [m/s], by speed and bearing.
 
-    The bearing, clockwise from north in [rad], is where it comes ``from``, as meteorology says it,
-    or blows ``to``.
+    The bearing, clockwise from north in [rad], is where it comes ``from``, as in meteorology, or
+    blows ``to``.
     """
     sign = WindConvention(direction_convention).sign
     return sign * speed * math.sin(bearing), sign * speed * math.cos(bearing), 0.0
@@ -42,7 +43,7 @@ def velocity_of_bearing(
 @dataclass(frozen=True)
 class WindConvention:
     """
-    What the numbers of a wind source mean.
+    Meaning of the numbers of a wind source.
 
     Parameters
     ----------
@@ -51,8 +52,8 @@ class WindConvention:
     speed_scale
         Metres per second in one unit of the source: 1, 0.514444 for knots, 0.277778 for km/h.
     yaw_offset
-        Angle from east to the source's x axis, counter-clockwise seen from above, in [rad]: a mast
-        that is not aligned, or magnetic declination.
+        Angle from east to the source's x axis, counter-clockwise seen from above, in [rad]: for a
+        mast that is not aligned, or magnetic declination.
     plane_normal
         Normal of the force plane, of any length, (3,): the wind is projected on that plane.
 
@@ -69,7 +70,7 @@ class WindConvention:
     plane_normal: Sequence[float] = (0.0, 0.0, 1.0)
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be read."""
+        """Check the values."""
         one_of('direction convention', self.direction_convention, ('to', 'from'))
         within('speed_scale', self.speed_scale, 0.0, 1e3, 'm/s', above=True)
         within('yaw_offset', self.yaw_offset, -4.0 * math.pi, 4.0 * math.pi, 'rad')
@@ -101,9 +102,9 @@ class WindConvention:
 
     def velocity(self, components: ArrayLike) -> Floats:
         """
-        Return what a source says as the velocity of the air, before any projection.
+        Convert components of a source to the velocity of the air, before any projection.
 
-        This is what to judge a sample by: a fault in the component across the plane counts too.
+        Samples are checked by this velocity: a fault in the component across the plane counts too.
 
         Parameters
         ----------
@@ -116,18 +117,18 @@ class WindConvention:
             Wind velocity, blowing to, ENU in [m/s], of the same shape.
 
         """
-        with np.errstate(invalid='ignore', over='ignore'):  # for the gate to refuse
+        with np.errstate(invalid='ignore', over='ignore'):  # the gate refuses it
             scaled = self.sign * self.speed_scale * np.asarray(components, dtype=np.float64)
             return np.asarray(scaled @ self._enu_from_source.T)
 
     def components(self, velocity: ArrayLike) -> tuple[float, float, float]:
         """
-        Return what a source of this convention says of a velocity; the inverse of `velocity`.
+        Convert a velocity to components of a source; the inverse of `velocity`.
 
         Parameters
         ----------
         velocity
-            Where the wind blows to, ENU in [m/s], (3,).
+            Velocity of the wind, ENU in [m/s], (3,).
 
         """
         scale = self.sign / self.speed_scale
@@ -140,15 +141,15 @@ class WindConvention:
 
     def force_plane_quaternion(self, vector: Floats, previous: Floats | None = None) -> Floats:
         """
-        Return the attitude of the force plane: x along the wind, z along the plane's normal.
+        Return the orientation of the force plane: x along the wind, z along the normal.
 
         Parameters
         ----------
         vector
             Wind, blowing to, ENU in [m/s], (3,).
         previous
-            The quaternion to keep while the wind is below `CALM_SPEED` in the plane, (4,); without
-            one, x is then as near to east as the plane allows, or to north if it is across east.
+            Quaternion to use while the wind is below `CALM_SPEED` in the plane, (4,); without one,
+            x is then as near to east as the plane allows, or to north if the plane is across east.
 
         Returns
         -------
@@ -166,7 +167,7 @@ class WindConvention:
 
 
 def quaternions_of_axes(along: Floats, normal: Floats) -> Floats:
-    """Return unit quaternions w, x, y, z (..., 4) that turn x and z into unit vectors (..., 3)."""
+    """Return unit quaternions w, x, y, z (..., 4) that rotate x and z to unit vectors (..., 3)."""
     from scipy.spatial.transform import Rotation  # it takes long to load, and few need it
 
     axes = np.stack([along, np.cross(normal, along), normal], axis=-1)

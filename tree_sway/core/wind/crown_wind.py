@@ -1,18 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Wind over a crown: the limbs of a tree do not meet a gust at the same moment.
+Wind over a crown: a gust reaches the limbs of a tree one after another.
 
 Two places r apart share a gust of frequency f by the root coherence ``exp(-C f r / U)``, C near 8
 (Davenport, 1961, Quarterly Journal of the Royal Meteorological Society 87, 194-211). An anemometer
-measures at one place. Of its wind a share c reaches the whole crown at once; the rest reaches each
-limb after a delay of its own, spread from 0 to ``3 C r / (2 pi U)``, so that among limbs this rest
-fades with f r / U as the source has it. Long gusts reach all limbs alike. Of short ones a limb
-feels, in the mean over limbs, ``c^2 + (1 - c)^2`` of the power, as an area does of gusts smaller
-than itself.
+measures at one place. A share c of its wind reaches the whole crown at once; the rest reaches each
+limb after its own delay, from 0 to ``3 C r / (2 pi U)``, so that the coherence of this rest among
+limbs decreases with f r / U as in the source. Long gusts reach all limbs alike. The mean over
+limbs of short ones has ``c^2 + (1 - c)^2`` of the power, as over an area larger than the gusts.
 
-Delays are dealt to the limbs in the order of the golden ratio: even however many there are, and
-the same in every run. Delays follow the mean wind as in `gust_travel`.
+Delays are assigned to the limbs in the order of the golden ratio: uniform for any number of limbs,
+and the same in every run. Delays follow the mean wind as in `gust_travel`.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import within
 from tree_sway.core.kernel import entry_of, kernel
-from tree_sway.core.wind.gust_travel import feel, follow_mean, remember
+from tree_sway.core.wind.gust_travel import follow_mean, past_winds, remember
 
 DECAY = 8.0
 """Davenport's C in [-], for places across the wind and over each other."""
@@ -37,15 +36,15 @@ USUAL_COHERENCE = 0.3
 """
 Share of a gust that reaches the whole crown at once, where gusts reach limb after limb.
 
-Gusts of the first frequency of a tree (0.5 to 1 Hz) at 7 m/s have by the source a root coherence
-of 0.03 to 0.18 over 3 m; with a share c it is ``c^2 / (c^2 + (1 - c)^2)``, 0.16 with this one.
-With it the strain of the stems of grown trees falls above their first frequency as that of real
-ones (``tree-sway lab validate --only slopes``).
+At the first frequency of a tree (0.5 to 1 Hz) and 7 m/s the source has a root coherence of 0.03 to
+0.18 over 3 m; with a share c it is ``c^2 / (c^2 + (1 - c)^2)``, 0.16 with this one. With it the
+spectrum of strain of grown trees decreases above their first frequency as that of real ones
+(``tree-sway lab validate --only slopes``).
 
 """
 
 N_DELAYS = 16
-"""Delays that limbs choose from."""
+"""Number of delays of limbs."""
 
 LONGEST_DELAY = 8.0
 """Longest delay in [s], that of a wide crown in a light wind."""
@@ -57,7 +56,7 @@ _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 _LAYOUT = np.dtype(
     [
-        ('run', 'f8', (_CAPACITY, 4)),  # time and run of the wind, as `remember` has them
+        ('run', 'f8', (_CAPACITY, 4)),  # time and run of the wind, as in `remember`
         ('at', 'i8', (2,)),
         ('mean', 'f8', (3,)),
         ('wanted', 'f8', (N_DELAYS,)),  # delays by the mean wind [s]
@@ -72,9 +71,9 @@ _CARRIED = 'run', 'at', 'mean', 'delay'
 
 class CrownDelays(NamedTuple):
     """
-    Which of `N_DELAYS` each branch has, (b,), what share of the load has each, and their spread.
+    Delay of each branch, one of `N_DELAYS`, (b,), shares of the load of each, and spread.
 
-    That is the longest delay times the wind speed, in [m].
+    The spread is the longest delay times the wind speed, in [m].
     """
 
     of_branch: Ints
@@ -84,7 +83,7 @@ class CrownDelays(NamedTuple):
 
 def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
     """
-    Deal the delays: the stem has none, and what a limb carries has the limb's.
+    Assign the delays: the stem has none, and subtrees of limbs have that of the limb.
 
     Branches have a parent, -1 for the stem, a centre of their wind load [m], (b, 3), and a load of
     any unit, (b,).
@@ -109,10 +108,10 @@ def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:
 
 class CrownWind:
     """
-    The wind of the last seconds, and what of it each limb feels now.
+    The wind of the last seconds, and the present wind of each limb.
 
     The spread is that of `CrownDelays`; the coherence, 0 to 1, else a `ParameterError`, is the
-    share of the wind that reaches all at once.
+    share of the wind without delay.
     """
 
     def __init__(self, spread: float, coherence: float) -> None:
@@ -123,9 +122,9 @@ class CrownWind:
 
     def push(self, x: float, y: float, z: float, dt: float) -> Floats:
         """
-        Take the mean wind [m/s] of a step of dt [s]; return what each delay adds, (`N_DELAYS`, 3).
+        Add the mean wind [m/s] of a step of dt [s]; return its change by delay, (`N_DELAYS`, 3).
 
-        It is the same array each time.
+        The array is reused.
         """
         self._compiled(x, y, z, dt)
         return np.asarray(self.record['apart'][0])
@@ -135,7 +134,7 @@ class CrownWind:
         return partial(entry_of(push_wind, self.record, 0.0, 0.0, 0.0, 0.0), self.record)
 
     def memory(self) -> tuple[NDArray[Any], ...]:
-        """Return views of what is carried from one step to the next."""
+        """Return views of the state."""
         return tuple(self.record[name] for name in _CARRIED)
 
     def reset(self) -> None:
@@ -147,7 +146,7 @@ class CrownWind:
 
 @kernel
 def push_wind(crowns: Records, x: float, y: float, z: float, dt: float) -> None:
-    """Do what `CrownWind.push` does, for the first record of an array."""
+    """Perform `CrownWind.push` for the first record of an array."""
     here = crowns[0]
     run, at, mean = here['run'], here['at'], here['mean']
     wanted, apart = here['wanted'], here['apart']
@@ -156,7 +155,7 @@ def push_wind(crowns: Records, x: float, y: float, z: float, dt: float) -> None:
     longest = min(here['spread'] / max(math.hypot(mean[0], mean[1]), _SLOWEST), LONGEST_DELAY)
     for j in range(len(wanted)):
         wanted[j] = longest * j / (len(wanted) - 1)
-    feel(run, at, wanted, here['delay'], LONGEST_DELAY, x, y, z, dt, apart)
+    past_winds(run, at, wanted, here['delay'], LONGEST_DELAY, x, y, z, dt, apart)
     rest = 1.0 - here['coherence']
     for j in range(len(apart)):
         apart[j, 0] = rest * (apart[j, 0] - x)

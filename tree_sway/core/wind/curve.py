@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A curve of straight lines through knots, of bounded memory, with its exact mean."""
+"""A piecewise linear curve of bounded memory, with its exact mean."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tree_sway.core.arrays import Floats
 
 class WindCurve:
     """
-    Straight lines through the newest knots, level before the first and after the last.
+    Linear interpolation of the newest knots, constant before the first and after the last.
 
     Beyond the capacity the oldest knots are dropped. Times are in [s], values in [m/s], (3,).
     """
@@ -42,7 +42,7 @@ class WindCurve:
         self.knots.append((time, value))
 
     def cut(self, time: float) -> None:
-        """Drop what comes after a time in [s], and be level from there; the past is as it was."""
+        """Drop knots after a time in [s], with a constant value from there on."""
         if self.knots and self.end > time:
             value = self.value(time)
             while self.knots and self.end >= time:
@@ -70,9 +70,8 @@ class WindCurve:
         """Exact mean [m/s] of the curve from ``start`` to ``end`` in [s], given a knot."""
         if start == end:
             return self.value(start)
-        # From the newest knot back: a solver asks for the last step, which holds one knot or none.
+        # From the newest knot back: the last step has one knot or none.
         later = takewhile(lambda knot: knot[0] > start, reversed(self.knots))
         times = np.array([end, *(time for time, _ in later if time < end), start])
         values = np.array([self.value(time) for time in times])
-        mean: Floats = 0.5 * np.diff(times) @ (values[1:] + values[:-1]) / (start - end)
-        return mean
+        return np.asarray(0.5 * np.diff(times) @ (values[1:] + values[:-1]) / (start - end))

@@ -1,20 +1,20 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The gate that a wind sample passes: faults are refused and counted, true gusts and steps get in.
+The gate of wind samples: faults are refused and counted, true gusts and steps are accepted.
 
-A sample is refused if it is not finite, faster than any wind for which the model holds, or too far
-from the last good one. Too far is a rate of change times the time between the two, plus what the
-small eddies change between any two samples: in the inertial subrange increments grow as the cube
-root of time, so that a rate alone refuses the good samples of a fast sensor in a strong wind (20
-m/s^2: 39 % at 20 Hz in 12 m/s). What stays away for `longest_refusal` may be a step and is let in,
-but no faster than `max_rate`: a spike that lasts longer moves the wind no further than a gust can.
+A sample is refused if it is not finite, faster than any wind of the model, or too far from the
+last good one. The limit is a rate of change times the time between the two, plus the change by
+small eddies between any two samples: in the inertial subrange increments grow as the cube root of
+time, so that a rate without this refuses good samples of a fast sensor in a strong wind (20 m/s^2:
+39 % at 20 Hz in 12 m/s). A change that lasts for `longest_refusal` may be a step and is accepted,
+but no faster than `max_rate`: a longer spike moves the wind no further than a gust.
 
-Samples are taken in their order of arrival. A stamp that cannot be (zero, ahead of its arrival,
-much older than it, a duplicate, out of order) is counted by its cause; in its place is the
-time of arrival, less the delay of the sample before, so that the times of a mixed stream go on
-evenly. A stamp ahead is believed only if those before it were nearly as far ahead: a single one
-would shut out the good samples that follow it. All times are whole nanoseconds of one clock.
+Samples are taken in their order of arrival. An impossible stamp (zero, ahead of its arrival, much
+older, a duplicate, out of order) is counted by its cause and replaced by the time of arrival, less
+the delay of the sample before, so that the times of a mixed stream stay regular. A stamp ahead is
+accepted only if those before it were nearly as far ahead: else it would exclude the good samples
+after it. All times are whole nanoseconds of one clock.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.checks import three_numbers, within
 from tree_sway.core.wind.limits import FASTEST_WIND, is_wind
 
-# What sensors send instead of a reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
+# Codes that sensors send for no reading: Gill 999.99, NMEA and loggers 9999 and -9999, wet sonics
 # 0x8000, which is 327.68 where the count is 0.01 m/s.
 _INTEGER_CODES = 6999.0, 7999.0, 9999.0, 32767.0, 32768.0, 99999.0
 SENTINELS = (327.67, 327.68, 999.0, 999.9, 999.99, *_INTEGER_CODES)
@@ -36,27 +36,27 @@ SENTINELS = (327.67, 327.68, 999.0, 999.9, 999.99, *_INTEGER_CODES)
 SECOND = 1_000_000_000
 """One second in [ns]."""
 LARGEST_LEAD = SECOND // 2
-"""Lead of a stamp over its arrival in [ns] up to which it is of a clock that runs ahead."""
+"""Largest lead of a stamp over its arrival in [ns], for a clock that is ahead."""
 LEAD_GROWTH = 60 * SECOND // 1000
-"""How much more a stamp may be ahead of its arrival in [ns] than the sample before."""
+"""Largest increase of the lead in [ns] from one sample to the next."""
 LONGEST_TRANSPORT = 2 * SECOND
-"""Age in [ns] at which a stamp is of another clock, or of a recording, and no longer believed."""
+"""Age in [ns] from which a stamp is refused as that of a different clock, or of a recording."""
 _NEVER = -(2**62)
 CLOCK_RESET = SECOND
-"""Backward step in [ns] that is a clock set back (a bag that loops), not samples out of order."""
+"""Backward step in [ns] from which the clock was set back (a bag that loops)."""
 
 JUMP_FLOOR = 1.0
-"""Change between two samples that is always believed in [m/s]: resolution and small eddies."""
+"""Change between two samples in [m/s] that is always accepted: resolution and small eddies."""
 JUMP_FRACTION = 0.25
-"""Such a change, in addition, as a fraction of the speed in [-]; eddies grow with the wind."""
+"""Further accepted change as a fraction of the speed in [-]; eddies grow with the wind."""
 
 
 class Verdict(NamedTuple):
     """
-    What became of a sample: whether it is good, why, and the time [ns] and wind to use for it.
+    Result for a sample: whether it is good, the reason, and the time [ns] and wind to use.
 
     The reason is ``accepted`` or the name of a count of refused samples in `GateCounts`. The wind
-    [m/s] is the sample itself but while a new level fades in after a refused run.
+    [m/s] is the sample itself, except while a new level fades in after refusals.
     """
 
     accepted: bool
@@ -68,25 +68,25 @@ class Verdict(NamedTuple):
 @dataclass
 class GateCounts:
     """
-    What went through the gate, by reason.
+    Counts of samples at the gate, by reason.
 
     Parameters
     ----------
     accepted
-        Samples that got in.
+        Accepted samples.
     not_finite, sentinel, too_fast, spike, repeated, no_time
         Samples refused: not a number or infinite; a sensor's code for no reading; above the
         largest speed; too far from the last good one; a message sent twice; no time after the last
         one.
     forced
-        Accepted ones that were let in because refusing had lasted long enough.
+        Samples that were accepted as refusals had lasted long enough.
     zero_stamp, future_stamp, old_stamp, out_of_order
-        Stamps not believed, though the sample itself may be good: none at all; ahead of the
-        arrival; older than `LONGEST_TRANSPORT`; not after the time given to the sample before.
+        Refused stamps of samples that may be good: zero; ahead of the arrival; older than
+        `LONGEST_TRANSPORT`; not after the time given to the sample before.
     clock_back
-        Times the clock was set back.
+        Number of times that the clock was set back.
     frozen
-        Times the sensor began to repeat one reading.
+        Number of times that the sensor began to repeat one reading.
 
     """
 
@@ -118,7 +118,7 @@ class GateCounts:
 
 class WindGate:
     """
-    Judge wind samples one by one; a refused one leaves no trace but its count.
+    Check wind samples one by one; a refused one is only counted.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class WindGate:
     max_rate
         Largest rate of change of the vector in [m/s^2].
     longest_refusal
-        Time in [s] after which a change is believed, however sudden.
+        Time in [s] after which any change is accepted.
     frozen_after
         Time in [s] of equal samples, other than zero, after which the sensor counts as frozen.
 
@@ -145,7 +145,7 @@ class WindGate:
         longest_refusal: float = 0.5,
         frozen_after: float = 10.0,
     ) -> None:
-        """Open the gate with no sample seen."""
+        """Begin without samples."""
         self._max_speed = within('max_speed', max_speed, 0.0, FASTEST_WIND, 'm/s', above=True)
         self._max_rate = within('max_rate', max_rate, 0.0, 1e4, 'm/s^2', above=True)
         refusal = within('longest_refusal', longest_refusal, 0.0, 60.0, 's')
@@ -155,42 +155,40 @@ class WindGate:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the samples seen; keep the counts."""
-        self._time = self._arrival = _NEVER  # given to the last sample, and when it arrived
-        self._stamp = _NEVER  # of the last sample, believed or not
+        """Forget the samples, but not the counts."""
+        self._time = self._arrival = _NEVER  # time used for the last sample, and its arrival
+        self._stamp = _NEVER  # stamp of the last sample
         self._seen = (math.nan, math.nan, math.nan)  # last sample offered
         self._good = (0.0, 0.0, 0.0)  # last one accepted, at _good_time
-        self._given = (0.0, 0.0, 0.0)  # what was given out for it
-        self._before: tuple[float, float, float] | None = None  # left while a level fades in
+        self._given = (0.0, 0.0, 0.0)  # wind that was returned for it
+        self._before: tuple[float, float, float] | None = None  # wind before a new level
         self._good_time = self._refused_since = _NEVER
         self._equal_since = 0
         self.is_frozen = False
-        """Whether the sensor has repeated one reading for longer than a live one does."""
+        """Whether the sensor repeats one reading for longer than a live sensor."""
 
     def offer(
         self, stamp: int, vector: ArrayLike, arrival: int | None = None, *, lead: int = 0
     ) -> Verdict:
         """
-        Judge a sample.
+        Check a sample.
 
         Parameters
         ----------
         stamp
-            Time that the sample carries in [ns].
+            Time stamp of the sample in [ns].
         vector
             Wind in [m/s], (3,), before any projection; the axes do not matter.
         arrival
-            Time that it arrived in [ns], on the clock of the stamps; None if the stamp is all
-            there is.
+            Time of arrival in [ns], on the clock of the stamps; None if unknown.
         lead
-            How far stamps may be ahead of the arrival in [ns]: 0 on a clock that runs, up to a
-            tick of simulated time, which does not move in between.
+            Further lead that stamps may have in [ns]: 0 for a running clock, up to one tick for
+            simulated time, which is constant in between.
 
         Returns
         -------
         Verdict
-            Whether it is good, why, and the time to use for it: strictly after that of the last
-            one.
+            Result, with a time that is strictly after that of the last one.
 
         Raises
         ------
@@ -220,7 +218,7 @@ class WindGate:
         return Verdict(is_good, reason, time, self._given)
 
     def _fade_in(self, since: float) -> None:
-        """Give out the last good sample, no faster than a gust where it is of a new level."""
+        """Return the last good sample; a new level fades in no faster than a gust."""
         left, most = math.dist(self._good, self._given), self._max_rate * since
         if self._before is None or left <= most:
             self._given, self._before = self._good, None
@@ -229,7 +227,7 @@ class WindGate:
         self._given = x, y, z
 
     def _time_of(self, stamp: int, given: int | None, lead: int) -> int:
-        """Return the stamp if it can be believed, or else the time to use in its place."""
+        """Return the stamp if it is plausible, or else the time to use instead."""
         arrival = stamp if given is None else given
         if arrival < self._arrival - CLOCK_RESET:
             self.counts.clock_back += 1
@@ -241,11 +239,11 @@ class WindGate:
         if given is None or self._time == _NEVER:
             return arrival
         usual = min(arrival, self._time + arrival - self._arrival)
-        # A stamp that was believed may have been ahead of what arrives now.
+        # An accepted stamp may have been ahead of the present arrival.
         return max(usual, self._time + 1) if self._time < arrival + LARGEST_LEAD else usual
 
     def _fault(self, stamp: int, arrival: int, lead: int) -> str:
-        """Say why a stamp is not believed, by the name of its count; empty if it is."""
+        """Return why a stamp is refused, by the name of its count; empty if it is not."""
         if stamp <= 0 < arrival:
             return 'zero_stamp'
         ahead = max(lead, max(self._time - self._arrival, 0) + LEAD_GROWTH)
@@ -256,14 +254,14 @@ class WindGate:
         return 'out_of_order' if stamp <= self._time else ''
 
     def _judge(self, time: int, x: float, y: float, z: float) -> str:
-        """Say why a sample is refused, by the name of its count, or ``accepted``."""
+        """Return why a sample is refused, by the name of its count, or ``accepted``."""
         if not is_wind(x, y, z, self._max_speed):
             if not all(map(math.isfinite, (x, y, z))):
                 return 'not_finite'
             is_code = any(abs(abs(c) - code) < 0.006 for c in (x, y, z) for code in SENTINELS)
             return 'sentinel' if is_code else 'too_fast'
         since = 1e-9 * (time - self._good_time)
-        # While a new level fades in, its end is a return to the level before.
+        # While a new level fades in, its end is a return to the previous level.
         for level in (self._good, self._before or self._good):
             allowed = self._max_rate * since + JUMP_FLOOR
             if math.dist((x, y, z), level) <= allowed + JUMP_FRACTION * math.hypot(*level):

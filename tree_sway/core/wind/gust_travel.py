@@ -1,16 +1,16 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Gusts travel: a tree feels the wind of the anemometer as long ago as it takes from there.
+Gusts travel: the wind at a tree is that of the anemometer after a delay.
 
-Turbulence is carried along by the mean wind and changes little on the way (Taylor 1938), so a tree
-at x feels ``U(t - x . w / Uc)``: w is the direction of the mean wind and Uc the speed at which
+Turbulence moves with the mean wind and changes little on the way (Taylor 1938), so the wind of a
+tree at x is ``U(t - x . w / Uc)``: w is the direction of the mean wind and Uc the speed at which
 gusts travel, the mean speed itself over open ground and up to 1.8 of it over a closed canopy
-(Raupach, Finnigan & Brunet 1996). Waves that run through a stand follow from that alone.
+(Raupach, Finnigan & Brunet 1996). Waves of sway in a stand follow from that.
 
-The wind is stored as its run, the displacement of the air from the start to the end of a step:
-the mean over any span is then the difference of two runs over the span. As the mean wind turns or
-freshens, delays follow so slowly that for every tree time goes on.
+The wind is stored as its run, the displacement of the air from the start to the end of a step: the
+mean over any span is then the difference of two runs over the span. Delays follow the mean wind so
+slowly that time increases for every tree.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from tree_sway.errors import ParameterError
 
 SLOWEST_GUST = 0.5
 """
-Mean speed in [m/s] below which no gusts are taken to travel: delays then die down with the wind.
+Mean speed in [m/s] below which delays decrease to 0 with the wind.
 
 """
 
 LARGEST_STRETCH = 0.5
-"""Most that the delay of a tree changes per second, in [s/s]."""
+"""Largest change of the delay of a tree per second, in [s/s]."""
 
 
 SPACING = 0.05
@@ -41,16 +41,16 @@ SPACING = 0.05
 
 class GustHistory:
     """
-    The wind of the last minute, and what of it each place feels now.
+    The wind of the last minute, and the present wind of each place.
 
     Parameters
     ----------
     places
-        Where wind is felt in [m], (t, 3); heights do not matter.
+        Places of trees in [m], (t, 3); heights do not matter.
     anemometer
-        Where it is measured in [m], (3,), best upwind of all: a tree upwind of it cannot feel what
-        has not been measured, and feels the wind at once. If None, at the place that the mean wind
-        reaches first, whichever way it blows.
+        Place of the anemometer in [m], (3,), best upwind of all: trees upwind of it have the
+        present wind, as a future one is not measured. If None, it is the place that the mean wind
+        reaches first, in any direction.
     convection_ratio
         Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
         everywhere.
@@ -59,8 +59,9 @@ class GustHistory:
     memory
         Longest delay in [s].
     capacity
-        Times stored. Steps shorter than a part of ``memory`` are joined, so that the history is as
-        long at any rate: the default keeps every step of 60 s at up to 500 steps per second.
+        Number of stored times. Steps shorter than a part of ``memory`` are joined, so that the
+        history has the same length at any rate: the default stores every step of 60 s at up to 500
+        steps per second.
 
     Raises
     ------
@@ -90,21 +91,21 @@ class GustHistory:
         self._averaging = within('averaging_time', averaging_time, 0.0, 3600.0, 's', above=True)
         self._memory = within('memory', memory, 0.0, 600.0, 's')
         self._run = np.zeros((int(within('capacity', capacity, 8, 1e6)), 4))
-        # Two times that follow each other are together longer than this, so that all are longer
-        # than the memory and the steps at its ends.
+        # Two consecutive steps are together longer than this, so that all are longer than the
+        # memory and the steps at its ends.
         self._finest = 2.0 * self._memory / (len(self._run) - 4)
         self._at = np.zeros(2, dtype=np.int64)
         self._mean = np.zeros(3)
         self._wanted = np.zeros(len(points))
         self.delay = np.zeros(len(points))
-        """Age of the wind that each place feels in [s], (t,)."""
-        self._felt = np.zeros((len(points), 3))
+        """Delay of the wind at each place in [s], (t,)."""
+        self._winds = np.zeros((len(points), 3))
 
     def push(self, wind_mean: ArrayLike, dt: float) -> Floats:
         """
-        Take the mean wind (3,) of a step of dt [s] at the anemometer in [m/s]; find each place's.
+        Add the mean wind (3,) [m/s] of a step of dt [s]; return that of each place.
 
-        It is (t, 3), the same array each time. Raises a `ParameterError` for a number that is not
+        It is (t, 3); the array is reused. Raises a `ParameterError` for a number that is not
         finite, or a step that is not above 0.
         """
         x, y, z = three_numbers('wind', wind_mean)
@@ -119,8 +120,10 @@ class GustHistory:
         self._wanted = along / (self._ratio * speed * speed)
         if self._from_first:
             self._wanted -= self._wanted.min()
-        feel(self._run, self._at, self._wanted, self.delay, self._memory, x, y, z, dt, self._felt)
-        return self._felt
+        past_winds(
+            self._run, self._at, self._wanted, self.delay, self._memory, x, y, z, dt, self._winds
+        )
+        return self._winds
 
     @property
     def time(self) -> float:
@@ -129,10 +132,10 @@ class GustHistory:
 
     def recent(self, until: float) -> dict[str, list[float]]:
         """
-        Return what another goes on from at a `time` a step or two ago; from any thread.
+        Return the state for a copy to continue from, a step or two ago; from any thread.
 
         ``mean`` is the mean wind with its span, ``delay`` that of each place, ``wind`` the means
-        over each `SPACING` of the last minute, x, y, z and then those of the next.
+        over each `SPACING` of the last minute, x, y, z of one after the other.
         """
         while True:
             at, run = self._at.copy(), self._run.copy()
@@ -147,11 +150,11 @@ class GustHistory:
         return {name: each.round(4).tolist() for name, each in found.items()}
 
     def go_on(self, mean: ArrayLike, delay: ArrayLike, wind: ArrayLike) -> None:
-        """Go on from the `recent` of another history of these places."""
+        """Continue from the `recent` of a history of the same places."""
         rows = np.array(wind, dtype=np.float64).reshape(-1, 3)
         means, delays = np.array(mean, dtype=np.float64), np.array(delay, dtype=np.float64)
         if not all(np.isfinite(each).all() for each in (rows, means, delays)):
-            raise ParameterError('a history that is not finite', where='gusts')
+            raise ParameterError('history is not finite', where='gusts')
         self.reset()
         for x, y, z in rows.tolist():
             remember(self._run, self._at, self._finest, x, y, z, SPACING)
@@ -159,7 +162,7 @@ class GustHistory:
 
     def reset(self) -> None:
         """Forget the wind."""
-        for array in (self._at, self._mean, self._wanted, self.delay, self._felt):
+        for array in (self._at, self._mean, self._wanted, self.delay, self._winds):
             array[:] = 0
 
 
@@ -177,7 +180,7 @@ def remember(
     head = last if is_joined else (last + 1) % size
     for k in range(4):
         if head < last:
-            # Counted from zero again, lest the numbers grow with the days.
+            # Counted from zero again, so that the numbers do not grow with the days.
             origin = run[last, k]
             for i in range(size):
                 run[i, k] -= origin
@@ -188,7 +191,7 @@ def remember(
 
 @kernel
 def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -> None:
-    """Take a plain mean while there is little wind, then a running one; its span is beside it."""
+    """Update a plain mean of the first wind, then a running one; its span is the last element."""
     mean[2] = min(mean[2] + dt, max(averaging, dt))
     weight = dt / mean[2]
     mean[0] += weight * (x - mean[0])
@@ -196,31 +199,31 @@ def follow_mean(mean: Floats, x: float, y: float, dt: float, averaging: float) -
 
 
 @kernel
-def feel(
+def past_winds(
     run: Floats, at: NDArray[np.int64], wanted: Floats, delay: Floats, longest: float,
-    x: float, y: float, z: float, dt: float, felt: Floats,
+    x: float, y: float, z: float, dt: float, out: Floats,
 ) -> None:  # fmt: skip
-    """Let delays [s], (t,), follow those wanted; average the history over the step of each."""
+    """Move delays [s], (t,), towards their targets; average the history over the step of each."""
     now, most = run[at[0], 0], LARGEST_STRETCH * dt
     for i in range(len(delay)):
         goal, before = min(max(wanted[i], 0.0), longest), delay[i]
         if at[1] == 2:
-            # The first step: nothing to be gentle with.
+            # The first step has no delays before it.
             before = goal
         delay[i] = min(max(goal, before - most), before + most)
         if before == 0.0 and delay[i] == 0.0:
-            felt[i, 0], felt[i, 1], felt[i, 2] = x, y, z
+            out[i, 0], out[i, 1], out[i, 2] = x, y, z
             continue
         begin, end = now - dt - before, now - delay[i]
         bx, by, bz = run_until(run, at, begin)
         ex, ey, ez = run_until(run, at, end)
         span = end - begin
-        felt[i, 0], felt[i, 1], felt[i, 2] = (ex - bx) / span, (ey - by) / span, (ez - bz) / span
+        out[i, 0], out[i, 1], out[i, 2] = (ex - bx) / span, (ey - by) / span, (ez - bz) / span
 
 
 @kernel
 def run_until(run: Floats, at: NDArray[np.int64], time: float) -> tuple[float, float, float]:
-    """Run of the wind at a time; before the history begins it blew as in its first step."""
+    """Run of the wind at a time; before the history begins it is that of its first step."""
     size, count = len(run), at[1]
     oldest = at[0] - count + 1
     low, high = 0, count - 1

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Wind over height: what an anemometer at one height says of the wind at another."""
+"""Profile of the wind over height."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class WindProfile:
     ground: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse what has no wind."""
+        """Check the values."""
         one_of('wind profile', self.kind, PROFILES)
         within('anemometer_height', self.anemometer_height, 0.0, 1e4, 'm', above=True)
         if self.kind == 'log':
@@ -63,7 +63,7 @@ class WindProfile:
         Returns
         -------
         Floats
-            Ratios of the same shape in [-]; 0 at the ground and below but for kind ``none``.
+            Ratios of the same shape in [-]; 0 at the ground and below, except for kind ``none``.
 
         """
         height = np.maximum(np.asarray(z, dtype=np.float64) - self.ground, 0.0)

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The one way in for samples of wind: units and sign, then the gate, then the force plane."""
+"""Intake of samples of wind: units and sign, then the gate, then the force plane."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from tree_sway.core.wind.limits import FASTEST_WIND
 
 class GoodWind(NamedTuple):
     """
-    A good sample: its time [ns], after that before, and the velocity to which it blows.
+    An accepted sample with its time [ns], after that before, and its velocity.
 
-    That is ENU in [m/s], on the force plane, (3,).
+    The velocity is ENU in [m/s], on the force plane, (3,).
     """
 
     time: int
@@ -29,11 +29,10 @@ class GoodWind(NamedTuple):
 @dataclass
 class WindIntake:
     """
-    Reads samples as a source sends them and keeps the good ones.
+    Intake of samples as a source sends them.
 
-    The convention says what the numbers of the source mean, and may be replaced between samples;
-    None where they are velocities on the force plane already. The gate judges them before that
-    projection.
+    The convention of the source may be replaced between samples; it is None where they are
+    velocities on the force plane already. The gate checks them before that projection.
     """
 
     convention: WindConvention | None = None
@@ -41,12 +40,12 @@ class WindIntake:
 
     @staticmethod
     def of_velocities() -> WindIntake:
-        """Return the intake of what was judged before: it keeps times in order, numbers finite."""
+        """Return the intake of checked samples: their times are in order, and numbers finite."""
         return WindIntake(gate=WindGate(max_speed=FASTEST_WIND, max_rate=1e4))
 
     @property
     def counts(self) -> GateCounts:
-        """Return what was accepted and refused, by reason."""
+        """Return the counts of accepted and refused samples, by reason."""
         return self.gate.counts
 
     def offer(
@@ -59,14 +58,14 @@ class WindIntake:
         rotation: Floats | None = None,
     ) -> GoodWind | None:
         """
-        Take a sample, (3,), in the source's axes, unit and sign; None if refused, and counted.
+        Check a sample, (3,), in the source's axes, unit and sign; None if refused, and counted.
 
-        Times are as for `WindGate.offer`; the rotation (3, 3) is from the source's frame into the
-        trees'.
+        Times are those of `WindGate.offer`; the rotation (3, 3) is from the source's frame into
+        the trees'.
         """
         reads = self.convention
         velocity = np.array(components) if reads is None else reads.velocity(components)
-        if rotation is not None and np.abs(velocity).max() <= FASTEST_WIND:  # else it is refused
+        if rotation is not None and np.abs(velocity).max() <= FASTEST_WIND:  # else refused
             velocity = rotation @ velocity
         verdict = self.gate.offer(stamp, velocity, arrival, lead=lead)
         if not verdict.accepted:

@@ -1,13 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How fast wind can be: the one limit of all doors that wind comes in by."""
+"""Largest speed of wind, for all sources."""
 
 from __future__ import annotations
 
 import math
 
 FASTEST_WIND = 150.0
-"""Speed in [m/s] above which nothing is wind; the record gust is 113 m/s (Courtney et al.
+"""Speed in [m/s] above which a sample is refused; the record gust is 113 m/s (Courtney et al.
 2012)."""
 
 

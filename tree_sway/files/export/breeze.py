@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The wind of animations in files: a gusty breeze, the same each time."""
+"""Wind of animations in files: a gusty breeze, always the same."""
 
 from __future__ import annotations
 

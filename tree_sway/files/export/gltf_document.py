@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A glTF 2.0 document as it is put together: JSON, and the bytes that its accessors name."""
+"""A glTF 2.0 document under construction: JSON, and the bytes of its accessors."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
 
 class GltfDocument:
-    """A document that grows by objects and arrays; ``generator`` names what made it."""
+    """A document to which objects and arrays are added; ``generator`` is its program."""
 
     def __init__(self, generator: str) -> None:
-        """Begin with nothing in it."""
+        """Begin with an empty document."""
         self._json: dict[str, Any] = {'asset': {'version': '2.0', 'generator': generator}}
         self._bytes = bytearray()
 
     def add(self, kind: str, **properties: Any) -> int:
-        """Add an object to a list such as ``nodes``, without what is None; return its number."""
+        """Add an object to a list such as ``nodes``, without fields of None; return its number."""
         objects: list[dict[str, Any]] = self._json.setdefault(kind, [])
         objects.append({name: value for name, value in properties.items() if value is not None})
         return len(objects) - 1
@@ -49,7 +49,7 @@ class GltfDocument:
 
         It is (n,), (n, 2), (n, 3), (n, 4), or matrices by columns (n, 4, 4); for `ARRAY_BUFFER`
         (vertices) or `ELEMENT_ARRAY_BUFFER` (indices). Bounds are written for positions and times;
-        shares are whole numbers of the largest one of their type.
+        shares are stored as integers.
         """
         columns = array.reshape(len(array), -1)
         rows, stride = columns, columns.itemsize * columns.shape[1]

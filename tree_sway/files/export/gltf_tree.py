@@ -5,9 +5,9 @@ A tree as glTF 2.0, ready to sway: one mesh, by a skin or by morph targets.
 
 With a skin, each segment is a node named as in `Tree.segment_names`, flat below the node of the
 tree: a node's translation and rotation are the segment's pose, at rest and in every frame of
-``segment_poses``. With morph targets, each is what one coordinate of the tree's state does to the
-vertices, so that some twenty weights play the tree; the targets are linear. glTF has y up by its
-specification, which the node of the tree turns: all inside it keeps our frame.
+``segment_poses``. With morph targets, each is the motion of the vertices by one coordinate of the
+tree's state, so that some twenty weights animate the tree; the targets are linear. glTF has y up;
+the node of the tree has the rotation, and everything inside it is in our frame.
 """
 
 from __future__ import annotations
@@ -27,18 +27,17 @@ from tree_sway.core.tree.species import bark_color, leaf_traits
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError
 from tree_sway.files.export.breeze import in_breeze, RATE
-from tree_sway.files.export.gltf_document import (
-    ARRAY_BUFFER,
-    ELEMENT_ARRAY_BUFFER,
-    GltfDocument,
-)
+from tree_sway.files.export.gltf_document import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, GltfDocument
 from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
 
 _GENERATOR = 'tree_sway'
 _Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 _MAX_JOINTS = 65536
 _SWING = 0.5
-"""Part of a coordinate's unit at which a target has the slope: between a breeze and a storm."""
+"""
+Share of a coordinate's unit at which the slope of a target is computed: between a breeze and a
+storm.
+"""
 _SECONDS = 20.0
 
 
@@ -80,7 +79,7 @@ def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument
         }
         primitives.append(primitive)
     body = document.add('meshes', name=tree.name, primitives=primitives)
-    # A viewer ignores where the node of a skinned mesh is: it is next to the joints.
+    # Viewers ignore the place of the node of a skinned mesh: it is next to the joints.
     shown = document.add('nodes', name=f'{tree.name} mesh', mesh=body, skin=skin)
     document.add('scenes', nodes=[root, shown])
     document.set(scene=0)
@@ -92,9 +91,10 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     Return a tree on any model of a simulator as a mesh with a morph target per coordinate.
 
     A weight is the coordinate over its ``unit``, which the mesh's extras list with the digest of
-    the basis and how far the coordinate goes in a ``storm``. Positions are whole numbers which the
-    node scales (KHR_mesh_quantization); that small ones suffice, a weight of 1 moves some vertex
-    by half the size of the tree, and a ring of wood is moved as one. An animation plays a breeze.
+    the basis and the amplitude of the coordinate in a ``storm``. Positions are integers which the
+    node scales (KHR_mesh_quantization); so that small ones suffice, a weight of 1 moves some
+    vertex by half the size of the tree, and the vertices of a ring of wood move together. An
+    animation shows a breeze.
     """
     tree, basis = simulator.tree, state_basis(simulator)
     storm = basis.scale / MARGIN
@@ -174,15 +174,12 @@ def _add_shares(document: GltfDocument, values: Floats, kind: Any, **options: bo
 def _primitive(
     document: GltfDocument, material: str, species: str, mesh: TreeMesh, **attributes: int
 ) -> dict[str, Any]:
-    """Part of a mesh, with its colour, its texture's places and what else its vertices have."""
+    """Part of a mesh, with its colour, texture coordinates and further attributes of vertices."""
     is_bark = material == 'bark'
     color = bark_color(species) if is_bark else leaf_traits(species).green
     kind = np.uint16 if len(mesh.points) < 65535 else np.uint32  # 65535 starts a new strip
     return {
-        'attributes': {
-            **attributes,
-            'TEXCOORD_0': _add_shares(document, mesh.texture, np.uint16),
-        },
+        'attributes': {**attributes, 'TEXCOORD_0': _add_shares(document, mesh.texture, np.uint16)},
         'indices': document.add_array(
             mesh.triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER
         ),
@@ -212,7 +209,7 @@ def _inverse_matrices(poses: Floats) -> Any:
 def _swung(
     simulator: SwaySimulator, basis: StateBasis, k: int, size: float
 ) -> tuple[Floats, Floats]:
-    """Poses with one coordinate at a part of its unit, to one side and to the other."""
+    """Poses with one coordinate at plus and at minus a share of its unit."""
     coordinates = np.zeros(basis.n_coordinates)
     coordinates[k] = _SWING * size
     there = simulator.place_rotations(basis.rotations(coordinates)).copy()
@@ -220,8 +217,8 @@ def _swung(
 
 
 def _change(material: str, mesh: TreeMesh, step: tuple[Floats, Floats]) -> Floats:
-    """Return what a coordinate's unit does to vertices, half from each side to the other."""
-    if material == 'bark':  # a ring goes as its centre does: rounded alone it would be crushed
+    """Return the motion of vertices per unit of a coordinate, by a central difference."""
+    if material == 'bark':  # a ring moves with its centre, so that rounding keeps its shape
         mesh = replace(mesh, points=mesh.points * [1.0, 0.0, 0.0])
     return (0.5 / _SWING) * (mesh.placed(step[0]) - mesh.placed(step[1]))
 

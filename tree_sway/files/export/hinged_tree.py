@@ -4,9 +4,9 @@
 A tree as rigid bodies on hinges, for engines of rigid bodies.
 
 Each segment is a body, with two hinges across it where it begins and none along it: wood does not
-twist here. The bending of a segment is shared between the hinges at its two ends as the shares of
-linear elements; what is left to its tip is lost. One factor on all springs then gives the first
-natural frequency of the simulator, weight and twist included.
+twist here. The bending of a segment is divided between the hinges at its two ends by linear shape
+functions; the part at a tip is lost. One factor on all springs then gives the first natural
+frequency of the simulator, with weight and twist.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
 
 _MARGIN, _FASTEST_TO = 0.95, 1e-3
-"""Of the time step at which the fastest motion at rest begins to grow; how well that is found."""
+"""Share of the time step at which the fastest motion becomes unstable; its tolerance."""
 
 
 @dataclass(frozen=True)
@@ -37,16 +37,16 @@ class HingedTree:
     Parameters
     ----------
     names
-        One per segment, of letters, digits and ``_``.
+        Names of the segments, of letters, digits and ``_``.
     poses
-        In the frame of the segment each sits on, the root's in the world: x y z [m], quaternion
+        Poses in the frames of the parent segments, the root's in the world: x y z [m], quaternion
         x y z w, (n, 7).
     mass, centre
-        Mass [kg] and how far along the segment its centre is [m], with leaves, (n,).
+        Mass [kg] and place of its centre along the segment [m], with leaves, (n,).
     inertia
-        About the centre, along the segment and across it [kg m^2], (n, 2).
+        Inertia about the centre, along the segment and across it [kg m^2], (n, 2).
     stiffness
-        Of each of the two hinges [N m/rad], (n,).
+        Stiffness of each of the two hinges [N m/rad], (n,).
     damping_time
         Damping of the hinges over their stiffness [s]: the first mode has the damping ratio of the
         simulator, faster ones more.
@@ -66,7 +66,7 @@ class HingedTree:
 
 
 def plain_names(tree: Tree) -> tuple[str, ...]:
-    """Return names of the segments of letters, digits and ``_`` alone, each once."""
+    """Return unique names of the segments of letters, digits and ``_``."""
     names = [re.sub(r'\W', '_', name, flags=re.ASCII) for name in tree.segment_names]
     names = [name if name[0].isalpha() else f's_{name}' for name in names]
     if len(set(names)) < len(names):
@@ -75,7 +75,7 @@ def plain_names(tree: Tree) -> tuple[str, ...]:
 
 
 def poses_on_parents(tree: Tree, poses: Floats) -> Floats:
-    """Poses (n, 7) in the frames of the segments that carry them; the root's as it is."""
+    """Poses (n, 7) in the frames of the parent segments; that of the root is unchanged."""
     parent, turn = tree.segment_parent, Rotation.from_quat(poses[:, 3:])
     back = turn[parent].inv()
     turned, moved = (back * turn).as_quat(), back.apply(poses[:, :3] - poses[parent, :3])
@@ -83,7 +83,7 @@ def poses_on_parents(tree: Tree, poses: Floats) -> Floats:
 
 
 def hinged_tree(simulator: SwaySimulator) -> HingedTree:
-    """Part the tree of a simulator into bodies on hinges."""
+    """Divide the tree of a simulator into bodies on hinges."""
     tree, settings = simulator.tree, simulator.settings
     leaves = np.zeros(tree.n_branches) if settings.leaf_mass is None else settings.leaf_mass
     leaf_line = (leaves / tree.branch_length)[tree.branch_of_segment]
@@ -92,7 +92,7 @@ def hinged_tree(simulator: SwaySimulator) -> HingedTree:
     compliance[0] += 1.0 / (settings.root_stiffness or simulator.species.root_stiffness)
     springs = sparse.diags(np.repeat(1.0 / compliance, 2)).tocsc()
     masses = _mass_matrix(tree, mass, centre, inertia)
-    # Ordered by their pattern, the factors of the masses of a tree have hardly more entries.
+    # Ordered by their pattern, the factors of the mass matrix of a tree stay sparse.
     solve = splu(
         masses, 'MMD_AT_PLUS_A', diag_pivot_thresh=0.0, options={'SymmetricMode': True}
     ).solve
@@ -129,12 +129,12 @@ def _points(tree: Tree) -> tuple[Floats, Floats, Floats]:
 
 
 def _compliance(tree: Tree, modulus: float) -> Floats:
-    """Turn of each hinge by a moment [rad/N/m], (n,)."""
+    """Rotation of each hinge per moment [rad/N/m], (n,)."""
     along, part, diameter = _points(tree)
     soft = part / (modulus * np.pi / 64.0 * diameter**4)
     carrier, branch = tree.segment_parent, tree.branch_of_segment
     carries = np.isin(np.arange(tree.n_segments), carrier)[:, None, None]
-    # The moment is even in a segment that carries others, and that of an even load in the last.
+    # The moment is constant in a segment with children, and that of a uniform load in the last.
     own = ((1.0 - along) * np.where(carries, 1.0, (1.0 - along) ** 2) * soft).sum(axis=(1, 2))
     onward = (along * soft).sum(axis=(1, 2))
     ends = np.isin(carrier, tree.branch_first[1:] - 1)
@@ -143,7 +143,7 @@ def _compliance(tree: Tree, modulus: float) -> Floats:
 
 
 def _bodies(tree: Tree, density: float, leaf_line: Floats) -> tuple[Floats, Floats, Floats]:
-    """Mass, centre and inertia as of `HingedTree`, with leaves [kg/m], (n,)."""
+    """Mass, centre and inertia as in `HingedTree`, with leaves [kg/m], (n,)."""
     along, part, diameter = _points(tree)
     wood = density * np.pi / 4.0 * diameter**2 * part
     line, away = wood + leaf_line[:, None, None] * part, tree.length[:, None, None] * along

@@ -53,10 +53,10 @@ def mjcf_of_tree(simulator: SwaySimulator) -> str:
     tree, hinged = simulator.tree, hinged_tree(simulator)
     inside: list[list[str]] = [[] for _ in range(tree.n_segments + 1)]  # of bodies, and the world
     texts = [_BODY.format_map(values) for values in _values(tree, hinged)]
-    for body in range(tree.n_segments - 1, -1, -1):  # what is carried comes after what carries it
+    for body in range(tree.n_segments - 1, -1, -1):  # children come after their parents
         text = '\n'.join([texts[body], *reversed(inside[body]), '</body>'])
         inside[int(tree.segment_parent[body])].append(text)
-    # Geometries of one kind touch where a bit of one is in the other's mask: segments have none.
+    # Geometries collide where a bit of one is in the other's mask: segments have none.
     return '\n'.join(
         [
             f'<mujoco model={quoteattr(tree.name)}>',
@@ -95,7 +95,7 @@ def _comment(simulator: SwaySimulator, hinged: HingedTree) -> str:
 
 
 def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
-    """Yield what the templates ask for, of each segment."""
+    """Yield the values for the templates, of each segment."""
     columns = {
         'place': hinged.poses[:, :3],
         'xyzw': hinged.poses[:, 3:],

@@ -18,7 +18,7 @@ TABLE_SUFFIXES = ('.csv', '.parquet', '.json')
 
 
 def refuse_no_table(path: Path) -> None:
-    """Raise a `FormatError` for a suffix of no table, so that nothing is computed in vain."""
+    """Raise a `FormatError` for a suffix of no table, before anything is computed."""
     if path.suffix not in TABLE_SUFFIXES:
         cure = f'end it with one of: {", ".join(TABLE_SUFFIXES)}'
         raise FormatError(f"'{path.suffix}' is no table", where=str(path), cure=cure)
@@ -26,14 +26,14 @@ def refuse_no_table(path: Path) -> None:
 
 def write_columns(columns: Mapping[str, Sequence[Any]], path: Path) -> None:
     """
-    Write columns of one length by their names, whole or not at all.
+    Write columns of one length by their names, atomically.
 
     Raises
     ------
     FormatError
         A suffix that is not one of `TABLE_SUFFIXES`, or a file that cannot be written.
     MissingDependencyError
-        Parquet is asked for and pyarrow is not there.
+        Parquet without pyarrow.
 
     """
     refuse_no_table(path)

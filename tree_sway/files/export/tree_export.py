@@ -36,16 +36,16 @@ def write_tree(
     path
         The file: ``.yaml``, ``.yml`` or ``.glb``; overwritten if it exists.
     tree
-        The tree, alone or with its species.
+        Tree, with or without its species.
     species
-        Its wood, if other than the tree's own; only YAML can carry it.
+        Species, if different from the tree's own; only YAML can store it.
     leaves
-        Clusters of leaves to draw; only glTF can carry them.
+        Clusters of leaves to draw; only glTF can store them.
 
     Raises
     ------
     FormatError
-        Another suffix, a forest as YAML, or a file that cannot be written.
+        An unknown suffix, a forest as YAML, or a file that cannot be written.
     SpeciesError
         If the species table does not know the tree's species.
 

@@ -14,17 +14,17 @@ from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.tree.tree import Tree
 
 SIDES = 6
-"""Sides of a cone, even; its volume is 0.827 of the round one's."""
+"""Number of sides of a cone, even; its volume is 0.827 of the round one's."""
 
 
 @dataclass(frozen=True)
 class TreeMesh:
     """
-    Triangles, each vertex of which is carried by one segment.
+    Triangles whose vertices move with one segment each.
 
-    Points [m] and normals, (v, 3), are in the frame of the segment: its start, x along it.
-    Places in a texture, (v, 2), are within 0 .. 1. Triangles, (t, 3), are counter-clockwise seen
-    from outside.
+    Points [m] and normals, (v, 3), are in the frame of the segment: its start, x along it. Texture
+    coordinates, (v, 2), are within 0 .. 1. Triangles, (t, 3), are counter-clockwise seen from
+    outside.
     """
 
     points: Floats
@@ -43,7 +43,7 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     """
     Return a closed cone per segment, round in its normals, of a ring of vertices at each end.
 
-    A texture goes around and back, so that it has no seam, and along the whole branch.
+    Texture coordinates go around and back, without a seam, and along the whole branch.
     """
     n = tree.n_segments
     angle = 2.0 * np.pi * np.arange(SIDES) / SIDES

@@ -3,10 +3,10 @@
 """
 A tree as USD text: a skeleton with a joint per segment, and ten seconds of its sway in a breeze.
 
-Joints of a branch are a chain, below the joint of the segment that carries it. For Unreal's wind
-the skeleton has the attributes of ``DynamicWindSkeletonAPI`` (plugin DynamicWind, 5.7): joints are
-grouped by the order of their branch, and a group's influence is how far its branches bend by
-themselves in a steady wind, over that of the group that bends most.
+Joints of a branch are a chain, below the joint of the parent segment. For Unreal's wind the
+skeleton has the attributes of ``DynamicWindSkeletonAPI`` (plugin DynamicWind, 5.7): joints are
+grouped by the order of their branch, and the influence of a group is the own bending of its
+branches in a steady wind, over that of the group that bends most.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _MAX_GROUPS = 4
 
 def usd_of_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) -> str:
     """
-    Return the tree of a simulator as ``.usda``, maybe in leaf.
+    Return the tree of a simulator as ``.usda``, with or without leaves.
 
     The simulator is run, and then set back to the state that it was in.
     """
@@ -55,7 +55,7 @@ def usd_of_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) ->
         *_wind_attributes(simulator),
         '}\ndef SkelAnimation "Sway"\n{',
         joints,
-        # A segment sits where it does on the one that carries it: it turns there and no more.
+        # A segment has a fixed place on its parent, and rotates there.
         f'float3[] translations = {_tuples(frames[0][:, :3])}',
         f'half3[] scales = {_tuples(np.ones((tree.n_segments, 3)))}',
         'quatf[] rotations.timeSamples = {',
@@ -70,7 +70,7 @@ def usd_of_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) ->
 
 
 def _paths(tree: Tree) -> list[str]:
-    """Name each joint after the joints that carry it."""
+    """Name each joint by its path from the root."""
     paths: list[str] = []
     for name, parent in zip(plain_names(tree), tree.segment_parent.tolist(), strict=True):
         paths.append(f'{paths[parent]}/{name}' if parent >= 0 else name)
@@ -78,7 +78,7 @@ def _paths(tree: Tree) -> list[str]:
 
 
 def branch_groups(tree: Tree) -> Ints:
-    """Group of each segment, (n,): 0 the stem, 1 what sits on it, and so on; the rest is last."""
+    """Group of each segment, (n,): 0 the stem, 1 branches on it, and so on."""
     order = np.zeros(tree.n_branches, dtype=np.int64)
     for branch, parent in enumerate(tree.branch_parent.tolist()):
         order[branch] = order[parent] + 1 if parent >= 0 else 0
@@ -86,7 +86,7 @@ def branch_groups(tree: Tree) -> Ints:
 
 
 def influences(simulator: SwaySimulator) -> Floats:
-    """Own turn of the branches' tips in a steady wind by groups, over the largest, (g,)."""
+    """Own rotation of the branches' tips in a steady wind by groups, over the largest, (g,)."""
     tree, before, dt = simulator.tree, simulator.state(), 1.0 / 60.0
     simulator.reset()
     for _ in range(round(_SETTLED / dt)):
@@ -120,7 +120,7 @@ def _wind_attributes(simulator: SwaySimulator) -> list[str]:
 def _mesh(
     kind: str, mesh: TreeMesh, poses: Floats, color: tuple[float, float, float], root: str
 ) -> str:
-    """Write a mesh of which each vertex goes with one joint."""
+    """Write a mesh whose vertices move with one joint each."""
     points = mesh.placed(poses)
     normals = Rotation.from_quat(poses[mesh.segment, 3:]).apply(mesh.normals)
     one_each = 'elementSize = 1\n    interpolation = "vertex"'

@@ -1,11 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A tree out to the YAML form, such that reading it back gives the same tree to the last bit.
+Write a tree as YAML, such that reading it gives the same tree to the last bit.
 
 A branch whose segments join end to start is written by its nodes; one with steps or gaps, as
-cylinder models have, segment by segment. Of the wood only what differs from the species table is
-written, so that a calibrated tree carries its values and an ordinary one follows the table.
+cylinder models have, segment by segment. Of the wood only values that differ from the species
+table are written, so that a calibrated tree has its own values and an ordinary one follows the
+table.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ _DUMPER: Any = getattr(yaml, 'CSafeDumper', yaml.SafeDumper)
 
 def yaml_of_tree(tree: Tree, species: Species | None = None) -> str:
     """
-    Return a tree as YAML text, its wood written where it is not the table's.
+    Return a tree as YAML text, with its wood where it differs from the table.
 
     Raises
     ------

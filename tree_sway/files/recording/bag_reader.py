@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The messages of a rosbag2 bag as the bytes that they came as, read by rosbags within bounds."""
+"""The messages of a rosbag2 bag as bytes, read by rosbags within bounds."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ import numpy as np
 from tree_sway.errors import FormatError
 from tree_sway.files.bounded import Arrays, bounded_arrays
 
-_CURE = "if it was cut off, mend it with 'mcap recover' or 'sqlite3 FILE .recover'"
+_CURE = "if it was cut off, repair it with 'mcap recover' or 'sqlite3 FILE .recover'"
 
 
 @dataclass(frozen=True)
 class BagContent:
     """
-    What a bag holds: types of topics as ``package/msg/Name``, and messages of those asked for.
+    Contents of a bag: types of topics as ``package/msg/Name``, and the wanted messages.
 
     A message is its time of recording [ns], increasing, and its bytes.
     """

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A rosbag2 bag that messages are written to as the bytes that they came as, through rosbags."""
+"""Writing of messages as bytes into a rosbag2 bag, through rosbags."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from tree_sway.errors import FormatError, ParameterError
 FORMATS = ('mcap', 'sqlite3')
 """Kinds of storage."""
 COMMIT_EVERY = 1.0
-"""What was written this time [s] ago is in the file, whatever ends the process."""
+"""Time [s] after which written messages are in the file, however the process ends."""
 
 
 class BagWriter:
     """
-    Writes a bag, which can be played by ``ros2 bag play`` and opened in Foxglove and PlotJuggler.
+    A bag to write, for ``ros2 bag play``, Foxglove and PlotJuggler.
 
     Raises
     ------
@@ -30,7 +30,7 @@ class BagWriter:
     ParameterError
         A format that is not one of `FORMATS`.
     FormatError
-        A folder that is there already, or a disk that is full.
+        An existing folder, or a full disk.
 
     Examples
     --------
@@ -63,7 +63,7 @@ class BagWriter:
         latched: bool = False,
         depth: int = 1,
     ) -> None:
-        """Add a topic of a type ``package/msg/Name``, played with the service of `Topic`."""
+        """Add a topic of a type ``package/msg/Name``, to be played with the service of `Topic`."""
         from rosbags.interfaces import (
             Qos,
             QosDurability,
@@ -100,7 +100,7 @@ class BagWriter:
                 self._commit()
 
     def _commit(self) -> None:
-        """Put into the file what a storage of rosbags collects, which has no word for it."""
+        """Flush the storage of rosbags, which has no function for it."""
         storage: Any = self._writer.storage
         if hasattr(storage, 'conn'):
             storage.conn.commit()
@@ -111,7 +111,7 @@ class BagWriter:
 
     @contextmanager
     def _room(self) -> Iterator[None]:
-        """Close the bag where there is no room for more; a `FormatError` says so."""
+        """Close the bag and raise a `FormatError` when the disk is full."""
         try:
             yield
         except (OSError, sqlite3.Error) as error:
@@ -120,7 +120,7 @@ class BagWriter:
             raise FormatError(
                 f'cannot be written to: {error}',
                 where=str(self._writer.path),
-                cure='make room; what is in it can be read',
+                cure='make room; the written part can be read',
             ) from error
 
     def __enter__(self) -> BagWriter:

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The YAML form of a scene: its trees one by one, or the table of a stand and what is not in it.
+The YAML form of a scene: its trees one by one, or the table of a stand and further values.
 
 A tree is the name of a built-in one or a file of any format; files are found from the scene's own
 folder. Keys, kinds and ranges are those of ``scene_schema.json``::
@@ -47,9 +47,10 @@ def read_scene_yaml(path: Path, open_tree: OpenTree) -> Scene:
     Raises
     ------
     FormatError
-        Not YAML, not what the schema says, or a table that cannot be read; names file and line.
+        A file that is not YAML or does not match the schema, or an unreadable table; with file and
+        line.
     TreeSwayError
-        A tree that cannot be opened; names the line, the tree, and what is wrong with it.
+        A tree that cannot be opened; with line, tree and fault.
 
     """
     return parse_scene(read_text(path), open_tree, path)
@@ -85,7 +86,7 @@ def parse_scene(text: str, open_tree: OpenTree, path: Path) -> Scene:
 def _trees(
     document: YamlDocument, open_tree: OpenTree, folder: Path
 ) -> tuple[list[PlacedTree], list[str]]:
-    """Trees of the list, and what their importers noted."""
+    """Trees of the list, and notes of their importers."""
     entries = document.values['trees']
     refuse_same_names(
         [entry['name'] for entry in entries], lambda number: document.where('trees', number)
@@ -93,7 +94,7 @@ def _trees(
 
     @cache
     def opened(tree: str, seed: int, species: str | None) -> TreeFile:
-        """Open a tree once, so that all of its kind share it."""
+        """Open a tree once for all of its kind."""
         file = open_tree(_beside(folder, tree), seed)
         return file if species is None else file.of_species(species_named(species))
 

@@ -3,13 +3,13 @@
 """
 A stand from an inventory: a table of places, species and heights, and maybe of stem diameters.
 
-Columns are found by what inventories call them: ``x``, ``y`` (or easting, northing, or latitude
-and longitude in degrees, in two columns or one), ``species``, ``height``; ``dbh`` at breast height
-or ``girth``, in cm where no unit is named and they are not fractions of a metre. Without heights
-they are those that grown trees of that thickness have. Further ones may be ``name``, ``z``,
-``yaw`` [rad] and ``model``; a tree without a name is called after its row, one without a yaw is
-turned at random. Trees are scaled from few that are grown: those of one species whose heights are
-within a factor of three, and height over diameter within one of 1.3, share one.
+Columns are recognised by their names in inventories: ``x``, ``y`` (or easting, northing, or
+latitude and longitude in degrees, in two columns or one), ``species``, ``height``; ``dbh`` at
+breast height or ``girth``, in cm where no unit is given and they are not fractions of a metre.
+Missing heights are those of grown trees of that diameter. Further ones may be ``name``, ``z``,
+``yaw`` [rad] and ``model``; a tree without a name has that of its row, one without a yaw has a
+random one. Trees are scaled from few grown ones: those of one species whose heights are within a
+factor of three, and height over diameter within a factor of 1.3, share one.
 """
 
 from __future__ import annotations
@@ -55,15 +55,15 @@ def read_stand_table(
     path: Path, kinds: Mapping[str, GrownTree] | None = None, *, seed: int = 0, **fields: Any
 ) -> Scene:
     """
-    Read a stand from a table; where ``kinds`` has no tree for a species, its trees are grown.
+    Read a stand from a table; trees of species without a tree in ``kinds`` are grown.
 
-    The seed is that of the trees that are grown, and of how trees are turned; further arguments
-    are those of `Scene`. A species of no table is one of its group, as of `species_like`.
+    The seed is for grown trees and for yaws; further arguments are those of `Scene`. An unknown
+    species is replaced as by `species_like`.
 
     Raises
     ------
     FormatError
-        No tree, a missing column, a cell that is no finite number, a height that no tree has, two
+        No tree, a missing column, a cell that is not a finite number, an impossible height, two
         trees of one name; with the line.
 
     """
@@ -111,14 +111,14 @@ def read_stand_table(
 
 
 class _Inventory:
-    """Columns of the table in SI units, those that were used, and what was assumed."""
+    """Columns of the table in SI units, names of used ones, and assumptions."""
 
     def __init__(self, table: TextTable) -> None:
         self._table = table
         self.used, self.notes = set[int](), list[str]()
         place = _find(table, 'x', 'y')
         self.x, self.y = self._degrees() if place is None else self._values(*place)
-        # As x and y of a map have too many digits for single precision, in pictures as well.
+        # x and y of a map have too many digits for single precision, in pictures as well.
         if max(np.abs(self.x).max(), np.abs(self.y).max()) > _FAR:
             east, north = float(np.floor(self.x.min())), float(np.floor(self.y.min()))
             self.x, self.y = self.x - east, self.y - north
@@ -129,7 +129,7 @@ class _Inventory:
         self.diameter = self._diameter()
 
     def note(self, *notes: str) -> None:
-        """Remember what was assumed."""
+        """Begin without assumptions."""
         self.notes += notes
 
     def texts(self, quantity: str) -> list[str]:
@@ -189,15 +189,15 @@ class _Inventory:
         return None
 
     def find_heights(self, keys: list[str]) -> None:
-        """Where the table has none, take the heights that grown trees of such stems have."""
+        """Return heights of grown trees of such stems, where the table has none."""
         if len(self.height) or self.diameter is None:
             return
         found = [height_of_stem(key, d) for key, d in zip(keys, self.diameter, strict=True)]
         self.height = np.array(found)
-        self.note('heights are those of grown trees of these stems, as the table has none')
+        self.note('heights are those of grown trees of these stems, as the table has no heights')
 
     def classes(self, keys: list[str]) -> tuple[Floats, Floats]:
-        """Height that each tree is scaled from, and its height over diameter, 0 if not known."""
+        """Height of the grown tree of each tree, and its height over diameter, 0 if unknown."""
         sizes, slender = np.array(self.height), np.zeros(len(keys))
         named = np.array(keys)
         for key in dict.fromkeys(keys):
@@ -223,7 +223,7 @@ def _find(table: TextTable, *quantities: str) -> list[Column] | None:
 
 
 def _steps(values: Floats, factor: float) -> Floats:
-    """Class of each value, within a factor of others of it."""
+    """Class of each value, such that values of a class are within a factor."""
     if len(values) == 0:
         return values
     return np.round(np.log(values / np.median(values)) / math.log(factor))
@@ -236,7 +236,7 @@ def _middle(values: Floats) -> float:
 def _grown(
     species: Species, size: tuple[str, float, float], seed: int, stand: _Inventory
 ) -> GrownTree:
-    """Grow the tree of a class; a stem that no such tree has is made thinner or thicker."""
+    """Grow the tree of a class; an impossible stem is made thinner or thicker."""
     key, height, slenderness = size
     diameter = None
     if slenderness:

@@ -10,7 +10,7 @@ from tree_sway.errors import FormatError
 
 
 def refuse_same_names(names: Sequence[str], where: Callable[[int], str]) -> None:
-    """Raise a `FormatError` for the first tree with a slash in its name, or that of another."""
+    """Raise a `FormatError` for a slash in a name, or a name that occurs twice."""
     first: dict[str, int] = {}
     for number, name in enumerate(names):
         if '/' in name:
@@ -19,5 +19,5 @@ def refuse_same_names(names: Sequence[str], where: Callable[[int], str]) -> None
         if name in first:
             line = where(first[name]).rsplit(':', 1)[1]
             what = f"two trees called '{name}', the first in line {line}"
-            raise FormatError(what, where=where(number), cure='give each a name of its own')
+            raise FormatError(what, where=where(number), cure='give each its own name')
         first[name] = number

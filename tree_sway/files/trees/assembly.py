@@ -17,7 +17,7 @@ from tree_sway.errors import FormatError, TreeError
 
 
 def nearest_axis(start: Floats, end: Floats, point: Floats) -> tuple[int, float]:
-    """Return which of some axes from start to end (n, 3) is nearest to a point, how far in [m]."""
+    """Return the number of the axis (n, 3) nearest to a point, and its distance [m]."""
     axis = end - start
     squared = np.maximum(np.einsum('ij,ij->i', axis, axis), 1e-24)
     along = np.clip(np.einsum('ij,ij->i', point - start, axis) / squared, 0.0, 1.0)
@@ -32,7 +32,7 @@ def built_tree(
     """
     Build a tree with `tree_from_segments`, of the same arguments, from a file.
 
-    A `TreeError` reports what that refuses, a `FormatError` that there is no segment.
+    Errors are those of that function, and a `FormatError` without segments.
     """
     if not len(diameter):
         raise FormatError('no segments', where=source, cure='give at least one segment')

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree as a file gave it: its shape, its wood, and what the importer had to do to it."""
+"""A tree of a file: its shape, its species, and changes by the importer."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from tree_sway.errors import inside
 @dataclass(frozen=True, eq=False)
 class TreeFile:
     """
-    A tree with the species it is made of.
+    A tree with its species.
 
     Parameters
     ----------
     tree
-        The segments, in branches.
+        Tree of the segments.
     species
-        Wood, damping and drag: the table's entry for ``tree.species``, with what the file says
-        otherwise in place of the table's values.
+        Wood, damping and drag: the table's entry for ``tree.species``, with values of the file in
+        place of those of the table.
     source
-        Where it came from: a path, or the name of a built-in tree.
+        Source: a path, or the name of a built-in tree.
     notes : tuple of str
-        What the importer changed or left out, one sentence each; empty if nothing.
+        Changes and omissions by the importer, one sentence each.
     origin
-        Where the tree's zero is in the frame of the file in [m].
+        Origin of the tree in the frame of the file in [m].
 
     """
 
@@ -41,15 +41,15 @@ class TreeFile:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Report what is odd about the tree, one sentence each, as of `oddities`."""
+        """Report unusual values of the tree, one sentence each, as `oddities`."""
         return oddities(self.tree, self.species)
 
     def of_species(self, species: Species) -> TreeFile:
-        """Return the same tree of another wood, with that species' leaves."""
+        """Return the tree with a different species, and its leaves."""
         return replace(self, tree=replace(self.tree, species=species.key), species=species)
 
     def checked(self) -> TreeFile:
-        """Return the same tree if it can be one, else raise as `refuse_implausible`."""
+        """Return the tree if it is plausible, else raise as `refuse_implausible`."""
         with inside(self.source):
             refuse_implausible(self.tree, self.species)
         return self

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree or a forest by name or by path: what the command line and the nodes call TREE."""
+"""A tree or a forest by name or by path: TREE of the command line and the nodes."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     Parameters
     ----------
     name_or_path
-        One of `BUILTIN_TREES`, or the path of a file; a file of the name of a built-in tree is
-        meant by ``./name``.
+        One of `BUILTIN_TREES`, or the path of a file; a file of the same name as a built-in tree
+        is ``./name``.
     seed
         Seed of a built-in tree.
     **options
@@ -43,7 +43,7 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     FormatError
         Neither a built-in tree nor a file, or the file of a forest.
     TreeSwayError
-        What reading the file may raise.
+        An error of reading the file.
 
     """
     text = str(name_or_path)
@@ -63,7 +63,7 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     head = read_head(path) if path.is_file() else None
     if head is not None and begins_with_key(path, head, 'trees'):
         raise FormatError(
-            'a forest, where one tree is asked for', where=text, cure='name one of its trees'
+            'a forest, where one tree is expected', where=text, cure='name one of its trees'
         )
     return read_tree(path, head=head, **options).checked()
 
@@ -75,17 +75,17 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> Scene
     Parameters
     ----------
     name_or_path
-        As of `open_tree`, or a YAML file with a list of trees, or a file of a format that holds
-        several, or a stand: a table with x, y, species and height, or a YAML file that names one.
+        Name or path as in `open_tree`, or a YAML file with a list of trees, or a file with several
+        trees, or a stand: a table with x, y, species and height, or a YAML file that names one.
     seed, **options
-        As of `open_tree`; a forest has none.
+        Arguments of `open_tree`; not for a forest.
 
     Raises
     ------
     ParameterError
         Options for a forest or a built-in tree.
     TreeSwayError
-        As `open_tree` and `read_scene_yaml`.
+        Errors of `open_tree` and `read_scene_yaml`.
 
     """
     path = path_of(name_or_path)
@@ -107,7 +107,7 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> Scene
 
 
 def scene_of_files(files: Sequence[TreeFile], name: str = '') -> Scene:
-    """Return the trees of one file as a scene: several where they are there, the first at 0."""
+    """Return the trees of one file as a scene: several at their places, the first at 0."""
     one, trees = files[0], []
     for each in files:
         moved = np.subtract(each.origin, one.origin)

@@ -3,8 +3,8 @@
 """
 Read a tree from a file of any known format.
 
-The content decides before the suffix: files of the field come with the suffix of the day. A new
-format is one module in `formats`, with a `FileFormat`.
+The content decides before the suffix, as suffixes vary. A new format is one module in `formats`,
+with a `FileFormat`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ TREE_FORMATS: tuple[FileFormat, ...] = tuple(
     for each in vars(import_module(f'{formats.__name__}.{module.name}')).values()
     if isinstance(each, FileFormat)
 )
-"""Every format, in the order of modules and of their contents."""
+"""All formats, in the order of modules and of their contents."""
 
 
 def read_trees(
@@ -40,19 +40,18 @@ def read_trees(
     **options: Any,
 ) -> tuple[TreeFile, ...]:
     """
-    Read every tree of a file, of a format that is named or found from content and suffix.
+    Read every tree of a file, of a given format or found from content and suffix.
 
-    Options are those of `TreeOptions`. ``head`` is the beginning of the file where it was read
-    before.
+    Options are those of `TreeOptions`. ``head`` is the beginning of the file if it is known.
 
     Raises
     ------
     FormatError
-        A file of no known format, or one that does not hold what its format promises.
+        A file of an unknown format, or with contents that do not match its format.
     TreeError
-        A tree that cannot be.
+        An impossible tree.
     ParameterError
-        An option that this format does not have, or has otherwise.
+        An option that this format does not have, or a wrong value.
 
     """
     path = path_of(path)
@@ -78,11 +77,11 @@ def read_trees(
 
 def read_tree(path: str | Path, format: str | None = None, **options: Any) -> TreeFile:  # noqa: A002, E501
     """
-    Read the tree of a file, the first if it holds several; see `read_trees`.
+    Read the tree of a file, the first of several; see `read_trees`.
 
-    The notes of the result say how many others there are.
+    The notes of the result have the number of others.
     """
     first, *others = read_trees(path, format, **options)
     if not others:
         return first
-    return replace(first, notes=(*first.notes, f'the file holds {len(others)} more trees'))
+    return replace(first, notes=(*first.notes, f'the file has {len(others)} more trees'))

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Options of reading a tree's file of any format: what its numbers mean, and what to mend."""
+"""Options of reading a tree's file of any format: units of its numbers, and corrections."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ _RANGES = {
 
 
 MEASURED = {'twig_diameter': 0.0}
-"""Defaults of forms whose twigs are no thicker than they are."""
+"""Defaults of forms whose twigs have their true diameter."""
 
 AS_IT_IS = {'to_origin': False, **MEASURED}
-"""Defaults of our own forms, whose trees are also where they are meant to be."""
+"""Defaults of our own forms, whose trees also have their true place."""
 
 
 @dataclass(frozen=True)
 class TreeOptions:
     """
-    What to do with the trees of a file.
+    Changes to the trees of a file.
 
     Parameters
     ----------
     species
-        Key of the wood; the file's own if None.
+        Key of the species; that of the file if None.
     length_unit, diameter_unit
         Units of positions and of diameters in [m].
     up
@@ -49,11 +49,11 @@ class TreeOptions:
         Diameter in [m] of the last twigs, which are too thick in the file (`corrected_twigs`);
         that of the species if None, and 0 to leave all twigs as they are.
     trusted_diameter
-        Diameter from which on a scan is trusted in [m].
+        Diameter above which a scan is trusted in [m].
     to_origin
         Whether to move the base of the stem to the origin.
     tree
-        Number of the one tree that is wanted, from 1 on; 0 for all.
+        Number of the tree to read, from 1 on; 0 for all.
 
     """
 
@@ -87,7 +87,7 @@ class TreeOptions:
         return np.ascontiguousarray(self.length_unit * turned)
 
     def applied(self, content: TreeFile) -> TreeFile:
-        """Return a tree in metres with these options applied; its notes say what was changed."""
+        """Return a tree in metres with these options applied, and notes of the changes."""
         tree, notes, origin = content.tree, list(content.notes), np.zeros(3)
         species = content.species if self.species is None else species_named(self.species)
         twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter

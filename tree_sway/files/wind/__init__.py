@@ -3,6 +3,6 @@
 """
 Wind records: TOA5, NMEA 0183, tables, bags; records of sway for calibration.
 
-All end as times in [s] and velocities in [m/s], blowing TO, ENU.
-Gating and averaging are done in ``core/wind``.
+All result in times in [s] and velocities in [m/s], blowing TO, ENU. Gating and averaging are done
+in ``core/wind``.
 """

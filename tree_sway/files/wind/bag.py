@@ -5,8 +5,8 @@ Wind in a ROS 2 bag, sqlite3 or mcap, read without ROS.
 
 Any of the wind's four message types: Vector3Stamped, TwistStamped, TwistWithCovarianceStamped
 (linear part) and Vector3, all of geometry_msgs. The time is the header's; a zero stamp or a
-message without a header has the time it was recorded at. Vectors point where the wind blows, east,
-north, up (REP-103); ``direction_convention`` and ``yaw`` say otherwise.
+message without a header has its time of recording. Vectors point where the wind blows, east,
+north, up (REP-103); ``direction_convention`` and ``yaw`` change that.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ WIND_TYPES = tuple(
     f'geometry_msgs/msg/{name}'
     for name in ('Vector3Stamped', 'TwistStamped', 'TwistWithCovarianceStamped', 'Vector3')
 )
-"""Message types that can hold wind."""
+"""Message types of wind."""
 _BODY = 4  # bytes of encapsulation, from which on numbers are aligned
 
 
@@ -33,9 +33,9 @@ def read_bag_wind(
     """
     Read the wind of a bag: its folder, or its ``.db3`` or ``.mcap`` file.
 
-    The topic may be None if only one has one of `WIND_TYPES`. ``yaw`` is from east to the sensor's
-    x axis, counter-clockwise, in [rad]; vectors point ``to`` where the wind blows, or ``from``
-    where it comes from.
+    The topic may be None if a single one has a type of `WIND_TYPES`. ``yaw`` is from east to the
+    sensor's x axis, counter-clockwise, in [rad]; vectors point ``to`` where the wind blows, or
+    ``from`` where it comes from.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def read_bag_wind(
         rows.add(number, ((stamp or recorded) - epoch) * 1e-9, velocity)
     notes = [f'topic {chosen}, {kind}']
     if n_unstamped:
-        notes.append(f'{n_unstamped} messages without a stamp have the time they were recorded at')
+        notes.append(f'{n_unstamped} messages without a stamp have their time of recording')
     return rows.record(
         epoch=epoch * 1e-9, notes=tuple(notes), yaw=yaw, direction_convention=direction_convention
     )

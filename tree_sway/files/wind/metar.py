@@ -5,7 +5,7 @@ METAR, the reports of airports: ``EDDF 221150Z 24015G27KT ...``, a line each.
 
 The group of the wind is where it comes from in degrees, its mean speed and maybe its gust (WMO
 Manual on Codes 306, FM 15). A report has the day of the month and no month: one whose day is
-smaller than that of the line before is taken as of the day after.
+smaller than that of the line before is on the next day.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _UNITS = {'KT': 1852.0 / 3600.0, 'MPS': 1.0, 'KMH': 1.0 / 3.6}
 
 def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> WindRecord:
     """
-    Read the wind of METAR reports, with turbulence about them as of `filled_means`.
+    Read the wind of METAR reports, with turbulence about them as in `filled_means`.
 
     A `FormatError` reports a missing one.
     """

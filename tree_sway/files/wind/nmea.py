@@ -4,9 +4,8 @@
 NMEA 0183: the wind sentences of an instrument on a mast or a boat.
 
 - ``$--MWV,angle,R|T,speed,K|M|N|S,A|V``: where the wind comes from, in degrees clockwise from the
-  bow.
-  R is the apparent wind, as the instrument feels it; T is the true wind, less the motion of the
-  boat, and still counted from the bow. On a mast the two are one.
+  bow. R is the apparent wind at the instrument; T is the true wind, less the motion of the boat,
+  with directions from the bow as well. On a mast they are the same.
 - ``$--MWD,direction,T,direction,M,speed,N,speed,M``: true wind, clockwise from true and from
   magnetic north.
 - ``$--MDA``: weather, the last eight fields of which are those of MWD.
@@ -35,7 +34,9 @@ from tree_sway.files.wind.sensor_line import line_of, read_sensor_log, SensorLin
 from tree_sway.files.wind.units import degrees_to_bearing, Velocity
 
 SENTENCES = ('MWD', 'MDA', 'MWV T', 'VWT', 'MWV R', 'VWR', 'XDR')
-"""What can be read, in the order of preference: least depends on the motion of the boat first."""
+"""
+Sentences in the order of preference: those that depend least on the motion of the boat first.
+"""
 
 _KNOT = 1852.0 / 3600.0
 _UNITS = {'N': _KNOT, 'K': 1.0 / 3.6, 'M': 1.0, 'S': 0.44704}
@@ -44,18 +45,18 @@ _SENTENCE = re.compile(r'\$[A-Z]{2}(MWV|MWD|MDA|VWR|VWT|XDR),([^*]*)(\*.*)?', re
 
 def parse_nmea(line: str, heading: float = 0.0, declination: float = 0.0) -> SensorLine | None:
     """
-    Parse a line of NMEA 0183, to the wind of a kind of `SENTENCES`; None for any other line.
+    Parse a line of NMEA 0183 to the wind of a kind of `SENTENCES`; None for any other line.
 
-    A logger may have put something of its own before the sentence.
+    A logger may have added a prefix.
 
     Parameters
     ----------
     line
         The line, without its end.
     heading
-        Of the bow, clockwise from true north, in [rad].
+        Heading of the bow, clockwise from true north, in [rad].
     declination
-        Of the magnetic needle, east positive, in [rad]; for a MWD without a true direction.
+        Magnetic declination, east positive, in [rad]; for a MWD without a true direction.
 
     """
     sentence = _SENTENCE.match(line, max(line.rfind('$'), 0))
@@ -85,17 +86,17 @@ def read_nmea_wind(
     declination: float = 0.0,
 ) -> WindRecord:
     """
-    Read the wind of an NMEA 0183 log, whose sentences count as evenly spaced, ``rate`` in [Hz].
+    Read the wind of an NMEA 0183 log, whose sentences have equal spacing, ``rate`` in [Hz].
 
     The sentence is one of `SENTENCES`, or ``auto``: the first of these with a good one; others are
-    passed over. ``heading`` and ``declination`` are those of `parse_nmea`.
+    ignored. ``heading`` and ``declination`` are those of `parse_nmea`.
 
     Raises
     ------
     FormatError
         If there is no such sentence, or no good one.
     ParameterError
-        If an option is not what it can be.
+        If an option has a wrong value.
 
     """
     if sentence not in (*SENTENCES, 'auto'):
@@ -150,7 +151,7 @@ def _xdr(fields: list[str], heading: float) -> Velocity | str:
 
 
 def _vwr(fields: list[str], heading: float) -> Velocity | str:
-    """Angle up to half a turn, left or right; the first speed that is there counts."""
+    """Angle up to half a turn, left or right; the first given speed is used."""
     angle, side = finite(fields[0]), fields[1] if len(fields) > 1 else ''
     speeds = (
         (finite(speed), _UNITS.get(unit))

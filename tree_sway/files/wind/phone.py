@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The acceleration that a phone on a tree measures, asked of its app phyphox over the network.
+Acceleration of a phone on a tree, read from its app phyphox over the network.
 
 Where "remote access" is allowed in the app, ``GET /get?acc_time=full&accX=full`` answers with JSON
 that has the numbers of a quantity under ``buffer``, its name, ``buffer`` (phyphox wiki,
@@ -24,19 +24,19 @@ _LARGEST = 2**26
 
 def read_phone_sway(address: str) -> SwayRecord:
     """
-    Read what a phone has measured until now.
+    Read the measurement of a phone until now.
 
     Parameters
     ----------
     address
-        As phyphox shows it, such as ``http://192.168.0.42:8080``.
+        Address as in phyphox, such as ``http://192.168.0.42:8080``.
 
     Raises
     ------
     TransportError
         No phone answers there.
     FormatError
-        The answer holds no accelerations, or as of `parse_sway`.
+        The answer has no accelerations, or an error of `parse_sway`.
 
     """
     asked = '&'.join(f'{name}=full' for name in _QUANTITIES)

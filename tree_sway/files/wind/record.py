@@ -1,11 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-A wind record: velocity over time, as every reader gives it.
+A wind record: velocity over time, as returned by all readers.
 
-Velocities blow TO where they point, in m/s, in the frame east, north, up (REP-103), whatever the
-file says it in. A row that cannot be used is refused and counted, never guessed and never filled
-in: a gap stays a gap in the times.
+Velocities blow TO where they point, in m/s, in the frame east, north, up (REP-103), for all files.
+An unusable row is refused and counted, never replaced: a gap stays a gap in the times.
 """
 
 from __future__ import annotations
@@ -33,18 +32,18 @@ class WindRecord:
     time
         Time of each sample after the first in [s], increasing, (n,).
     velocity
-        Where the wind blows to, east, north, up, in [m/s], (n, 3).
+        Velocity of the wind, east, north, up, in [m/s], (n, 3).
     source
-        The file.
+        Name of the file.
     refused
-        Number of rows of the file that could not be used.
+        Number of unusable rows of the file.
     first_refused
-        The first of them, with line and reason; empty if none.
+        First unusable row, with line and reason; empty if none.
     epoch
         Time of the first sample in seconds after 1970-01-01, in the clock of the file, which need
         not be UTC; None if the file has no dates.
     notes : tuple of str
-        What was assumed or chosen, one sentence each.
+        Assumptions and choices, one sentence each.
     gust
         Largest speed about each sample in [m/s], (n,), NaN where none is reported; None without.
 
@@ -82,7 +81,7 @@ class WindRecord:
 @dataclass(slots=True)
 class WindRows:
     """
-    Rows on their way to a record, and those refused.
+    Rows for a record, and counts of refused ones.
 
     A row is a line, a sentence or a message by ``row_name``. Times are in [s]; components of the
     velocity are one row after the other in [m/s]; numbers are those of the rows in the file.
@@ -100,13 +99,13 @@ class WindRows:
     _first_number: float = float('inf')
 
     def add(self, number: int, time: float, velocity: tuple[float, float, float]) -> None:
-        """Take a row."""
+        """Add a row."""
         self.number.append(number)
         self.time.append(time)
         self.velocity.extend(velocity)
 
     def refuse(self, number: int, reason: str) -> None:
-        """Count a row that cannot be used; the first one in the file is remembered."""
+        """Count an unusable row; the first one in the file is stored."""
         self.refused += 1
         if number < self._first_number:
             self._first_number = number
@@ -121,10 +120,10 @@ class WindRows:
         direction_convention: str = 'to',
     ) -> WindRecord:
         """
-        Check times and speeds and return the record, its velocities turned as of `WindConvention`.
+        Check times and speeds and return the record, converted by a `WindConvention`.
 
-        ``epoch`` is what the times count from, in seconds after 1970-01-01, None if that is not
-        known. Raises a `FormatError` that says that no good row is left.
+        ``epoch`` is the origin of the times, in seconds after 1970-01-01, None if unknown. Raises
+        a `FormatError` if no good row is left.
         """
         time = np.array(self.time, dtype=np.float64)
         velocity = np.array(self.velocity, dtype=np.float64).reshape(-1, 3)
@@ -155,7 +154,7 @@ class WindRows:
 
 
 def increasing(time: Floats) -> NDArray[np.bool_]:
-    """Mark a longest increasing run of times (n,), so that one wrong stamp costs one sample."""
+    """Mark a longest increasing sequence of times (n,), so that a wrong stamp is one sample."""
     keep = np.ones(len(time), dtype=np.bool_)
     if bool((np.diff(time) > 0.0).all()):
         return keep

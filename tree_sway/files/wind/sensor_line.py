@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A line that an anemometer says: its wind, or why it is refused; checksums and log files."""
+"""Lines of anemometers: the wind, or the reason of a refusal; checksums and log files."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from tree_sway.files.wind.record import WindRecord, WindRows
 from tree_sway.files.wind.units import Velocity
 
 MAX_LINE = 1024
-"""Longer lines are no sensor's [characters]."""
+"""Largest length of a line [characters]."""
 
 
 @dataclass(frozen=True, slots=True)
 class SensorLine:
     """
-    What a line says: velocity [m/s] to which the wind blows, east, north, up, or why refused.
+    Result of a line: velocity [m/s], east, north, up, or the reason of a refusal.
 
-    ``kind`` is the sentence or format that it is of.
+    ``kind`` is its sentence or format.
     """
 
     kind: str
@@ -33,7 +33,7 @@ class SensorLine:
 
 
 ParseLine = Callable[[str], SensorLine | None]
-"""Parses a line; None if it is not about the wind. Never raises."""
+"""Parse a line; None if it is not about the wind. Never raises."""
 
 
 def checksum_of(body: str) -> str:
@@ -49,9 +49,9 @@ def line_of(
     read: Callable[[], Velocity | str],
 ) -> SensorLine:
     """
-    Return what `read` finds in a line of a length in characters, if its length and checksum fit.
+    Return the result of `read` for a line of a length in characters, if length and checksum fit.
 
-    `sent_sum` is the checksum in it, of one of these bodies, None without one.
+    `sent_sum` is its checksum, of one of these bodies, None without one.
     """
     if length > MAX_LINE:
         found: Velocity | str = f'a line of {length} characters'
@@ -66,11 +66,11 @@ def read_sensor_log(
     path: Path, parse: ParseLine, kinds: Sequence[str], rate: float, notes: Sequence[str] = ()
 ) -> tuple[str, WindRecord]:
     """
-    Read the wind of a log of an anemometer's lines, which carry no time: they are evenly spaced.
+    Read the wind of a log of an anemometer's lines, which have equal spacing, without times.
 
-    Lines that are not about the wind are passed over; one that is refused keeps its place in time.
-    Of the kinds wanted, the best one first, the first with a good line is read; its name is
-    returned before the record. ``rate`` is that of its lines in [Hz].
+    Lines that are not about the wind are ignored; a refused one keeps its time. Of the wanted
+    kinds, the best one first, the first with a good line is read; its name is returned before the
+    record. ``rate`` is that of its lines in [Hz].
 
     Raises
     ------
@@ -97,5 +97,5 @@ def read_sensor_log(
         what = f'no sentence {" or ".join(kinds)}'
         raise FormatError(what, where=str(path), cure="log the wind instrument's output")
     best = next((kind for kind in there if found[kind].time), there[0])
-    spaced = f'{best} sentences have no time of their own and are taken at {rate:g} Hz'
+    spaced = f'{best} sentences have no times and are taken at {rate:g} Hz'
     return best, found[best].record(notes=(spaced, *notes))

@@ -7,7 +7,7 @@ WindSonic, WindObserver and WindMaster send ``<STX>Q,121,000.08,M,00,<ETX>hh`` w
 ``<STX>Q,+000.12,-000.34,+000.05,M,...,00,<ETX>hh`` with components: U from south to north, V from
 east to west, W up (WindSonic manual 1405-PS-0019, WindMaster manual 1561-PS-0001).
 
-North is the instrument's marker: option ``heading`` says where that points. A wrong checksum, a
+North is the instrument's marker, whose direction is the option ``heading``. A wrong checksum, a
 status other than good, a value that is missing: the line is refused.
 """
 
@@ -31,17 +31,17 @@ _UNITS = {'M': 1.0, 'N': 1852.0 / 3600.0, 'P': 0.44704, 'K': 1.0 / 3.6, 'F': 0.0
 _GOOD = ('00', '60')
 """Gill's status: good, and good while heated."""
 _CALM = 0.05
-"""Below this a direction may be missing [m/s]."""
+"""Speed below which a direction may be missing [m/s]."""
 _GILL = re.compile(r'\x02?([A-Z],[^\x02\x03]*)(?:\x03(.*))?', re.ASCII | re.DOTALL)
 _STATUS = re.compile(r'[0-9A-F]{2}', re.ASCII)
 
 
 def parse_sonic(line: str, heading: float = 0.0) -> SensorLine | None:
     """
-    Parse a line of a sonic anemometer, with or without STX, ETX and what follows it.
+    Parse a line of a sonic anemometer, with or without STX, ETX and checksum.
 
-    The wind is of a kind of `KINDS`; any other line is None. ``heading`` is where the instrument's
-    north marker points, clockwise from true north, in [rad].
+    The wind is of a kind of `KINDS`; any other line is None. ``heading`` is the direction of the
+    instrument's north marker, clockwise from true north, in [rad].
     """
     begin = line.rfind('\x02') if '\x02' in line else len(line) - len(line.lstrip())
     gill = _GILL.match(line, begin)
@@ -56,14 +56,14 @@ def parse_sonic(line: str, heading: float = 0.0) -> SensorLine | None:
 
 def read_sonic_wind(path: Path, rate: float = 10.0, heading: float = 0.0) -> WindRecord:
     """
-    Read the wind of a log of a sonic anemometer's lines, taken as evenly spaced, ``rate`` in [Hz].
+    Read the wind of a log of a sonic anemometer's lines of equal spacing, ``rate`` in [Hz].
 
     Raises
     ------
     FormatError
         If there is no such line, or no good one.
     ParameterError
-        If an option is not what it can be.
+        If an option has a wrong value.
 
     """
     north = f'the north marker is taken to point to {heading * 180.0 / pi:g} degrees'

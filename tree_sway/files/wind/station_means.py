@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What stations report, means over minutes or hours, to the wind that a tree feels."""
+"""From means over minutes or hours of stations to the wind at a tree."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from tree_sway.files.wind.record import WindRecord
 
 
 def filled_means(record: WindRecord, turbulence: bool, seed: float) -> WindRecord:
-    """Return a record with turbulence about its samples if these are means; a note says so."""
+    """Return a record with turbulence about its samples if these are means, with a note."""
     if not (seed >= 0 and float(seed).is_integer()):
-        raise ParameterError(f'seed is {seed:g}', cure='give a whole number from 0 on')
+        raise ParameterError(f'seed is {seed:g}', cure='give a whole number of 0 or more')
     if record.period < LEAST_INTERVAL or len(record.time) < 3:
         return record
     means = f'samples {record.period:g} s apart are taken as means'

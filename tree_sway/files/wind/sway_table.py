@@ -1,15 +1,15 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The motion of a tree in a table with a header.
+Tables of the motion of a tree.
 
 A time column (``time``, ``t``, ``timestamp`` ...) in seconds, in another unit behind the name
 (``time [ms]``) or as ISO 8601 dates, and one to three columns of displacement, tilt, angular rate
 or acceleration: ``x``, ``y``, ``z``, ``displacement``, ``tilt_x``, ``ax``, ``roll`` ... A unit may
-follow the name: ``x [mm]``, ``tilt_x (deg)``, ``ax [g]``. Units only bring the columns to one
-scale, as frequency and damping do not depend on it. Comma, semicolon or tab between cells; lines
-with # are comments. Other columns are left alone. A row that is no number is refused with its line
-and never filled in.
+follow the name: ``x [mm]``, ``tilt_x (deg)``, ``ax [g]``. Units only scale the columns, as
+frequency and damping do not depend on them. Comma, semicolon or tab between cells; lines with #
+are comments. Other columns are ignored. A row that is not a number is refused with its line and
+never replaced.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from tree_sway.files.table_file import COLUMNS, MOTIONS, parse_table, TextTable
 from tree_sway.files.text_file import read_lines
 
 MAX_VALUE = 1e12
-"""Larger times and motions are no measured ones, in whichever unit."""
+"""Largest time or motion in any unit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class SwayRecord:
     Parameters
     ----------
     time
-        Of each sample in [s], as in the file, (n,).
+        Time of each sample in [s], as in the file, (n,).
     motion
         One column per axis, (n, c), in [m], [rad], [rad/s] or [m/s^2].
     quantity
@@ -43,7 +43,7 @@ class SwayRecord:
     columns
         Names of the columns in the file.
     source
-        The file.
+        Name of the file.
 
     """
 
@@ -61,13 +61,13 @@ def read_csv_sway(path: Path) -> SwayRecord:
 
 def parse_sway(lines: list[str], source: str) -> SwayRecord:
     """
-    Return the motion of a tree that the lines of a table hold.
+    Return the motion of a tree from the lines of a table.
 
     Raises
     ------
     FormatError
         No time or no motion among the columns, an unknown unit, two quantities in one file, or a
-        cell that is no finite number.
+        cell that is not a finite number.
 
     """
     table = parse_table(lines, source)
@@ -76,9 +76,9 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     motion = [(i, q) for i, (name, _) in enumerate(table.headings) if (q := _quantity(name))]
     if clock is None or not motion:
         what = f'no {"time" if clock is None else "motion"} among {", ".join(table.columns[:20])}'
-        cure = 'name the columns time, x, y or time, tilt_x or time, ax, ay in the header'
+        cure = 'call the columns time, x, y or time, tilt_x or time, ax, ay in the header'
         raise table.error(what, cure=cure)
-    if 'seconds_elapsed' in names:  # Sensor Logger calls the axes of any of its sensors x, y, z
+    if 'seconds_elapsed' in names:  # Sensor Logger has axes x, y, z for all its sensors
         motion = [(i, 'acceleration' if q == 'displacement' else q) for i, q in motion]
     quantities = sorted({quantity for _, quantity in motion})
     if len(quantities) > 1:
@@ -88,8 +88,8 @@ def parse_sway(lines: list[str], source: str) -> SwayRecord:
     columns = [table.columns[i] for i, _ in motion]
     values = table.strict(columns)
     for row, column in np.argwhere(~(np.abs(values) * factors <= MAX_VALUE))[:1]:
-        what = f'{columns[column]} is {values[row, column]:.3g}, which nothing measures'
-        raise table.error(what, row, 'mend the cell or remove the row')
+        what = f'{columns[column]} is {values[row, column]:.3g}, which is implausible'
+        raise table.error(what, row, 'correct the cell or remove the row')
     times = _times(table, clock)
     return SwayRecord(times, values * factors, quantities[0], tuple(columns), source)
 
@@ -104,7 +104,7 @@ def _times(table: TextTable, clock: int) -> Floats:
     times, _ = table.seconds(stamps, table.factor(clock, 'time'))
     for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
         what = f"time is '{stamps[row][:40]}', neither seconds nor a date"
-        raise table.error(what, row, 'mend the cell or remove the row')
+        raise table.error(what, row, 'correct the cell or remove the row')
     for row in np.flatnonzero(np.diff(times) <= 0.0)[:1]:
         what = f'time {stamps[row + 1][:40]} does not come after {stamps[row][:40]}'
         raise table.error(what, row + 1, 'put the rows in the order of time, each time once')

@@ -3,20 +3,20 @@
 """
 Wind in a table: CSV with a header, and the TOA5 of Campbell Scientific's loggers.
 
-Rows 20 s and more apart are means of a station or of a reanalysis: turbulence is drawn about them,
-from the column of gusts where there is one (`filled_means`). Lines before the header are passed
-over, as weather services put the place there.
+Rows 20 s and more apart are means of a station or of a reanalysis: turbulence is added to them, by
+the column of gusts if there is one (`filled_means`). Lines before the header are ignored, as
+weather services put the place there.
 
 A time column (``time``, ``t``, ``timestamp``, ``stamp`` ...) in seconds or as ISO 8601 dates, and
 either components ``u, v`` and perhaps ``w`` (or ``x, y, z``), or ``speed`` and ``direction`` in
 degrees clockwise from north. A unit may follow the name: ``speed [km/h]``, ``u (m/s)``,
-``time_ms``, ``direction_deg``. Components point where the wind blows to, a direction says where it
-comes from, as is the use of each; ``direction_convention`` says otherwise.
+``time_ms``, ``direction_deg``. Components point where the wind blows to, a direction is where it
+comes from, as is usual; ``direction_convention`` changes that.
 
-TOA5 has four header lines: the logger, the names, their units, how they were processed. The
-components of a sonic, ``Ux Uy Uz``, point where the wind blows, in the axes of the instrument
-(CSAT3 manual, 2.3); ``yaw`` turns them to east and north. Diagnostic words differ from instrument
-to instrument and are not read. A row that holds no number is refused.
+TOA5 has four header lines: the logger, the names, units and processing. The components of a sonic,
+``Ux Uy Uz``, point where the wind blows, in the axes of the instrument (CSAT3 manual, 2.3);
+``yaw`` rotates them to east and north. Diagnostic words differ between instruments and are not
+read. A row that is not numbers is refused.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from tree_sway.files.wind.station_means import filled_means
 _TIMES = '|'.join(COLUMNS['time']['names'])
 _CLOCK = re.compile(rf'(?i)(^|[,;\t])\s*"?({_TIMES})\b[^\n]*[,;\t]')
 LOOKS_LIKE_WIND = rf'(?i)^(?!#)([^\n]*[,;\t])?\s*"?({_TIMES})\b[^\n]*[,;\t]'
-"""What the header of a table of wind has."""
+"""Names in the header of a table of wind."""
 _LOGGER = re.compile(r'(\d{4})(\d\d)(\d\d)(\d\d)(\d\d)?', re.ASCII)
 
 
@@ -53,10 +53,10 @@ def read_table_wind(
     """
     Read the wind of a table, given as components (``to``) or as a direction (``from``).
 
-    ``columns`` are the two or three of the components, found by their usual names if None.
-    ``yaw`` is from east to the sensor's x axis, counter-clockwise, in [rad]; for a direction, from
-    north to the sensor's zero, likewise. Means get ``turbulence`` of a ``seed``. A `FormatError`
-    reports a column that is missing, a unit that is not known, or no good row.
+    ``columns`` are the two or three of the components, found by their usual names if None. ``yaw``
+    is from east to the sensor's x axis, counter-clockwise, in [rad]; for a direction, from north
+    to the sensor's zero, likewise. Means get ``turbulence`` of a ``seed``. A `FormatError` reports
+    a missing column, an unknown unit, or no good row.
     """
     WindConvention(direction_convention or 'to')  # refused before the file is read
     lines = read_lines(path)
@@ -87,7 +87,7 @@ def _wind(
     turbulence: bool,
     seed: float,
 ) -> WindRecord:
-    """Wind of a table, from the columns chosen or those of the usual names."""
+    """Wind of a table, from the chosen columns or those of the usual names."""
     clock = table.find('time')
     if chosen is None:
         found = [table.find(each) for each in ('wind_x', 'wind_y', 'wind_z')]
@@ -99,7 +99,7 @@ def _wind(
     if clock is None or None in found[:2]:
         names = ', '.join(table.columns[:20])
         what = f'no time with u and v, or with speed and direction, among {names}'
-        cure = 'name the columns so in the header, or by the option columns'
+        cure = 'use these names in the header, or the option columns'
         raise table.error(what, cure=cure)
     columns = [column for column in found if column is not None]
     indices = [column.index for column in columns]
@@ -136,7 +136,7 @@ def _wind(
 
 
 def _stamps(table: TextTable, clock: Column, rows: list[int]) -> list[str]:
-    """Return times as texts, loggers' dates as ISO 8601, with the time of another column."""
+    """Return times as texts, loggers' dates as ISO 8601, with the time of a second column."""
     stamps = table.cells(clock.index, rows)
     names = [heading for heading, _ in table.headings]
     if names[clock.index] in ('date', 'time') and {'date', 'time'} <= set(names):

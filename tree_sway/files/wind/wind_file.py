@@ -3,7 +3,7 @@
 """
 Read a wind record from a file of any known format.
 
-The content decides before the suffix. A new format is one file with a reader, and one line here.
+The content decides before the suffix. A new format is one module with a reader, and one line here.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ WIND_FORMATS = (
 )
 
 EXAMPLES = ('canopy',)
-"""Winds that come with the package: five minutes of a sonic anemometer over a canopy, 20 Hz."""
+"""Built-in winds: five minutes of a sonic anemometer over a canopy, 20 Hz."""
 
 
 def read_wind(path: str | Path, format: str | None = None, **options: Any) -> WindRecord:  # noqa: A002, E501
@@ -48,18 +48,18 @@ def read_wind(path: str | Path, format: str | None = None, **options: Any) -> Wi
     Parameters
     ----------
     path
-        The file, or the folder of a bag, or one of `EXAMPLES`.
+        Path of the file, or the folder of a bag, or one of `EXAMPLES`.
     format
-        Name of its format; found from content and suffix if None.
+        Name of the format; found from content and suffix if None.
     **options
-        What the reader of the format takes, such as ``topic`` or ``rate``.
+        Options of the reader of the format, such as ``topic`` or ``rate``.
 
     Raises
     ------
     FormatError
-        A file of no known format, or one without a good row of wind.
+        A file of an unknown format, or one without a good row of wind.
     ParameterError
-        An option that the reader of this format does not have, or has otherwise.
+        An option that the reader of this format does not have, or a wrong value.
 
     """
     path = path_of(path)

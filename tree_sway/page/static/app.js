@@ -8,13 +8,12 @@ import { Scene } from "./drawing/scene.js";
 import { readLink, recordClip, savePicture, saveTree, viewLink } from "./keepsake.js";
 import { keptScene, OwnLine } from "./own_line.js";
 import { element, made, Panel } from "./panel.js";
+import { distance } from "./quaternions.js";
 import { QUANTITIES, Trace, unitOf } from "./trace.js";
 import { language, setLanguage, windFrom, word } from "./words.js";
 
-/** The newest state may be so old before the page says that it is behind [ms]. */
-const BEHIND = 1000;
-/** Numbers are written again after this time [ms]. */
-const FACTS_EVERY = 400;
+/** Age of the newest state from which on it is behind, and time until numbers are written again [ms]. */
+const [BEHIND, FACTS_EVERY] = [1000, 400];
 /** How far a pointer may move in a click [px]. */
 const STILL = 4;
 
@@ -98,12 +97,7 @@ const stream = new TreeStream(location.href, {
 }, { kept, byWind: query.has("solve") });
 
 const { connection, playout } = stream;
-/** What is loaded when it is asked for. */
-const hands = {
-  drag: /** @type {import("./drag.js").Drag | null} */ (null),
-  sound: /** @type {import("./sound.js").Sound | null} */ (null),
-  headset: /** @type {import("./headset.js").Headset | null} */ (null),
-};
+const hands = /** @type {Hands} */ ({ drag: null, sound: null, headset: null });
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
 const treeName = () => connection.description?.name ?? "tree";
 
@@ -162,13 +156,12 @@ function showFacts() {
   element("drawn").title = leftOut ? word("left_out", leftOut.pixels, leftOut.leaves) : "";
   element("stream").title = stream.byWind ? word("corrected", corrections, (100 * largest).toFixed(2)) : "";
   const latency = connection.roundTrip / 2 + Math.max(0, playout.lateness);
-  const [x, y] = playout.wind;
   const { mean, greatest } = traces.wind.statistics;
   write({
     drawn: `${Math.round(fps)} fps${leftOut ? ` · ${leftOut.leaves} % ❧` : ""}`,
     stream: `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`,
     latency: Number.isFinite(latency) ? `${latency.toFixed(0)} + ${playout.delay.toFixed(0)} ms` : "–",
-    "wind-now": `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(x, y)}`,
+    "wind-now": `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
     gust: word("gust", mean.toFixed(1), greatest.toFixed(1)),
     ...(status.model && status.trees === 1 && { model: modelName(status.model) }),
     ...(status.rate && { rate: `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms` }),
@@ -193,13 +186,12 @@ function draw(now) {
   scene.draw(coordinates, sceneTime, isStill);
   drawn += 1;
   if (coordinates) {
-    const [at, rest] = [scene.tip(), scene.restTip()];
+    const [at, speed] = [scene.position(), Math.hypot(...playout.wind)];
     hands.drag?.frame();
-    hands.sound?.follow(Math.hypot(...playout.wind), scene.leavesShown && scene.hasLeaves, at);
-    const motion = Math.hypot(...at.map((each, c) => each - rest[c]));
-    const value = { motion, ...scene.load() }[shown.value] ?? 0;
+    hands.sound?.follow(speed, scene.leavesShown && scene.hasLeaves, at);
+    const value = { motion: distance(at, scene.restPosition()), ...scene.load() }[shown.value] ?? 0;
     if (stateNow()[0] === "live") {
-      traces.wind.add(now / 1000, Math.hypot(...playout.wind));
+      traces.wind.add(now / 1000, speed);
       traces.tip.add(now / 1000, value);
     }
     const { factor, unit, digits } = unitOf(shown.value, value);
@@ -212,7 +204,7 @@ function draw(now) {
 function setDay(time) {
   day = time;
   document.documentElement.dataset.theme = time === "dark" ? "dark" : "light";
-  scene.setDay(DAYLIGHT[time]);
+  scene.day = DAYLIGHT[time];
 }
 
 /** Buttons say what is: a tree that was started bare has no leaves to show. */
@@ -226,7 +218,7 @@ function showButtons() {
 
 /** @param {number} branch to follow; the highest if -1 */
 function pick(branch) {
-  const names = scene.watchedKind?.branch_names ?? [];
+  const names = scene.watched.kind?.branch_names ?? [];
   scene.picked = names[branch] === undefined ? -1 : branch;
   write({ branch: names[branch] ?? word("tallest") });
   traces.tip.show(shown.value);
@@ -234,7 +226,7 @@ function pick(branch) {
 
 /** @param {number} step to the next branch, or back */
 function pickNext(step) {
-  const count = scene.watchedKind?.branch_names.length ?? 0;
+  const count = scene.watched.kind?.branch_names.length ?? 0;
   if (count) pick((scene.picked + step + count) % count);
 }
 
@@ -275,14 +267,8 @@ const actions = {
   help: () => help.showModal(),
   retry: () => stream.open(),
   close: () => help.close(),
-  pull: async () => {
-    hands.drag ??= new (await import("./drag.js")).Drag(scene, stream);
-    hands.drag.isOn = !hands.drag.isOn;
-  },
-  sound: async () => {
-    hands.sound ??= new (await import("./sound.js")).Sound();
-    await hands.sound.toggle();
-  },
+  pull: async () => (hands.drag ??= new (await import("./drag.js")).Drag(scene, stream)).toggle(),
+  sound: async () => (hands.sound ??= new (await import("./sound.js")).Sound()).toggle(),
   headset: async () => {
     hands.headset ??= new (await import("./headset.js")).Headset(scene, stream);
     await hands.headset.toggle(showButtons);
@@ -316,7 +302,7 @@ let pressed = [0, 0];
 canvas.addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]));
 canvas.addEventListener("click", (event) => {
   if (Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > STILL) return;
-  if (scene.description) pick(scene.nearest(event.clientX / canvas.clientWidth, event.clientY / canvas.clientHeight).branch);
+  if (scene.description) pick(scene.under(event).branch);
 });
 shown.addEventListener("change", () => pick(scene.picked));
 timeLine.addEventListener("input", () => {
@@ -334,13 +320,16 @@ document.addEventListener("drop", (event) => {
   if (file && connection instanceof OwnLine) connection.take(file).catch((error) => toast(error.message));
 });
 
-const dark = window.matchMedia("(prefers-color-scheme: dark)");
-const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
-const dayOrNight = () => (dark.matches ? "dark" : "light");
-setDay(days.find((each) => each === settings.day) ?? dayOrNight());
-dark.addEventListener("change", () => setDay(dayOrNight()));
-scene.flutters = !calm.matches;
-calm.addEventListener("change", () => (scene.flutters = !calm.matches));
+/** Follow what people prefer. @param {string} what @param {(isSo: boolean) => void} take */
+function prefers(what, take) {
+  const found = window.matchMedia(`(prefers-${what})`);
+  found.addEventListener("change", () => take(found.matches));
+  take(found.matches);
+}
+
+prefers("color-scheme: dark", (isDark) => setDay(isDark ? "dark" : "light"));
+prefers("reduced-motion: reduce", (isCalm) => (scene.flutters = !isCalm));
+setDay(days.find((each) => each === settings.day) ?? day);
 scene.dress({ leavesShown: settings.leaves !== "false", isAutumn: settings.autumn === "true" });
 if (settings.shown in QUANTITIES) shown.value = settings.shown;
 // A page that is a file is what its `.html` would be.

@@ -3,11 +3,14 @@
 /** Starts a page that is one file: unpacks its modules, and gives them the names they import. */
 
 (async () => {
-  const text = document.getElementById("modules")?.textContent ?? "";
-  const packed = new Blob([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))]);
-  const stream = packed.stream().pipeThrough(new DecompressionStream("gzip"));
-  const { modules, files } = JSON.parse(await new Response(stream).text());
-  Object.assign(window, { treeSwayFiles: files });
+  /** What an element of the page holds. @param {string} id */
+  const unpacked = (id) => {
+    const text = document.getElementById(id)?.textContent ?? "";
+    const packed = new Blob([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))]);
+    return new Response(packed.stream().pipeThrough(new DecompressionStream("gzip")));
+  };
+  const { modules, files } = await unpacked("modules").json();
+  Object.assign(window, { treeSwayFiles: files, treeSwayScene: () => unpacked("scene").arrayBuffer() });
   const imports = Object.entries(modules).map(([name, source]) =>
     [name, `data:text/javascript;charset=utf-8,${encodeURIComponent(source)}`]);
   const map = document.createElement("script");

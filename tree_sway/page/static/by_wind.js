@@ -28,8 +28,11 @@ export class ByWind {
     const { coordinates: values, flags, first } = frame;
     const isWhole = values.length > 0 && !(flags & PART);
     if (!last && !isWhole) return null;
-    if (!last) this._begin(frame);
-    else if (flags & RESTARTED) stand.reset();
+    if (!last) {
+      stand.correct(values);
+      const missed = (frame.sequence - this._heard) >>> 0;
+      for (let i = missed > MOST_STEPS ? 0 : missed; i > 0; i--) stand.gusts.push(...frame.wind);
+    } else if (flags & RESTARTED) stand.reset();
     else if (!(flags & PAUSED)) this._step(last, frame);
     if (last && values.length) {
       const span = (frame.stamp - last.stamp) / 1000;
@@ -44,13 +47,6 @@ export class ByWind {
   goOn(gusts) {
     this.stand.gusts.goOn(gusts);
     this._heard = gusts.sequence;
-  }
-
-  /** Begin with a state, the wind of which may be known. @param {Frame} frame */
-  _begin({ coordinates, sequence, wind: [x, y, z] }) {
-    this.stand.correct(coordinates);
-    const missed = (sequence - this._heard) >>> 0;
-    for (let i = missed > MOST_STEPS ? 0 : missed; i > 0; i--) this.stand.gusts.push(x, y, z);
   }
 
   /** Go on by the steps between two frames. @param {Frame} last @param {Frame} frame */

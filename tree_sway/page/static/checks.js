@@ -1,7 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** What a description must hold before anything is placed by it; tree_sway/page/check_description.py asks
- * the same. */
+/** What a description must hold before it is used, as tree_sway/page/check_description.py asks. */
 
 import { textOf } from "./files.js";
 
@@ -31,8 +30,7 @@ export function need(holds, name) {
 /** @param {unknown} value */
 const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREATEST;
 
-/** Refuse arrays that are missing, of another type or shape, or not finite; the sizes of their axes.
- * @param {Arrays} parts @param {Forms} forms */
+/** Sizes of the axes of arrays, which have their forms. @param {Arrays} parts @param {Forms} forms */
 export function sizesOf(parts, forms) {
   const size = /** @type {Record<string, number>} */ ({});
   for (const [name, [type, ...axes]] of Object.entries(forms)) {
@@ -107,8 +105,7 @@ export function checkTrees(header, kinds, own) {
 /** @param {any} value */
 const isObject = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
 
-/** Refuse a text of the server whose entries are not what doc/streaming.md says. @param {any} message
- * @returns {Record<string, any>} */
+/** Refuse a text that is none of doc/streaming.md. @param {Record<string, any>} message of the server */
 export function checkMessage(message) {
   need(isObject(message), "message");
   const { pong = 0, refused, hello, status = {}, values = {}, gusts } = message;

@@ -12,8 +12,7 @@ import { Stand } from "./sway.js";
 
 /** Playout delay of a scene that is solved here [ms]. */
 const OWN_DELAY = 40;
-/** Hosts whose line is no longer than this machine; a scene of fewer coordinates than these comes from them as
- * often as it is drawn. */
+/** This machine, from which scenes of fewer coordinates come as often as they are drawn. */
 const [HERE, FEW] = [/^(localhost|127[.]|\[::1\])/, 1000];
 
 export class TreeStream {
@@ -51,9 +50,12 @@ export class TreeStream {
         if (this.description) this.byWind = new ByWind(new Stand(tables, this.description));
       } }),
     };
+    const url = new URL("stream", page);
+    url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+    url.search = new URL(page).search;
     this.connection = kept
       ? new OwnLine(kept, taking, new URL(page).searchParams.get("wind"))
-      : new Connection(streamUrl(page), taking, options.rate ?? (byWind ? 60 : undefined));
+      : new Connection(url.href, taking, options.rate ?? (byWind ? 60 : undefined));
   }
 
   /** Open the line now, whatever the wait. */
@@ -96,12 +98,4 @@ export class TreeStream {
     this.placer ??= new Placer(this.description);
     return this.placer.place(coordinates);
   }
-}
-
-/** Where the stream of a page is. @param {string} page */
-export function streamUrl(page) {
-  const url = new URL("stream", page);
-  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
-  url.search = new URL(page).search;
-  return url.href;
 }

@@ -4,7 +4,7 @@
 
 import { checkMessage } from "./checks.js";
 import {
-  decodeDescription, decodeFrame, frameSize, isFrame, isTables, LARGEST_DESCRIPTION, ProtocolError,
+  decodeDescription, decodeFrame, FRAME_SIZE, isFrame, isTables, LARGEST_DESCRIPTION, ProtocolError,
 } from "./protocol.js";
 import { decodeTables } from "./sway.js";
 
@@ -21,8 +21,7 @@ const LARGEST_TEXT = 2 ** 20;
 
 /** One line to a server, kept from `open` to `close`. */
 export class Connection {
-  /** @param {string} url of the stream @param {Listeners} listeners @param {number} [rate] frames per
-   * second that are asked for */
+  /** @param {string} url of the stream @param {Listeners} listeners @param {number} [rate] of frames [1/s] */
   constructor(url, listeners, rate = 30) {
     this.url = url;
     this.listeners = listeners;
@@ -37,17 +36,19 @@ export class Connection {
     this._awaited = 0;
     this._credit = MOST_CREDIT;
     this._heard = 0;
-    this._retry = /** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined);
-    this._watching = setInterval(() => this._watch(), PING_EVERY);
+    this._retry = this._watching = /** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined);
   }
 
   /** Open the line now, whatever the wait. */
   open() {
-    clearTimeout(this._retry);
-    this._socket?.close();
-    const socket = new WebSocket(this.url);
+    this.close();
+    const socket = this._socket = new WebSocket(this.url);
     socket.binaryType = "arraybuffer";
-    this._socket = socket;
+    this._watching = setInterval(() => {
+      const isSilent = performance.now() - this._heard > SILENCE;
+      if (isSilent && socket.readyState === WebSocket.OPEN) this._lose();
+      else this.send({ ping: performance.now() });
+    }, PING_EVERY);
     this._heard = performance.now();
     this.listeners.onState("connecting", 0);
     socket.onopen = () => {
@@ -77,25 +78,14 @@ export class Connection {
     if (this._socket?.readyState === WebSocket.OPEN) this._socket.send(JSON.stringify(message));
   }
 
+  /** Lose the line, and make it again. */
   _lose() {
-    this._socket = null;
+    this.close();
     // Many pages that lose one server do not come back in one instant.
     const wait = this._wait * (0.75 + 0.5 * Math.random());
     this._wait = Math.min(2 * this._wait, LONGEST_WAIT);
     this._retry = setTimeout(() => this.open(), wait);
     this.listeners.onState("lost", wait);
-  }
-
-  _drop() {
-    const socket = this._socket;
-    this._lose();
-    socket?.close();
-  }
-
-  _watch() {
-    if (this._socket?.readyState !== WebSocket.OPEN) return;
-    if (performance.now() - this._heard > SILENCE) return this._drop();
-    this.send({ ping: performance.now() });
   }
 
   _ask() {
@@ -111,36 +101,35 @@ export class Connection {
     this._heard = performance.now();
     let deliver;
     try {
-      deliver = typeof data === "string" ? this._text(data) : this._binary(data, arrival);
+      deliver = this._read(data, arrival);
     } catch (error) {
       this.unreadable += 1;
       const why = error instanceof ProtocolError ? error.message : String(error);
-      this._drop();
+      this._lose();
       deliver = () => this.listeners.onMessage({ unreadable: why.slice(0, 400) });
     }
     deliver();
   }
 
-  /** Read a text. @param {string} data @returns {() => void} what is left to do: give it to the listener */
-  _text(data) {
-    if (data.length > LARGEST_TEXT) throw new ProtocolError(`a text of ${data.length} characters`);
-    const message = checkMessage(JSON.parse(data));
-    if ("pong" in message) this.roundTrip = performance.now() - message.pong;
-    return () => this.listeners.onMessage(message);
-  }
-
-  /** Read a description, its tables or a frame. @param {ArrayBuffer} data @param {number} arrival [ms]
-   * @returns {() => void} */
-  _binary(data, arrival) {
-    const size = data.byteLength;
-    if (size > LARGEST_DESCRIPTION) throw new ProtocolError(`a message of ${size} bytes`);
+  /** Read a text, a description, its tables or a frame. @param {string | ArrayBuffer} data
+   * @param {number} arrival [ms] @returns {() => void} what is left to do: give it to the listener */
+  _read(data, arrival) {
+    const isText = typeof data === "string";
+    const size = isText ? data.length : data.byteLength;
+    const isTooLarge = size > (isText ? LARGEST_TEXT : LARGEST_DESCRIPTION);
+    if (isTooLarge) throw new ProtocolError(`a message of ${size} bytes`);
+    if (isText) {
+      const message = checkMessage(JSON.parse(data));
+      if ("pong" in message) this.roundTrip = performance.now() - message.pong;
+      return () => this.listeners.onMessage(message);
+    }
     if (isTables(data)) {
       const tables = decodeTables(data);
       return () => this.listeners.onTables?.(tables);
     }
     if (!isFrame(data)) {
       const description = (this.description = decodeDescription(data));
-      const fitting = Math.floor(ON_THE_WAY / frameSize(description));
+      const fitting = Math.floor(ON_THE_WAY / (FRAME_SIZE + 2 * description.nCoordinates));
       this._credit = Math.max(LEAST_CREDIT, Math.min(MOST_CREDIT, fitting));
       this._ask();
       return () => this.listeners.onDescription(description);

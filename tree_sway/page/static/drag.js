@@ -5,6 +5,7 @@
 import { save } from "./keepsake.js";
 import { element } from "./panel.js";
 import { STRIDE } from "./placing.js";
+import { distance } from "./quaternions.js";
 import { chainTo, Touch } from "./touch.js";
 import { word } from "./words.js";
 
@@ -26,14 +27,14 @@ const WAITED = 0.25;
 const MOST_TREES = 60;
 
 /** Stiffness of the wood that bears a segment [N/m]: a spring of it bends a branch half the way.
- * @param {import("./drawing/scene.js").Scene} scene @param {number} segment of the watched tree */
+ * @param {Scene} scene @param {number} segment of the watched tree */
 function stiffnessAt(scene, segment) {
   const { kind, rest, place } = scene.watched;
   const { branch_first: first, segment_length: length, segment_radius: radius } = kind.arrays;
   let compliance = 0;
   for (const branch of chainTo(kind, segment)) {
     for (let s = first[branch]; s < Math.min(first[branch + 1], segment); s++) {
-      const away = Math.hypot(...[0, 1, 2].map((c) => rest[STRIDE * segment + c] - rest[STRIDE * s + c]));
+      const away = distance(rest.subarray(STRIDE * segment), rest.subarray(STRIDE * s));
       compliance += (away ** 2 * length[s]) / ((kind.modulus ?? MODULUS) * 0.25 * Math.PI * radius[2 * s] ** 4);
     }
   }
@@ -42,8 +43,7 @@ function stiffnessAt(scene, segment) {
 
 /** The hand at a branch: where it was, what it pulls by, and what came of it. */
 export class Pull {
-  /** @param {import("./drawing/scene.js").Scene} scene @param {import("./client.js").TreeStream} stream
-   * @param {number} segment of the watched tree */
+  /** @param {Scene} scene @param {TreeStream} stream @param {number} segment of the watched tree */
   constructor(scene, stream, segment) {
     this.scene = scene;
     this.stream = stream;
@@ -62,17 +62,16 @@ export class Pull {
 
   /** What the spring pulls by [N]. */
   get force() {
-    const at = this.scene.position(this.segment);
-    return this.isHeld ? this.stiffness * Math.hypot(...this.to.map((each, c) => each - at[c])) : 0;
+    return this.isHeld ? this.stiffness * distance(this.to, this.scene.position(this.segment)) : 0;
   }
 
   /** Pull on, now and then, harder until the branch comes half of the way. @param {number} now [ms] */
   renew(now) {
     if (!this.isHeld || now - this._sentAt < RENEW_EVERY) return;
     this._sentAt = now;
-    const [at, rest] = [this.scene.position(this.segment), this.scene.restPosition(this.segment)];
-    const [left, whole] = [at, rest].map((from) => Math.hypot(...this.to.map((each, c) => each - from[c])));
-    if (left > 0.5 * whole) this.stiffness = Math.min(HARDER * this.stiffness, STIFFEST);
+    const whole = distance(this.to, this.scene.restPosition(this.segment));
+    const isFar = this.force > 0.5 * this.stiffness * whole;
+    if (isFar) this.stiffness = Math.min(HARDER * this.stiffness, STIFFEST);
     this._say(this.stiffness);
   }
 
@@ -93,18 +92,14 @@ export class Pull {
     for (const frame of playout.since(this._last?.stamp ?? this._from)) {
       const own = Float64Array.from(frame.coordinates.subarray(first, first + this._touch.kind.nCoordinates));
       const at = this._touch.place(this.segment, own);
-      this.record.push([this._timeOf(frame), ...rest.map((each, c) => at[c] - each)]);
+      const last = this._last ?? frame;
+      const count = Math.max(1, (frame.sequence - last.sequence) >>> 0);
+      let span = (frame.stamp - last.stamp) / 1000;
+      // The tree waited where a busy machine let the solver wait.
+      if (span > WAITED * count) span = (count * this.seconds) / this.record.length;
+      this.record.push([this.seconds + span, ...rest.map((each, c) => at[c] - each)]);
       this._last = frame;
     }
-  }
-
-  /** Time of a frame [s]; where a busy machine made the solver wait, the tree waited, too.
-   * @param {Frame} frame */
-  _timeOf({ stamp, sequence }) {
-    if (!this._last) return 0;
-    const count = Math.max(1, (sequence - this._last.sequence) >>> 0);
-    const span = (stamp - this._last.stamp) / 1000;
-    return this.seconds + (span > WAITED * count ? (count * this.seconds) / this.record.length : span);
   }
 
   /** How long the record is [s]. */
@@ -125,24 +120,29 @@ export class Pull {
 }
 
 export class Drag {
-  /** @param {import("./drawing/scene.js").Scene} scene @param {import("./client.js").TreeStream} stream */
+  /** @param {Scene} scene @param {TreeStream} stream */
   constructor(scene, stream) {
     this.scene = scene;
     this.stream = stream;
     this.isOn = false;
     this.pull = /** @type {Pull | null} */ (null);
     this._pointer = -1;
-    this._line = element("pull-line");
-    this._label = element("pull-force");
-    this._save = element("pull-save");
-    this._save.addEventListener("click", () => save(new Blob([this.pull?.csv() ?? ""]), "pull_test", "csv"));
-    /** @type {[string, (event: any) => boolean][]} by their types, what takes an event; whether it is one for it */
-    const takers = [["pointerdown", (event) => this._grab(event)], ["pointermove", (event) => this._move(event)],
-      ["pointerup", (event) => this._release(event)], ["pointercancel", (event) => this._release(event)],
-      ["keydown", (event) => this._key(event)]];
-    for (const [type, take] of takers) {
-      scene.canvas.addEventListener(type, (event) => take(event) && event.stopImmediatePropagation(), { capture: true });
+    const [line, label, saving] = ["pull-line", "pull-force", "pull-save"].map(element);
+    this._shown = { line, label, saving };
+    saving.addEventListener("click", () => save(new Blob([this.pull?.csv() ?? ""]), "pull_test", "csv"));
+    /** @type {Record<string, (event: any) => boolean>} by types of events, what takes one if it is for it */
+    const takers = {
+      pointerdown: (event) => this._grab(event), pointermove: (event) => this._move(event),
+      pointerup: (event) => this._release(event), pointercancel: (event) => this._release(event),
+      keydown: (event) => this._key(event),
+    };
+    for (const [type, take] of Object.entries(takers)) {
+      scene.canvas.addEventListener(type, (event) => take(event) && event.stopImmediatePropagation(), true);
     }
+  }
+
+  toggle() {
+    this.isOn = !this.isOn;
   }
 
   /** By keys: arrows pull the tip that is followed, Enter lets go. @param {KeyboardEvent} event */
@@ -154,31 +154,27 @@ export class Drag {
     const { camera, followed } = this.scene;
     if (!this.pull?.isHeld) this.pull = new Pull(this.scene, this.stream, followed);
     const [u, v] = camera.project(this.pull.to);
-    this.pull.to = camera.under(u + KEY_STEP * WAYS[key][0], v + KEY_STEP * WAYS[key][1], this.pull.to);
+    this.pull.to = camera.under([u + KEY_STEP * WAYS[key][0], v + KEY_STEP * WAYS[key][1]], this.pull.to);
     return true;
   }
 
   /** @param {PointerEvent} event */
-  _grab({ pointerId, clientX, clientY }) {
-    const { canvas } = this.scene;
-    const isFree = this.isOn && this._pointer < 0;
-    const segment = isFree ? this._under(clientX / canvas.clientWidth, clientY / canvas.clientHeight) : -1;
+  _grab(event) {
+    const segment = this.isOn && this._pointer < 0 ? this._under(event) : -1;
     if (segment < 0) return false;
     this.pull = new Pull(this.scene, this.stream, segment);
-    this._pointer = pointerId;
-    canvas.setPointerCapture(pointerId);
+    this._pointer = event.pointerId;
+    this.scene.canvas.setPointerCapture(event.pointerId);
     return true;
   }
 
-  /** The segment under the pointer, or -1; its tree is watched from then on. @param {number} x 0 to 1 from
-   * the left @param {number} y from the top */
-  _under(x, y) {
+  /** The segment under the pointer, or -1; its tree is watched from then on. @param {PointerEvent} event */
+  _under(event) {
     const { scene, scene: { detail } } = this;
-    if (!detail) return -1;
     const before = detail.watched;
     for (const tree of [before, ...detail.order.subarray(0, MOST_TREES)]) {
       detail.watched = tree;
-      const { segment } = detail.level[tree] > 0 ? scene.nearest(x, y) : { segment: -1 };
+      const { segment } = detail.level[tree] > 0 ? scene.under(event) : { segment: -1 };
       if (segment >= 0 && tree !== before) scene.picked = -1;
       if (segment >= 0) return segment;
     }
@@ -187,10 +183,9 @@ export class Drag {
   }
 
   /** @param {PointerEvent} event */
-  _move({ pointerId, clientX, clientY }) {
-    if (!this.pull || pointerId !== this._pointer) return false;
-    const { canvas, camera } = this.scene;
-    this.pull.to = camera.under(clientX / canvas.clientWidth, clientY / canvas.clientHeight, this.pull.to);
+  _move(event) {
+    if (!this.pull || event.pointerId !== this._pointer) return false;
+    this.pull.to = this.scene.camera.under(this.scene.placeOf(event), this.pull.to);
     return true;
   }
 
@@ -203,13 +198,13 @@ export class Drag {
   }
 
   frame() {
-    const { pull, scene: { camera, canvas }, _line: line, _label: label } = this;
+    const { pull, scene: { camera, canvas }, _shown: { line, label, saving } } = this;
     line.hidden = label.hidden = !pull?.isHeld;
     if (!pull) return;
     pull.renew(performance.now());
     pull.note();
-    this._save.hidden = pull.isHeld || pull.seconds < OFFERED;
-    this._save.textContent = word("decay", pull.seconds.toFixed(0));
+    saving.hidden = pull.isHeld || pull.seconds < OFFERED;
+    saving.textContent = word("decay", pull.seconds.toFixed(0));
     if (!pull.isHeld) return;
     const [[x, y], [u, v]] = [this.scene.position(pull.segment), pull.to].map((each) =>
       camera.project(each).map((share, c) => share * (c ? canvas.clientHeight : canvas.clientWidth)));

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Files beside the modules that are no modules: words, tables, looks of species, programs of shaders. */
 
-/** Text of a file; a page that is one file has it in `treeSwayFiles`. @param {string} name
- * @returns {Promise<string>} */
+/** Text of a file; a page that is one file has it itself. @param {string} name @returns {Promise<string>} */
 export async function textOf(name) {
   const own = /** @type {any} */ (globalThis).treeSwayFiles?.[name];
   if (own !== undefined) return own;

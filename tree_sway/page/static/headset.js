@@ -23,7 +23,7 @@ function eyeOf({ transform: { matrix: m, position: { x, y, z }, inverse }, proje
 }
 
 export class Headset {
-  /** @param {import("./drawing/scene.js").Scene} scene @param {import("./client.js").TreeStream} stream */
+  /** @param {Scene} scene @param {TreeStream} stream */
   constructor(scene, stream) {
     this.scene = scene;
     this.stream = stream;
@@ -73,8 +73,7 @@ export class Headset {
     this.space = this._floor.getOffsetReferenceSpace(scene);
   }
 
-  /** Where a controller points from and to; null where it is not seen.
-   * @param {{frame: any, inputSource: any}} event */
+  /** Where a controller points; null where it is not seen. @param {{frame: any, inputSource: any}} event */
   _ray({ frame, inputSource }) {
     const pose = frame.getPose(inputSource.targetRaySpace, this.space);
     if (!pose) return null;
@@ -89,24 +88,10 @@ export class Headset {
     this._stand(ray.from[0] + far * ray.along[0], ray.from[1] + far * ray.along[1]);
   }
 
-  /** The segment that a ray points at, -1 if none, and its distance [m]. @param {Ray} ray */
-  _aimed({ from, along }) {
-    let [best, segment, far] = [AIM, -1, 0];
-    const { kind } = this.scene.watched;
-    for (let s = 0; s < kind.nSegments; s++) {
-      const to = this.scene.position(s).map((each, c) => each - from[c]);
-      const away = Math.hypot(...to);
-      const cosine = to.reduce((sum, each, c) => sum + each * along[c], 0) / away;
-      const angle = Math.acos(Math.min(1, cosine));
-      if (angle < best) [best, segment, far] = [angle, s, away];
-    }
-    return { segment, far };
-  }
-
   /** @param {any} source @param {Ray | null} ray */
   _grab(source, ray) {
     if (!ray || !this.scene.description) return;
-    const { segment, far } = this._aimed(ray);
+    const { segment, far } = this.scene.nearest(ray.from, ray.along, AIM);
     if (segment >= 0) this.pulls.set(source, { pull: new Pull(this.scene, this.stream, segment), far });
   }
 

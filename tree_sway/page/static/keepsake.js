@@ -15,8 +15,7 @@ export function save(blob, name, suffix) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-/** Save what is seen as PNG, in full. @param {import("./drawing/scene.js").Scene} scene
- * @param {string} name @param {() => void} draw a frame */
+/** Save what is seen, in full. @param {Scene} scene @param {string} name @param {() => void} draw a frame */
 export function savePicture(scene, name, draw) {
   const { quality } = scene;
   scene.quality = new Quality();
@@ -25,8 +24,7 @@ export function savePicture(scene, name, draw) {
   scene.quality = quality;
 }
 
-/** Record what is drawn from now on; what ends the clip and saves it. @param {HTMLCanvasElement} canvas
- * @param {string} name */
+/** Record until what is given back is called. @param {HTMLCanvasElement} canvas @param {string} name */
 export function recordClip(canvas, name) {
   if (!window.MediaRecorder) throw new Error("this browser records no clips: take Chrome 47, Firefox 25, Safari 14.1 or later");
   const type = ["video/mp4", "video/webm"].find((each) => MediaRecorder.isTypeSupported(each)) ?? "";
@@ -38,15 +36,14 @@ export function recordClip(canvas, name) {
   return () => recorder.stop();
 }
 
-/** Save the tree as the server writes it; an `Error` with its reason if it does not.
- * @param {"glb" | "html"} suffix @param {string} name */
+/** Save the tree as the server writes it. @param {"glb" | "html"} suffix @param {string} name */
 export async function saveTree(suffix, name) {
   const answer = await fetch(`tree.${suffix}${location.search}`);
   if (!answer.ok) throw new Error(await answer.text());
   save(await answer.blob(), name, suffix);
 }
 
-/** The view as the end of an address. @param {import("./drawing/scene.js").Scene} scene
+/** The view as the end of an address. @param {Scene} scene
  * @param {Record<string, string | number | boolean>} settings */
 export function viewLink(scene, settings) {
   const { azimuth, elevation, distance, target } = scene.camera;

@@ -11,14 +11,10 @@ import { readWind, Recorded, Turbulence } from "./wind.js";
 const LATEST = 250;
 const STATUS_EVERY = 500;
 
-/** What the page itself holds; null on one that is served. An `Error` if it is damaged.
- * @returns {Promise<Kept | null>} */
+/** What the page holds; null on one that is served, an `Error` if damaged. @returns {Promise<Kept | null>} */
 export async function keptScene() {
-  const text = document.getElementById("scene")?.textContent ?? null;
-  if (text === null) return null;
-  const packed = new Blob([Uint8Array.from(atob(text), (each) => each.charCodeAt(0))]);
-  const stream = packed.stream().pipeThrough(new DecompressionStream("gzip"));
-  const data = await new Response(stream).arrayBuffer();
+  const data = await /** @type {any} */ (window).treeSwayScene?.();
+  if (!data) return null;
   const from = 4 + new DataView(data).getUint32(0, true);
   const description = decodeDescription(data.slice(4, from), true);
   return { description, stand: new Stand(decodeTables(data.slice(from), true), description) };
@@ -26,8 +22,7 @@ export async function keptScene() {
 
 /** Used as a `Connection`: the same listeners, messages and frames. */
 export class OwnLine {
-  /** @param {Kept} kept @param {Listeners} listeners @param {string | null} [address] of a live wind,
-   * `wss://...` */
+  /** @param {Kept} kept @param {Listeners} listeners @param {string | null} [address] of a live wind */
   constructor({ description, stand }, listeners, address = null) {
     this.description = description;
     this.stand = stand;
@@ -45,17 +40,18 @@ export class OwnLine {
     this._reported = 0;
     this._work = 0;
     this._timer = /** @type {ReturnType<typeof setInterval> | undefined} */ (undefined);
-    const unheard = () => this.listeners.onMessage({ unreadable: `no live wind from ${address}: the simulated one blows `
-      + "until it comes. See whether tree-sway show runs there, with --origin null if this page is a file." });
-    const onState = (/** @type {string} */ state) => {
-      if (state !== "lost") return;
-      if (this._live || this._line?.description === null) unheard();
-      this._live = null;
+    const unreadable = `no live wind from ${address}: the simulated one blows until it comes. `
+      + "See whether tree-sway show runs there, with --origin null if this page is a file.";
+    /** @type {Listeners} */
+    const following = {
+      onState: (state) => {
+        if (state !== "lost") return;
+        if (this._live || this._line?.description === null) listeners.onMessage({ unreadable });
+        this._live = null;
+      },
+      onFrame: (frame) => (this._live = frame), onDescription: () => undefined, onMessage: () => undefined,
     };
-    const ignore = () => undefined;
-    const onFrame = (/** @type {Frame} */ frame) => (this._live = frame);
-    this._line = address === null ? null
-      : new Connection(address, { onState, onDescription: ignore, onFrame, onMessage: ignore }, 60);
+    this._line = address === null ? null : new Connection(address, following, 60);
   }
 
   open() {
@@ -89,10 +85,9 @@ export class OwnLine {
       this.stand.reset();
       this._hasRestarted = true;
     } else if (name === "pause") this._isPaused = value;
-    else if (this._wind instanceof Recorded && name === "record_time") this._wind.seek(value);
+    else if (this._wind instanceof Recorded && name === "record_time") this._wind.time = value;
     else [this._turbulence.values[name], this._wind] = [value, this._turbulence];
-    const values = { ...this._turbulence.values, pause: this._isPaused };
-    this.listeners.onMessage({ values });
+    this.listeners.onMessage({ values: { ...this._turbulence.values, pause: this._isPaused } });
   }
 
   /** Let a recorded wind blow; a `ProtocolError` if the file is none. @param {File} file */
@@ -104,7 +99,18 @@ export class OwnLine {
   _go() {
     const [now, step] = [Date.now(), 1000 * this.stand.dt];
     if (now - this._time > LATEST) this._time = now - step;
-    for (; this._time + step <= now; this._time += step) this._step();
+    for (; this._time + step <= now; this._time += step) {
+      const begin = performance.now();
+      const [x, y, z] = this._live?.wind ?? this._wind.next(this.stand.dt);
+      if (!this._isPaused) this.stand.step(x, y, z);
+      this._work += 0.05 * (performance.now() - begin - this._work);
+      const flags = (this._isPaused ? PAUSED : 0) + (this._hasRestarted ? RESTARTED : 0);
+      this._hasRestarted = false;
+      this.listeners.onFrame({
+        identity: this.description.shortIdentity, sequence: this._sequence++, stamp: this._time, flags,
+        wind: [x, y, z], coordinates: this.stand.state(), first: 0,
+      }, this._time, 0);
+    }
     if (now - this._reported < STATUS_EVERY) return;
     this._reported = now;
     const { trees, outside, dt } = this.stand;
@@ -112,19 +118,6 @@ export class OwnLine {
       model: trees[0].state.table.m.toString(), trees: trees.length, rate: 1 / dt, work_us: 1000 * this._work, outside,
       ...(this._wind instanceof Recorded && { record_time: this._wind.time }),
     } });
-  }
-
-  _step() {
-    const begin = performance.now();
-    const [x, y, z] = this._live?.wind ?? this._wind.next(this.stand.dt);
-    if (!this._isPaused) this.stand.step(x, y, z);
-    this._work += 0.05 * (performance.now() - begin - this._work);
-    const flags = (this._isPaused ? PAUSED : 0) + (this._hasRestarted ? RESTARTED : 0);
-    this._hasRestarted = false;
-    const coordinates = this.stand.state();
-    const { shortIdentity: identity } = this.description;
-    const frame = { identity, sequence: this._sequence++, stamp: this._time, flags, coordinates, first: 0 };
-    this.listeners.onFrame({ ...frame, wind: [x, y, z] }, this._time, 0);
   }
 }
 

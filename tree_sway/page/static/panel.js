@@ -22,10 +22,12 @@ export function made(tag, properties, ...within) {
 
 /** @param {Control} control */
 const nameOf = ({ name, label }) => (hasWord(name) ? word(name) : label);
+/** @param {Control} control */
+const named = ({ name, description: title }) => ({ id: `control-${name}`, title });
 
 /** A number as people read it. @param {Control} control @param {number} value */
 function textOf({ name, unit }, value) {
-  if (name === "bearing_to") return windFrom(Math.sin(value), Math.cos(value));
+  if (name === "bearing_to") return windFrom([Math.sin(value), Math.cos(value)]);
   if (unit === "rad") return `${Math.round((value * 180) / Math.PI)}°`;
   if (unit === "m" && value < 0.1) return `${Number((1000 * value).toPrecision(2))} mm`;
   return `${Number(value.toPrecision(unit === "s" ? 4 : 2))} ${unit}`.trim();
@@ -52,17 +54,11 @@ export class Panel {
     for (const { name, value } of controls) this._show.get(name)?.(value);
   }
 
-  /** Show values that hold now. @param {Record<string, any>} values @param {boolean} [isRefusal] whether
-   * also those in hand are put back */
+  /** Show values. @param {Record<string, any>} values @param {boolean} [isRefusal] also of what is in hand */
   update(values, isRefusal = false) {
     for (const [name, value] of Object.entries(values)) {
       if (isRefusal || name !== this._inHand) this._show.get(name)?.(value);
     }
-  }
-
-  /** What every control has. @param {Control} control */
-  _named({ name, description: title }) {
-    return { id: `control-${name}`, title };
   }
 
   /** @param {Control} control @param {HTMLElement} input @param {Node} [shown] its value as text */
@@ -76,7 +72,7 @@ export class Panel {
     const [low, high] = [minimum ?? 0, maximum ?? 1];
     const isWide = low > 0 && high / low > WIDE;
     const [min, max] = isWide ? [0, Math.log(high / low)] : [low, high];
-    const input = made("input", { ...this._named(control), type: "range", min, max, step: (max - min) / STEPS });
+    const input = made("input", { ...named(control), type: "range", min, max, step: (max - min) / STEPS });
     const valueOf = () => Math.min(high, isWide ? low * Math.exp(Number(input.value)) : Number(input.value));
     const shown = made("span", {});
     const show = (/** @type {number} */ value) => {
@@ -101,7 +97,7 @@ export class Panel {
   /** @param {Control} control */
   _choice(control) {
     const options = control.choices.map((each) => made("option", { value: each }, each));
-    const input = made("select", this._named(control), ...options);
+    const input = made("select", named(control), ...options);
     input.addEventListener("change", () => this.send(control.name, input.value));
     this._show.set(control.name, (value) => (input.value = value));
     return this._field(control, input);
@@ -109,7 +105,7 @@ export class Panel {
 
   /** @param {Control} control */
   _button(control) {
-    const button = made("button", { ...this._named(control), type: "button" }, nameOf(control));
+    const button = made("button", { ...named(control), type: "button" }, nameOf(control));
     const next = () => (control.is_action ? null : button.getAttribute("aria-pressed") !== "true");
     button.addEventListener("click", () => this.send(control.name, next()));
     const show = (/** @type {any} */ value) => button.setAttribute("aria-pressed", String(Boolean(value)));

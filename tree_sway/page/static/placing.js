@@ -5,15 +5,19 @@
 
 import { addTurned, fromHalf, multiply } from "./quaternions.js";
 
+/** What is worked in: a place, half a rotation vector, quaternions of a turn and of a segment. */
+const [at, half, turn, whole] = [3, 3, 4, 4].map((size) => new Float64Array(size));
 const [STRETCH_TO, BLEND_FROM, BLEND_TO] = [2, 6, 4].map((part) => (Math.PI / part) ** 2);
+
+/** Half of the share that a slope has of an angle. @param {number} square of it @param {number} skew */
+const stretch = (square, skew) => 0.5 * (1 + Math.min(square, STRETCH_TO) * skew);
 
 /** Numbers per pose: x y z [m] of the root-side node, the tree's scale, then the quaternion x y z w. */
 export const STRIDE = 8;
 
 export const AT_ORIGIN = [0, 0, 0, 0, 1];
 
-/** Where a point of a kind at rest is in a tree that has its place. @param {number[]} place
- * @param {ArrayLike<number>} point */
+/** Where a point of a kind at rest is in a tree. @param {number[]} place @param {ArrayLike<number>} point */
 export function placed([x, y, z, yaw, scale], point) {
   const [c, s] = [scale * Math.cos(yaw), scale * Math.sin(yaw)];
   return [x + c * point[0] - s * point[1], y + s * point[0] + c * point[1], z + scale * point[2]];
@@ -38,8 +42,7 @@ export class Placer {
     this._placers = description.kinds.map((kind) => new KindPlacer(kind));
   }
 
-  /** Rebuild the poses. @param {ArrayLike<number>} coordinates @returns {Float32Array} the poses, the same
-   * array each time */
+  /** Rebuild the poses, the same array each time. @param {ArrayLike<number>} coordinates */
   place(coordinates) {
     const turns = beyond(coordinates, this.description.nCoordinates);
     for (const { kind, place, firstSegment, firstCoordinate, firstKey } of this.description.trees) {
@@ -68,23 +71,9 @@ export class KindPlacer {
     });
     const { segment_rest: rest } = arrays; // w x y z
     this._rest = Float32Array.from(rest, (_, i) => rest[i % 4 < 3 ? i + 1 : i - 3]);
-    /** Key rotations [rad]. */
-    this._rotations = new Float32Array(kind.nKeys);
+    /** Key rotations [rad], and how each branch is turned at its base. */
+    this._keys = new Float32Array(kind.nKeys);
     this._bases = new Float64Array(4 * nBranches);
-    this._at = new Float64Array(3);
-    this._half = new Float64Array(3);
-    this._turn = new Float64Array(4);
-    this._whole = new Float64Array(4);
-    this._turns = NONE;
-    this._firstKey = 0;
-  }
-
-  /** Poses of the whole tree at rest, segment after segment as they are described. */
-  rest() {
-    const poses = new Float32Array(STRIDE * this.kind.nSegments);
-    const still = new Float32Array(this.kind.nCoordinates);
-    new KindPlacer(this.kind).place(still, 0, AT_ORIGIN, this.kind.nBranches, poses, 0);
-    return poses;
   }
 
   /** Place a tree. @param {ArrayLike<number>} coordinates of all trees @param {number} from its first
@@ -92,35 +81,34 @@ export class KindPlacer {
    * @param {Float32Array} poses written @param {number} to row of its first segment
    * @param {Map<number, number>} [turns] `beyond` @param {number} [firstKey] its first there */
   place(coordinates, from, place, count, poses, to, turns = NONE, firstKey = 0) {
-    this._turns = turns;
-    this._firstKey = firstKey;
-    for (let i = 0; i < count; i++) {
-      this._expand(this.order[i], coordinates, from);
-      this._placeBase(this.order[i], place, poses, to);
-      this._placeSegments(this.order[i], place[4], poses, to);
+    const { arrays, nCoordinates } = this.kind;
+    const { basis_matrix: matrix, branch_coordinate: first, branch_keys: keys } = arrays;
+    for (const branch of this.order.subarray(0, count)) {
+      let entry = first[branch] * nCoordinates;
+      for (let key = first[branch]; key < first[branch] + keys[branch]; key++) {
+        let sum = (turns.size && turns.get(firstKey + key)) || 0;
+        for (let c = 0; c < nCoordinates; c++) sum += matrix[entry++] * coordinates[from + c];
+        this._keys[key] = sum;
+      }
+      this._placeBase(branch, place, poses, to);
+      this._placeSegments(branch, place[4], poses, to);
     }
   }
 
-  /** Key rotations of a branch. @param {number} branch @param {ArrayLike<number>} coordinates
-   * @param {number} from */
-  _expand(branch, coordinates, from) {
-    const { arrays, nCoordinates } = this.kind;
-    const matrix = arrays.basis_matrix;
-    const first = arrays.branch_coordinate[branch];
-    const end = first + arrays.branch_keys[branch];
-    let at = first * nCoordinates;
-    for (let key = first; key < end; key++) {
-      let sum = (this._turns.size && this._turns.get(this._firstKey + key)) || 0;
-      for (let c = 0; c < nCoordinates; c++) sum += matrix[at++] * coordinates[from + c];
-      this._rotations[key] = sum;
+  /** Add half of what the key rotations of a branch turn somewhere. @param {number} branch
+   * @param {number} stretched half of the share of the first two @param {number} row of their turns */
+  _addTurns(branch, stretched, row) {
+    const { turn: turns, branch_coordinate: first, branch_keys: keys } = this.kind.arrays;
+    for (let k = 0; k < keys[branch]; k++, row++) {
+      const own = (k < 2 ? stretched : 0.5) * this._keys[first[branch] + k];
+      for (let c = 0; c < 3; c++) half[c] += own * turns[3 * row + c];
     }
   }
 
   /** Where a branch begins, and how it is turned there by the branch that it sits on.
    * @param {number} branch @param {ArrayLike<number>} place @param {Float32Array} poses @param {number} to */
   _placeBase(branch, place, poses, to) {
-    const { arrays } = this.kind;
-    const { _at: at, _bases: bases, _half: half, _rotations: x, _turn: turn } = this;
+    const { kind: { arrays }, _bases: bases, _keys: keys } = this;
     const parent = arrays.branch_parent[branch];
     if (parent < 0) {
       for (let c = 0; c < 3; c++) at[c] = place[c];
@@ -129,14 +117,9 @@ export class KindPlacer {
       return;
     }
     const first = arrays.branch_coordinate[parent];
-    const count = arrays.branch_keys[parent];
-    const t = Math.min(x[first] ** 2 + x[first + 1] ** 2, STRETCH_TO);
-    const stretched = 0.5 * (1 + t * arrays.branch_skew[2 * parent]);
     half.fill(0);
-    for (let k = 0, row = 3 * arrays.branch_base_turn[branch]; k < count; k++, row += 3) {
-      const own = (k < 2 ? stretched : 0.5) * x[first + k];
-      for (let c = 0; c < 3; c++) half[c] += own * arrays.turn[row + c];
-    }
+    const stretched = stretch(keys[first] ** 2 + keys[first + 1] ** 2, arrays.branch_skew[2 * parent]);
+    this._addTurns(parent, stretched, arrays.branch_base_turn[branch]);
     fromHalf(half, turn);
     multiply(bases, 4 * parent, turn, 0, bases, 4 * branch);
     const under = STRIDE * (to + this.slots[arrays.branch_base_segment[branch]]);
@@ -148,32 +131,22 @@ export class KindPlacer {
    * key rotation in its own way. @param {number} branch @param {number} scale @param {Float32Array} poses
    * @param {number} to */
   _placeSegments(branch, scale, poses, to) {
-    const { arrays } = this.kind;
-    const { _at: at, _bases: bases, _half: half, _rest: rest, _turn: turn, _whole: whole } = this;
+    const { kind: { arrays }, _bases: bases, _rest: rest, _keys: keys } = this;
     const { branch_frame: frame, branch_skew: skews, segment_slope: slope, segment_chord: chord } = arrays;
     const first = arrays.branch_coordinate[branch];
-    const count = arrays.branch_keys[branch];
-    const keys = this._rotations;
     const [kx, ky] = [keys[first], keys[first + 1]];
     const t = kx * kx + ky * ky;
     const blend = Math.min(Math.max((t - BLEND_FROM) / (BLEND_TO - BLEND_FROM), 0), 1);
-    const skew = skews[2 * branch] + blend * (skews[2 * branch + 1] - skews[2 * branch]);
-    const stretched = 0.5 * (1 + Math.min(t, STRETCH_TO) * skew);
+    const stretched = stretch(t, skews[2 * branch] + blend * (skews[2 * branch + 1] - skews[2 * branch]));
     const [sx, sy, f] = [stretched * kx, stretched * ky, 9 * branch];
-    const begin = arrays.branch_first[branch];
-    const end = arrays.branch_first[branch + 1];
-    let row = 3 * arrays.branch_turn[branch];
+    const [begin, end] = [arrays.branch_first[branch], arrays.branch_first[branch + 1]];
+    const row = arrays.branch_turn[branch];
     let o = STRIDE * (to + this.slots[begin]);
     for (let s = begin; s < end; s++, o += STRIDE) {
       const far = blend * (arrays.segment_tip_slope[s] - slope[s]);
       const main = row < 0 ? slope[s] + far : far;
       for (let c = 0; c < 3; c++) half[c] = main * (sx * frame[f + 6 + c] - sy * frame[f + 3 + c]);
-      for (let k = 0; row >= 0 && k < count; k++, row += 3) {
-        const own = (k < 2 ? stretched : 0.5) * keys[first + k];
-        half[0] += own * arrays.turn[row];
-        half[1] += own * arrays.turn[row + 1];
-        half[2] += own * arrays.turn[row + 2];
-      }
+      if (row >= 0) this._addTurns(branch, stretched, row + (s - begin) * arrays.branch_keys[branch]);
       fromHalf(half, turn);
       multiply(bases, 4 * branch, turn, 0, whole);
       for (let c = 0; c < 3; c++) poses[o + c] = at[c];

@@ -14,12 +14,10 @@ const [CALMS, FIRST] = [12000, 250];
 const [DOWN, UP] = [0.05, 0.2];
 /** Spacing of states up to which one more is expected [ms]. */
 const AHEAD = 30;
-const WINDOW = 30000;
-const LONGEST_GAP = 500;
-const BLEND = 400;
+/** Of the clocks, the longest gap, of the blend after one [ms]. */
+const [WINDOW, LONGEST_GAP, BLEND] = [30000, 500, 400];
 /** How long states are kept [ms], and how many numbers of theirs at most. */
-const KEPT = 62000;
-const MOST_NUMBERS = 8e6;
+const [KEPT, MOST_NUMBERS] = [62000, 8e6];
 
 /** Difference of two clocks from one-way times: arrival less stamp is offset plus travel, so the least of
  * the last half minute is the offset and the quickest travel. */
@@ -31,9 +29,8 @@ export class ClockOffset {
     const value = arrival - stamp;
     // A sender whose clock was set back or that started again is another clock.
     if (Math.abs(value - this.value) > 5000) this._least.length = 0;
-    while (this._least.length && this._least[this._least.length - 1].value >= value) this._least.pop();
+    this._least = this._least.filter((each) => each.value < value && each.at >= arrival - WINDOW);
     this._least.push({ at: arrival, value });
-    while (this._least[0].at < arrival - WINDOW) this._least.shift();
   }
 
   /** Own clock less the sender's, and the quickest travel [ms]. */
@@ -61,10 +58,10 @@ export class Playout {
     this.late = 0;
     /** Age of the newest frame when it came, over the quickest [ms]. */
     this.lateness = 0;
-    /** what was drawn when the stream was cut */
-    this._before = /** @type {Float32Array | null} */ (null);
-    this._blendFrom = 0;
     this._shown = /** @type {Float32Array | null} */ (null);
+    /** What was drawn when the stream was cut, and the time of that [ms]. */
+    this._before = this._shown;
+    this._cutAt = 0;
     /** @type {[number, number, number]} */
     this.wind = [0, 0, 0];
     this.isPaused = false;
@@ -73,8 +70,7 @@ export class Playout {
     this._from = 0;
   }
 
-  /** How long before the moment at which people began to look back the shown one is [ms]; 0 follows the
-   * stream. */
+  /** How long before the moment that people began to look back at [ms]; 0 follows the stream. */
   get back() {
     return this._back;
   }
@@ -86,28 +82,32 @@ export class Playout {
 
   /** Forget everything: another tree comes. */
   clear() {
-    this._frames.length = 0;
-    this._first = 0;
-    this._before = null;
-    this._shown = null;
+    this._frames.length = this._first = 0;
+    this._before = this._shown = null;
   }
 
   /** Take a frame. @param {Frame} frame @param {number} arrival [ms] */
   push(frame, arrival) {
     const frames = this._frames;
-    const last = frames[frames.length - 1];
-    if (last && frame.stamp <= last.stamp) {
-      if (frame.stamp > last.stamp - 1000) return; // twice, or out of order
-      frames.length = 0;
-      this._cut(arrival);
-    } else if (last && (frame.flags & RESTARTED || frame.stamp - last.stamp > LONGEST_GAP)) {
-      this._cut(arrival);
+    const last = frames.at(-1);
+    const span = frame.stamp - (last?.stamp ?? -Infinity);
+    if (span <= 0 && span > -1000) return; // twice, or out of order
+    if (span <= 0) frames.length = 0;
+    if (last && (span <= 0 || span > LONGEST_GAP || frame.flags & RESTARTED)) {
+      [this._before, this._cutAt, this._first] = [this._shown?.slice() ?? null, arrival, frames.length];
     }
     this.received++;
     this.clock.add(frame.stamp, arrival);
     this.lateness = arrival - frame.stamp - this.clock.value;
     if (this.lateness > this.delay + this._ahead) this.late++;
-    if (this._adapts && last && this._first < frames.length) this._adapt(frame.stamp - last.stamp);
+    if (this._adapts && last && this._first < frames.length) {
+      this._spacing += 0.1 * (span - this._spacing);
+      this._age += span;
+      this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / Math.min(this._age, CALMS)));
+      this._ahead = this._spacing < AHEAD ? this._spacing : 0;
+      const change = Math.min(this._spacing - this._ahead + this._jitter, DELAY) - this.delay;
+      this.delay += Math.min(Math.max(change, -DOWN * span), UP * span);
+    }
     frames.push(frame);
     const most = Math.max(64, MOST_NUMBERS / frame.coordinates.length);
     while (frames[0].stamp < frame.stamp - KEPT || frames.length > most) {
@@ -116,26 +116,9 @@ export class Playout {
     }
   }
 
-  /** @param {number} span since the frame before [ms] */
-  _adapt(span) {
-    this._spacing += 0.1 * (span - this._spacing);
-    this._age += span;
-    this._jitter = Math.max(this.lateness, this._jitter * Math.exp(-span / Math.min(this._age, CALMS)));
-    this._ahead = this._spacing < AHEAD ? this._spacing : 0;
-    const change = Math.min(this._spacing - this._ahead + this._jitter, DELAY) - this.delay;
-    this.delay += Math.min(Math.max(change, -DOWN * span), UP * span);
-  }
-
-  /** @param {number} now */
-  _cut(now) {
-    this._before = this._shown ? this._shown.slice() : null;
-    this._blendFrom = now;
-    this._first = this._frames.length;
-  }
-
   /** Stamp of the newest frame [ms]; 0 before the first. */
   get newest() {
-    return this._frames.length ? this._frames[this._frames.length - 1].stamp : 0;
+    return this._frames.at(-1)?.stamp ?? 0;
   }
 
   /** Frames that came after one. @param {number} stamp of that one [ms] */
@@ -170,7 +153,7 @@ export class Playout {
 
   /** @param {number} now @param {Float32Array} shown */
   _blend(now, shown) {
-    const u = (now - this._blendFrom) / BLEND;
+    const u = (now - this._cutAt) / BLEND;
     if (u >= 1 || this._before?.length !== shown.length) this._before = null;
     if (!this._before) return;
     const share = u * u * (3 - 2 * u);
@@ -178,8 +161,7 @@ export class Playout {
   }
 }
 
-/** What comes as long after c as that after b, on the parabola through the three. @param {Frame} a @param {Frame} b
- * @param {Frame} c @returns {Frame} */
+/** What is next on a parabola. @param {Frame} a @param {Frame} b @param {Frame} c @returns {Frame} */
 function expected(a, b, c) {
   if (new Set([a, b, c].map(({ coordinates }) => coordinates.length)).size > 1) return c;
   const [span, before] = [c.stamp - b.stamp, b.stamp - a.stamp];
@@ -190,13 +172,10 @@ function expected(a, b, c) {
   return { ...c, stamp: c.stamp + span, flags: c.flags & PAUSED, coordinates };
 }
 
-/** The curve through b and c whose slopes there come from the neighbours, stamps as they are.
- * @param {Frame} a @param {Frame} b @param {Frame} c @param {Frame} d @param {number} u from b to c, 0 to
- * 1 @param {Float32Array} out */
+/** The curve through b and c whose slopes there come from the neighbours. @param {Frame} a @param {Frame} b
+ * @param {Frame} c @param {Frame} d @param {number} u from b to c, 0 to 1 @param {Float32Array} out */
 export function catmullRom(a, b, c, d, u, out) {
-  const span = c.stamp - b.stamp;
-  const before = c.stamp - a.stamp;
-  const behind = d.stamp - b.stamp;
+  const [span, before, behind] = [c.stamp - b.stamp, c.stamp - a.stamp, d.stamp - b.stamp];
   const [u2, u3] = [u * u, u * u * u];
   const [hb, hc] = [2 * u3 - 3 * u2 + 1, 3 * u2 - 2 * u3];
   const sb = before > 0 ? ((u3 - 2 * u2 + u) * span) / before : 0;

@@ -21,32 +21,28 @@ export const PART = 8;
 /** First bytes of what is sent once. */
 const MAGIC = { description: "TSWD", tables: "TSWT" };
 const FRAME_KIND = 0x46;
-const FRAME_SIZE = 28;
+export const FRAME_SIZE = 28;
 
 /** Largest message with a description, and header in it [bytes]. */
 export const LARGEST_DESCRIPTION = 64 * 2 ** 20;
 const LARGEST_HEADER = 8 * 2 ** 20;
 
-/** Do what reads a message; whatever goes wrong is a `ProtocolError`. @template T
- * @param {keyof typeof MAGIC} what @param {() => T} read @returns {T} */
-export function reading(what, read) {
+/** A reader of a message of a header and arrays; whatever goes wrong is a `ProtocolError`. Arrays in planes
+ * have their first bytes together, then their second: they pack better. Own arrays are those of no kind.
+ * @template T @param {keyof typeof MAGIC} what @param {(head: any, kinds: Arrays[], own: Arrays) => T} read *
+ */
+export const reader = (what, read) => (/** @type {ArrayBuffer} */ data, inPlanes = false) => {
   try {
-    return read();
+    const { header, kinds, own } = unpack(data, what, inPlanes);
+    return read(header, kinds, own);
   } catch (error) {
     if (error instanceof ProtocolError) throw error;
     throw new ProtocolError(`not a whole message of ${what} (${String(error).slice(0, 200)})`);
   }
-}
+};
 
-/** Read a description; a `ProtocolError` if it is none, or if an array points outside of another.
- * @param {ArrayBuffer} data @param {boolean} [inPlanes] as of `unpack` */
-export const decodeDescription = (data, inPlanes) => reading("description", () => decoded(data, inPlanes));
-
-/** Take a message of a header and arrays apart, within `reading`. @param {ArrayBuffer} data
- * @param {keyof typeof MAGIC} what @param {boolean} [inPlanes] whether arrays have their first bytes
- * together, their second bytes and so on; files are packed better so @returns {{header: Record<string,
- * any>, kinds: Arrays[], own: Arrays}} own arrays are those of no kind */
-export function unpack(data, what, inPlanes = false) {
+/** @param {ArrayBuffer} data @param {keyof typeof MAGIC} what @param {boolean} inPlanes */
+function unpack(data, what, inPlanes) {
   const view = new DataView(data);
   if (!begins(data, what)) throw new ProtocolError(`no message of ${what}: it does not begin with ${MAGIC[what]}`);
   const version = view.getUint32(4, true);
@@ -72,15 +68,13 @@ export function unpack(data, what, inPlanes = false) {
   return { header, kinds, own };
 }
 
-/** @param {ArrayBuffer} data @param {boolean} [inPlanes] @returns {Description} */
-function decoded(data, inPlanes) {
-  const { header, kinds: parts, own } = unpack(data, "description", inPlanes);
+/** Read a description; refused is one of which an array points outside of another. */
+export const decodeDescription = reader("description", (header, parts, own) => {
   const { name, frame_id, identity, flutter = null } = header;
-  /** @type {Kind[]} */
   const kinds = parts.map((part, number) => checkedKind(header.kinds[number], part));
   checkTrees(header, kinds, own);
   let [nSegments, nCoordinates, nKeys] = [0, 0, 0];
-  const trees = header.trees.map((/** @type {Tree} */ tree, /** @type {number} */ number) => {
+  const trees = Array.from(header.trees, (/** @type {Tree} */ tree, number) => {
     const kind = kinds[tree.kind];
     const place = Array.from(own.tree_place.values.subarray(5 * number, 5 * number + 5));
     const first = { firstSegment: nSegments, firstCoordinate: nCoordinates, firstKey: nKeys };
@@ -93,7 +87,7 @@ function decoded(data, inPlanes) {
   for (const tree of trees) scale.set(kinds[tree.kind].arrays.basis_scale, tree.firstCoordinate);
   const shortIdentity = parseInt(identity.slice(0, 8), 16);
   return { name, frame_id, identity, shortIdentity, kinds, trees, flutter, nSegments, nCoordinates, scale };
-}
+});
 
 /** Whether a message begins as what is sent once. @param {ArrayBuffer} data @param {keyof typeof MAGIC} what */
 function begins(data, what) {
@@ -106,9 +100,6 @@ export const isTables = (data) => begins(data, "tables");
 
 /** Whether a message is a frame. @param {ArrayBuffer} data */
 export const isFrame = (data) => data.byteLength >= FRAME_SIZE && new Uint8Array(data)[0] === FRAME_KIND;
-
-/** Size of a frame [bytes]. @param {Description} description */
-export const frameSize = (description) => FRAME_SIZE + 2 * description.nCoordinates;
 
 /** Read a frame; null if it belongs to another description, which is to come. @param {ArrayBuffer} data
  * @param {Description | null} description @returns {Frame | null} */

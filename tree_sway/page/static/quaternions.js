@@ -38,13 +38,15 @@ export function fromHalf(half, out) {
   out[3] = square > 1e-8 ? Math.cos(angle) : 1 - square / 2;
 }
 
-/** A vector turned by a quaternion, as a new one. @param {Numbers} q @param {Numbers} v
- * @param {number} [i] where the quaternion begins */
+/** A vector turned by a quaternion. @param {Numbers} q @param {Numbers} v @param {number} [i] of q */
 export function turned(q, v, i = 0) {
   const out = [0, 0, 0];
   addTurned(q, i, v, 0, 1, out);
   return out;
 }
+
+/** How far two points are from each other. @param {Numbers} a @param {Numbers} b */
+export const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 
 /** The turn from one to another, in the frame of the first. @param {Numbers} a @param {number} i
  * @param {Numbers} b @param {number} j */

@@ -38,8 +38,7 @@ export class Sound {
     return this.isOn ? this.context.resume() : this.context.suspend();
   }
 
-  /** Sound as the tree is now. @param {number} wind speed [m/s] @param {boolean} hasLeaves
-   * @param {number[]} tip where it is [m] */
+  /** Sound as the tree is. @param {number} wind [m/s] @param {boolean} hasLeaves @param {number[]} tip [m] */
   follow(wind, hasLeaves, tip) {
     const { currentTime: now } = this.context;
     const motion = Math.hypot(...tip.map((each, c) => each - this._tip[c])) / Math.max(0.001, now - this._at);

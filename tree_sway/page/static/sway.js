@@ -4,18 +4,11 @@
  *
  * A tree is m coordinates; a table has what every even wind does to them; each goes on by its exact
  * propagator. Outside of the table the load of its edge is used, which `Stand.outside` counts. The law is
- * that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it.
- *
- *     import { decodeDescription } from "./protocol.js";
- *     import { decodeTables, Stand } from "./sway.js";
- *
- *     const description = decodeDescription(await bytesOf("oak.description"));
- *     const stand = new Stand(decodeTables(await bytesOf("oak.tables")), description);
- *     stand.step(6, 0, 0);                        // mean wind of a step [m/s], east, north, up
- *     placer.place(stand.state());                // coordinates of the description, then poses */
+ * that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it;
+ * doc/tree_as_a_file.md is for its users. */
 
 import { FORMS, need, ProtocolError, sizesOf } from "./checks.js";
-import { reading, unpack } from "./protocol.js";
+import { reader } from "./protocol.js";
 import { Touch } from "./touch.js";
 
 /** Time step of a stand unless it is given another [s]. */
@@ -41,13 +34,8 @@ const [SPACING, SLOWEST] = [0.05, 0.3];
 /** Functions up to each degree of the harmonics. @type {Record<number, number>} */
 const HARMONICS = { 1: 3, 3: 10, 5: 21 };
 
-/** Read tables; a `ProtocolError` with a sentence if they are damaged. @param {ArrayBuffer} data
- * @param {boolean} [inPlanes] as of `unpack` */
-export const decodeTables = (data, inPlanes) => reading("tables", () => decoded(data, inPlanes));
-
-/** @param {ArrayBuffer} data @param {boolean} [inPlanes] @returns {Tables} */
-function decoded(data, inPlanes) {
-  const { header, kinds, own } = unpack(data, "tables", inPlanes);
+/** Read tables; a `ProtocolError` with a sentence if they are damaged. */
+export const decodeTables = reader("tables", (header, kinds, own) => {
   const { description, anemometer, convection_ratio: ratio } = header;
   need(typeof description === "string", "description");
   need(anemometer === null || (anemometer.length === 3 && anemometer.every(Number.isFinite)), "anemometer");
@@ -56,7 +44,7 @@ function decoded(data, inPlanes) {
   need(speeds instanceof Float32Array && speeds.every((each) => each >= 0 && each < 1e6), "tree_speed");
   const tables = kinds.map((arrays, number) => new Table(header.kinds[number], arrays));
   return { description, anemometer, ratio: ratio ?? Infinity, kinds: tables, speeds: Float64Array.from(speeds) };
-}
+});
 
 /** What an even wind does to the coordinates of a kind of tree. */
 export class Table {
@@ -81,36 +69,24 @@ export class Table {
     this.mostEnergy = /** @type {number} */ (mostEnergy);
     /** C, N and C0 of the drag, C U^-N + C0. @type {number[]} */
     this.law = law;
-    const of = (/** @type {string} */ name) => Float64Array.from(arrays[name].values);
-    this.stiffness = of("stiffness");
-    this.limit = of("limit");
-    this.ownDamping = of("own_damping");
-    this.motion = of("motion");
-    this.levels = of("levels");
-    this.harmonics = of("harmonics");
-    this.standing = of("standing");
-    this.amount = of("amount");
-    this.load = of("load");
-    this.crossDamping = of("cross_damping");
-    this.state = of("state");
-    this.correction = of("correction");
-    this.branchCompliance = of("branch_compliance");
-    this.shapeCompliance = of("shape_compliance");
+    /** All but the factors of slopes, in double precision. @type {Record<string, Float64Array>} */
+    this.arrays = Object.fromEntries(Object.entries(arrays).filter(([name]) => !/_(rows|shapes)$/.test(name))
+      .map(([name, { values }]) => [name, Float64Array.from(values)]));
     this.nKeys = size.keys;
     // Turning and damping side by side: they are read together.
     this.slopes = this._slopes(arrays, ["turning", "damping"]);
     this.steep = this._slopes(arrays, ["steep_turning", "steep_damping"]);
     this.lean = this._slopes(arrays, ["lean"]);
     /** What is worked in. */
-    this.scratch = Array.from({ length: 8 }, () => new Float64Array(m));
+    this.scratch = Array.from({ length: 7 }, () => new Float64Array(m));
     this.values = new Float64Array(size.h);
   }
 
   /** Slopes from their factors, a row of each direction of the wind: by the coordinate that is loaded, the
    * one that moves, and the names in turn. @param {Arrays} arrays @param {string[]} names */
   _slopes(arrays, names) {
-    const { m, stiffness } = this;
-    const root = stiffness.map(Math.sqrt);
+    const { m } = this;
+    const root = this.arrays.stiffness.map(Math.sqrt);
     const [directions] = FORMS.tables[`${names[0]}_rows`].slice(1);
     const all = Array.from({ length: Number(directions) }, () => new Float64Array(names.length * m * m));
     names.forEach((name, number) => {
@@ -181,7 +157,7 @@ export class TreeState {
    * @returns {boolean} whether the load was that of the table's edge */
   step(half, whole, wx, wy, wz) {
     const { table, eta, rate, force } = this;
-    const { m, mostPressure, mostEnergy, stiffness } = table;
+    const { m, mostPressure, mostEnergy, arrays: { stiffness } } = table;
     const [midEta, midRate, wanted, diagonal] = table.scratch;
     const speed = Math.sqrt(wx * wx + wy * wy + wz * wz);
     const drag = table.pressure(speed);
@@ -209,8 +185,8 @@ export class TreeState {
     if (!(energy <= most)) {
       // No wind takes it further; from rest again where it is not a number.
       const share = energy < Infinity ? Math.sqrt(most / energy) : 0;
-      for (const each of share ? [eta, rate] : [eta, rate, force]) {
-        for (let i = 0; i < m; i++) each[i] = share ? share * each[i] : 0;
+      for (const all of share ? [eta, rate] : [eta, rate, force]) {
+        all.forEach((each, i) => (all[i] = share ? share * each : 0));
       }
       isOutside = true;
     }
@@ -220,7 +196,7 @@ export class TreeState {
   /** Write the coordinates of the description that hold this state.
    * @template {Float32Array | Float64Array} T @param {T} out @param {number} [from] @returns {T} */
   coordinates(out, from = 0) {
-    const { m, n, state: matrix } = this.table;
+    const { m, n, arrays: { state: matrix } } = this.table;
     for (let k = 0; k < n; k++) {
       let sum = 0;
       for (let i = 0; i < m; i++) sum += this.eta[i] * matrix[i * n + k];
@@ -234,92 +210,71 @@ export class TreeState {
  * into the scratch of its table. @param {Table} table @param {number[]} way where the wind goes, a unit
  * vector @param {number} push dynamic pressure [kg/m/s^2] @param {number} drag the same over speed squared */
 function windForce(table, [x, y, z], push, drag) {
-  const { m, load, limit, crossDamping: cross, standing, slopes, lean, steep: poles, harmonics, values } = table;
+  const { m, slopes, lean, values, arrays } = table;
+  const { motion, load, limit, equilibrium, harmonics, cross_damping: cross } = arrays;
   const [eta, rate, force, diagonal, off, leaning, leaned] = table.scratch;
   fillHarmonics(x, y, z, table.degree, values);
-  const { first, second, level: j, share, up } = corners(table, x, y);
+  const { here, there, first, second, share, up } = corners(table, x, y);
   const steep = Math.max(0, (Math.abs(z) - STEEP) / (1 - STEEP));
   const slant = Math.min(Math.max(z, -STEEP), STEEP);
-  const [e, f] = [(1 - steep) * (1 - share), (1 - steep) * share];
-  const [a, b, c, d] = [e * (1 - up), e * up, f * (1 - up), f * up];
-  const [ia, ic] = [(first * LEVELS + j) * m, (second * LEVELS + j) * m];
+  const [from, to, slight] = [1 - share, share, 1 - steep];
+  const [sa, sb, sc, sd] = [from * (1 - up), from * up, to * (1 - up), to * up];
+  const [a, b, c, d] = [slight * sa, slight * sb, slight * sc, slight * sd];
+  const [ia, ib, ic, id] = [first * m, (first + 1) * m, second * m, (second + 1) * m];
   let moving = drag > 0 ? push / drag : 0;
   // Slopes are in single precision, and so are their weights.
-  const [a4, b4, c4, d4, e4, f4] = [a, b, c, d, e * slant, f * slant].map(Math.fround);
+  const [e, f] = [slight * from * slant, slight * to * slant];
+  const [a4, b4, c4, d4, e4, f4, s4] = [a, b, c, d, e, f, steep].map(Math.fround);
   for (let i = 0; i < m; i++) {
-    off[i] = eta[i]
-      - (1 - share) * ((1 - up) * standing[ia + i] + up * standing[ia + m + i])
-      - share * ((1 - up) * standing[ic + i] + up * standing[ic + m + i]);
-    moving += table.motion[i] * rate[i] * rate[i];
-    let sum = a * load[ia + i] + b * load[ia + m + i] + c * load[ic + i] + d * load[ic + m + i];
+    off[i] = eta[i] - sa * equilibrium[ia + i] - sb * equilibrium[ib + i]
+      - sc * equilibrium[ic + i] - sd * equilibrium[id + i];
+    moving += motion[i] * rate[i] * rate[i];
+    let sum = a * load[ia + i] + b * load[ib + i] + c * load[ic + i] + d * load[id + i];
     for (let k = 0, at = i; k < values.length; k++, at += m) sum += values[k] * harmonics[at];
     force[i] = sum;
     leaning[i] = Math.fround(e4 * Math.fround(eta[i]));
     leaned[i] = Math.fround(f4 * Math.fround(eta[i]));
   }
   const dragged = drag * Math.sqrt(moving);
-  const s4 = Math.fround(steep);
-  const [corner, other] = [first * LEVELS + j, second * LEVELS + j];
-  const [sa, sb, sc, sd] = [slopes[corner], slopes[corner + 1], slopes[other], slopes[other + 1]];
-  const [here, there, pole] = [lean[first], lean[second], poles[z > 0 ? 1 : 0]];
+  const [ta, tb, tc, td] = [slopes[first], slopes[first + 1], slopes[second], slopes[second + 1]];
+  const [near, next, pole] = [lean[here], lean[there], table.steep[z > 0 ? 1 : 0]];
   for (let i = 0, at = 0, flat = 0; i < m; i++) {
     const own = at + 2 * i + 1;
-    diagonal[i] = dragged * (a * sa[own] + b * sb[own] + c * sc[own] + d * sd[own]);
-    let ta = 0, tb = 0, tc = 0, td = 0;
-    let va = 0, vb = 0, vc = 0, vd = 0;
-    for (let k = 0; k < m; k++, at += 2) {
-      const o = off[k];
-      const r = rate[k];
-      ta += o * sa[at];
-      va += r * sa[at + 1];
-      tb += o * sb[at];
-      vb += r * sb[at + 1];
-      tc += o * sc[at];
-      vc += r * sc[at + 1];
-      td += o * sd[at];
-      vd += r * sd[at + 1];
+    let [turned, damped] = [0, 0];
+    for (let k = 0; k < m; k++, at += 2, flat++) {
+      turned += off[k] * (a4 * ta[at] + b4 * tb[at] + c4 * tc[at] + d4 * td[at])
+        + leaning[k] * near[flat] + leaned[k] * next[flat];
+      damped += rate[k] * (a4 * ta[at + 1] + b4 * tb[at + 1] + c4 * tc[at + 1] + d4 * td[at + 1]);
     }
-    let turned = a4 * ta + b4 * tb + c4 * tc + d4 * td;
-    let damped = a4 * va + b4 * vb + c4 * vc + d4 * vd;
-    if (slant !== 0) {
-      let lean = 0;
-      for (let k = 0; k < m; k++, flat++) lean += leaning[k] * here[flat] + leaned[k] * there[flat];
-      turned += lean;
-    }
-    if (steep > 0) {
-      diagonal[i] += dragged * steep * pole[own];
-      for (let k = 0, p = 2 * m * i; k < m; k++) {
-        turned += Math.fround(s4 * Math.fround(eta[k])) * pole[p++];
-        damped += s4 * rate[k] * pole[p++];
-      }
+    for (let k = 0, p = at - 2 * m; steep > 0 && k < m; k++) {
+      turned += Math.fround(s4 * Math.fround(eta[k])) * pole[p++];
+      damped += s4 * rate[k] * pole[p++];
     }
     // Slopes hold near a pose. However far it is from there, a wind loads a tree no more.
-    const bounded = Math.min(Math.max(force[i] + turned, -limit[i]), limit[i]);
-    force[i] = push * bounded + dragged * damped;
-    diagonal[i] -= dragged * (a * cross[ia + i] + b * cross[ia + m + i] + c * cross[ic + i] + d * cross[ic + m + i]);
+    force[i] = push * Math.min(Math.max(force[i] + turned, -limit[i]), limit[i]) + dragged * damped;
+    diagonal[i] = dragged * (a * (ta[own] - cross[ia + i]) + b * (tb[own] - cross[ib + i])
+      + c * (tc[own] - cross[ic + i]) + d * (td[own] - cross[id + i]) + steep * pole[own]);
   }
 }
 
-/** Where a wind and a lean are in a table: azimuths, the level below, shares of the way to the next.
- * @param {Table} table @param {number} x @param {number} y */
-function corners(table, x, y) {
-  const { m, amount, levels } = table;
-  const [eta] = table.scratch;
+/** Where a wind and a lean are in a table: azimuths, of both the rows of the level below, shares of the way
+ * to the next. @param {Table} table @param {number} x @param {number} y */
+function corners({ m, scratch: [eta], arrays: { amount, levels } }, x, y) {
   const turn = Math.atan2(y, x) * (0.5 / Math.PI) * AZIMUTHS;
-  const whole = Math.floor(turn);
-  const share = turn - whole;
-  const first = ((whole % AZIMUTHS) + AZIMUTHS) % AZIMUTHS;
-  const second = (first + 1) % AZIMUTHS;
+  const share = turn - Math.floor(turn);
+  const here = (Math.floor(turn) + AZIMUTHS) % AZIMUTHS;
+  const there = (here + 1) % AZIMUTHS;
+  const [first, second] = [here * LEVELS, there * LEVELS];
   let lean = 0;
   for (let i = 0; i < m; i++) {
-    lean += ((1 - share) * amount[first * m + i] + share * amount[second * m + i]) * eta[i];
+    lean += ((1 - share) * amount[here * m + i] + share * amount[there * m + i]) * eta[i];
   }
-  const at = (/** @type {number} */ j) =>
-    (1 - share) * levels[first * LEVELS + j] + share * levels[second * LEVELS + j];
+  const at = (/** @type {number} */ j) => (1 - share) * levels[first + j] + share * levels[second + j];
   let level = 0;
   while (level < LEVELS - 2 && lean > at(level + 1)) level++;
   const [below, above] = [at(level), at(level + 1)];
-  return { first, second, level, share, up: Math.min(Math.max((lean - below) / (above - below), 0), 1) };
+  const up = Math.min(Math.max((lean - below) / (above - below), 0), 1);
+  return { here, there, first: first + level, second: second + level, share, up };
 }
 
 /** Square norms of the harmonics by degree and order, over those of their Legendre functions. */
@@ -403,15 +358,11 @@ class Gusts {
     if (delay.length === this._delay.length) [this._mean, this._delay] = [mean, delay];
   }
 
-  /** Run of the wind at a time; before the history begins it blew as in its first step.
-   * @param {number} time [s] */
+  /** Run of the wind at a time; before all it blew as in the first step. @param {number} time [s] */
   _until(time) {
     const run = this._run;
-    const most = run.length - 2;
-    let cell = Math.min(Math.max(Math.floor((time - run[0][0]) / this._dt), 0), most);
-    while (cell < most && run[cell + 1][0] <= time) cell++;
-    while (cell > 0 && run[cell][0] > time) cell--;
-    const [a, b] = [run[cell], run[cell + 1]];
+    const cell = Math.floor((time - run[0][0]) / this._dt);
+    const [a, b] = run.slice(Math.min(Math.max(cell, 0), run.length - 2));
     const u = (time - a[0]) / (b[0] - a[0]);
     return [1, 2, 3].map((c) => a[c] + u * (b[c] - a[c]));
   }
@@ -435,12 +386,13 @@ export class Stand {
     this._touches = /** @type {Map<number, Touch>} */ (new Map());
     this.trees = trees.map(({ kind, place, firstCoordinate }, number) => {
       const table = tables.kinds[kind];
+      const { stiffness, own_damping: damping } = table.arrays;
       const step = Math.round(Math.log(place[4]) / FINEST_SCALE);
       // A tree of k times the size swings k times slower: it goes on by 1 / k of the time.
       const own = dt / Math.exp(step * FINEST_SCALE);
       const [half, whole] = [own / 2, own].map((time) => {
         const key = `${kind} ${time}`;
-        const found = propagators.get(key) ?? propagator(table.stiffness, table.ownDamping, time);
+        const found = propagators.get(key) ?? propagator(stiffness, damping, time);
         propagators.set(key, found);
         return found;
       });
@@ -450,8 +402,7 @@ export class Stand {
     });
   }
 
-  /** Go on a step. @param {number} x mean wind over it [m/s], where it blows to @param {number} y
-   * @param {number} z */
+  /** Go on a step. @param {number} x mean wind, blowing to [m/s] @param {number} y @param {number} z */
   step(x, y, z) {
     if (!Number.isFinite(x + y + z)) throw new ProtocolError("a wind that is not finite");
     this.gusts.push(x, y, z);
@@ -467,8 +418,7 @@ export class Stand {
   }
 
   /** Push at the root side of a segment, or pull it by a spring, while the trees go on swaying.
-   * @param {Push} push a spring of no stiffness lets go @param {number} [seconds] that it lasts unless it
-   * is renewed [s] */
+   * @param {Push} push a spring of no stiffness lets go @param {number} [seconds] unless it is renewed */
   push(push, seconds = push.to && !push.stiffness ? 1e-6 : 0.5) {
     const { segment, force = [], to = [], stiffness = 0 } = push;
     const { trees, kinds } = this.description;
@@ -505,7 +455,7 @@ export class Stand {
     const now = this.write(new Float64Array(nCoordinates));
     let largest = 0;
     for (const { state: { eta, rate, table }, whole, firstCoordinate: first } of this.trees) {
-      const { m, n, correction } = table;
+      const { m, n, arrays: { correction } } = table;
       const ways = eta.map((_, i) => whole[6 * i + 1]);
       const least = SLOWEST * Math.max(...ways);
       for (let k = 0; k < n; k++) {

@@ -55,13 +55,14 @@ export class Touch {
     return [...this._turns].flatMap(([key, turn]) => [this.tree.firstKey + key, turn]);
   }
 
-  /** Where the root side of a segment is [m]. @param {number} segment @param {Float64Array} coordinates of this tree */
-  place(segment, coordinates) {
+  /** Where the root side of a segment is [m]. @param {number} segment @param {Float64Array} coordinates
+   * @param {Map<number, number>} [turns] of key rotations beyond them */
+  place(segment, coordinates, turns = this._turns) {
     const placer = this._placers.get(segment) ?? new KindPlacer(this.kind, chainTo(this.kind, segment));
     this._placers.set(segment, placer);
     const count = placer.order.length;
     const poses = new Float32Array(STRIDE * placer.reached[count]);
-    placer.place(coordinates, 0, this.tree.place, count, poses, 0, this._turns);
+    placer.place(coordinates, 0, this.tree.place, count, poses, 0, turns);
     return Array.from(poses.subarray(STRIDE * placer.slots[segment], STRIDE * placer.slots[segment] + 3));
   }
 
@@ -103,16 +104,16 @@ export class Touch {
   /** Find how a segment moves with each coordinate, and what these leave of the wood: the compliance of each branch
    * less what the coordinates have of it (tree_sway/core/motion/modal.py). @param {number} segment
    * @param {Pushed} push @param {import("./sway.js").Table} table @param {Float64Array} coordinates */
-  _renew(segment, push, { n, nKeys, state: shapes, stiffness, branchCompliance, shapeCompliance }, coordinates) {
-    const { kind: { arrays: { basis_matrix: basis, branch_coordinate: first, branch_keys: count } }, _turns: turns } = this;
-    const width = branchCompliance.length / nKeys;
-    const chain = Array.from(chainTo(this.kind, segment), (branch) => Array.from({ length: count[branch] }, (_, i) => first[branch] + i));
+  _renew(segment, push, { m, n, nKeys, arrays }, coordinates) {
+    const { basis_matrix: basis, branch_coordinate: first, branch_keys: count } = this.kind.arrays;
+    const { branch_compliance: compliance, shape_compliance: shapes } = arrays;
+    const [turns, width] = [this._turns, compliance.length / nKeys];
+    const chain = Array.from(chainTo(this.kind, segment), (branch) =>
+      Array.from({ length: count[branch] }, (_, i) => first[branch] + i));
     const moves = chain.map((keys) => keys.map((key) => {
       const now = turns.get(key) ?? 0;
-      const [there, back] = [TURN, -TURN].map((by) => {
-        turns.set(key, now + by);
-        return this.place(segment, coordinates);
-      });
+      const [there, back] = [TURN, -TURN].map((by) =>
+        this.place(segment, coordinates, turns.set(key, now + by)));
       turns.set(key, now);
       return there.map((each, a) => (each - back[a]) / (2 * TURN));
     }));
@@ -121,10 +122,11 @@ export class Touch {
     push.ways = [0, 1, 2].map((a) => {
       const keyLever = moves.flat().map((each) => each[a]);
       const own = Array.from({ length: n }, (_, k) => dot(keyLever, push.keys.map((key) => basis[key * n + k])));
-      const held = own.map((_, k) => dot(shapeCompliance, own, k * n));
+      const held = own.map((_, k) => dot(shapes, own, k * n));
       const residual = chain.flatMap((keys, branch) => keys.map((key) =>
-        dot(branchCompliance, moves[branch].map((each) => each[a]), key * width) - dot(basis, held, key * n)));
-      return { lever: Array.from(stiffness, (_, i) => dot(shapes, own, i * n)), keyLever, residual };
+        dot(compliance, moves[branch].map((each) => each[a]), key * width) - dot(basis, held, key * n)));
+      const lever = Array.from({ length: m }, (_, i) => dot(arrays.state, own, i * n));
+      return { lever, keyLever, residual };
     });
   }
 }

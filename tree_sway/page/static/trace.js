@@ -17,12 +17,6 @@ export function unitOf(quantity, value) {
   return units.find(({ below = Infinity }) => value < below) ?? units[0];
 }
 
-/** The next round number. @param {number} value */
-function roundUp(value) {
-  const power = 10 ** Math.floor(Math.log10(value));
-  return [1, 2, 5, 10].map((step) => step * power).find((each) => each >= 0.999 * value) ?? value;
-}
-
 export class Trace {
   /** @param {HTMLElement} element that it is shown in @param {string} quantity */
   constructor(element, quantity) {
@@ -63,7 +57,8 @@ export class Trace {
     const { points, end } = this._shown;
     const greatest = Math.max(this.statistics.greatest, QUANTITIES[this.quantity].least);
     const { factor, unit, digits } = unitOf(this.quantity, greatest);
-    const top = roundUp(greatest * factor);
+    const power = 10 ** Math.floor(Math.log10(greatest * factor));
+    const top = power * ([1, 2, 5].find((step) => step * power >= 0.999 * greatest * factor) ?? 10);
     const corners = points.map(({ time, value }) => [SECONDS - end + time, 1 - Math.min((value * factor) / top, 1)]);
     this._line?.setAttribute("points", corners.join(" "));
     const numbers = [top, top / 2, 0].map((each) => each.toFixed(each < 10 && digits === 0 ? 1 : digits).replace(/\.0$/, ""));

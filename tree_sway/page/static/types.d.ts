@@ -138,6 +138,11 @@ interface Navigator {
 
 // What is drawn.
 
+type GL = WebGL2RenderingContext;
+type Camera = import("./drawing/camera.js").Camera;
+type Scene = import("./drawing/scene.js").Scene;
+type TreeStream = import("./client.js").TreeStream;
+
 interface Program {
   program: WebGLProgram;
   /** Sizes and locations of its inputs, as they are declared. */
@@ -178,11 +183,12 @@ type Shape = ReturnType<typeof import("./drawing/mesh.js").shapeOf>;
 interface DrawnLevel {
   /** Rows of their first segments. */
   starts: number[];
-  bark: Drawable | null;
-  leaf: Drawable | null;
-  /** Leaves in the picture of a card. */
-  across: number;
-  impostor: import("./drawing/impostors.js").Impostor | null;
+  /** Parts, and what their programs are given; none of a picture. */
+  bark?: Drawable;
+  skin?: Record<string, any>;
+  leaf?: Drawable;
+  foliage?: Record<string, any>;
+  impostor?: import("./drawing/impostors.js").Impostor;
 }
 
 /** A kind with the levels that have been used. */
@@ -190,7 +196,7 @@ type DrawnKind = Shape & { drawn: DrawnLevel[] };
 
 /** What is below the trees. */
 interface Ground {
-  /** Number of how it looks. */
+  /** How it looks: 0 a terrace, 1 a meadow. */
   kind: number;
   /** Its height [m]. */
   ground: number;
@@ -227,6 +233,20 @@ interface Look {
   fresh: number[];
   /** Colour of a leaf before it falls; null of an evergreen. */
   autumn: number[] | null;
+  /** Whether one alone stands in a pot. */
+  isPotted?: boolean;
+}
+
+/** The average broadleaf whole; what is other of the average conifer, and of each species than of its group. */
+interface Looks {
+  broadleaf: Look;
+  conifer: Partial<Look>;
+  broadleaves: Record<string, Partial<Look>>;
+  conifers: Record<string, Partial<Look>>;
+  /** Of bark. */
+  patterns: Record<string, Pattern>;
+  /** Halves of blades from the stalk to the tip. */
+  outlines: Record<string, [number, number][]>;
 }
 
 /** The relief of bark, as its shader has it. */
@@ -258,6 +278,13 @@ interface Unit {
   factor: number;
   unit: string;
   digits: number;
+}
+
+/** What is loaded when it is asked for. */
+interface Hands {
+  drag: import("./drag.js").Drag | null;
+  sound: import("./sound.js").Sound | null;
+  headset: import("./headset.js").Headset | null;
 }
 
 /** What one eye sees. */

@@ -4,8 +4,7 @@
 
 import { ProtocolError } from "./checks.js";
 
-/** Of the wind along, across and up: standard deviation over that along, and integral scale [m] at a
- * height of 10 m (IEC 61400-1, Kaimal). */
+/** Of wind along, across and up: relative standard deviation, scale [m] at 10 m (IEC 61400-1, Kaimal). */
 const SPREAD = [1, 0.8, 0.5];
 const LENGTH = [56.7, 18.9, 4.6];
 /** Processes that make up a component; each is so much quicker than the one before. */
@@ -20,9 +19,8 @@ const FASTEST = 150;
 /** A number of the standard normal distribution (Box and Muller 1958). */
 const normal = () => Math.sqrt(-2 * Math.log(1 - Math.random())) * Math.cos(2 * Math.PI * Math.random());
 
-/** Turbulence whose mean can be changed while it blows. Each component is a sum of first-order processes;
- * variances that go with their time scales to 2/3 give the slope of -5/3 of the inertial range (Kolmogorov
- * 1941). */
+/** Turbulence whose mean may change: each component is a sum of first-order processes; variances that go with
+ * their time scales to 2/3 give the slope of -5/3 of the inertial range (Kolmogorov 1941). */
 export class Turbulence {
   /** Mean [m/s], standard deviation over it, and where it blows to, clockwise from north [rad].
    * @type {Record<string, number>} */
@@ -49,6 +47,7 @@ export class Turbulence {
 
 /** A recorded wind, again from its beginning after its end. */
 export class Recorded {
+  /** After its beginning [s]. */
   time = 0;
   _row = 0;
 
@@ -59,17 +58,12 @@ export class Recorded {
     this.length = times[times.length - 1] - times[0];
   }
 
-  /** Go on from a time after the beginning [s]. @param {number} time */
-  seek(time) {
-    [this.time, this._row] = [time, 0];
-  }
-
   /** Mean wind of the next step. @param {number} dt [s] */
   next(dt) {
     const { times, winds } = this;
-    this.time += dt;
-    if (this.time > this.length) this.seek(0);
+    this.time = this.time + dt > this.length ? 0 : this.time + dt;
     const now = times[0] + this.time;
+    if (times[this._row] > now) this._row = 0;
     while (times[this._row + 1] < now) this._row++;
     const [a, b] = [this._row, this._row + 1];
     const u = (now - times[a]) / (times[b] - times[a]);
@@ -85,6 +79,7 @@ const UNITS = { "km/h": 1 / 3.6, kt: 0.514444, kn: 0.514444, mph: 0.44704 };
  * blows to, or `speed` and `direction` [degrees], where it comes from. A unit may follow a name.
  * @param {string} text @param {string} file its name @returns {Recorded} */
 export function readWind(text, file) {
+  const nameOf = (/** @type {string} */ cell) => cell.toLowerCase().replace(/["']|[[(].*/g, "").trim();
   const rows = text.split(/\r?\n/).map((line) => line.split(/[,;\t]/).map((cell) => cell.trim()));
   const head = rows.findIndex((row) => row.some((cell) => NAMES[0].includes(nameOf(cell))));
   const names = rows[head]?.map(nameOf) ?? [];
@@ -109,9 +104,4 @@ export function readWind(text, file) {
   }
   if (times.length < 2) throw new ProtocolError(`${file} has fewer than two rows of a time and a wind. Drop another file.`);
   return new Recorded(times, winds);
-}
-
-/** @param {string} cell */
-function nameOf(cell) {
-  return cell.toLowerCase().replace(/["']/g, "").replace(/[[(].*/, "").trim();
 }

@@ -34,9 +34,8 @@ export function word(key, ...values) {
 /** Whether there is a word of a key. @param {string} key */
 export const hasWord = (key) => key in WORDS;
 
-/** Where a wind comes from, as people say it: the one convention of the page. @param {number} x it blows
- * to, east [m/s] @param {number} y north */
-export function windFrom(x, y) {
+/** Where a wind comes from: the one convention of the page. @param {Numbers} wind to east and north [m/s] */
+export function windFrom([x, y]) {
   if (Math.hypot(x, y) < 0.05) return "";
   const degrees = (((Math.atan2(-x, -y) * 180) / Math.PI) + 360) % 360;
   return word("from", `${word("points").split(" ")[Math.round(degrees / 45) % 8]} (${Math.round(degrees)}°)`);

@@ -14,7 +14,7 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.motion.static_answers import WindMoments
+from tree_sway.core.motion.static_responses import WindMoments
 from tree_sway.core.simulator.simulator import LOAD_CLAMPED, SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
 

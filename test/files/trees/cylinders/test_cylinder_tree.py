@@ -54,7 +54,7 @@ def test_loose_branches_are_set_on_the_nearest_cylinder():
     assert list(tree_file.tree.segment_parent) == [-1, 0, 1]
     np.testing.assert_allclose(tree_file.tree.start[2], [0.3, 0, 1.6])
     assert tree_file.notes == (
-        '1 branches had no parent and were set on the nearest cylinder, at most 0.3 m away',
+        '1 branches had no parent and were joined to the nearest cylinder, at most 0.3 m away',
     )
 
 
@@ -89,7 +89,7 @@ def test_cylinders_of_no_length_are_left_out(rows, continues, n, parents):
     tree_file = built(rows, continues)
     assert tree_file.tree.n_segments == n
     assert list(tree_file.tree.segment_parent) == parents
-    assert tree_file.notes == (f'{len(rows) - n} cylinders of no length were left out',)
+    assert tree_file.notes == (f'{len(rows) - n} cylinders of zero length were left out',)
 
 
 @settings(deadline=None, max_examples=30)

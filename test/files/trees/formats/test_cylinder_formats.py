@@ -157,7 +157,7 @@ def test_a_first_row_does_not_mislead(tmp_path):
     (tmp_path / 'a.txt').write_text(text)
     assert_is_the_fork(read_tree(tmp_path / 'a.txt', **AS_SCANNED))
     (tmp_path / 'a.txt').write_text(text.replace('0\t0\t0.5\t0\t3', '0\t0\t0\t0\t3', 1))
-    with pytest.raises(FormatError, match=r'a.txt:1: cylinder 1: an axis of no direction'):
+    with pytest.raises(FormatError, match=r'a.txt:1: cylinder 1: an axis without direction'):
         read_tree(tmp_path / 'a.txt')
 
 

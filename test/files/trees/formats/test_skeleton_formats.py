@@ -47,7 +47,7 @@ def test_mtg():
     tree = tree_file.tree
     assert (tree.n_segments, tree.n_branches) == (5, 3)
     assert tree_file.notes[0] == '10 vertices with a position, 2 without; 7 of them segments'
-    assert tree_file.notes[1].startswith('2 cylinders of no length were left out')
+    assert tree_file.notes[1].startswith('2 cylinders of zero length were left out')
     assert tree.height == pytest.approx(2.3)
     np.testing.assert_allclose(tree.base_diameter[:2], [0.2, 0.18])
     np.testing.assert_allclose(tree.tip_diameter[:2], [0.18, 0.16])
@@ -83,7 +83,7 @@ def test_mtg_in_other_units():
         ('fork.mtg', '^<U2', '^~U2', FormatError, ":32: '~U2' is not a code"),
         ('fork.mtg', '^<U2', '^/U2', TreeError, ':32: U2: scale 3 in scale 3'),
         ('fork.mtg', '\t^/S1', '\t\t\t^/S1', FormatError, ':28: no code in the first 3 columns'),
-        ('fork.mtg', '/P1', '\t/P1', TreeError, ":26: '/P1' sits on nothing"),
+        ('fork.mtg', '/P1', '\t/P1', TreeError, ":26: '/P1' has no parent"),
         ('fork.mtg', '\tXX', '\tPX', FormatError, 'no two vertices with XX, YY, ZZ'),
     ],
 )  # fmt: skip

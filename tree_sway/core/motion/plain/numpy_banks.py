@@ -3,8 +3,8 @@
 """
 Banks of oscillators in plain numpy, for machines without a compiler: some 100 times slower.
 
-Each keeps the state of its compiled counterpart, in the same arrays, so that a state stored by one
-is taken by the other; they agree to rounding. They are the oracle of the kernels as well.
+Each has the state of its compiled counterpart, in the same arrays, so that stored states are
+exchangeable; they agree to rounding. They are the oracle of the kernels as well.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class NumpyUncoupledBank(UncoupledBank):
         self._passes = NumpyPasses(self.branches)
 
     def set_step(self, dt: float) -> None:
-        """Refill what depends on the time step [s]."""
+        """Refill the coefficients for a time step [s]."""
         super().set_step(dt)
         n = len(self.branches)
         names = ('whole', 'half', 'guard', 'compliance')
@@ -109,7 +109,7 @@ class NumpyModalBank(ModalBank):
         impulse = of_slots(self.loads['drag_impulse'], n).copy()
         wind = np.array([wx, wy, wz]) + of_slots(self.loads['gust'], n)
         compliance = of_slots(self.loads['compliance'], n)
-        tried: list[tuple[Floats, Floats]] = []
+        trials: list[tuple[Floats, Floats]] = []
         for trial in range(MOST_TRIALS):
             x = _summed(h[0] * eta + h[1] * rate + (h[2] + h[3]) * force, self._shapes)
             v = _summed(h[4] * eta + h[5] * rate + (h[6] + h[7]) * force, self._shapes)
@@ -119,26 +119,26 @@ class NumpyModalBank(ModalBank):
                 bases, angles, rates, wind, per_speed_squared, compliance, impulse
             )
             self.work['force'] = passes.bent_loads(bases, angles, on_branches, found)
-            missing = LOAD_MAX * (found - moment) / self.limit
-            if np.abs(missing).max() <= ENOUGH:
+            residual = LOAD_MAX * (found - moment) / self.limit
+            if np.abs(residual).max() <= ENOUGH:
                 moment[:] = found
                 break
             if trial == MOST_TRIALS - 1:
                 break
-            if tried:
-                brought, made = missing - tried[-1][0], tried[-1][1]
-                for other, by in tried[:-1]:
-                    share = brought @ other
-                    brought, made = brought - share * other, made - share * by
-                scale = 1.0 / max(float(np.linalg.norm(brought)), 1e-150)
-                tried[-1] = scale * brought, scale * made
-            left, change = missing, np.zeros_like(missing)
-            for other, by in tried:
+            if trials:
+                response, step = residual - trials[-1][0], trials[-1][1]
+                for other, by in trials[:-1]:
+                    share = response @ other
+                    response, step = response - share * other, step - share * by
+                scale = 1.0 / max(float(np.linalg.norm(response)), 1e-150)
+                trials[-1] = scale * response, scale * step
+            left, change = residual, np.zeros_like(residual)
+            for other, by in trials:
                 share = left @ other
                 left, change = left - share * other, change - share * by
             change = change + left
             change *= min(1.0, MOST_TURN / float(np.abs(change).max()))
-            tried.append((missing, change))
+            trials.append((residual, change))
             moment[:] = np.clip(moment + change * self.limit / LOAD_MAX, -self.limit, self.limit)
             force[:] = np.einsum('mi,i->m', self._shapes, moment)
         into_slots(impulse, self.loads['drag_impulse'])

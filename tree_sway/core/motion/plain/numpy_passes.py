@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The load step on whole levels of a tree at a time: `tree_passes` where nothing is compiled.
+The load step for whole levels of a tree at a time: `tree_passes` without a compiler.
 
-The same formulas on the same records; subtree sums are differences of one cumulative sum.
+The formulas and records are the same.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from tree_sway.core.motion.response import levels_of
 
 
 class Bases(NamedTuple):
-    """Where bases are, how they move and are turned: the fields of `WORK` of the same names."""
+    """Motion of the bases: the fields of `WORK` of the same names."""
 
     velocity: Floats
-    attitude: Floats
-    turn: Floats
-    shift: Floats
+    orientation: Floats
+    rotation: Floats
+    displacement: Floats
     arm: Floats
 
     @classmethod
     def at_rest(cls, count: int) -> Bases:
-        """Return a number of bases that are not turned and do not move."""
-        attitude = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
-        return cls(np.zeros((count, 6)), attitude, *np.zeros((3, count, 3)))
+        """Return a number of bases at rest."""
+        orientation = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+        return cls(np.zeros((count, 6)), orientation, *np.zeros((3, count, 3)))
 
 
 class NumpyPasses:
@@ -49,16 +49,16 @@ class NumpyPasses:
     """
 
     def __init__(self, branches: Records) -> None:
-        """Take over columns, and sort the branches by level."""
+        """Read the fields of the records, and sort the branches by level."""
         names = (
             'parent', 'twist', 'damping_mode', 'load_rotation', 'load_mode', 'lever',
             'speed', 'base', 'arm', 'per_arm',
         )  # fmt: skip
-        self._of: dict[str, NDArray[Any]] = {
+        self._branch: dict[str, NDArray[Any]] = {
             name: np.ascontiguousarray(branches[name])
             for name in (*names, 'spread', 'area', 'frame')
         }
-        self._couple = branches['coupling'] - cross_matrices(branches['base'])
+        self._coupling = branches['coupling'] - cross_matrices(branches['base'])
         xx, yy, zz, xy, xz, yz = branches['projector'].T
         self._projector = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
         self.levels = levels_of(branches['parent'])
@@ -67,30 +67,30 @@ class NumpyPasses:
         self._column = np.where(self.is_there, branches['coordinate'][:, None] + column, 0)
 
     def per_branch(self, x: Floats) -> Floats:
-        """Numbers on the coordinates (N,) side by side per branch, zeros where none, (b, c)."""
-        found: Floats = np.where(self.is_there, x[self._column], 0.0)
-        return found
+        """Arrange values of coordinates (N,) by branch, padded with zeros, (b, c)."""
+        return np.asarray(np.where(self.is_there, x[self._column], 0.0))
 
     def outward(self, x: Floats, v: Floats) -> Bases:
         """Move the bases by angles and rates (b, c)."""
         bases = Bases.at_rest(len(x))
         for level in self.levels:
             names = ('parent', 'twist', 'base', 'arm')
-            parent, twist, at, arm = (self._of[name][level] for name in names)
+            parent, twist, at, arm = (self._branch[name][level] for name in names)
             moved, rate = (np.einsum('bc,bck->bk', each[parent], twist) for each in (x, v))
-            turn, spin = moved[:, 3:], rate[:, 3:]
-            shift, gone = moved[:, :3] + cross(turn, at), rate[:, :3] + cross(spin, at)
-            per = self._of['per_arm'][level, None]
-            now = arm * (1.0 - per * np.square(shift).sum(axis=1, keepdims=True)) + shift
-            gone -= 2.0 * per * (shift * gone).sum(axis=1, keepdims=True) * arm
-            below = bases.velocity[parent]
-            lag = cross(turn, spin)
-            spin = below[:, 3:] + spin + 0.5 * lag + cross(turn, lag) / 6.0
-            place = below[:, :3] + cross(below[:, 3:], now) + gone
-            bases.velocity[level] = np.hstack([turned_by(-turn, place), turned_by(-turn, spin)])
-            turned = quaternion_product(bases.attitude[parent], quaternions_of(turn))
-            bases.attitude[level] = turned
-            bases.turn[level], bases.shift[level], bases.arm[level] = turn, shift, now
+            rotation, spin = moved[:, 3:], rate[:, 3:]
+            shift, slide = moved[:, :3] + cross(rotation, at), rate[:, :3] + cross(spin, at)
+            per = self._branch['per_arm'][level, None]
+            bent = arm * (1.0 - per * np.square(shift).sum(axis=1, keepdims=True)) + shift
+            slide -= 2.0 * per * (shift * slide).sum(axis=1, keepdims=True) * arm
+            parent_velocity = bases.velocity[parent]
+            gyration = cross(rotation, spin)
+            spin = parent_velocity[:, 3:] + spin + 0.5 * gyration + cross(rotation, gyration) / 6.0
+            place = parent_velocity[:, :3] + cross(parent_velocity[:, 3:], bent) + slide
+            moving = [turned_by(-rotation, each) for each in (place, spin)]
+            bases.velocity[level] = np.hstack(moving)
+            turned = quaternion_product(bases.orientation[parent], quaternions_of(rotation))
+            bases.orientation[level], bases.rotation[level] = turned, rotation
+            bases.displacement[level], bases.arm[level] = shift, bent
         return bases
 
     def wind_forces(
@@ -104,58 +104,59 @@ class NumpyPasses:
         impulse: Floats,
     ) -> Floats:
         """
-        Force of the wind on each branch as it is turned in [N], (b, 3).
+        Find the force of the wind on each branch, in its turned frame, in [N], (b, 3).
 
-        The impulse (b, 3) is written again.
+        The impulse (b, 3) is written.
         """
-        of = self._of
-        back = bases.attitude * [1.0, -1.0, -1.0, -1.0]
-        air = quaternion_rotated(back, of['speed'][:, None] * wind) - bases.velocity[:, :3]
-        turn = np.einsum('bc,bck->bk', x, of['load_rotation'])
-        spin = turned_by(-turn, bases.velocity[:, 3:])
-        free = turned_by(-turn, air) - np.einsum('bij,bi->bj', self._couple, spin)
-        free += compliance[:, None] * impulse - np.einsum('bc,bck->bk', v, of['damping_mode'])
-        across = np.einsum('bij,bj->bi', self._projector, free)
-        spread = of['spread'] * np.square(v[:, :2]).sum(axis=1)
-        speed = np.sqrt(np.maximum(np.einsum('bi,bi->b', free, across), 0.0) + spread)
-        c = per_speed_squared * of['area']
+        branch = self._branch
+        back = bases.orientation * [1.0, -1.0, -1.0, -1.0]
+        air = quaternion_rotated(back, branch['speed'][:, None] * wind) - bases.velocity[:, :3]
+        rotation = np.einsum('bc,bck->bk', x, branch['load_rotation'])
+        spin = turned_by(-rotation, bases.velocity[:, 3:])
+        u = turned_by(-rotation, air) - np.einsum('bij,bi->bj', self._coupling, spin)
+        u += compliance[:, None] * impulse - np.einsum('bc,bck->bk', v, branch['damping_mode'])
+        across = np.einsum('bij,bj->bi', self._projector, u)
+        spread = branch['spread'] * np.square(v[:, :2]).sum(axis=1)
+        speed = np.sqrt(np.maximum(np.einsum('bi,bi->b', u, across), 0.0) + spread)
+        c = per_speed_squared * branch['area']
         share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 * compliance * c * speed))
         per_speed = (c * speed * share**2)[:, None]
-        impulse[:] = per_speed * free
+        impulse[:] = per_speed * u
         return np.asarray(per_speed * across)
 
     def at_bases(self, x: Floats, force: Floats) -> Floats:
         """Turn forces (b, 3) on branches at angles (b, c) into the frames of their bases."""
-        return turned_by(np.einsum('bc,bck->bk', x, self._of['load_rotation']), force)
+        return turned_by(np.einsum('bc,bck->bk', x, self._branch['load_rotation']), force)
 
     def own_loads(self, force: Floats) -> Floats:
-        """Pull along each chord and moments on its key rotation in [N m], (b, 3)."""
-        of = self._of
-        own = np.einsum('bck,bk->bc', of['load_mode'][:, :2], force)
-        pull = of['lever'] * np.einsum('bk,bk->b', of['frame'][:, 0], force)
+        """Find the load along each chord and the moments on its key rotation in [N m], (b, 3)."""
+        branch = self._branch
+        own = np.einsum('bck,bk->bc', branch['load_mode'][:, :2], force)
+        pull = branch['lever'] * np.einsum('bk,bk->b', branch['frame'][:, 0], force)
         return np.hstack([pull[:, None], own])
 
     def bent_loads(self, bases: Bases, x: Floats, force: Floats, moment: Floats) -> Floats:
         """
         Write moments on the coordinates of a tree as it is bent and turned, (N,), in [N m].
 
-        Forces (b, 3) are those of `wind_forces`; returned they are as they act in space.
+        Forces (b, 3) are those of `wind_forces`; they are returned in the frame of the tree.
         """
-        of = self._of
-        own_turn = np.einsum('bc,bck->bk', x, of['load_rotation'])
-        own = np.einsum('bck,bk->bc', of['load_mode'], force)
-        couple = turned_by(own_turn, np.einsum('bij,bj->bi', self._couple, force))
-        wrench = np.hstack([turned_by(own_turn, force), couple])
-        world = quaternion_rotated(bases.attitude, wrench[:, :3])
+        branch = self._branch
+        load_rotation = np.einsum('bc,bck->bk', x, branch['load_rotation'])
+        own = np.einsum('bck,bk->bc', branch['load_mode'], force)
+        couple = turned_by(load_rotation, np.einsum('bij,bj->bi', self._coupling, force))
+        wrench = np.hstack([turned_by(load_rotation, force), couple])
+        world = quaternion_rotated(bases.orientation, wrench[:, :3])
         for level in reversed(self.levels):
             names = ('parent', 'twist', 'base', 'arm')
-            parent, twist, at, arm = (of[name][level] for name in names)
-            turn, shift, per = bases.turn[level], bases.shift[level], of['per_arm'][level, None]
-            f, m = (turned_by(turn, wrench[level][:, k : k + 3]) for k in (0, 3))
+            parent, twist, at, arm = (branch[name][level] for name in names)
+            rotation, shift = bases.rotation[level], bases.displacement[level]
+            per = branch['per_arm'][level, None]
+            f, m = (turned_by(rotation, wrench[level][:, k : k + 3]) for k in (0, 3))
             np.add.at(wrench, parent, np.hstack([f, m + cross(bases.arm[level], f)]))
             f = f - 2.0 * per * (arm * f).sum(axis=1, keepdims=True) * shift
-            lag = cross(m, turn)
-            m = m + 0.5 * lag + cross(lag, turn) / 6.0 + cross(at, f)
+            gyration = cross(m, rotation)
+            m = m + 0.5 * gyration + cross(gyration, rotation) / 6.0 + cross(at, f)
             np.add.at(own, parent, np.einsum('bck,bk->bc', twist, np.hstack([f, m])))
         moment[self._column[self.is_there]] = own[self.is_there]
         return world

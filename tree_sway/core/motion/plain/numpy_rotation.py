@@ -31,7 +31,7 @@ def cross(a: Floats, b: Floats) -> Floats:
 
 
 def quaternion_product(a: Floats, b: Floats) -> Floats:
-    """Quaternions of b followed by a."""
+    """Return the quaternions of b followed by a."""
     scalar = a[:, :1] * b[:, :1] - (a[:, 1:] * b[:, 1:]).sum(axis=1, keepdims=True)
     vector = a[:, :1] * b[:, 1:] + b[:, :1] * a[:, 1:] + cross(a[:, 1:], b[:, 1:])
     return np.hstack([scalar, vector])
@@ -40,8 +40,7 @@ def quaternion_product(a: Floats, b: Floats) -> Floats:
 def quaternion_rotated(q: Floats, vectors: Floats) -> Floats:
     """Rotate vectors by unit quaternions."""
     twice = 2.0 * cross(q[:, 1:], vectors)
-    rotated: Floats = vectors + q[:, :1] * twice + cross(q[:, 1:], twice)
-    return rotated
+    return np.asarray(vectors + q[:, :1] * twice + cross(q[:, 1:], twice))
 
 
 def turned_by(rotations: Floats, vectors: Floats) -> Floats:
@@ -57,8 +56,7 @@ def turned_by(rotations: Floats, vectors: Floats) -> Floats:
 def within_guard(e: Floats) -> Floats:
     """Pull rotation vectors (n, 2) back to the circle of `oscillators.two_axis`."""
     squares = np.square(e).sum(axis=1, keepdims=True)
-    out: Floats = e * np.sqrt(T_MAX / np.maximum(squares, T_MAX))
-    return out
+    return np.asarray(e * np.sqrt(T_MAX / np.maximum(squares, T_MAX)))
 
 
 def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: ArrayLike) -> Floats:
@@ -79,7 +77,7 @@ def two_axis_moment(e: Floats, v: Floats, load: Floats, gyro: Floats, limit: Arr
     Returns
     -------
     Floats
-        In [N m], (n, 2).
+        Moment in [N m], (n, 2).
 
     """
     e = within_guard(e)

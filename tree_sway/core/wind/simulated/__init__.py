@@ -1,8 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Winds that no sensor measured: turbulence of a given spectrum, gust events, a simulated anemometer.
+Simulated winds: turbulence of a given spectrum, gust events, a simulated anemometer.
 
-Randomness comes from an ``rng`` argument.
-What a recorded wind needs lives one room up.
+Randomness comes from an ``rng`` argument. Recorded winds are in the room above.
 """

@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The wind within means over a minute or an hour: turbulence drawn about them.
+Turbulence about means of the wind over a minute or an hour.
 
 A station reports means over an interval and the largest gust in it, a mean over 3 s (WMO Guide to
-Instruments, 5.8). The turbulence that is drawn is scaled so that its own largest 3 s of intervals
-are, in the mean, as far above the mean as the gusts that were reported; without gusts its
-deviation is that of IEC 61400-1. It keeps the means: what it would add to one is taken off.
+Instruments, 5.8). The turbulence is scaled so that its own largest 3 s of intervals are, on
+average, as far above the mean as the reported gusts; without gusts its deviation is that of IEC
+61400-1. It does not change the means: its own are subtracted.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tree_sway.core.wind.simulated.turbulence import REFERENCE_INTENSITY, Turbul
 RATE = 10.0
 """Largest rate of the wind in [Hz]."""
 LEAST_INTERVAL = 20.0
-"""Samples this far apart [s] are means; closer ones are the wind itself."""
+"""Interval [s] from which samples are means; at shorter ones they are the wind itself."""
 _MOST, _LEAST_RATE = 4_000_000, 2.0
 _GUST = 3.0
 
@@ -40,8 +40,8 @@ def turbulence_about_means(
     Parameters
     ----------
     time, mean
-        Time of each mean [s], increasing, (n,), and where the wind blows to, east, north, up
-        [m/s], (n, 3), n at least 2.
+        Time of each mean [s], increasing, (n,), and velocity east, north, up [m/s], (n, 3), n at
+        least 2.
     gust
         Largest speed in each interval [m/s], (n,), NaN where none is reported; or None.
     rng
@@ -62,7 +62,7 @@ def turbulence_about_means(
     typical = min(max(float(level.mean()), 1.0), 40.0)
     whole = max(len(fine), math.ceil(600.0 * rate))
     drawn = Turbulence(typical, intensity=1.0 / typical).record(whole, rate, rng)[: len(fine)]
-    # Means of what was drawn over the interval about each sample, so that those reported stay.
+    # Means of the turbulence over the interval about each sample, which are subtracted.
     nearest = np.searchsorted(0.5 * (time[1:] + time[:-1]), fine)
     count = np.maximum(np.bincount(nearest, minlength=len(time)), 1)
     for column in drawn.T:

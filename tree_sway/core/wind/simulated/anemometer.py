@@ -3,7 +3,7 @@
 """
 A simulated anemometer: mean wind and turbulence, sampled tick by tick without end.
 
-The turbulence is one period of a `Turbulence`, over and over: its end joins its beginning.
+The turbulence is one period of a `Turbulence`, repeated without a step.
 """
 
 from __future__ import annotations
@@ -12,33 +12,29 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import within
-from tree_sway.core.wind.simulated.turbulence import (
-    along_bearing,
-    SHORTEST_PERIOD,
-    Turbulence,
-)
+from tree_sway.core.wind.simulated.turbulence import along_bearing, SHORTEST_PERIOD, Turbulence
 
 _SAMPLES = 2**15
-"""Least number of samples after which the turbulence repeats: 27 minutes at 20 Hz."""
+"""Smallest number of samples after which the turbulence repeats: 27 minutes at 20 Hz."""
 
 
 class AnemometerModel:
     """
-    The wind that an anemometer reads, a pure function of its parameters, seed and tick.
+    Wind at an anemometer, a pure function of its parameters, seed and tick.
 
     Parameters
     ----------
     mean_speed
         Mean wind speed in [m/s], 0 to 40; a mean of 0 has no turbulence.
     bearing_to
-        Where the mean wind blows to, clockwise from north in [rad]; the default is a westerly.
+        Direction of the mean wind, clockwise from north in [rad]; the default is a westerly.
     height, intensity
-        As in `Turbulence`.
+        Height and intensity, as in `Turbulence`.
     rate
         Samples per second in [Hz], 1 to 100.
     seed
-        Seed of the turbulence. Under one seed the gusts keep their pattern when speed or intensity
-        change, so that a live change makes no jump but its own.
+        Seed of the turbulence. With the same seed the gusts have the same pattern at any speed or
+        intensity, so that a live change causes no further jump.
 
     Raises
     ------

@@ -1,9 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-What anemometers do when they fail, as a change of what they send: for rehearsals.
+Faults of anemometers, as a change of their samples, for tests.
 
-Each fault is one that was seen on sensors in the field: a wet sonic sends a code for no reading, a
+Each fault has been observed on sensors in the field: a wet sonic sends a code for no reading, a
 driver repeats its last value with new stamps, a logger sends a batch at once, a sensor starts
 again.
 """
@@ -25,11 +25,11 @@ _KINDS = (
     *('zero_stamp', 'future_stamp', 'restart'),
 )
 FAULTS = ('none', *_KINDS, 'all')
-"""Kinds of fault, none of them, and each in its turn."""
+"""Kinds of fault, none, and all in turn."""
 
 
 class Sample(NamedTuple):
-    """What is sent: a stamp in [ns], 0 for none, and a vector in [m/s]."""
+    """A sample: a stamp in [ns], 0 for none, and a vector in [m/s]."""
 
     stamp: int
     vector: Floats
@@ -37,16 +37,16 @@ class Sample(NamedTuple):
 
 class SensorFaults:
     """
-    Faults that come again and again.
+    Faults that occur periodically.
 
     Parameters
     ----------
     kind
-        One of `FAULTS`; ``none`` for a sensor without a fault, ``all`` for each in its turn.
+        One of `FAULTS`; ``none`` for a sensor without a fault, ``all`` for each in turn.
     every
         Time from the beginning of one fault to that of the next in [s].
     duration
-        Time that each lasts in [s], less than `every`.
+        Duration of each in [s], less than `every`.
 
     Raises
     ------
@@ -61,7 +61,7 @@ class SensorFaults:
         self._kind = kind
         self._every = within('every', every, 0.0, 1e6, 's', above=True)
         self._duration = within('duration', duration, 0.0, every, 's', above=True)
-        self._held: list[Sample] = []
+        self._delayed: list[Sample] = []
         self._before = 'none'
         self._last = np.zeros(3)
 
@@ -73,12 +73,12 @@ class SensorFaults:
         return _KINDS[int(number - 1) % len(_KINDS)] if self._kind == 'all' else self._kind
 
     def sent(self, time: float, stamp: int, vector: Floats) -> Iterator[Sample]:
-        """Return what is sent for a sample at a time [s], of a stamp [ns] and wind [m/s]."""
+        """Yield the samples sent for one at a time [s], of a stamp [ns] and wind [m/s]."""
         fault, before = self.at(time), self._before
         self._before = fault
         if fault not in ('delay', 'reorder'):
-            yield from self._held
-            self._held = []
+            yield from self._delayed
+            self._delayed = []
         if before == 'restart' and fault != 'restart':
             yield Sample(stamp, np.zeros(3))  # the first line after it has started
             return
@@ -86,10 +86,10 @@ class SensorFaults:
             case 'dropout' | 'restart':
                 return
             case 'delay':
-                self._held.append(Sample(stamp, vector))
+                self._delayed.append(Sample(stamp, vector))
                 return
-            case 'reorder' if not self._held:
-                self._held.append(Sample(stamp, vector))
+            case 'reorder' if not self._delayed:
+                self._delayed.append(Sample(stamp, vector))
                 return
             case 'spike':
                 vector = vector + np.array([_SPIKE, -_SPIKE, 0.0])
@@ -108,4 +108,4 @@ class SensorFaults:
         self._last = vector
         yield Sample(stamp, vector)
         if fault == 'reorder':
-            yield self._held.pop()
+            yield self._delayed.pop()

@@ -4,12 +4,12 @@
 Turbulent wind at one point: records drawn from Kaimal's spectra (IEC 61400-1:2005, annex B.2).
 
 A record is the inverse FFT of the spectrum with fixed amplitudes and random phases (Shinozuka &
-Deodatis 1991), the usual practice of wind engineering: every record holds its spectrum line by
-line and its variance exactly, and tends to a Gaussian process. Gusts come from above and lulls
-from below: u and w are correlated by `STRESS`, most in slow gusts, as the cospectrum of Kaimal &
-Finnigan has it; v is independent of both.
+Deodatis 1991), the usual practice of wind engineering: every record has the exact spectrum at each
+line and the exact variance, and tends to a Gaussian process. Gusts come from above and lulls from
+below: u and w are correlated by `STRESS`, most in slow gusts, as in the cospectrum of Kaimal &
+Finnigan; v is independent of both.
 
-A sampled record cannot hold what lies above half its rate, nor below one over its period. That
+A sampled record has no frequencies above half its rate, nor below one over its period. That
 variance is not lost: each spectrum is scaled to its full variance, as IEC records are. At 20 Hz,
 10 m and 7 m/s this lifts u, v, w by 0.1, 0.2, 0.4 dB; at 1 Hz it lifts w by 3 dB, so do not read
 spectra from a slow record.
@@ -61,7 +61,7 @@ class Turbulence:
     height
         Height above the ground in [m]; sets the integral scales.
     intensity
-        Turbulence intensity s_u/U in [-]; None takes the deviation of IEC's class B.
+        Turbulence intensity s_u/U in [-]; the deviation of IEC's class B if None.
 
     Raises
     ------
@@ -75,7 +75,7 @@ class Turbulence:
     intensity: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what no wind can be."""
+        """Check the values."""
         within('mean_speed', self.mean_speed, 0.0, 40.0, 'm/s', above=True)
         within('height', self.height, 0.0, 1000.0, 'm', above=True)
         if self.intensity is not None:
@@ -104,18 +104,18 @@ class Turbulence:
 
     def record(self, n_samples: int, rate: float, rng: np.random.Generator) -> Floats:
         """
-        Draw one period of the turbulence; joined end to start it goes on without a seam.
+        Draw one period of the turbulence, which can be repeated without a step.
 
-        At least 4 samples at a rate in [Hz], as u, v, w about their zero mean in [m/s], (n, 3);
-        each variance is that of `deviations`, exactly.
+        It has at least 4 samples at a rate in [Hz], u, v, w with zero mean in [m/s], (n, 3); each
+        variance is exactly that of `deviations`.
         """
         n_lines = (n_samples - 1) // 2  # without the mean, nor the line at half the rate
         frequency: Floats = np.arange(1, n_lines + 1, dtype=np.float64) * (rate / n_samples)
         power = self.spectrum(frequency)
         power *= self.deviations**2 / np.maximum(power.sum(axis=0), np.finfo(np.float64).tiny)
         phase = rng.uniform(0.0, 2.0 * np.pi, size=(3, n_lines)).T
-        # Where u and w are to have a coherency c, w is against u but for a phase of up to +-a, the
-        # mean of whose cosine is sin a / a = c.
+        # For a coherency c of u and w, w is opposite to u up to a phase of up to +-a, the mean of
+        # whose cosine is sin a / a = c.
         widest = _widest_phase(self._coherency(frequency, power))
         phase[:, 2] = phase[:, 0] + np.pi + widest * (phase[:, 2] / np.pi - 1.0)
         lines = np.zeros((n_samples // 2 + 1, 3), dtype=np.complex128)
@@ -126,8 +126,8 @@ class Turbulence:
         """
         Coherency of u and w on lines of these powers (n, 3), (n,), less its sign.
 
-        As the cospectrum ``1 / (1 + 9.6 n z / U)^(7/3)`` (Kaimal & Finnigan 1994, chapter 2)
-        has it, no more than 1, and in all as much as `STRESS`.
+        It follows the cospectrum ``1 / (1 + 9.6 n z / U)^(7/3)`` (Kaimal & Finnigan 1994, chapter
+        2), up to 1, with the sum of `STRESS`.
         """
         shape = (1.0 + 9.6 * frequency * self.height / self.mean_speed) ** (-7.0 / 3.0)
         both = np.sqrt(power[:, 0] * power[:, 2])
@@ -138,7 +138,7 @@ class Turbulence:
         low, high = 0.0, 1.0 / max(float(ratio[ratio > 0.0].min(initial=1.0)), 1e-300)
         for _ in range(60):
             middle = 0.5 * (low + high)
-            # Not by BLAS, whose threads may wait for each other far longer than the sum takes.
+            # Without BLAS, whose threads may wait for each other far longer than the sum takes.
             is_less = float((np.minimum(middle * ratio, 1.0) * both).sum()) < wanted
             low, high = (middle, high) if is_less else (low, middle)
         return np.minimum(high * ratio, 1.0)
@@ -157,7 +157,7 @@ def turbulence_scale(height: float) -> float:
 
 def along_bearing(record: Floats, bearing_to: float) -> Floats:
     """
-    Turn velocities along a mean wind, to its left and up, (..., 3), into east, north, up.
+    Rotate velocities along a mean wind, to its left and up, (..., 3), to east, north, up.
 
     The mean wind blows to a bearing clockwise from north in [rad]: a westerly has pi/2.
     """
@@ -183,16 +183,16 @@ def simulate_turbulence(
     Parameters
     ----------
     mean_speed, height, intensity
-        As in `Turbulence`.
+        Height and intensity, as in `Turbulence`.
     rate
         Samples per second in [Hz], up to 1000.
     duration
         Length of the record in [s]; one shorter than `SHORTEST_PERIOD` is cut from a period of
-        that length, so that it holds the slow part of the spectrum too.
+        that length, so that it has the slow part of the spectrum too.
     rng
         Source of the phases.
     bearing_to
-        Where the mean wind blows to, clockwise from north in [rad]; the default is a westerly.
+        Direction of the mean wind, clockwise from north in [rad]; the default is a westerly.
 
     Returns
     -------

@@ -3,9 +3,9 @@
 """
 Cylinders of a scanned or digitised tree to a tree.
 
-A format's own file only parses; what follows is the same for all: branches that lost their parent
-are set on the nearest cylinder, cylinders of no length are left out, and chains of extensions
-become branches. Each step says what it did in a note.
+The module of a format only parses; the rest is shared: branches without a parent are joined to the
+nearest cylinder, cylinders of zero length are left out, and chains of extensions become branches.
+Each step reports its changes in a note.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
     """
     Build a tree from cylinders.
 
-    Raises a `TreeError` for one that cannot be: no root, a cycle, several trees, what is not
-    finite.
+    Raises a `TreeError` for an impossible one: no root, a cycle, several trees, values that are
+    not finite.
     """
     source, notes = str(path), list(cylinders.notes)
     species = species_named('broadleaf')
@@ -44,13 +44,13 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
         cylinders = replace(cylinders, parent=joined.parent)
         order = checked_order(cylinders.parent, cylinders.labels)
         notes.append(
-            f'{joined.loose} branches had no parent and were set on the nearest cylinder, '
+            f'{joined.loose} branches had no parent and were joined to the nearest cylinder, '
             f'at most {joined.distance:.3g} m away'
         )
     count = len(cylinders.start)
     cylinders = without_zero_length(cylinders, order)
     if len(cylinders.start) < count:
-        notes.append(f'{count - len(cylinders.start)} cylinders of no length were left out')
+        notes.append(f'{count - len(cylinders.start)} cylinders of zero length were left out')
     tree = built_tree(
         source,
         cylinders.start,

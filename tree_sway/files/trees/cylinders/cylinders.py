@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Cylinders or cones of a scanned or digitised tree, as the reader of a format gives them."""
+"""Cylinders or cones of a scanned or digitised tree, as returned by the reader of a format."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Cylinders:
     Cylinders or cones of one tree, in the order of the file.
 
     Root-side and tip-side ends (n, 3) and diameters at both (n, 2) are in [m]; the parent is -1 at
-    the root; ``continues`` says which go on with their parent's branch, None if the file does not
-    say. Labels are what an error calls each one, notes what the reader of the format has to say.
+    the root; ``continues`` marks those that continue their parent's branch, None if the file does
+    not have it. Labels are names in errors, notes those of the reader of the format.
     """
 
     start: Floats

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Diameters that a scan got wrong: twigs as thin as they are.
+Correction of diameters of twigs in scans.
 
-A laser sees a twig as thick as its own spot; cylinders thinner than some 5 cm come out too thick
-(Demol et al. 2022, Methods in Ecology and Evolution, review such errors).
+The diameter of a twig in a scan is that of the laser spot; cylinders thinner than some 5 cm are
+too thick (Demol et al. 2022, Methods in Ecology and Evolution, review such errors).
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from tree_sway.core.tree.tree import Tree
 
 def corrected_twigs(tree: Tree, twig_diameter: float, trusted_diameter: float) -> Tree:
     """
-    Make what is thinner than a scan can see as thin as it is, diameters in [m].
+    Correct the diameters of thin cylinders of a scan, in [m].
 
-    What is as thick as the ends of branches are in the scan, in the median, gets the diameter of a
-    twig; what is as thick as is trusted stays, and between the two diameters follow in a straight
-    line. After the idea of Morales & MacFarlane (2024, Forestry), which lets untrusted cylinders
-    taper to twigs measured by hand. Nothing becomes thicker, and a scan that ends in thicker wood
-    than is trusted, or in thinner than twigs, stays as it is.
+    The median diameter of the ends of branches in the scan is mapped to the diameter of a twig;
+    trusted diameters stay, and between the two the map is linear. After the idea of Morales &
+    MacFarlane (2024, Forestry), which lets untrusted cylinders taper to twigs measured by hand. No
+    diameter grows, and a scan that ends in wood thicker than is trusted, or thinner than twigs, is
+    not changed.
     """
     end = float(np.median(tree.tip_diameter[tree.branch_first[1:] - 1]))
     if not twig_diameter < end < trusted_diameter:

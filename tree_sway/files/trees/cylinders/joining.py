@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Who grows on whom among cylinders: order, loose branches, and which chain is a branch."""
+"""Topology of cylinders: order, loose branches, and chains that are branches."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from tree_sway.files.trees.cylinders.cylinders import Cylinders
 
 _MAX_LOOSE = 1000
 _MAX_LOOSE_VOLUME = 0.2
-"""A loose part of more than this of the stem's volume is a tree of its own."""
+"""Share of the stem's volume above which a loose part is a separate tree."""
 
 
 class JoinedBranches(NamedTuple):
-    """Parents after loose branches were joined, how many, and how far off the axis at most [m]."""
+    """Parents after loose branches were joined, number of these, and largest distance [m]."""
 
     parent: Ints
     loose: int
@@ -29,9 +29,9 @@ class JoinedBranches(NamedTuple):
 
 def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | None:
     """
-    Set branches that have no parent on the nearest cylinder of the stem; None if there are none.
+    Join branches without a parent to the nearest cylinder of the stem; None if there are none.
 
-    A `TreeError` reports a loose part so large that it is a tree of its own. The order has parents
+    A `TreeError` reports a loose part so large that it is a separate tree. The order has parents
     first.
     """
     parent = cylinders.parent
@@ -48,7 +48,7 @@ def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | N
     largest = int(loose[np.argmax(volume[loose])])
     if len(loose) > _MAX_LOOSE or volume[largest] > _MAX_LOOSE_VOLUME * volume[stem]:
         what = f'{len(roots)} roots: a forest of trees that are not connected'
-        cure = 'give each tree a file of its own, or this cylinder a parent'
+        cure = 'give each tree its own file, or this cylinder a parent'
         raise TreeError(what, where=cylinders.labels[largest], cure=cure)
     on_stem = np.flatnonzero(root_of == stem)
     joined, farthest = parent.copy(), 0.0
@@ -63,9 +63,9 @@ def join_loose_branches(cylinders: Cylinders, order: Ints) -> JoinedBranches | N
 
 def branch_keys(cylinders: Cylinders) -> Ints | None:
     """
-    Branch of each cylinder, (n,); None if the file does not say what continues what.
+    Branch of each cylinder, (n,); None if the file has no continuations.
 
-    Where it names several children that continue a branch, the thickest does.
+    Of several children that continue a branch, the thickest is used.
     """
     if cylinders.continues is None:
         return None

@@ -15,7 +15,7 @@ from tree_sway.files.bounded import Arrays, bounded_arrays
 from tree_sway.files.text_file import read_bytes
 
 Variables = dict[str, Any]
-"""Arrays by name; structs as dictionaries, several of them in one with numbers for names."""
+"""Arrays by name; a struct is a dictionary, an array of structs one with numbers as names."""
 _MAX_DEPTH = 8
 
 
@@ -31,7 +31,7 @@ def read_mat(path: Path) -> Variables:
     Raises
     ------
     FormatError
-        Not a MATLAB file, of version 7.3, damaged, or one that takes too much memory or time.
+        Not a MATLAB file, of version 7.3, damaged, or above the limits of memory or time.
 
     """
     read_bytes(path, at_most=1)

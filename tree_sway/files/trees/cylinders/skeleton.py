@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes with a radius and a parent, as skeleton formats have them, made into segments."""
+"""Segments from nodes with a radius and a parent, as in skeleton formats."""
 
 from __future__ import annotations
 
@@ -15,30 +15,31 @@ def cylinders_of_nodes(
     point: Floats, diameter: Floats, parent: Ints, labels: list[str], source: str, *, cones: bool
 ) -> Cylinders:
     """
-    Segments of a tree with one root: one from its parent to each node but the root.
+    Make the segments of a tree with one root: one from its parent to each node but the root.
 
-    Several segments may begin at the root node: the thickest is the stem, the others sit on it.
+    Several segments may begin at the root node: the thickest is the stem, the others are its
+    children.
 
     Parameters
     ----------
     point, diameter
         Positions (n, 3) and diameters (n,) of the nodes in [m].
     parent
-        Node that each one follows, (n,), -1 for the root.
+        Parent of each node, (n,), -1 for the root.
     labels, source
-        How an error calls each node, and the file.
+        Names of the nodes and of the file in errors.
     cones
-        Whether a segment has the diameters of its two nodes; that of the outer one if not.
+        True for segments with the diameters of both nodes, False for that of the outer one.
 
     Raises
     ------
     FormatError
-        Nothing but a root.
+        A root without other nodes.
 
     """
     outer = np.flatnonzero(parent >= 0)
     if len(outer) == 0:
-        what = 'a root with nothing on it'
+        what = 'a root without other nodes'
         raise FormatError(what, where=source, cure='give at least two nodes')
     inner = parent[outer]
     number = np.full(len(parent), -1, dtype=np.int64)

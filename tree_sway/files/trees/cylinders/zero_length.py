@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Leave out cylinders of no length, which have no direction; scans have some."""
+"""Leave out cylinders of zero length, which have no direction; scans have some."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _SHORTEST = 1e-6
 
 def without_zero_length(cylinders: Cylinders, order: Ints) -> Cylinders:
     """
-    Return the cylinders of one tree that have a length; what grew on others sits on their parent.
+    Return the cylinders of one tree that have a length; children of others go to their parent.
 
     The order has parents first. A branch continues through a cylinder that is left out; where that
-    is the root, the thickest that sits on it takes its place, and carries the others.
+    is the root, its thickest child replaces it.
     """
     keep = np.linalg.norm(cylinders.end - cylinders.start, axis=1) >= _SHORTEST
     if keep.all() or not keep.any():
@@ -30,7 +30,7 @@ def without_zero_length(cylinders: Cylinders, order: Ints) -> Cylinders:
     for index in order.tolist():
         above = parent[index]
         if above >= 0 and not keep[above]:
-            parent[index] = parent[above]  # which is one that stays, as it came before
+            parent[index] = parent[above]  # which stays, as it came before
             if continues is not None:
                 continues[index] &= continues[above]
     roots = np.flatnonzero(keep & (parent < 0))

@@ -3,6 +3,6 @@
 """
 Formats of tree files: one file per kind, with its sniffer and its reader.
 
-Each module here has a `FileFormat` or more; the registry finds them by itself.
-What formats share does not live here.
+Each module has one `FileFormat` or more, which the registry finds. Code that formats share is in
+the room above.
 """

@@ -4,11 +4,11 @@
 Tables of cylinders with both ends and a radius: aRchi's and SimpleForest's.
 
 aRchi (Martin-Ducup et al. 2021) numbers from 1, the root's parent 0; a cylinder that is the
-``extension_ID`` of its parent continues the branch. SimpleForest (Hackenberg et al. 2021)
-numbers from 0, the root's parent -1, and has no column for the extension. The branch order says as
-much: of the children of a cylinder the one of the same order continues; ``branchID`` numbers whole
-limbs with all they carry, not chains. Of several of the same order, the one with the greatest
-growth length, all that hangs on it, continues.
+``extension_ID`` of its parent continues the branch. SimpleForest (Hackenberg et al. 2021) numbers
+from 0, the root's parent -1, and has no column for the extension. The branch order replaces it: of
+the children of a cylinder the one of the same order continues; ``branchID`` numbers whole limbs
+with their subtrees, not chains. Of several of the same order, the one with the greatest growth
+length, that of its subtree, continues.
 """
 
 from __future__ import annotations

@@ -3,15 +3,14 @@
 """
 Digitised trees in MTG files in the code FORM-A (Godin & Caraglio 1998).
 
-Each line of the section MTG holds a vertex, in the column that is its depth, and the values of its
-features. ``/`` decomposes, ``<`` continues, ``+`` branches; with ``^`` before, it does so from the
-vertex above in its own column, else from the latest in the column before.
+Each line of the section MTG has a vertex, in the column of its depth, and the values of its
+features. ``/`` decomposes, ``<`` continues, ``+`` branches; with ``^`` before, it refers to the
+vertex above in its own column, else to the latest in the column before.
 
 Positions ``XX YY ZZ`` are those of the upper end of a vertex, in centimetres, and ``TopDia`` its
-diameter there in millimetres, as AMAPmod's digitising has them; ``length_unit`` and
-``diameter_unit`` say otherwise. A vertex of a coarser scale, such as an axis, has the position of
-its base. A segment goes from the vertex before, or from the base of its axis, to each vertex of
-the finest scales.
+diameter there in millimetres, as in AMAPmod's digitising; ``length_unit`` and ``diameter_unit``
+change that. A vertex of a coarser scale, such as an axis, has the position of its base. A segment
+goes from the vertex before, or from the base of its axis, to each vertex of the finest scales.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ _CODE = re.compile(r'([/<+])([A-Za-z]\w*)(?=[/<+]|$)', re.ASCII)
 
 @dataclass(slots=True)
 class _Vertex:
-    """A vertex on its scale, tied by ``edge`` to the one before: what it is of, and sits on."""
+    """A vertex on its scale, its ``edge`` to the one before, its complex and its parent."""
 
     label: str
     scale: int
@@ -62,7 +61,7 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
     for index, vertex in enumerate(vertices):
         before = _before(vertices, vertex, placed, place)
         on = carrier[vertex.parent] if vertex.parent >= 0 else -1
-        # What a vertex does not have, those after it take from before it.
+        # Successors of a vertex without a position refer to its predecessor.
         own = vertex.features.get(_DIAMETER, 0.0)
         width[index] = own if own > 0.0 or vertex.parent < 0 else width[vertex.parent]
         place.append(index if placed[index] else before)
@@ -98,8 +97,7 @@ def _before(vertices: list[_Vertex], vertex: _Vertex, placed: list[bool], place:
     """
     Vertex at whose position another one begins, -1 without one.
 
-    The base of the axis that it is the first part of, if that has a position; else what it sits
-    on.
+    It is the base of the axis whose first part it is, if that has a position; else its parent.
     """
     whole = vertex.complex if vertex.edge == '/' else -1
     while whole >= 0:
@@ -130,7 +128,7 @@ def _parse(lines: list[str], source: str) -> list[_Vertex]:
         code = cells[column].strip()
         has_predecessor = code.startswith('^')
         if column - (not has_predecessor) >= len(latest):
-            raise TreeError(f"'{code[:20]}' sits on nothing", where=where, cure='check its column')
+            raise TreeError(f"'{code[:20]}' has no parent", where=where, cure='check its column')
         reference = latest[column] if has_predecessor else (latest[column - 1] if column else -1)
         reference = _add(vertices, code.removeprefix('^'), reference, scales, where)
         del latest[column:]
@@ -179,7 +177,7 @@ def _add(
         if edge == '/':
             if scale != above + 1:
                 raise TreeError(f'scale {scale} in scale {above}', where=label)
-            # The first part of a branch sits where its branch sits.
+            # The first part of a branch has the place of its branch.
             on = vertices[reference].parent if reference >= 0 else -1
             vertex = _Vertex(label, scale, edge, reference, on)
         else:

@@ -5,7 +5,7 @@ A plain table of segments: one row each, with nodes, diameters, parent and branc
 
 Columns ``segment, parent, branch, x0, y0, z0, x1, y1, z1, d0, d1`` in any order, in metres;
 ``segment`` names the row and ``parent`` refers to such a name, -1 for the root; without ``branch``
-the branches are found from how the segments go on, without ``d1`` a segment is a cylinder.
+the branches are found from continuations of segments, without ``d1`` a segment is a cylinder.
 """
 
 from __future__ import annotations

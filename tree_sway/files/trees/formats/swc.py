@@ -3,9 +3,8 @@
 """
 SWC, the skeleton format of neuroscience, which tree reconstructions use too.
 
-A node in each line: number, type, x, y, z, radius, parent, -1 at a root. Each root is a tree of
-its own. SWC has no unit: see ``length_unit`` and
-``diameter_unit`` of `TreeOptions`.
+A node in each line: number, type, x, y, z, radius, parent, -1 at a root. Each root is a separate
+tree. SWC has no unit: see ``length_unit`` and ``diameter_unit`` of `TreeOptions`.
 """
 
 from __future__ import annotations

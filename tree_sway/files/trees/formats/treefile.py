@@ -5,8 +5,8 @@ RayCloudTools' tree file (Lowe & Stepanas 2021): a tree in each line, node after
 
 After comments a header, such as ``height,crown_radius, x,y,z,radius,parent_id,section_id``:
 attributes of the tree, if any, then the fields of a node. The first node of a line is the root,
-parent -1, and has no volume; each other one is a cylinder from its parent's point to its own, of
-its own radius.
+parent -1, and has no volume; each of the others is a cylinder from its parent's point to its own,
+with its own radius.
 """
 
 from __future__ import annotations

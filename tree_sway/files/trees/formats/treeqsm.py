@@ -8,7 +8,7 @@ version. Cylinders are numbered from 1, parent 0 at the root; PyTLidar writes th
 numbered from 0, parent -1 at the root. A cylinder that is the extension of its parent continues
 the branch; any other starts one, on its parent's axis or skin and not at its end.
 
-MATLAB: structs with a field ``cylinder``. A file may hold several models, as variables or as an
+MATLAB: structs with a field ``cylinder``. A file may have several models, as variables or as an
 array of structs; each is a tree. Text: without a header, or with that of 2.4 and PyTLidar, which
 names start and axis once, though each has three columns; tabs, spaces, commas or semicolons
 between the cells.
@@ -34,11 +34,11 @@ _FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extens
 """Fields of ``cylinder`` in the order of the columns, and their widths."""
 _COLUMNS = 10
 _LEAST_COLUMNS = 13
-"""Fewer columns without a header do not distinguish cylinders from other tables."""
+"""Smallest number of columns without a header that distinguishes cylinders from other tables."""
 
 
 def _is_text(head: str) -> bool:
-    """Whether a file is a TreeQSM text: by its header, or by how wide its first rows are."""
+    """Whether a file is a TreeQSM text, by its header, or by the width of its first rows."""
     lines = [line for line in head.splitlines() if line.strip()][:2]
     if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
         return True
@@ -116,7 +116,7 @@ def _table(name: str, fields: dict[str, Any], source: str) -> Floats:
 
 
 def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
-    """Cylinders from the columns, (n, 10), with what an error calls each row."""
+    """Cylinders from the columns, (n, 10), with the name of each row in errors."""
     if len(table) == 0:
         raise FormatError('no cylinders', where=source)
     reach, starts, axes, relatives = table[:, 1], table[:, 2:5], table[:, 5:8], table[:, 8:10]
@@ -127,12 +127,14 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     first = 1 + int(relatives[:, 0].min())
     if first not in (0, 1):
         raise FormatError(
-            f'the least parent is {first - 1}', where=source, cure='the root has parent 0, or -1'
+            f'the smallest parent is {first - 1}',
+            where=source,
+            cure='the root has parent 0, or -1',
         )
     above, after = relatives.T.astype(np.int64) - first
     norm = np.linalg.norm(axes, axis=1)
     for row in np.flatnonzero((norm == 0.0) & (reach > 0.0))[:1]:
-        raise FormatError('an axis of no direction', where=labels[row])
+        raise FormatError('an axis without direction', where=labels[row])
     ends = starts + (reach / np.where(norm > 0.0, norm, 1.0))[:, None] * axes
     valid = (after >= 0) & (after < len(table))
     continues = np.zeros(len(table), dtype=np.bool_)

@@ -3,6 +3,5 @@
 """
 Trees, forests and species written by people, as YAML with schemas.
 
-Each schema is beside its reader.
-Other formats have rooms of their own.
+Each schema is beside its reader. Other formats have their own rooms.
 """

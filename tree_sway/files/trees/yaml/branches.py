@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Branches of a YAML tree, named by hand, to segments: who grows on whom, and where."""
+"""Named branches of a YAML tree to segments: parents and places."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ def branch_segments(document: YamlDocument) -> Values:
     Raises
     ------
     FormatError
-        A name that occurs twice, both or none of nodes and segments, a place that is not there.
+        A name that occurs twice, both or none of nodes and segments, a missing place.
     TreeError
-        A parent that is not there, a cycle, not exactly one stem, a branch in the air.
+        A missing parent, a cycle, not exactly one stem, a branch that does not touch its parent.
 
     """
     branches = document.values['branches']
@@ -59,7 +59,7 @@ def branch_segments(document: YamlDocument) -> Values:
         base = its_parent.first + sits_on if its_parent is not None else -1
         parent += [base, *range(first, first + len(start) - 1)]
         owner += [number] * len(start)
-        # A segment between two nodes is called by the line of the second.
+        # A segment between two nodes is named by the line of the second.
         key, ahead = ('nodes', 1) if 'nodes' in branch else ('segments', 0)
         labels += [
             f'{document.where("branches", number, key, i + ahead)}: '
@@ -82,7 +82,7 @@ def _indices(branches: list[Values], where: list[str]) -> dict[str, int]:
         if branch['name'] in index:
             first = where[index[branch['name']]].rsplit(': ', 1)[0]
             what = f'a second branch of that name, the first is at {first}'
-            raise FormatError(what, where=where[number], cure='give each branch a name of its own')
+            raise FormatError(what, where=where[number], cure='give each branch its own name')
         index[branch['name']] = number
     return index
 
@@ -92,7 +92,7 @@ def _parents(branches: list[Values], index: dict[str, int], where: list[str]) ->
     for number, branch in enumerate(branches):
         name = branch.get('parent')
         if name is not None and name not in index:
-            cure = nearest(name, index) or 'name a branch of this file'
+            cure = nearest(name, index) or 'give a branch of this file'
             raise TreeError(f"orphan: no branch '{name}'", where=where[number], cure=cure)
         parents.append(-1 if name is None else index[name])
     stems = [number for number, its_parent in enumerate(parents) if its_parent < 0]

@@ -40,11 +40,11 @@ def read_yaml_tree(path: Path) -> TreeFile:
     Raises
     ------
     FormatError
-        Not YAML, or not what the schema says; names file, line and key.
+        A file that is not YAML or does not match the schema; with file, line and key.
     TreeError
-        A tree that cannot be: cyclic, orphaned, zero length; names file, line and segment.
+        An impossible tree: cyclic, orphaned, zero length; with file, line and segment.
     SpeciesError
-        A species that the table does not know.
+        An unknown species.
 
     """
     return parse_yaml_tree(read_text(path), str(path), default_name=path.stem)
@@ -73,8 +73,8 @@ def species_of(document: YamlDocument) -> Species:
         for state in ('damping_bare', 'damping_in_leaf'):
             if state in wood:
                 what = f'both damping_ratio and {state}'
-                cure = 'give damping_ratio alone, or the two states apart'
+                cure = 'give damping_ratio only, or both states'
                 raise FormatError(what, where=document.where('wood', state), cure=cure)
             wood[state] = ratio
-    # A modulus from the file is a measured one, and no longer the table's guess.
+    # A modulus from the file is measured, and not the estimate of the table.
     return replace(species, **wood, is_estimate=species.is_estimate and 'modulus' not in wood)

@@ -1,7 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Sky, hills, haze and ground. They are painted when the camera moves and copied when it does not: their
- * pixels are many, and may cost something. */
+/** Sky, hills, haze and ground: painted when the camera moves, copied when it does not, which costs less. */
 
 import { textOf } from "../files.js";
 import { canvasTexture, drawable, drawPart, program, use } from "./gl.js";
@@ -9,11 +8,8 @@ import { canvasTexture, drawable, drawPart, program, use } from "./gl.js";
 /** Times of day. @type {Record<"light" | "evening" | "dark", Daylight>} */
 export const DAYLIGHT = JSON.parse(await textOf("drawing/daylight.json"));
 
-export const GROUNDS = { terrace: 0, meadow: 1 };
-
 export class Backdrop {
-  /** @param {WebGL2RenderingContext} gl @param {boolean} isPlain whether the shadow is kept, too, as every
-   * pixel costs something */
+  /** @param {GL} gl @param {boolean} isPlain whether the shadow is kept, too, as every pixel costs much */
   constructor(gl, isPlain) {
     this.gl = gl;
     this._program = program(gl, "backdrop");
@@ -25,17 +21,15 @@ export class Backdrop {
     this._paintedFor = "";
   }
 
-  /** Paint into what is bound. @param {import("./camera.js").Camera} camera @param {Daylight} day
-   * @param {Ground} under */
+  /** Paint into what is bound. @param {Camera} camera @param {Daylight} day @param {Ground} under */
   paint(camera, day, under) {
     this.gl.disable(this.gl.DEPTH_TEST);
     use(this.gl, this._program, { ...day, ...camera.axes(), ...under, eye: camera.eye });
     drawPart(this.gl, this._whole);
   }
 
-  /** Show it on the canvas. @param {import("./camera.js").Camera} camera @param {Daylight} day
-   * @param {Ground} under @param {() => void} drawShadow on the ground @param {boolean} isNew whether the
-   * shadow is another than before */
+  /** Show it on the canvas. @param {Camera} camera @param {Daylight} day @param {Ground} under
+   * @param {() => void} drawShadow on the ground @param {boolean} isNew whether it is another than before */
   show(camera, day, under, drawShadow, isNew) {
     const { gl } = this;
     const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
@@ -45,7 +39,7 @@ export class Backdrop {
     if (isOther) {
       this._paintedFor = wanted;
       if (this._pictures[0]?.width !== width || this._pictures[0].height !== height) {
-        for (const each of this._pictures) each.release(true);
+        for (const each of this._pictures) each.release();
         this._pictures = [0, 1].map(() => canvasTexture(gl, width, height, gl.RGBA8));
       }
       gl.bindFramebuffer(gl.FRAMEBUFFER, this._pictures[0].target);
@@ -60,8 +54,7 @@ export class Backdrop {
     if (!this._isPlain) drawShadow();
   }
 
-  /** Copy a picture, and draw on what it is copied to. @param {ReturnType<typeof canvasTexture>} picture
-   * @param {WebGLFramebuffer | null} to */
+  /** @param {ReturnType<typeof canvasTexture>} picture @param {WebGLFramebuffer | null} to bound then */
   _copy({ texture }, to) {
     this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, to);
     use(this.gl, this._copying, { picture: [2, texture] });

@@ -16,20 +16,15 @@ export class Camera {
   _size = 1;
   _box = /** @type {number[][]} */ ([[0, 0, 0], [1, 1, 1]]);
 
-  /** Frame a scene. @param {number[]} low corner of its box @param {number[]} high */
-  frame(low, high) {
-    this._box = [low, high];
-    this.home();
-  }
-
   /** Where a link looked from. @param {number[]} view azimuth, elevation, distance, target */
   set([azimuth, elevation, distance, x, y, z]) {
     [this.azimuth, this.elevation, this.distance] = [azimuth, elevation, distance];
     this.target = [x, y, z];
   }
 
-  home() {
-    const [low, high] = this._box;
+  /** See all of a scene. @param {number[][]} box its lowest and its highest corner */
+  home([low, high] = this._box) {
+    this._box = [low, high];
     const wide = Math.hypot(high[0] - low[0], high[1] - low[1]);
     const tall = high[2] - low[2];
     this._size = Math.hypot(wide, tall);
@@ -88,20 +83,24 @@ export class Camera {
     return this.matrix;
   }
 
-  /** Where a point is seen, 0 to 1 from the left and from the top. @param {ArrayLike<number>} p
-   * @returns {[number, number]} */
+  /** Where a point is seen, 0 to 1 from the left and from the top. @param {ArrayLike<number>} p */
   project(p) {
     const m = this.matrix;
     const [x, y, w] = [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
     return [0.5 + (0.5 * x) / w, 0.5 - (0.5 * y) / w];
   }
 
-  /** The point under a place of the picture that is as deep in it as another point. @param {number} x 0 to
-   * 1 from the left @param {number} y from the top @param {number[]} p */
-  under(x, y, p) {
+  /** From the eye to a place of the picture, one deep. @param {number[]} at 0 to 1 from left and top */
+  ray([x, y]) {
     const { right, up, back } = this.axes();
+    return right.map((each, c) => (2 * x - 1) * each + (1 - 2 * y) * up[c] - back[c]);
+  }
+
+  /** The point under a place of the picture as deep as another. @param {number[]} at @param {number[]} p */
+  under(at, p) {
+    const { back } = this.axes();
     const depth = this.eye.reduce((sum, each, c) => sum + (each - p[c]) * back[c], 0);
-    return this.eye.map((each, c) => each + depth * ((2 * x - 1) * right[c] + (1 - 2 * y) * up[c] - back[c]));
+    return this.ray(at).map((each, c) => this.eye[c] + depth * each);
   }
 
   /** Let mouse, touch and keys move the camera. @param {HTMLElement} element */

@@ -63,8 +63,7 @@ export class Detail {
       const cost = (/** @type {number} */ level) => (level ? levels[level].segments + levels[level].cards : 0);
       const least = t === this.watched ? 1 : pixels[t] ? 0 : -1;
       let level = pixels[t] ? levels.length - 1 : least;
-      while (level > least && levels[level].from > pixels[t]) level--;
-      while (level > least && spent + cost(level) > budget) level--;
+      while (level > least && (levels[level].from > pixels[t] || spent + cost(level) > budget)) level--;
       this.level[t] = Math.max(level, least);
       this.start[t] = this.segments;
       spent += cost(Math.max(level, 0));
@@ -72,8 +71,7 @@ export class Detail {
     }
   }
 
-  /** The level of a tree; none of one that is out of sight. @param {number} tree its number
-   * @returns {Level} */
+  /** The level of a tree; none of one that is out of sight. @param {number} tree its number */
   levelOf(tree) {
     return this.levels[this.trees[tree].kind][this.level[tree]];
   }

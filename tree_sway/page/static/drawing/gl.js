@@ -40,7 +40,7 @@ export function contextOf(canvas) {
   return { gl, isSoftware };
 }
 
-/** @param {WebGL2RenderingContext} gl @param {string} name among the parts @returns {Program} */
+/** @param {GL} gl @param {string} name among the parts @returns {Program} */
 export function program(gl, name) {
   const made = gl.createProgram();
   for (const [kind, stage] of /** @type {const} */ ([[gl.VERTEX_SHADER, "vertex"], [gl.FRAGMENT_SHADER, "fragment"]])) {
@@ -48,10 +48,12 @@ export function program(gl, name) {
     gl.shaderSource(shader, HEAD + source(`${name}.${stage}`));
     gl.compileShader(shader);
     gl.attachShader(made, shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(String(gl.getShaderInfoLog(shader)));
   }
   gl.linkProgram(made);
-  if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(String(gl.getProgramInfoLog(made)));
+  if (!gl.getProgramParameter(made, gl.LINK_STATUS)) {
+    const logs = gl.getAttachedShaders(made)?.map((shader) => gl.getShaderInfoLog(shader));
+    throw new Error([gl.getProgramInfoLog(made), ...logs ?? []].join(" "));
+  }
   const inputs = source(`${name}.vertex`).matchAll(/^(?:layout.*)?in (?:float|vec(\d)) (\w+);/gm);
   const fields = Array.from(inputs, ([, size = 1, field]) => ({ size: Number(size), at: gl.getAttribLocation(made, field) }));
   const uniforms = /** @type {Program["uniforms"]} */ ({});
@@ -76,17 +78,15 @@ export function program(gl, name) {
   return { program: made, fields, uniforms };
 }
 
-/** Set what a program is given: numbers, vectors and matrices; of a texture, its unit and itself.
- * @param {WebGL2RenderingContext} gl @param {Program} used @param {Record<string, any>} values those that
- * it has not are left out */
+/** Set what a program has of values: numbers, vectors and matrices; of a texture, its unit and itself.
+ * @param {GL} gl @param {Program} used @param {Record<string, any>} values */
 export function use(gl, used, values) {
   gl.useProgram(used.program);
   for (const [name, value] of Object.entries(values)) used.uniforms[name]?.(value);
 }
 
-/** A vertex array of its own. @param {WebGL2RenderingContext} gl @param {Program} used
- * @param {{values: ArrayLike<number>, indices: ArrayLike<number>}} mesh vertex after vertex, each with the
- * inputs of the program in its order @returns {Drawable} */
+/** A vertex array: vertex after vertex, each with the inputs of the program in its order. @param {GL} gl
+ * @param {Program} used @param {Record<"values" | "indices", ArrayLike<number>>} mesh @returns {Drawable} */
 export function drawable(gl, { fields }, { values, indices }) {
   const vao = gl.createVertexArray();
   gl.bindVertexArray(vao);
@@ -109,39 +109,38 @@ export function drawable(gl, { fields }, { values, indices }) {
   return { vao, count: indices.length, buffers };
 }
 
-/** @param {WebGL2RenderingContext} gl @param {Drawable | null} part */
+/** @param {GL} gl @param {Drawable | undefined} part */
 export function discard(gl, part) {
   for (const buffer of part?.buffers ?? []) gl.deleteBuffer(buffer);
   gl.deleteVertexArray(part?.vao ?? null);
 }
 
-/** @param {WebGL2RenderingContext} gl @param {Drawable} part @param {number} [share] of its triangles */
+/** @param {GL} gl @param {Drawable} part @param {number} [share] of its triangles */
 export function drawPart(gl, part, share = 1) {
   gl.bindVertexArray(part.vao);
   gl.drawElements(gl.TRIANGLES, 3 * Math.round((share * part.count) / 3), gl.UNSIGNED_INT, 0);
 }
 
-/** @param {WebGL2RenderingContext} gl @param {number} less filter where it is smaller @param {number} more
- * where it is larger */
-function sample(gl, less, more) {
+/** A texture, now bound. @param {GL} gl @param {number} less filter where it is small @param {number} more */
+export function textureOf(gl, less, more) {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
   for (const way of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, way, gl.CLAMP_TO_EDGE);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, less);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, more);
+  return texture;
 }
 
 /** A texture of a picture, its colours times its alpha: no leaf has a rim of what is around it.
- * @param {WebGL2RenderingContext} gl @param {HTMLCanvasElement} picture @param {boolean} isPlain the nearest
- * point alone is looked up, which costs less */
+ * @param {GL} gl @param {HTMLCanvasElement} picture @param {boolean} isPlain one point is looked up */
 export function pictureTexture(gl, picture, isPlain) {
-  const texture = gl.createTexture();
   gl.activeTexture(gl.TEXTURE2);
-  gl.bindTexture(gl.TEXTURE_2D, texture);
+  const texture = isPlain ? textureOf(gl, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST)
+    : textureOf(gl, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
   gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, true);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, picture);
   gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false); // poses are no colours
   gl.generateMipmap(gl.TEXTURE_2D);
-  if (isPlain) sample(gl, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST);
-  else sample(gl, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
   return texture;
 }
 
@@ -151,22 +150,19 @@ const rowsOf = (segments) => Math.ceil((2 * segments) / TEXTURE_WIDTH);
 /** Room for poses. @param {number} segments */
 export const texelsOf = (segments) => new Float32Array(4 * TEXTURE_WIDTH * rowsOf(segments));
 
-/** Put poses into a texture. @param {WebGL2RenderingContext} gl @param {WebGLTexture} texture
+/** Put poses into a texture. @param {GL} gl @param {WebGLTexture} texture
  * @param {Float32Array} texels @param {number} segments the first of them */
 export function uploadPoses(gl, texture, texels, segments) {
   gl.activeTexture(gl.TEXTURE0);
   gl.bindTexture(gl.TEXTURE_2D, texture);
-  sample(gl, gl.NEAREST, gl.NEAREST);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, TEXTURE_WIDTH, rowsOf(segments), 0, gl.RGBA, gl.FLOAT, texels);
 }
 
-/** What is drawn into a texture. @param {WebGL2RenderingContext} gl @param {number} width
+/** What is drawn into a texture. @param {GL} gl @param {number} width
  * @param {number} height @param {number} format such as R8 @param {boolean} hasDepth */
 export function canvasTexture(gl, width, height, format, hasDepth = false) {
-  const texture = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, texture);
+  const texture = textureOf(gl, gl.LINEAR, gl.LINEAR);
   gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
-  sample(gl, gl.LINEAR, gl.LINEAR);
   const target = gl.createFramebuffer();
   gl.bindFramebuffer(gl.FRAMEBUFFER, target);
   gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
@@ -176,10 +172,10 @@ export function canvasTexture(gl, width, height, format, hasDepth = false) {
     gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT16, width, height);
     gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, depth);
   }
-  const release = (isWhole = false) => {
+  const release = () => {
     gl.deleteFramebuffer(target);
     gl.deleteRenderbuffer(depth);
-    if (isWhole) gl.deleteTexture(texture);
+    gl.deleteTexture(texture);
   };
   return { texture, target, width, height, release };
 }

@@ -6,15 +6,11 @@ import { AT_ORIGIN, placed, STRIDE } from "../placing.js";
 import { canvasTexture, discard, drawable, drawPart, ELEVATIONS, ROUND, use } from "./gl.js";
 
 const TILE = 128;
-/** Parts of a picture from its foot up, each as wide as what it shows: to look at what is clear costs time. */
-const BANDS = 6;
-/** Corners of a picture, and numbers of each. */
-const [CORNERS, PER_CORNER] = [2 * (BANDS + 1), 9];
-/** Of the cover of a pixel, 0 to 255; the shader discards what has less. */
-const LEAST_SEEN = 0.35 * 255;
+/** Numbers of each corner of a picture. */
+const PER_CORNER = 9;
 
 export class Impostor {
-  /** @param {WebGL2RenderingContext} gl @param {Program} used @param {Shape} shape @param {number} most
+  /** @param {GL} gl @param {Program} used @param {Shape} shape @param {number} most
    * how many trees @param {boolean} isPlain the nearest point alone is looked up, which costs less */
   constructor(gl, used, shape, most, isPlain) {
     const { kind, low, high, rest, highest } = shape;
@@ -29,11 +25,9 @@ export class Impostor {
     this.count = 0;
     this._atlas = canvasTexture(gl, ROUND * TILE, ELEVATIONS.length * TILE, gl.RGBA8, true);
     if (isPlain) gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-    /** Half of its width at the ends of bands, 0 to 1. */
-    this._wide = new Float32Array(BANDS + 1);
-    this._values = new Float32Array(CORNERS * PER_CORNER * most);
-    const indices = Array.from({ length: BANDS * most }, (_, i) =>
-      [0, 1, 2, 1, 3, 2].map((corner) => CORNERS * Math.floor(i / BANDS) + 2 * (i % BANDS) + corner)).flat();
+    this._values = new Float32Array(4 * PER_CORNER * most);
+    const square = [0, 1, 2, 1, 3, 2];
+    const indices = Array.from({ length: 6 * most }, (_, i) => 4 * Math.floor(i / 6) + square[i % 6]);
     // Not as instances: without a graphics unit each of them costs as much as a whole picture.
     this._part = drawable(gl, used, { values: this._values, indices });
   }
@@ -61,55 +55,30 @@ export class Impostor {
         paint(Float32Array.from(camera), [100 * deep * ce * c, 100 * deep * ce * s, middle + 100 * deep * se]);
       }
     });
-    this._measure();
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    this._atlas.release();
   }
 
-  /** Find how wide the pictures are that were painted. */
-  _measure() {
-    const { gl, _atlas: { width, height }, _wide: wide } = this;
-    const pixels = new Uint8Array(4 * width * height);
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    for (let i = 0; i < width * height; i++) {
-      if (pixels[4 * i + 3] < LEAST_SEEN) continue;
-      const away = (Math.abs((i % TILE) + 0.5 - TILE / 2) + 1.5) / (TILE / 2);
-      const band = Math.floor((BANDS * (Math.floor(i / width) % TILE)) / TILE);
-      for (const end of [band, band + 1]) wide[end] = Math.max(wide[end], Math.min(1, away));
-    }
-  }
-
-  /** Draw a tree, too. @param {number[]} place x, y, z, turn, scale @param {number} row of its highest
-   * node @param {number} number among all trees */
+  /** Draw a tree, too. @param {number[]} place @param {number} row of its top @param {number} number */
   add(place, row, number) {
     const tint = 0.86 + 0.28 * ((number * 0.618034) % 1);
-    const from = CORNERS * PER_CORNER * this.count++;
-    for (let corner = 0; corner < CORNERS; corner++) {
-      const end = Math.floor(corner / 2);
-      const x = corner % 2 ? this._wide[end] : -this._wide[end];
-      this._values.set([x, (2 * end) / BANDS - 1, ...place, row, tint], from + PER_CORNER * corner);
-    }
+    const corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]].flatMap((at) => [...at, ...place, row, tint]);
+    this._values.set(corners, 4 * PER_CORNER * this.count++);
   }
 
   upload() {
     const { gl } = this;
     gl.bindBuffer(gl.ARRAY_BUFFER, this._part.buffers[0]);
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, CORNERS * PER_CORNER * this.count);
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this._values, 0, 4 * PER_CORNER * this.count);
   }
 
-  /** Place the top of a tree, which is linear in the coordinates of what is far.
-   * @param {ArrayLike<number>} coordinates @param {number} from its first @param {number[]} place
-   * @param {Float32Array} poses @param {number} row */
-  place(coordinates, from, [x, y, z, yaw, scale], poses, row) {
-    let [u, v, w] = this.tip;
-    const moves = this._moves;
-    for (let k = 0, at = 0; at < moves.length; k++, at += 3) {
-      const by = coordinates[from + k];
-      u += by * moves[at];
-      v += by * moves[at + 1];
-      w += by * moves[at + 2];
+  /** Place the top of a far tree, linear in its coordinates. @param {ArrayLike<number>} coordinates
+   * @param {number} from its first @param {number[]} place @param {Float32Array} poses @param {number} row */
+  place(coordinates, from, place, poses, row) {
+    const at = this.tip.slice();
+    for (let k = from, i = 0; i < this._moves.length; k++) {
+      for (let c = 0; c < 3; c++) at[c] += coordinates[k] * this._moves[i++];
     }
-    poses.set(placed([x, y, z, yaw, scale], [u, v, w]), STRIDE * row);
+    poses.set(placed(place, at), STRIDE * row);
   }
 
   /** @param {Program} used @param {number} shade of the foot of a tree among others */
@@ -117,17 +86,16 @@ export class Impostor {
     const { gl, box, tip } = this;
     const picture = [2, this._atlas.texture];
     use(gl, used, { picture, box: [box.wide, box.middle, box.tall, shade], restTip: tip });
-    drawPart(gl, this._part, (6 * BANDS * this.count) / this._part.count);
+    drawPart(gl, this._part, (6 * this.count) / this._part.count);
   }
 
   free() {
-    this.gl.deleteTexture(this._atlas.texture);
+    this._atlas.release();
     discard(this.gl, this._part);
   }
 }
 
-/** How far the highest node moves per unit of each coordinate, three numbers each. @param {Shape} shape
- * @param {number[]} tip the node at rest */
+/** How the top moves per unit of coordinates, by three numbers. @param {Shape} shape @param {number[]} tip */
 function movesOf({ kind, placer, highest }, tip) {
   const row = STRIDE * placer.slots[highest];
   const branches = placer.reached.findIndex((reached) => reached > placer.slots[highest]);

@@ -3,30 +3,30 @@
 /** Meshes of a kind at rest: bark as tubes, leaves as cards. Each vertex hangs on a segment, whose row is
  * its first number, and moves with it. A branch is one tube: a ring between two segments is of both. */
 
-import { KindPlacer, STRIDE } from "../placing.js";
+import { AT_ORIGIN, KindPlacer, STRIDE } from "../placing.js";
 import { between, multiply, turned } from "../quaternions.js";
 import { crownShade } from "./shade.js";
 import { hasNeedles, lookOf, seeded } from "./species.js";
 import { leavesAcross } from "./textures.js";
 
-/** Rings of bark are no nearer to each other on the screen [px]. */
-const RING_SPACING = 6;
-/** Cards of leaves per cluster, at most: of leaves alone, and of sprays. */
-const ALONE = 2;
-const CARDS = 3;
-/** Cards are at most so much larger where few of them are drawn; they show more leaves then. */
-const LARGEST_CARDS = 4;
-/** Height of the picture of bark on a stem [m]. */
-const BARK_TILE = 0.6;
+/** Least spacing of rings of bark on the screen [px], height of the picture of bark on a stem [m]. */
+const [RING_SPACING, BARK_TILE] = [6, 0.6];
+/** Cards of leaves per cluster, at most: of leaves alone, of sprays; and how much larger they are, at most,
+ * where few are drawn, which show more leaves then. */
+const [ALONE, CARDS, LARGEST_CARDS] = [2, 3, 4];
 
-/** A kind at rest: poses as they are described, its box, its highest segment, how open its crown is.
- * @param {Kind} kind */
+/** The lowest and the highest corner of a box of points. @param {ArrayLike<number>[]} points */
+export const boxOf = (points) => [Math.min, Math.max].map((of) =>
+  [0, 1, 2].map((c) => points.reduce((most, each) => of(most, each[c]), points[0][c])));
+
+/** A kind at rest: its poses, its box, its highest segment, how open its crown is. @param {Kind} kind */
 export function shapeOf(kind) {
-  const rest = new KindPlacer(kind).rest();
-  const [xs, ys, zs] = [0, 1, 2].map((c) => rest.filter((_, i) => i % STRIDE === c));
-  const [low, high] = [-1, 1].map((sign) =>
-    [xs, ys, zs].map((all) => sign * all.reduce((most, each) => Math.max(most, sign * each), -Infinity)));
-  const highest = zs.indexOf(high[2]);
+  const rest = new Float32Array(STRIDE * kind.nSegments);
+  const still = new Float32Array(kind.nCoordinates);
+  new KindPlacer(kind).place(still, 0, AT_ORIGIN, kind.nBranches, rest, 0);
+  const nodes = Array.from({ length: kind.nSegments }, (_, s) => rest.subarray(STRIDE * s));
+  const [low, high] = boxOf(nodes);
+  const highest = nodes.findIndex((node) => node[2] === high[2]);
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
   const places = Array.from(carrier ?? [], (_, i) => leafPlace(kind, rest, i));
   const shade = crownShade(places, Array.from(sizes ?? [], (size) => 0.25 * Math.PI * size * size), low, high);
@@ -132,7 +132,7 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
   // A leaf alone has its own size, whatever the cluster has.
   const unit = across === 1 ? Math.min(1, (1.4 * lookOf(species).size) / mean) : larger;
   const hung = hungOn(kind, branches);
-  const quads = [];
+  const triangles = [];
   for (const i of clusters) {
     const at = leafPlace(kind, rest, i);
     const [p, own] = [STRIDE * hung[carrier[i]], STRIDE * carrier[i] + 4];
@@ -152,17 +152,16 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
         mesh.values.push(placer.slots[hung[carrier[i]]], ...place.map((each, c) => each + centre[c]), ...swing, ...facing,
           ...light, phase, open, tint, ...corner.at);
       }
-      quads.push([first, first + 1, first + 2, first, first + 2, first + 3]);
+      triangles.push([first, first + 1, first + 2]);
     }
   }
-  mesh.indices = mixed(quads, random).flat();
+  mesh.indices = mixed(triangles, random).flat();
   return { mesh, across };
 }
 
-/** Corners of a card: its place, how it moves with the flutter and its normal, in the frame of the
- * cluster; and the place in the picture. @param {string} species @param {number} size of the card [m]
- * @param {number} number in its cluster @param {boolean} isAlone whether the picture is of one leaf
- * @param {() => number} random */
+/** Corners of a card: place, motion with the flutter, normal, in the frame of the cluster; in the picture.
+ * @param {string} species @param {number} size of the card [m] @param {number} number in its cluster
+ * @param {boolean} isAlone whether the picture is of one leaf @param {() => number} random */
 function cardCorners(species, size, number, isAlone, random) {
   const { form, slender } = lookOf(species);
   const isConifer = hasNeedles(species);
@@ -175,9 +174,9 @@ function cardCorners(species, size, number, isAlone, random) {
   const around = [0, 0, Math.sin(fan / 2), Math.cos(fan / 2)];
   multiply(around, 0, [0, Math.sin(hang / 2), 0, Math.cos(hang / 2)], 0, around);
   multiply(around, 0, [Math.sin(roll / 2), 0, 0, Math.cos(roll / 2)], 0, around);
-  // A leaf alone fills its card: what would be cut away costs time.
-  const half = isAlone ? Math.min(0.5, 0.56 * slender) : isConifer ? 0.36 : 0.5;
-  return [[0, -half], [1, -half], [1, half], [0, half]].map(([u, v]) => {
+  // A triangle about a blade, or about a square of leaves: what would be cut away costs time.
+  const [far, half] = isAlone ? [1.45, 0.875 * Math.min(1, slender)] : [2, isConifer ? 0.72 : 1];
+  return [[0, -half], [far, 0], [0, half]].map(([u, v]) => {
     const place = turned(around, [u * long, v * long, 0]);
     place[0] -= 0.5 * long;
     place[2] -= 0.1 * long * u;

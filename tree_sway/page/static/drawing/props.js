@@ -4,8 +4,8 @@
 
 import { textOf } from "../files.js";
 
-/** @type {{colours: Record<string, number[]>, pot: Turned[], person: Turned[]}} */
-const { colours, ...PROPS } = JSON.parse(await textOf("drawing/props.json"));
+/** @type {{colours: Record<string, number[]>, arrow: Mesh, pot: Turned[], person: Turned[]}} */
+export const { arrow, colours, ...PROPS } = JSON.parse(await textOf("drawing/props.json"));
 
 /** A pot of height 1 below the root, or somebody 1.75 m tall. @param {"pot" | "person"} name */
 export function propMesh(name) {
@@ -16,12 +16,11 @@ export function propMesh(name) {
       profile.forEach(([r, z, color], i) => {
         const [r0, z0] = profile[Math.max(i - 1, 0)];
         const [r1, z1] = profile[Math.min(i + 1, profile.length - 1)];
-        const size = Math.hypot(r1 - r0, z1 - z0) || 1;
         const first = values.length / 9;
         for (let k = 0; k < sides; k++) {
-          const [c, s] = [Math.cos((2 * Math.PI * k) / sides), Math.sin((2 * Math.PI * k) / sides)];
-          values.push(r * c, middle + wide * r * s, z, (c * (z1 - z0)) / size, (s * (z1 - z0)) / size, (r0 - r1) / size,
-            ...colours[color]);
+          const [c, s] = [Math.cos, Math.sin].map((of) => of((2 * Math.PI * k) / sides));
+          const facing = [c * (z1 - z0), s * (z1 - z0), r0 - r1];
+          values.push(r * c, middle + wide * r * s, z, ...facing, ...colours[color]);
           const [a, b] = [first + k - sides, first + ((k + 1) % sides) - sides];
           if (i > 0) indices.push(a, b, a + sides, b, b + sides, a + sides);
         }
@@ -33,10 +32,3 @@ export function propMesh(name) {
 
 /** Length of the wind's arrow: never more than a sixth of the tree. @param {number} height @param {number} speed */
 export const arrowLength = (height, speed) => 0.16 * height * Math.tanh(speed / 7);
-
-/** An arrow of length 1 along x, lying flat. */
-export function arrowMesh() {
-  const corners = [[0, 0.045], [0, -0.045], [0.66, -0.045], [0.66, 0.045], [0.62, 0.17], [0.62, -0.17], [1, 0]];
-  const values = corners.flatMap(([x, y]) => [x, y, 0, 0, 0, 1, ...colours.blue]);
-  return { values, indices: [0, 1, 2, 0, 2, 3, 4, 5, 6] };
-}

@@ -1,7 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** What is left out without a graphics unit so that frames come in time: first pixels, then frames, then
- * leaves. No leaf grows to make up for others. */
+/** What is left out without a graphics unit: first pixels, then frames, then leaves; none grows instead. */
 
 /** Frames per second that fewer pixels are drawn for, and those that leaves are left out for. */
 const WANTED = 55;

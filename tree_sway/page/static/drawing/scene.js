@@ -3,43 +3,44 @@
 /** Draws a described tree from its poses: bark, leaves, what is beside it, ground and sky. */
 
 import { AT_ORIGIN, beyond, placed, STRIDE } from "../placing.js";
-import { between } from "../quaternions.js";
-import { Backdrop, DAYLIGHT, GROUNDS } from "./backdrop.js";
+import { between, distance } from "../quaternions.js";
+import { Backdrop, DAYLIGHT } from "./backdrop.js";
 import { Camera } from "./camera.js";
 import { Detail, levelsOf } from "./detail.js";
 import {
-  canvasTexture, contextOf, discard, drawable, drawPart, pictureTexture, program, texelsOf, uploadPoses, use,
+  canvasTexture, contextOf, discard, drawable, drawPart, pictureTexture, program, texelsOf, textureOf,
+  uploadPoses, use,
 } from "./gl.js";
 import { Impostor } from "./impostors.js";
-import { barkMesh, leafMesh, shapeOf } from "./mesh.js";
-import { arrowLength, arrowMesh, propMesh } from "./props.js";
+import { barkMesh, boxOf, leafMesh, shapeOf } from "./mesh.js";
+import { arrow, arrowLength, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
-import { barkPattern, isPotted, lookOf } from "./species.js";
+import { lookOf, patterns } from "./species.js";
 import { leafPicture } from "./textures.js";
 
-/** A shadow is drawn again after this number of frames without a graphics unit, of a crowd less often. */
-const SHADOW_EVERY = 8;
-/** Share of the leaves that cast it then. */
-const SHADOW_LEAVES = 0.4;
+/** Without a graphics unit a shadow is drawn again after so many frames, by a share of the leaves. */
+const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
 const CROWD = 50;
-/** Segments of all trees and cards of leaves of one, at most, and height of far trees [px]: with a graphics
- * unit, without one, and of a crowd without one. */
+/** Segments of all trees and cards of leaves of one, at most, and height of far trees [px]. */
 const MOST = { segments: 40000, cards: 3000, far: 90 };
-const MOST_SLOW = { segments: 12000, cards: 3000, far: 150 };
-const MOST_CROWD = { segments: 5000, cards: 3000, far: 220 };
+/** Without a graphics unit: of a few trees, and of a crowd. */
+const MOST_SLOW = { ...MOST, segments: 12000, far: 150 };
+const MOST_CROWD = { ...MOST, segments: 5000, far: 220 };
 /** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
 const CHOOSE_EVERY = 6;
-const POT_HEIGHT = 0.17;
-/** Height of a tree from which a person is beside it [m]. */
-const WITH_PERSON = 2.5;
+/** A branch is near that is within this angle of where one points [rad]. */
+const REACH = 0.017;
+/** Height of a pot over that of its tree, and that of a tree with a person beside it [m]. */
+const [POT_HEIGHT, WITH_PERSON] = [0.17, 2.5];
 /** The arrow follows the mean of the wind over this time [s]. */
 const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
 const PAINTED = 260;
+/** Rows that no branch has. */
+const NONE = [-2, -2];
 
 export class Scene {
-  /** @param {HTMLCanvasElement} canvas @param {boolean} [isFine] whether nothing is left out, however slow
-   * that is */
+  /** @param {HTMLCanvasElement} canvas @param {boolean} [isFine] nothing is left out, however slow that is */
   constructor(canvas, isFine = false) {
     const { gl, isSoftware } = contextOf(canvas);
     /** Without a graphics unit: fewer points, fewer shadows. */
@@ -72,7 +73,7 @@ export class Scene {
     this._backdrop = new Backdrop(gl, this.isSlow);
     /** Of leaves, painted when they are first used. */
     this._pictures = /** @type {Map<string, WebGLTexture>} */ (new Map());
-    this._texture = gl.createTexture();
+    this._texture = textureOf(gl, gl.NEAREST, gl.NEAREST);
     /** Where the shaders look poses up. */
     this._poses = this._texture;
     /** Poses of the segments that are drawn, tree after tree. */
@@ -80,8 +81,8 @@ export class Scene {
     this._coordinates = /** @type {Float32Array} */ (new Float32Array(0));
     const square = { values: [-1, -1, 1, -1, 1, 1, -1, 1], indices: [0, 1, 2, 0, 2, 3] };
     const { solid, shadow } = this._programs;
-    const [arrow, pot, person] = [arrowMesh(), propMesh("pot"), propMesh("person")].map((mesh) => drawable(gl, solid, mesh));
-    this._parts = { arrow, pot, person, shadow: drawable(gl, shadow, square) };
+    const [pot, person] = [propMesh("pot"), propMesh("person")].map((mesh) => drawable(gl, solid, mesh));
+    this._parts = { arrow: drawable(gl, solid, arrow), pot, person, shadow: drawable(gl, shadow, square) };
     const size = this.isSlow ? 256 : 1024;
     this._shadow = canvasTexture(gl, size, size, gl.R8);
     /** Where it falls: middle x, y, and half its size [m]. */
@@ -93,17 +94,11 @@ export class Scene {
     this._high = [1, 1, 1];
     this._extent = 1;
     this._potSize = 0;
+    this._under = /** @type {Ground} */ ({ kind: 0, ground: 0, haze: 0 });
   }
 
   get hasLeaves() {
     return Boolean(this.description?.kinds.some((kind) => kind.arrays.leaf_segment?.length));
-  }
-
-  /** Another time of day. @param {Daylight} day */
-  setDay(day) {
-    this.day = day;
-    this._frameShadow();
-    this._frame = 0;
   }
 
   /** @param {{leavesShown?: boolean, isAutumn?: boolean}} leaves whether they are drawn, and whether those
@@ -118,7 +113,12 @@ export class Scene {
     const { kinds, trees } = description;
     const isSame = this.description?.name === description.name;
     const most = !this.isSlow ? MOST : trees.length > CROWD ? MOST_CROWD : MOST_SLOW;
-    this._free();
+    for (const { impostor, bark, leaf } of this._levels) {
+      impostor?.free();
+      for (const part of [bark, leaf]) discard(this.gl, part);
+    }
+    for (const texture of this._pictures.values()) this.gl.deleteTexture(texture);
+    this._pictures.clear();
     this.resize();
     this.description = description;
     this._coordinates = new Float32Array(description.nCoordinates);
@@ -132,18 +132,18 @@ export class Scene {
       const { low, high } = this._kinds[kind];
       return placed(place, low.map((each, c) => (corner & (1 << c) ? high[c] : each)));
     }));
-    [this._low, this._high] = [Math.min, Math.max].map((of) =>
-      [0, 1, 2].map((c) => corners.reduce((best, at) => of(best, at[c]), corners[0][c])));
+    [this._low, this._high] = boxOf(corners);
     const [wide, deep, tall] = this._high.map((each, c) => each - this._low[c]);
     this._extent = Math.max(wide, deep, tall, 0.05);
     this.height = Math.max(tall, 0.2 * wide, 0.2 * deep, 0.05);
     const { place: root } = trees[0];
-    this._potSize = trees.length === 1 && isPotted(kinds[0].species) ? POT_HEIGHT * this.height : 0;
+    this._potSize = trees.length === 1 && lookOf(kinds[0].species).isPotted ? POT_HEIGHT * this.height : 0;
     this.ground = this._potSize ? root[2] - this._potSize : Math.min(this._low[2], root[2]);
-    this._frameShadow();
+    this._under = this._potSize ? { kind: 0, ground: this.ground, haze: 1 / (30 * this.height) }
+      : { kind: 1, ground: this.ground, haze: 1 / Math.max(1500, 30 * this._extent) };
     if (!isSame) {
       this.picked = -1;
-      this.camera.frame([this._low[0], this._low[1], this.ground], this._high);
+      this.camera.home([[this._low[0], this._low[1], this.ground], this._high]);
     }
     this._frame = 0;
     this._chosenFor = "";
@@ -151,35 +151,20 @@ export class Scene {
     this._place();
   }
 
-  /** The tree that is followed, the highest: its number, where it is, and its kind at rest. */
+  /** The tree that is followed, the highest: its number, where it is, and its kind, once there is one. */
   get watched() {
     const { trees, watched: number } = this.detail;
-    return { ...trees[number], ...this._kinds[trees[number].kind], number };
+    return { ...trees[number], ...this._kinds[trees[number]?.kind], number };
   }
 
-  /** The kind of the watched tree. @returns {Kind | null} */
-  get watchedKind() {
-    return this.description && this.watched.kind;
-  }
-
-  /** Where the tip of the branch that is picked is now, or the top of the tallest tree. */
-  tip() {
-    return this.position(this.followed);
-  }
-
-  /** The same at rest. */
-  restTip() {
-    return this.restPosition(this.followed);
-  }
-
-  /** Where a segment's root-side node is at rest. @param {number} segment */
-  restPosition(segment) {
+  /** Where the root-side node of a segment of the watched tree is at rest. @param {number} segment */
+  restPosition(segment = this.followed) {
     const { rest, place } = this.watched;
     return placed(place, rest.subarray(STRIDE * segment));
   }
 
-  /** Where a segment's root-side node is now; of the tallest tree, if it is drawn. @param {number} segment */
-  position(segment) {
+  /** Where it is now, if it is drawn. @param {number} segment */
+  position(segment = this.followed) {
     const from = STRIDE * this._row(segment);
     return Array.from(this._texels.subarray(from, from + 3));
   }
@@ -189,20 +174,30 @@ export class Scene {
     return this.detail.start[this.detail.watched] + this.watched.placer.slots[segment];
   }
 
-  /** The branch of the watched tree nearest to a place of the picture, and its segment; -1 if none is
-   * near. @param {number} x 0 to 1 from the left @param {number} y from the top @param {number} [reach]
-   * share of the height */
-  nearest(x, y, reach = 0.03) {
-    let [best, found] = [reach, { branch: -1, segment: -1 }];
+  /** Where a pointer is in the picture, 0 to 1 from the left and from the top. @param {MouseEvent} event */
+  placeOf({ clientX, clientY }) {
+    return [clientX / this.canvas.clientWidth, clientY / this.canvas.clientHeight];
+  }
+
+  /** The branch of the watched tree nearest to a ray, its segment and how far away that is [m]; -1 if none
+   * is near. @param {number[]} from @param {number[]} along @param {number} [most] angle [rad] */
+  nearest(from, along, most = REACH) {
+    let [best, found] = [Math.cos(most) * Math.hypot(...along), { branch: -1, segment: -1, far: 0 }];
     const { placer: { order }, number, kind: { arrays: { branch_first: first } } } = this.watched;
     for (const branch of order.subarray(0, this.detail.levelOf(number).branches)) {
-      for (let s = first[branch]; s < first[branch + 1]; s++) {
-        const [px, py] = this.camera.project(this.position(s));
-        const away = Math.hypot((px - x) * this.camera.aspect, py - y);
-        if (away < best) [best, found] = [away, { branch, segment: s }];
+      for (let segment = first[branch]; segment < first[branch + 1]; segment++) {
+        const at = this.position(segment);
+        const far = distance(at, from);
+        const cosine = at.reduce((sum, each, c) => sum + (each - from[c]) * along[c], 0) / far;
+        if (cosine > best) [best, found] = [cosine, { branch, segment, far }];
       }
     }
     return found;
+  }
+
+  /** The same under a pointer. @param {MouseEvent} event */
+  under(event) {
+    return this.nearest(this.camera.eye, this.camera.ray(this.placeOf(event)));
   }
 
   /** The last segment of the branch that is picked, if it is drawn, or the highest. */
@@ -237,10 +232,10 @@ export class Scene {
     if (wanted === this._chosenFor) return;
     this._chosenFor = wanted;
     detail.choose(camera.matrix, high, this._budget);
-    this._eachLevel((level) => {
-      level.starts.length = 0;
-      if (level.impostor) level.impostor.count = 0;
-    });
+    for (const { starts, impostor } of this._levels) {
+      starts.length = 0;
+      if (impostor) impostor.count = 0;
+    }
     // Near trees first: what they hide costs less then.
     for (const t of detail.order) {
       if (detail.level[t] < 0) continue;
@@ -249,46 +244,48 @@ export class Scene {
       level.starts.push(detail.start[t]);
       level.impostor?.add(place, detail.start[t], t);
     }
-    this._eachLevel((level) => level.impostor?.upload());
+    for (const { impostor } of this._levels) impostor?.upload();
     if (STRIDE * detail.segments > this._texels.length) this._texels = texelsOf(1.25 * detail.segments);
   }
 
   /** A level of a kind, when it is first used. @param {number} number of the kind @param {number} level
    * @returns {DrawnLevel} */
   _drawnLevel(number, level) {
-    const { levels: { [number]: levels }, trees } = this.detail;
+    const { gl, _programs: programs, _pictures: pictures, detail: { levels: { [number]: levels } } } = this;
     const shape = this._kinds[number];
-    const none = { starts: [], bark: null, leaf: null, across: 1, impostor: null };
-    const count = trees.filter(({ kind }) => kind === number).length;
-    if (level === 0) return { ...none, impostor: this._bake(number, count) };
-    const { branches: most, pixels, cards } = levels[level];
-    const branches = shape.placer.order.slice(0, most);
-    const { mesh, across } = leafMesh(shape, branches, cards, levels[levels.length - 1].cards);
-    const bark = drawable(this.gl, this._programs.bark, barkMesh(shape, branches, pixels, this.isSlow ? COARSEST : 1));
-    return { ...none, across, bark, leaf: mesh.indices.length ? drawable(this.gl, this._programs.leaf, mesh) : null };
+    if (level === 0) return { starts: [], impostor: this._bake(number) };
+    const { species } = shape.kind;
+    const { bark: barkColor, twig: twigColor, pattern } = lookOf(species);
+    const branches = shape.placer.order.slice(0, levels[level].branches);
+    const { mesh, across } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards);
+    const bark = barkMesh(shape, branches, levels[level].pixels, this.isSlow ? COARSEST : 1);
+    const name = `${species} ${across}`;
+    if (!pictures.has(name)) {
+      pictures.set(name, pictureTexture(gl, leafPicture(species, across, this.isAutumn), this.isSlow));
+    }
+    return {
+      starts: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
+      skin: { barkColor, twigColor, ...patterns[pattern] }, foliage: { leaves: [2, pictures.get(name)] },
+    };
   }
 
   /** Paint the picture of a kind that far trees are drawn by: a tree at rest in even light.
-   * @param {number} number of the kind @param {number} most how many trees */
-  _bake(number, most) {
-    const { gl, _programs: { bark, leaf } } = this;
+   * @param {number} number of the kind */
+  _bake(number) {
+    const { gl, detail: { levels: { [number]: levels }, trees } } = this;
     const shape = this._kinds[number];
-    const levels = this.detail.levels[number];
+    const most = trees.filter(({ kind }) => kind === number).length;
     const finest = Math.max(1, levels.findIndex(({ pixels }) => pixels >= PAINTED));
     const level = { ...(shape.drawn[finest] ??= this._drawnLevel(number, finest)), starts: [0] };
     const impostor = new Impostor(gl, this._programs.impostor, shape, most, this.isSlow);
     const { segments, branches } = levels[finest];
     const texels = texelsOf(segments);
     shape.placer.place(new Float32Array(shape.kind.nCoordinates), 0, AT_ORIGIN, branches, texels, 0);
-    this._poses = gl.createTexture();
+    this._poses = textureOf(gl, gl.NEAREST, gl.NEAREST);
     uploadPoses(gl, this._poses, texels, segments);
-    impostor.bake((camera, eye) => {
-      const even = { camera, eye, sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0 };
-      this._begin(bark, false, { ...even, picked: [-2, -2] });
-      this._drawBark(shape, level);
-      this._begin(leaf, false, { ...even, isBaked: 1, speed: 0, law: [0, 1] });
-      if (this.leavesShown) this._drawLeaves(shape, level, 1);
-    }, lookOf(shape.kind.species).leaf);
+    const even = { sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0, picked: NONE, isBaked: 1, law: [0, 1] };
+    impostor.bake((camera, eye) => this._drawMeshes([level], false, { camera, eye, ...even }, 1),
+      lookOf(shape.kind.species).leaf);
     gl.deleteTexture(this._poses);
     this._poses = this._texture;
     return impostor;
@@ -335,7 +332,10 @@ export class Scene {
     const every = this.isSlow ? (this.isCrowd ? 3 : 1) * SHADOW_EVERY : 1;
     const isShadowNew = this._frame % every === 0;
     if (isShadowNew) this._castShadow();
-    if (this.isSlow && !isPaused) this.quality.count(performance.now(), this._hasCards);
+    // Whether so many trees are drawn with leaves that some may be left out; far ones are pictures.
+    const hasCards = !this.isCrowd || this.detail.level.filter((level) => level > 0).length > 1;
+    const mayThin = this.hasLeaves && this.leavesShown && hasCards;
+    if (this.isSlow && !isPaused) this.quality.count(performance.now(), mayThin);
     this._frame++;
     const whole = { camera: own, target: null, area: [0, 0, canvas.width, canvas.height] };
     for (const view of views ?? [whole]) this._paint(view, !views, isShadowNew);
@@ -351,7 +351,7 @@ export class Scene {
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     gl.viewport(x, y, width, height);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    const under = /** @type {const} */ ([this.camera, this.day, this._ground]);
+    const under = /** @type {const} */ ([this.camera, this.day, this._under]);
     if (isOwn) this._backdrop.show(...under, () => this._drawShadow(), isShadowNew);
     else this._backdrop.paint(...under);
     if (!isOwn) this._drawShadow();
@@ -360,21 +360,17 @@ export class Scene {
     this._drawSolids(false);
   }
 
-  /** Whether so many trees are drawn with leaves that some may be left out; far ones are pictures. */
-  get _hasCards() {
-    const drawn = this.detail.level.filter((level) => level > 0).length;
-    return this.hasLeaves && this.leavesShown && (drawn > 1 || !this.isCrowd);
-  }
-
-  /** The ground of the scene, and one over how far one sees [1/m]. */
-  get _ground() {
-    const isTerrace = this._potSize > 0;
-    const haze = 1 / (isTerrace ? 30 * this.height : Math.max(1500, 30 * this._extent));
-    return { kind: isTerrace ? GROUNDS.terrace : GROUNDS.meadow, ground: this.ground, haze };
-  }
-
   _castShadow() {
     const { gl, _shadow: { target, width, height } } = this;
+    const { day: { light }, _low: low, _high: high } = this;
+    // Where it falls, with room to sway.
+    const room = 0.06 * this._extent;
+    const ends = [0, 1].map((c) => {
+      const lean = (-light[c] / light[2]) * (high[2] - this.ground);
+      return [low[c] + Math.min(0, lean) - room, high[c] + Math.max(0, lean) + room];
+    });
+    const half = Math.max(...ends.map(([from, to]) => to - from)) / 2;
+    this._shadowArea = [...ends.map(([from, to]) => (from + to) / 2), half];
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 1);
@@ -384,70 +380,49 @@ export class Scene {
     this._drawSolids(true);
   }
 
-  /** @param {Program} used @param {boolean} isShadow @param {Record<string, any>} [own] what it is given
-   * beside the usual */
+  /** @param {Program} used @param {boolean} isShadow @param {Record<string, any>} [own] beside the usual */
   _begin(used, isShadow, own = {}) {
     const { camera: { matrix: camera, eye }, _poses: poses, _shadowArea: [x, y, half] } = this;
-    const shadowArea = [x, y, 1 / half, Number(isShadow)];
-    use(this.gl, used, {
-      ...this.day, ...this._ground, camera, eye, isShadow: Number(isShadow), shadowArea, poses: [0, poses], ...own,
-    });
-  }
-
-  /** Find where the shadow falls, with room to sway. */
-  _frameShadow() {
-    const { day: { light }, _low: low, _high: high } = this;
-    const room = 0.06 * this._extent;
-    const ends = [0, 1].map((c) => {
-      const lean = (-light[c] / light[2]) * (high[2] - this.ground);
-      return [low[c] + Math.min(0, lean) - room, high[c] + Math.max(0, lean) + room];
-    });
-    const half = Math.max(...ends.map(([from, to]) => to - from)) / 2;
-    this._shadowArea = [...ends.map(([from, to]) => (from + to) / 2), half];
+    const lit = { ...this.day, ...this._under, camera, eye, isShadow: Number(isShadow) };
+    const shadowArea = [x, y, 1 / half, lit.isShadow];
+    use(this.gl, used, { ...lit, shadowArea, poses: [0, poses], ...own });
   }
 
   /** @param {boolean} isShadow */
   _drawTrees(isShadow) {
-    const law = this.description?.flutter ?? { gain: 0, largest_angle: 1 };
-    const { bark, leaf, impostor } = this._programs;
-    this._begin(bark, isShadow, { picked: this._pickedRows() });
-    this._eachLevel((level, kind) => this._drawBark(kind, level));
-    if (this.leavesShown) {
-      this._begin(leaf, isShadow, {
-        isBaked: 0, time: this._time % 1000, speed: Math.hypot(...this.wind),
-        law: [this.flutters ? law.gain : 0, law.largest_angle],
-      });
-      const density = this.quality.density * (this.isSlow && isShadow ? SHADOW_LEAVES : 1);
-      this._eachLevel((level, kind) => this._drawLeaves(kind, level, density));
-    }
+    const { description, picked, watched, _programs: { impostor } } = this;
+    const { gain, largest_angle: most } = description?.flutter ?? { gain: 0, largest_angle: 1 };
+    const [first, next] = watched.kind?.arrays.branch_first.subarray(picked, picked + 2) ?? [];
+    const rows = picked < 0 ? NONE : [this._row(first), this._row(next - 1)];
+    this._drawMeshes(this._levels, isShadow, {
+      picked: rows, isBaked: 0, time: this._time % 1000, speed: Math.hypot(...this.wind),
+      law: [this.flutters ? gain : 0, most],
+    }, this.quality.density * (this.isSlow && isShadow ? SHADOW_LEAVES : 1));
     this._begin(impostor, isShadow);
-    this._eachLevel((level) => level.impostor?.draw(impostor, this.isCrowd ? 0.35 : 0.9));
+    for (const level of this._levels) level.impostor?.draw(impostor, this.isCrowd ? 0.35 : 0.9);
   }
 
-  /** @param {(level: DrawnLevel, kind: DrawnKind) => void} draw */
-  _eachLevel(draw) {
-    for (const kind of this._kinds) kind.drawn.forEach((level) => draw(level, kind));
+  /** The levels that are drawn of all kinds. */
+  get _levels() {
+    return this._kinds.flatMap(({ drawn }) => drawn.flat());
   }
 
-  /** @param {DrawnKind} kind @param {DrawnLevel} level */
-  _drawBark({ kind: { species } }, { bark, starts }) {
-    const { bark: barkColor, twig: twigColor, pattern } = lookOf(species);
-    this._drawEach(bark, this._programs.bark, starts, { barkColor, twigColor, ...barkPattern(pattern) });
+  /** Bark, then leaves. @param {DrawnLevel[]} levels @param {boolean} isShadow
+   * @param {Record<string, any>} own values of their programs @param {number} density share of the leaves */
+  _drawMeshes(levels, isShadow, own, density) {
+    const { gl, _programs: { bark, leaf } } = this;
+    this._begin(bark, isShadow, own);
+    gl.enable(gl.CULL_FACE);
+    for (const level of levels) this._drawEach(level.bark, bark, level.starts, level.skin, 1);
+    gl.disable(gl.CULL_FACE);
+    if (!this.leavesShown) return;
+    this._begin(leaf, isShadow, own);
+    for (const level of levels) this._drawEach(level.leaf, leaf, level.starts, level.foliage, density);
   }
 
-  /** @param {DrawnKind} kind @param {DrawnLevel} level @param {number} density share of them */
-  _drawLeaves({ kind: { species } }, { leaf, starts, across }, density) {
-    if (!leaf) return;
-    const name = `${species} ${across}`;
-    const leaves = this._pictures.get(name) ?? pictureTexture(this.gl, leafPicture(species, across, this.isAutumn), this.isSlow);
-    this._pictures.set(name, leaves);
-    this._drawEach(leaf, this._programs.leaf, starts, { leaves: [2, leaves] }, density);
-  }
-
-  /** Draw a part of each tree of a level, if it has it. @param {Drawable | null} part @param {Program} used
-   * @param {number[]} starts rows of their first segments @param {Record<string, any>} values that the
-   * program is given @param {number} [share] of its triangles */
-  _drawEach(part, used, starts, values, share = 1) {
+  /** A part of each tree of a level. @param {Drawable | undefined} part @param {Program} used
+   * @param {number[]} starts @param {Record<string, any>} values @param {number} share of its triangles */
+  _drawEach(part, used, starts, values = {}, share) {
     if (!part) return;
     use(this.gl, used, values);
     for (const start of starts) {
@@ -456,35 +431,29 @@ export class Scene {
     }
   }
 
-  _pickedRows() {
-    if (this.picked < 0) return [-2, -2];
-    const { branch_first: first } = this.watched.kind.arrays;
-    return [this._row(first[this.picked]), this._row(first[this.picked + 1] - 1)];
-  }
-
   /** The pot, somebody beside the tree, and the arrow of the wind. @param {boolean} isShadow */
   _drawSolids(isShadow) {
-    const { gl, height, ground, _low: low, _high: high, _parts: parts } = this;
+    const { gl, height, ground, _low: low, _high: high, _parts: parts, _programs: { solid } } = this;
     const [x, y, z] = this.detail.trees[0]?.place ?? AT_ORIGIN;
-    const used = this._programs.solid;
-    this._begin(used, isShadow);
-    const draw = (/** @type {Drawable} */ part, /** @type {number[]} */ placed, c = 1, s = 0) => {
-      use(gl, used, { placed, heading: [c, s] });
+    this._begin(solid, isShadow);
+    /** @param {Drawable} part @param {number[]} placed @param {number[]} heading */
+    const draw = (part, placed, heading) => {
+      use(gl, solid, { placed, heading });
       drawPart(gl, part);
     };
-    if (this._potSize > 0) draw(parts.pot, [x, y, z, this._potSize]);
+    if (this._potSize > 0) draw(parts.pot, [x, y, z, this._potSize], [1, 0]);
     if (this.hasPerson && height > WITH_PERSON && !this._potSize) {
       // Beside it, as the camera first sees it.
       const away = 0.5 * Math.max(high[0] - low[0], high[1] - low[1]) + 0.5;
       const at = this.isCrowd ? [high[0] + 3, low[1] - 3] : [x + 0.8 * away, y + 0.66 * away];
-      draw(parts.person, [...at, ground, 1], Math.cos(-0.9), Math.sin(-0.9));
+      draw(parts.person, [...at, ground, 1], [Math.cos(-0.9), Math.sin(-0.9)]);
     }
     const speed = Math.hypot(...this._calmWind);
     if (speed > 0.2 && !isShadow) {
       const long = arrowLength(height, speed);
-      const [u, v] = this._calmWind.map((each) => each / speed);
-      const [right, up] = [u, v].map((way, c) => 0.5 * (low[c] + high[c]) - way * (0.42 * this._extent + long));
-      draw(parts.arrow, [right, up, ground + 0.01 * height, long], u, v);
+      const to = this._calmWind.map((each) => each / speed);
+      const at = to.map((way, c) => 0.5 * (low[c] + high[c]) - way * (0.42 * this._extent + long));
+      draw(parts.arrow, [...at, ground + 0.01 * height, long], to);
     }
   }
 
@@ -503,15 +472,5 @@ export class Scene {
     gl.disable(gl.DEPTH_TEST);
     drawPart(gl, this._parts.shadow);
     gl.disable(gl.BLEND);
-  }
-
-  _free() {
-    this._eachLevel(({ impostor, bark, leaf }) => {
-      impostor?.free();
-      for (const part of [bark, leaf]) discard(this.gl, part);
-    });
-    for (const texture of this._pictures.values()) this.gl.deleteTexture(texture);
-    this._pictures.clear();
-    this._kinds = [];
   }
 }

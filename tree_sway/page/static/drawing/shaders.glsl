@@ -172,7 +172,9 @@ void main() {
   vec4 leaf = texture(leaves, at);
   // Further away leaves are mixed with what is between them: less of one will do, so that no crown thins out.
   float mixed = max(0.0, log2(length(fwidth(at)) * 180.0));
-  if (leaf.a * (1.0 + 0.07 * mixed) < 0.5) discard;
+  // The triangle of a card is larger than its picture.
+  vec2 beyond = abs(at - 0.5);
+  if (leaf.a * (1.0 + 0.07 * mixed) < 0.5 || max(beyond.x, beyond.y) > 0.5) discard;
   color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, leaf.rgb / leaf.a * lit.rgb, lit.a), 1.0);
 }
 

@@ -4,33 +4,18 @@
 
 import { textOf } from "../files.js";
 
-/** The average broadleaf whole; what is other of the average conifer, and of each species than of its
- * group. Patterns of bark, and halves of outlines of blades from the stalk to the tip.
- * @type {{broadleaf: Look, conifer: Partial<Look>, broadleaves: Record<string, Partial<Look>>, conifers: Record<string, Partial<Look>>, patterns: Record<string, Pattern>, outlines: Record<string, [number, number][]>}}
- */
-const { broadleaf, conifer, broadleaves, conifers, patterns, outlines } = JSON.parse(await textOf("species.json"));
+/** @type {Looks} */
+const looks = JSON.parse(await textOf("species.json"));
+export const { broadleaf, conifer, broadleaves, conifers, patterns, outlines } = looks;
 
-/** The look of a species; that of an average broadleaf where it is unknown. @param {string} species
- * @returns {Look} */
+/** The look of a species, or of an average broadleaf. @param {string} species @returns {Look} */
 export function lookOf(species) {
   const group = hasNeedles(species) ? conifer : {};
   return { ...broadleaf, ...group, ...(conifers[species] ?? broadleaves[species]) };
 }
 
-/** Points of a blade above its middle, of unit length. @param {Look} look */
-export function outlineOf({ form, slender }) {
-  const half = outlines[form] ?? outlines.ovate;
-  return half.map(([x, y]) => [x, 0.5 * slender * y]);
-}
-
-/** @param {Look["pattern"]} name */
-export const barkPattern = (name) => patterns[name];
-
 /** @param {string} species */
 export const hasNeedles = (species) => species in conifers;
-
-/** @param {string} species */
-export const isPotted = (species) => species === "benjamina" || species === "goldcrest";
 
 /** Numbers from 0 to 1 that are the same on every page. */
 export function seeded(state = 12345) {

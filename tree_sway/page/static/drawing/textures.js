@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Pictures painted by code: sprays of leaves, cut out by their alpha. */
 
-import { hasNeedles, lookOf, outlineOf, seeded } from "./species.js";
+import { hasNeedles, lookOf, outlines, seeded } from "./species.js";
 
 /** Leaves across a picture: a leaf alone, sprays of more and more. */
 const ACROSS = [1, 3, 6, 12, 24];
@@ -19,13 +19,10 @@ export function leavesAcross(species, size) {
   return ACROSS.find((across) => across >= wanted && across >= least) ?? ACROSS[ACROSS.length - 1];
 }
 
-/** Paint leaves: the twig comes in at the left. @param {string} species @param {number} across how many
- * leaves the picture is wide @param {boolean} isAutumn */
+/** Paint leaves of a twig. @param {string} species @param {number} across @param {boolean} isAutumn */
 export function leafPicture(species, across, isAutumn) {
-  const look = lookOf(species);
-  const base = isAutumn && look.autumn ? look.autumn : look.leaf;
-  const brush = new Brush(look, base, isAutumn && look.autumn ? base.map((c) => 1.15 * c) : look.fresh,
-    across === 1 ? LEAF_PIXELS / 2 : LEAF_PIXELS, seeded(97 + across));
+  const size = across === 1 ? LEAF_PIXELS / 2 : LEAF_PIXELS;
+  const brush = new Brush(lookOf(species), isAutumn, size, seeded(97 + across));
   const long = 1 / across;
   if (across === 1) brush.leaf(0.99);
   else if (hasNeedles(species)) brush.shoot(0.98 - 0.3 * long, long);
@@ -35,23 +32,23 @@ export function leafPicture(species, across, isAutumn) {
 }
 
 /** @param {number[]} color */
-const css = (color) => `rgb(${color.map((c) => Math.round(255 * Math.min(1, Math.max(0, c)))).join(" ")})`;
+const css = (color) => `rgb(${color.map((c) => 255 * c).join(" ")})`;
 
 /** Paints leaves and twigs of a species on a unit square, from the middle of its left side on. */
 class Brush {
-  /** @param {Look} look @param {number[]} base colour of its leaves @param {number[]} fresh of some
-   * @param {number} size [px] @param {() => number} random */
-  constructor(look, base, fresh, size, random) {
+  /** @param {Look} look @param {boolean} isAutumn @param {number} size [px] @param {() => number} random */
+  constructor(look, isAutumn, size, random) {
+    const turned = isAutumn && look.autumn;
+    const [base, fresh] = turned ? [turned, turned.map((c) => 1.15 * c)] : [look.leaf, look.fresh];
     this.look = look;
     this.random = random;
     this.unit = look.form === "compound" ? RACHIS : 1;
-    const half = outlineOf(look);
+    const half = (outlines[look.form] ?? outlines.ovate).map(([x, y]) => [x, 0.5 * look.slender * y]);
     const other = half.map(([x, y]) => [x, -y]).reverse();
     this.blade = new Path2D(`M${[...half, ...other].join("L")}Z`);
     const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-    this.context.scale(size, size);
-    this.context.translate(0, 0.5);
+    this.context.setTransform(size, 0, 0, size, 0, size / 2);
     this.context.lineCap = "round";
     this._color = () => {
       const [light, mixed] = [0.78 + 0.44 * random(), 0.35 * random()];
@@ -59,23 +56,20 @@ class Brush {
     };
   }
 
-  /** Paint something elsewhere, turned and scaled. @param {number} x @param {number} y @param {number} turn
-   * @param {number} scale @param {() => void} paint */
+  /** Paint elsewhere. @param {number} x @param {number} y @param {number} turn @param {number} scale
+   * @param {() => void} paint */
   at(x, y, turn, scale, paint) {
-    const { context } = this;
-    context.save();
-    context.translate(x, y);
-    context.rotate(turn);
-    context.scale(scale, scale);
+    const [c, s] = [scale * Math.cos(turn), scale * Math.sin(turn)];
+    this.context.save();
+    this.context.transform(c, s, -s, c, x, y);
     paint();
-    context.restore();
+    this.context.restore();
   }
 
   /** A straight line. @param {number} long @param {number} width @param {string} color */
   line(long, width, color) {
-    const { context } = this;
-    [context.strokeStyle, context.lineWidth] = [color, width];
-    context.stroke(new Path2D(`M0 0H${long}`));
+    Object.assign(this.context, { strokeStyle: color, lineWidth: width });
+    this.context.stroke(new Path2D(`M0 0H${long}`));
   }
 
   /** A twig with side twigs, leaves in turn on both sides. @param {number} leaf length of one

@@ -1,12 +1,12 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The inertia a branch feels when what it carries gives way: what model 2 knows of coupling.
+Effective inertia of a branch with a flexible subtree, for the model `branch`.
 
-Taken as rigid, a crown makes its stem too quick, for its branches bend back as the stem
-accelerates. One step of inverse iteration from the stem's own coordinate lets them: ``q = K^-1 M
-e_i`` within the subtree, and Rayleigh's quotient of q is the square of the frequency at which
-branch i really swings (Rayleigh, 1877; K is diagonal but for gravity).
+A rigid crown would make its stem too fast, for branches bend back as the stem accelerates. One
+step of inverse iteration from the coordinate of the stem includes that: ``q = K^-1 M e_i`` within
+the subtree, and Rayleigh's quotient of q is the squared frequency of branch i (Rayleigh, 1877; K
+is diagonal but for gravity).
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from tree_sway.core.reduction.matrices import Reduction
 from tree_sway.core.tree.tree import Tree
 
 
-def carried_inertia(tree: Tree, reduction: Reduction) -> Floats:
+def subtree_inertia(tree: Tree, reduction: Reduction) -> Floats:
     """
-    Inertia of each coordinate with its subtree giving way, in [kg m^2], (N,).
+    Return the inertia of each coordinate with its flexible subtree in [kg m^2], (N,).
 
-    It is never less than the diagonal of the mass matrix. Both axes of a branch that carries
-    others are taken as one, so that it does not matter how they are laid.
+    It is never less than the diagonal of the mass matrix. Both axes of a branch with children have
+    one inertia, so that it does not depend on the choice of the axes.
     """
     mass, stiffness = reduction.mass.tocsc(), reduction.stiffness.tocsc()
     inertia = np.asarray(mass.diagonal()).copy()

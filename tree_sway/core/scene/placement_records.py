@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Trees on shared tables as records: where each is, and which time step it has."""
+"""Records of trees on shared tables: their places and time steps."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.motion.standing import STANDING
+from tree_sway.core.motion.stand import PLACEMENT
 
 _FINEST_SCALE = 0.01
-"""Trees whose scales differ by less than this share have one time step."""
+"""Largest relative difference of scales of trees with the same time step."""
 
 
-def standing_rows(kinds: Ints, places: Floats, speeds: Floats) -> Records:
+def placement_records(kinds: Ints, places: Floats, speeds: Floats) -> Records:
     """
     Make the records of trees by their tables, places and winds.
 
     Places are x, y, z [m], turn about the vertical [rad] and scale, (t, 5); winds are those of
     the trees over those of their kinds, (t,).
     """
-    rows: Records = np.zeros(len(places), dtype=STANDING)
+    rows: Records = np.zeros(len(places), dtype=PLACEMENT)
     rows['kind'], rows['at'] = kinds, places[:, :3]
     rows['scale'], rows['speed'] = places[:, 4], speeds
     rows['cosine'], rows['sine'] = np.cos(0.5 * places[:, 3]), np.sin(0.5 * places[:, 3])
@@ -30,7 +30,7 @@ def standing_rows(kinds: Ints, places: Floats, speeds: Floats) -> Records:
 
 
 def own_steps(kinds: Ints, scales: Floats, dt: float) -> tuple[list[tuple[int, float]], Ints]:
-    """Return the kinds and time steps [s] there are for a step of the scene, and each tree's."""
+    """Return the kinds and time steps [s] for a step of the scene, and that of each tree."""
     steps = np.rint(np.log(scales) / _FINEST_SCALE)
     pairs = np.stack([kinds, steps], axis=1)
     found, number = np.unique(pairs, axis=0, return_inverse=True)

@@ -1,11 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How a tree gives way to steady winds: the loads on it, and where it comes to rest in them.
+Static response of a tree to steady winds: the loads on it, and its equilibria.
 
-A step of wind meets every branch, and what the coordinates cannot do is lost. So the answers to
-winds of all directions and speeds are found once, and the coordinates made of these and of the
-answers to gusts (`gust_answers`, `reduction.modes.leading_modes`).
+A wind loads every branch, and motion outside of the span of the coordinates is lost. So the
+responses to winds of all directions and speeds are found once, and the coordinates are made of
+these and of the responses to gusts (`gust_responses`, `reduction.modes.leading_modes`).
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ _TURNS, _FARTHEST = 6, 1.0
 
 
 class WindMoments:
-    """Moments (N,) on the coordinates of a tree that bends and moves, of even winds."""
+    """Moments (N,) of uniform winds on the coordinates of a tree that bends and moves."""
 
     def __init__(self, branches: Records, *, plain: bool = False) -> None:
-        """Make room to work in."""
+        """Make scratch memory."""
         self.branches, self._plain = branches, plain or bool(WHY_PLAIN)
         self.n = int(branches['n_coordinates'].sum())
 
@@ -74,20 +74,19 @@ class WindMoments:
         projector = branches['projector'][:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(n, 3, 3)
         across = projector @ winds.T
         square = np.maximum((across * winds.T).sum(axis=1), 0.0)
-        push = (branches['area'] * branches['speed'] ** 2)[:, None] * np.sqrt(square)
-        loads: Floats = (push[:, None] * across).reshape(3 * n, -1).T @ at.reshape(3 * n, -1)
-        return loads
+        load = (branches['area'] * branches['speed'] ** 2)[:, None] * np.sqrt(square)
+        return np.asarray((load[:, None] * across).reshape(3 * n, -1).T @ at.reshape(3 * n, -1))
 
     def slopes(self, shapes: Floats) -> LoadSlopes:
         """Return the slopes of the loads on some shapes (N, m)."""
         return LoadSlopes(self._records, self, shapes)
 
 
-def static_answers(
+def static_responses(
     moments: WindMoments, solve: Callable[[Floats], Floats], pressure: Callable[[float], float]
 ) -> Floats:
     """
-    Find where winds hold a tree: key rotations [rad], (N, k).
+    Find the equilibria of a tree in winds: key rotations [rad], (N, k).
 
     Parameters
     ----------
@@ -99,21 +98,21 @@ def static_answers(
         Dynamic pressure [kg/m/s^2] of a wind in [m/s].
 
     """
-    still = np.zeros(moments.n)
+    rest = np.zeros(moments.n)
     found = []
     for azimuth in _AZIMUTHS:
-        ahead = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-        upright = moments(still, still, ahead)
-        found.append(solve(upright))
+        direction = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+        at_rest = moments(rest, rest, direction)
+        found.append(solve(at_rest))
         for speed in _SPEEDS:
-            push, x = pressure(speed), still
+            scale, x = pressure(speed), rest
             for turn in range(_TURNS):
-                x = x + (solve(push * moments(x, still, ahead)) - x) / (turn + 2.0) ** 0.5
+                x = x + (solve(scale * moments(x, rest, direction)) - x) / (turn + 2.0) ** 0.5
                 x *= min(1.0, _FARTHEST / max(float(np.abs(x).max()), 1e-12))
-            found.append(x / push)
+            found.append(x / scale)
     for rise in (-np.pi / 2.0, -np.pi / 4.0, np.pi / 4.0, np.pi / 2.0):
         for azimuth in _AZIMUTHS[::2] if abs(rise) < 1.5 else _AZIMUTHS[:1]:
             level = np.cos(rise)
             wind = np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(rise)])
-            found.append(solve(moments(still, still, wind)))
+            found.append(solve(moments(rest, rest, wind)))
     return np.array(found).T

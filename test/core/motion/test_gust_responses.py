@@ -9,7 +9,7 @@ import pytest
 from tree_sway_lab.bench.sizes import gusts_and_turns
 from tree_sway_lab.kinds.kinds import kind_called
 
-from tree_sway.core.motion.gust_answers import gust_slopes
+from tree_sway.core.motion.gust_responses import gust_slopes
 from tree_sway.core.motion.response import tip_motion
 from tree_sway.core.simulator.simulator import SwaySimulator
 
@@ -27,7 +27,7 @@ def test_slopes_are_those_of_the_load(spire, azimuth):
     reductions, size = spire.reductions, 1e-3
     moments, shapes = reductions.wind_moments, reductions.natural_modes(20).shapes
     still, ahead = np.zeros(len(shapes)), np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-    load, air = gust_slopes(reductions.coupled.branches, shapes, ahead)
+    load, air = gust_slopes(reductions.with_subtrees.branches, shapes, ahead)
     by_wind = [moments(still, still, ahead + size * e) - moments(still, still, ahead - size * e)
                for e in np.eye(3)]  # fmt: skip
     by_rate = [moments(still, size * e, ahead) - moments(still, -size * e, ahead)
@@ -46,7 +46,7 @@ def test_as_many_coordinates_hold_more_of_the_motion_than_natural_modes(spire, c
         spire.step(blowing, DT)
         turns.append(spire.rotations().copy())
     turns, reductions = np.array(turns[60:]).T, spire.reductions
-    mass, branches = reductions.coupled.reduction.mass, reductions.coupled.branches
+    mass, branches = reductions.with_subtrees.reduction.mass, reductions.with_subtrees.branches
 
     def left_out(shapes):
         missed = (

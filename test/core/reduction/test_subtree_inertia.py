@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 from tree_sway.core.branch.model import TreeBeams
-from tree_sway.core.reduction.carried_inertia import carried_inertia
 from tree_sway.core.reduction.matrices import reduce_tree
 from tree_sway.core.reduction.modes import natural_modes
+from tree_sway.core.reduction.subtree_inertia import subtree_inertia
 
 
 def reduced(tree):
-    return reduce_tree(tree, TreeBeams(tree, 900.0).models(carries=True), 9e9, 3.5e9, 0.0)
+    return reduce_tree(tree, TreeBeams(tree, 900.0).models(subtrees=True), 9e9, 3.5e9, 0.0)
 
 
 def test_a_twig_that_carries_nothing_keeps_its_own(fork):
     tree = fork()
     matrices = reduced(tree)
-    inertia, alone = carried_inertia(tree, matrices), matrices.mass.diagonal()
+    inertia, alone = subtree_inertia(tree, matrices), matrices.mass.diagonal()
     assert inertia[4:] == pytest.approx(alone[4:])
     # Both axes count as one.
     both, both_alone = inertia.reshape(-1, 2).mean(axis=1), alone.reshape(-1, 2).mean(axis=1)
@@ -38,7 +38,7 @@ def test_it_brings_the_stem_nearer_to_the_coupled_trees_pace(sketch):
     truth = natural_modes(tree, matrices, 2).circular.mean()
     stiff = matrices.stiffness.diagonal()[:2].mean()
     rigid = np.sqrt(stiff / matrices.mass.diagonal()[:2].mean())
-    giving = np.sqrt(stiff / carried_inertia(tree, matrices)[:2].mean())
+    giving = np.sqrt(stiff / subtree_inertia(tree, matrices)[:2].mean())
     assert abs(giving / truth - 1.0) < 0.5 * abs(rigid / truth - 1.0)
 
 
@@ -48,6 +48,6 @@ def test_stiff_branches_give_no_way(sketch):
     drawn.add(0, 4, (1, 0, 0), 0.1, 0.1, 0.1, 1)
     tree = drawn.tree()
     matrices = reduced(tree)
-    inertia, alone = carried_inertia(tree, matrices), matrices.mass.diagonal()
+    inertia, alone = subtree_inertia(tree, matrices), matrices.mass.diagonal()
     assert inertia[:2].mean() == pytest.approx(alone[:2].mean(), rel=1e-3)
     assert inertia[2:] == pytest.approx(alone[2:], rel=1e-3)

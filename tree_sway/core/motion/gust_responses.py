@@ -1,10 +1,11 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-How a tree answers to gusts: linear motion of its modes in turbulence, in the damping of the air.
+Response of a tree to gusts: linear motion of its modes in turbulence, damped by the air.
 
-Branches that swing alike are driven together, and the air couples them: a few patterns hold what
-many modes do. Static answers hold what is slower or faster (`static_answers`).
+Branches of similar frequency are driven together, and the air couples them, so that a few patterns
+describe the motion of many modes. Static responses cover slower and faster winds
+(`static_responses`).
 """
 
 from __future__ import annotations
@@ -21,17 +22,17 @@ _AZIMUTHS = (0.3, 0.3 + np.pi / 2.0)
 """The opposite ones have the same slopes."""
 
 _COUNT, _BEYOND = 20, 1.5
-"""How many frequencies, and from and to what multiple of those of the modes."""
+"""Number of frequencies, and their range beyond those of the modes."""
 
 
-def gust_answers(branches: Records, modes: Modes, damping_ratio: Floats, law: DragLaw) -> Floats:
+def gust_responses(branches: Records, modes: Modes, damping_ratio: Floats, law: DragLaw) -> Floats:
     """
-    Find how turbulence of several speeds and directions moves a tree, whose tips all move alike.
+    Find the response to turbulence of several speeds and directions, of unit motion of the tips.
 
     Parameters
     ----------
     branches
-        Of the tree.
+        Records of the branches.
     modes, damping_ratio
         Natural modes, and the damping ratio of the wood in each, (m,).
     law
@@ -45,7 +46,7 @@ def gust_answers(branches: Records, modes: Modes, damping_ratio: Floats, law: Dr
     """
     circular = modes.circular
     swept = np.geomspace(circular[0] / _BEYOND, _BEYOND * circular[-1], _COUNT)[:, None]
-    # The root of turbulence's w^(-5/3) over bands as wide as w; flat below the slowest mode.
+    # Root of the spectrum w^(-5/3) over bands of width w, constant below the slowest mode.
     gusts = np.maximum(swept, circular[0])[:, :, None] ** (-1.0 / 3.0)
     free = circular**2 - swept**2 + 2j * damping_ratio * circular * swept
     tips = tip_motion(branches, modes.shapes).reshape(-1, len(circular))
@@ -56,8 +57,8 @@ def gust_answers(branches: Records, modes: Modes, damping_ratio: Floats, law: Dr
         for speed in _SPEEDS:
             system = 1j * swept[:, :, None] * (pressure(speed, *law) * speed * air)
             system += free[:, :, None] * np.eye(len(circular))
-            answers = gusts * np.linalg.solve(system, load)
-            parts = np.concatenate([answers.real, answers.imag]).swapaxes(0, 1)
+            responses = gusts * np.linalg.solve(system, load)
+            parts = np.concatenate([responses.real, responses.imag]).swapaxes(0, 1)
             flat = parts.reshape(len(circular), -1)
             found.append(flat / np.linalg.norm(tips @ flat))
     return np.hstack(found)
@@ -67,7 +68,8 @@ def gust_slopes(branches: Records, shapes: Floats, ahead: Floats) -> tuple[Float
     """
     Slopes of the load on shapes (N, m) in a wind (3,) of 1 kg/m^3, the tree at rest.
 
-    By the wind, (m, 3), and, with the opposite sign, by the rates of the shapes, (m, m).
+    Returned are slopes by the wind, (m, 3), and, with the opposite sign, by the rates of the
+    shapes, (m, m).
     """
     m, bases = shapes.shape[1], base_motion(branches, shapes)
     at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]

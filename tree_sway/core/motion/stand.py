@@ -3,11 +3,11 @@
 """
 Kernels of a stand: many trees on few tables, solved in one call and placed kind by kind.
 
-A tree of a stand is its kind turned about the vertical, scaled, and moved to its place. A
-tree scaled by k bends by the same angles in the same wind, and swings k times slower: its inertia
-goes with the fifth power of its size, its stiffness and the wind's moment with the third. So it is
-its kind, stepped by 1/k of the time. (Gravity and the profile of the wind are those of the kind,
-but that the speed is that at its own height.)
+A tree of a stand is its kind rotated about the vertical, scaled, and moved to its place. A tree
+scaled by k bends by the same angles in the same wind, and swings k times slower: its inertia is
+proportional to the fifth power of its size, its stiffness and the wind's moment to the third. So
+it is stepped as its kind, by 1/k of the time. (Gravity and the profile of the wind are those of
+the kind, with the wind speed at the height of the tree.)
 """
 
 from __future__ import annotations
@@ -21,57 +21,57 @@ from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf, Singles
 from tree_sway.core.kernel import fused
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.motion.placing import NONE, place
-from tree_sway.core.motion.records import Heads, Instances, Segments, Tables, TimeSteps
+from tree_sway.core.motion.records import Blocks, Instances, Segments, Tables, TimeSteps
 from tree_sway.core.motion.simd import settle, write_past_caches
 from tree_sway.core.motion.wind_basis import step_instance
 
 
-class Standing:
-    """How a tree of a stand is placed."""
+class Placement:
+    """Place and kind of a tree of a stand."""
 
-    kind: int  # its row among the tables
-    time_step: int  # its row among the time_steps
-    is_still: int  # whether it is not solved
-    is_clamped: int  # whether its last wind was clamped to the limit of its table
-    scale: float  # its height over that of its kind
-    speed: float  # wind at its height over that at its kind's
-    cosine: float  # of half the angle that it is turned by
+    kind: int  # row of its table
+    time_step: int  # row of its time step
+    is_still: int  # 1 where it is not solved
+    is_clamped: int  # 1 where its last wind was clamped to the limit of the table
+    scale: float  # height over that of its kind
+    speed: float  # wind at its height over that at its kind's height
+    cosine: float  # cosine of half its rotation about the vertical
     sine: float
-    at: Annotated[Floats, 3]  # its root node [m]
+    at: Annotated[Floats, 3]  # root node [m]
 
 
-Stand = RecordsOf[Standing]
-STANDING = np.dtype(fields_of(Standing))
+Placements = RecordsOf[Placement]
+PLACEMENT = np.dtype(fields_of(Placement))
 
 _CACHED = 1 << 21
-"""Numbers in a pose block up to which it is written to the caches: 16 MB, half of a large one."""
+"""Largest pose block in numbers that is written to the caches: 16 MB, half of a large cache."""
 
 
 @fused
-def step_standing(
+def step_stand(
     tables: Tables,
     time_steps: TimeSteps,
-    standing: Stand,
+    placements: Placements,
     instances: Instances,
     drag_laws: Floats,
     winds: Floats,
 ) -> tuple[int, int]:
     """
-    Step every tree that is not still, each with its mean wind over the step in [m/s], (t, 3).
+    Step every tree that is not still, in its mean wind over the step in [m/s], (t, 3).
 
-    Records are of `table_layout` (k,), `time_step_layout` (p,), `STANDING` and
+    Records are of `table_layout` (k,), `time_step_layout` (p,), `PLACEMENT` and
     `instance_layout` (t,); C and N of each kind (k, 2).
 
     Returns
     -------
     tuple
         Trees whose wind was clamped to the limit of their table, and trees whose motion was not
-        finite and that go on from rest.
+        finite and that continue from rest.
 
     """
     clamped, restarted = 0, 0
-    for t in range(len(standing)):
-        here = standing[t]
+    for t in range(len(placements)):
+        here = placements[t]
         if here.is_still:
             continue
         table, instance = tables[here.kind], instances[t]
@@ -103,29 +103,29 @@ def step_standing(
 
 
 @fused
-def place_standing(
-    standing: Stand, instances: Instances, which: Ints, shapes: Singles,
-    segments: Segments, heads: Heads, bases: Floats, x: Floats, poses: Floats,
+def place_stand(
+    placements: Placements, instances: Instances, which: Ints, shapes: Singles,
+    segments: Segments, blocks: Blocks, bases: Floats, x: Floats, poses: Floats,
     out: Floats,
 ) -> None:  # fmt: skip
     """
     Place trees of one kind.
 
-    Each is placed in memory that stays in the cache, then written out in one run: writing branch
-    by branch to memory that does not takes longer than both.
+    Each is placed in memory that stays in the cache, then written in one run, which is faster than
+    to write single branches to other memory.
 
     Parameters
     ----------
-    standing, instances
-        As of `step_standing`.
+    placements, instances
+        Records, as in `step_stand`.
     which
         Trees and their first rows in the pose block, (w, 2).
     shapes
-        Of the kind, as of `placing.expand`.
-    segments, heads, bases
-        Of the kind, as of `placing.place`.
+        Shapes of the kind, as in `placing.expand`.
+    segments, blocks, bases
+        Records and bases of the kind, as in `placing.place`.
     x, poses
-        To work in, (N,) and (m, 7).
+        Scratch memory, (N,) and (m, 7).
     out
         Pose block of the stand, (n, 7), rows of these trees written.
 
@@ -133,9 +133,9 @@ def place_standing(
     block, whole = poses.reshape(-1), out.reshape(-1)
     for row in range(len(which)):
         t, first = which[row, 0], which[row, 1]
-        here = standing[t]
+        here = placements[t]
         place(
-            instances[t : t + 1], shapes, segments, heads, bases,
+            instances[t : t + 1], shapes, segments, blocks, bases,
             here.cosine, here.sine, here.scale, x, NONE, here.at[:], poses,
         )  # fmt: skip
         into = whole[7 * first : 7 * first + len(block)]
