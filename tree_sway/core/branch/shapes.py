@@ -160,13 +160,9 @@ def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
 
 
 def bent_by_weight(
-    beam: BranchBeam,
-    mass: Floats,
-    subtrees: SubtreeSums,
-    curvatures: Floats,
-    shear_ratio: float,
-    gravity: float,
-) -> Floats:
+    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, curvatures: Floats,
+    shear_ratio: float, gravity: float,
+) -> Floats:  # fmt: skip
     """
     Find how far loads bend a branch whose weight moves with it.
 

@@ -47,11 +47,10 @@ _SLOPE_AT = 0.35
 _MOST_ENERGY = 3.0
 _STEPS, _FARTHEST, _AT_REST, _NEAR_REST = 20, 0.3, 0.01, 0.05
 
-_BREEZE, _FLUTTER = 10.0, 3.0
+_BREEZE, _FLUTTER = 6.0, 0.6
 """
 Largest ratio of energy that slopes add to a sway over energy that damping takes, in winds above
-this speed [m/s]: from some three on, eigenvalues of tables of trees with hanging twigs show
-flutter.
+this speed [m/s]; from 1 on, a sway of two coordinates could grow.
 
 """
 
