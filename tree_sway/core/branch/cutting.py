@@ -34,7 +34,7 @@ each other bend a stem between their bases, by more shapes than one key segment 
 
 """
 
-_LEAST = 20
+_LEAST = 21
 """Key segments of a tree, where it has the segments for them: a small tree shows every mode."""
 
 
@@ -81,7 +81,7 @@ def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
     most_turned = np.nan_to_num(np.maximum(turn / TURN, bow / BOW), nan=1.0)
     carried = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches) / CARRIED
     wanted = np.maximum(np.minimum(most_turned, MOST_PIECES), np.minimum(carried, MOST_CARRYING))
-    wanted = np.ceil(np.maximum(wanted, _LEAST / tree.n_branches)).astype(np.int64)
+    wanted = np.ceil(np.maximum(wanted, _LEAST // tree.n_branches)).astype(np.int64)
     return np.asarray(np.clip(wanted, 1, np.maximum(most, 1)))
 
 

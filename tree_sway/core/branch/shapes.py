@@ -100,15 +100,9 @@ def across(chord: Floats) -> tuple[Floats, Floats]:
 
 
 def shape_fields(
-    beam: BranchBeam,
-    drag_area: Floats,
-    mass: Floats,
-    subtrees: SubtreeSums,
-    curvatures: Floats,
-    shear_ratio: float,
-    n_pairs: int = 1,
-    n_turns: int = 0,
-) -> tuple[SlopeShape, tuple[RotationField, ...]]:
+    beam: BranchBeam, drag_area: Floats, mass: Floats, subtrees: SubtreeSums, curvatures: Floats,
+    shear_ratio: float, n_pairs: int = 1, n_turns: int = 0,
+) -> tuple[SlopeShape, tuple[RotationField, ...]]:  # fmt: skip
     """
     Find the fields by which a branch moves.
 
