@@ -37,9 +37,3 @@ def test_a_stem_of_many_limbs_is_cut_though_it_does_not_turn():
     tree = kind_called('limbs16')
     pieces = pieces_by_turn(tree, np.zeros(tree.n_branches))
     assert pieces.tolist() == [-(-16 // CARRIED), *[1] * 16]
-
-
-def test_a_tree_of_few_branches_is_cut_finely():
-    tree = kind_called('limbs4')
-    pieces = pieces_by_turn(tree, np.zeros(tree.n_branches))
-    assert pieces.tolist() == [4, 3, 3, 3, 3]

@@ -34,9 +34,6 @@ each other bend a stem between their bases, by more shapes than one key segment 
 
 """
 
-_LEAST = 21
-"""Key segments of a tree, where it has the segments for them: a small tree shows every mode."""
-
 
 @dataclass(frozen=True)
 class CutTree:
@@ -72,7 +69,7 @@ def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
     """
     Count key segments of branches, (b,), by rotation [rad], (b,), curvature and children.
 
-    A piece has two segments or more, a tree of few branches many pieces.
+    A piece has two segments or more.
     """
     first, last = tree.branch_first[:-1], tree.branch_first[1:] - 1
     cosine = np.einsum('bk,bk->b', tree.direction[first], tree.direction[last])
@@ -81,7 +78,7 @@ def pieces_by_turn(tree: Tree, turn: Floats) -> Ints:
     most_turned = np.nan_to_num(np.maximum(turn / TURN, bow / BOW), nan=1.0)
     carried = np.bincount(tree.branch_parent[1:], minlength=tree.n_branches) / CARRIED
     wanted = np.maximum(np.minimum(most_turned, MOST_PIECES), np.minimum(carried, MOST_CARRYING))
-    wanted = np.ceil(np.maximum(wanted, _LEAST // tree.n_branches)).astype(np.int64)
+    wanted = np.ceil(wanted).astype(np.int64)
     return np.asarray(np.clip(wanted, 1, np.maximum(most, 1)))
 
 

@@ -39,9 +39,6 @@ _LEFT = 1e-4
 _FEW, _ONE_OF = 24, 50
 """Largest number of branches beside the stem with further shapes, or one branch in this number."""
 
-_SMALL = 16
-"""Branches of a tree that all get further shapes, and one pair more."""
-
 _LIGHT = 1e-3
 """Share of the mass of a tree below which a branch with its subtree is not considered."""
 
@@ -249,13 +246,10 @@ class TreeBeams:
         choice
             ``none``, the ``stem``, all ``carriers`` of others, ``all``, or those ``needed``: the
             stem and the branches whose static fields miss most of the energy when they are shaken,
-            until the others miss no more than `_LEFT` of the energy of all branches; all of a
-            tree of `_SMALL` branches.
+            until the others miss no more than `_LEFT` of the energy of all branches.
 
         """
         parent = self._tree.branch_parent
-        if choice == 'needed' and len(parent) <= _SMALL:
-            choice = 'all'
         if choice != 'needed':
             chosen = {
                 'none': (), 'stem': (0,), 'carriers': (0, *parent[1:].tolist()),
@@ -297,8 +291,7 @@ class TreeBeams:
         """Return the number of pairs of a branch, and of fields of rotation about its chord."""
         if branch not in enriched:
             return 1, 0
-        n_pairs = N_PAIRS + (self._tree.n_branches <= _SMALL)
-        return n_pairs, N_TURNS if self._tree.branch_parent[branch] < 0 else FEWER_TURNS
+        return N_PAIRS, N_TURNS if self._tree.branch_parent[branch] < 0 else FEWER_TURNS
 
 
 def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
