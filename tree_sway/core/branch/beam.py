@@ -82,14 +82,9 @@ class BranchBeam:
     """
 
     def __init__(
-        self,
-        start: Floats,
-        end: Floats,
-        base_diameter: Floats,
-        tip_diameter: Floats,
-        children: Attachments,
-        root_compliance: float = 0.0,
-    ) -> None:
+        self, start: Floats, end: Floats, base_diameter: Floats, tip_diameter: Floats,
+        children: Attachments, root_compliance: float = 0.0,
+    ) -> None:  # fmt: skip
         """Set the quadrature points along the branch."""
         step = end - start
         seats = np.round(children.segment + children.fraction, _DIGITS)

@@ -22,6 +22,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.branch.beam import Attachments, BranchBeam, cross, RotationField, SlopeShape
 from tree_sway.core.branch.shapes import (
+    bent_by_weight,
     FEWER_TURNS,
     N_PAIRS,
     N_TURNS,
@@ -106,6 +107,8 @@ class TreeBeams:
         Leaves of each branch in [kg] and [m^2], (b,), spread evenly along it; none if None.
     root_compliance
         Root compliance of the stem in [1/m^3], as in `BranchBeam`.
+    gravity
+        Gravity over Young's modulus in [m/s^2/Pa]; 0 for no weight.
     known
         Known beams of the same wood, and the number of that of each branch, (b,), -1 for none.
 
@@ -121,11 +124,13 @@ class TreeBeams:
         leaf_mass: Floats | None = None,
         leaf_area: Floats | None = None,
         root_compliance: float = 0.0,
+        gravity: float = 0.0,
         known: tuple[TreeBeams, Ints] | None = None,
     ) -> None:
         """Make the beams and sum up the subtrees."""
         n = tree.n_branches
         self._tree, self._density, self._shear_ratio = tree, density, shear_ratio
+        self._gravity = gravity
         self._leaf_mass = np.zeros(n) if leaf_mass is None else leaf_mass
         self._leaf_area = np.zeros(n) if leaf_area is None else leaf_area
         self._speed = np.ones(tree.n_segments) if speed_profile is None else speed_profile
@@ -272,7 +277,10 @@ class TreeBeams:
         if key not in self._known:
             beam, drag_area, mass, children, _ = self._bare[branch]
             subtrees = self._sums.select(children[:n_subtrees])
-            curvatures = self._curvatures(branch, n_subtrees)
+            curvatures = bent_by_weight(
+                beam, mass, subtrees, self._curvatures(branch, n_subtrees), self._shear_ratio,
+                self._gravity,
+            )  # fmt: skip
             shape, fields = shape_fields(
                 beam, drag_area, mass, subtrees, curvatures, self._shear_ratio, n_pairs, n_turns
             )

@@ -41,6 +41,13 @@ fields may miss.
 _NEGLIGIBLE = 1e-4
 """Smallest share of a field that is orthogonal to those before."""
 
+_LIMP, _BLOCKS, _BUCKLED = 0.1, 3, 0.05
+"""
+Weight over stiffness from which a branch is limp, its Krylov blocks by weight, and the smallest
+share of its stiffness that weight leaves.
+
+"""
+
 _UPWARD = 0.3
 _WIND_WEIGHTS = np.array([1.0, 1.0, _UPWARD])
 
@@ -93,15 +100,9 @@ def across(chord: Floats) -> tuple[Floats, Floats]:
 
 
 def shape_fields(
-    beam: BranchBeam,
-    drag_area: Floats,
-    mass: Floats,
-    subtrees: SubtreeSums,
-    curvatures: Floats,
-    shear_ratio: float,
-    n_pairs: int = 1,
-    n_turns: int = 0,
-) -> tuple[SlopeShape, tuple[RotationField, ...]]:
+    beam: BranchBeam, drag_area: Floats, mass: Floats, subtrees: SubtreeSums, curvatures: Floats,
+    shear_ratio: float, n_pairs: int = 1, n_turns: int = 0,
+) -> tuple[SlopeShape, tuple[RotationField, ...]]:  # fmt: skip
     """
     Find the fields by which a branch moves.
 
@@ -150,6 +151,83 @@ def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
     tangent = beam.tangent
     across = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
     return np.asarray((drag_area * exposure(beam)[:, None])[..., None, None] * across[:, None])
+
+
+def bent_by_weight(
+    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, curvatures: Floats,
+    shear_ratio: float, gravity: float,
+) -> Floats:  # fmt: skip
+    """
+    Find how far loads bend a branch whose weight moves with it.
+
+    Weight that is moved sideways bends and twists a limp branch further; it straightens a hanging
+    one (second-order theory: Timoshenko & Gere, 1961). The response is a Galerkin solution in the
+    block Krylov space of the curvatures by the loads and the response to weight.
+
+    Parameters
+    ----------
+    beam, mass, subtrees, shear_ratio
+        The same as in `shape_fields`.
+    curvatures
+        Curvatures by the loads without weight, (p, 5, k, 3).
+    gravity
+        Gravity over Young's modulus in [m/s^2/Pa].
+
+    Returns
+    -------
+    Floats
+        Curvatures (p, 5, k, 3), unchanged where weight matters little or would buckle the branch.
+
+    """
+    before, nodes, _ = beam.from_base(mass)
+    beyond = nodes[-1] - before
+    if len(subtrees.mass):
+        beyond += beam.child_lever[1] @ subtrees.mass
+    limpness = gravity * float(beam.integral(beyond / beam.second_moment)) * float(beam.node[-1])
+    if limpness < _LIMP:
+        return curvatures
+
+    def by_weight(vectors: Floats) -> Floats:
+        bent = np.moveaxis(_curvature_of(beam, vectors, shear_ratio), 0, 2)
+        moments = gravity * _moment_of_weight(beam, mass, subtrees, bent, beyond)
+        response = beam.curvature_in_space(moments, shear_ratio)
+        return _energy_vector(beam, np.moveaxis(response, 2, 0), shear_ratio)
+
+    loads = _energy_vector(beam, np.moveaxis(curvatures, 2, 0), shear_ratio)
+    blocks = [loads]
+    for _ in range(_BLOCKS):
+        block = by_weight(blocks[-1])
+        blocks.append(block / max(float(np.linalg.norm(block)), 1e-300))
+    basis = np.linalg.qr(np.vstack(blocks).T)[0]
+    stiffness = np.eye(basis.shape[1]) - basis.T @ by_weight(basis.T).T
+    if np.linalg.eigvalsh(stiffness + stiffness.T)[0] < 2.0 * _BUCKLED:
+        return curvatures
+    amounts = np.linalg.solve(stiffness, basis.T @ loads.T)
+    return np.moveaxis(_curvature_of(beam, (basis @ amounts).T, shear_ratio), 0, 2)
+
+
+def _moment_of_weight(
+    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, curvature: Floats, beyond: Floats
+) -> Floats:
+    """
+    Return the change of the internal moment by weight as a branch bends, for a gravity of 1.
+
+    The moment is in the frame of the cross-section, which rotates from that at rest. Curvatures
+    are (p, 5, k, 3); the mass beyond each point is in [kg], (p, 5).
+    """
+    slope, _, child_slope = beam.from_base(curvature)
+    moved, _, child_moved = beam.from_base(cross(slope, beam.tangent[:, None, None]))
+    places = np.concatenate([moved, beam.point[:, :, None]], axis=2)
+    before, nodes, _ = beam.from_base(places * mass[..., None, None])
+    first = nodes[-1] - before
+    if len(subtrees.mass):
+        feet = beam.child_point[: len(subtrees.mass)]
+        lever = subtrees.mass_moment - subtrees.mass[:, None] * feet
+        weighed = subtrees.mass[:, None, None] * child_moved + cross(child_slope, lever[:, None])
+        sums = np.concatenate([weighed, subtrees.mass_moment[:, None]], axis=1)
+        first += np.tensordot(beam.child_lever[1], sums, axes=1)
+    moments = cross(first - beyond[..., None, None] * places, np.array([0.0, 0.0, -1.0]))
+    return np.asarray(moments[:, :, :-1] - cross(slope, moments[:, :, -1:]))
 
 
 def exposure(beam: BranchBeam) -> Floats:
@@ -274,21 +352,21 @@ def _inertial_wrench(
 
 
 def _energy_vector(beam: BranchBeam, curvature: Floats, shear_ratio: float) -> Floats:
-    """Return curvature (p, 5, 3) as a vector whose square is twice its energy, by modulus."""
+    """Return curvatures (..., p, 5, 3) as vectors, squares twice the energy by modulus."""
     measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
     vector: Floats = measure * _twisted(beam, curvature, math.sqrt(2.0 * shear_ratio))
-    return vector.ravel()
+    return vector.reshape(*curvature.shape[:-3], -1)
 
 
 def _curvature_of(beam: BranchBeam, vector: Floats, shear_ratio: float) -> Floats:
-    """Return the curvature (p, 5, 3) of an `_energy_vector`."""
+    """Return the curvature (..., p, 5, 3) of an `_energy_vector`."""
     measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
-    curvature = vector.reshape(*beam.weight.shape, 3) / measure
+    curvature = vector.reshape(*vector.shape[:-1], *beam.weight.shape, 3) / measure
     return _twisted(beam, curvature, 1.0 / math.sqrt(2.0 * shear_ratio))
 
 
 def _twisted(beam: BranchBeam, curvature: Floats, scale: float) -> Floats:
-    """Curvature, (p, 5, 3), with its twist scaled by a factor."""
+    """Curvature, (..., p, 5, 3), with its twist scaled by a factor."""
     along = beam.tangent[:, None, :]
     about = (curvature * along).sum(axis=-1, keepdims=True) * along
     return np.asarray(curvature + (scale - 1.0) * about)

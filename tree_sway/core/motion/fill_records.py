@@ -224,12 +224,9 @@ def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Pl
 
 
 def branch_records(
-    tree: Tree,
-    models: list[BranchModel],
-    reduction: Reduction,
-    places: Places,
+    tree: Tree, models: list[BranchModel], reduction: Reduction, places: Places,
     speed_profile: Floats,
-) -> Records:
+) -> Records:  # fmt: skip
     """
     Fill the branches for stepping and placing: records of `branch_layout`, (b,).
 

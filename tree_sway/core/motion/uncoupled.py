@@ -47,13 +47,9 @@ class UncoupledBank(Branchwise):
     shapes = np.zeros((0, 0))
 
     def __init__(
-        self,
-        branches: Records,
-        inertia: Floats,
-        damping: Floats,
-        stiffness: Floats,
+        self, branches: Records, inertia: Floats, damping: Floats, stiffness: Floats,
         weight: Floats,
-    ) -> None:
+    ) -> None:  # fmt: skip
         """Make room for the coefficients and the state."""
         n = len(branches)
         self.branches = branches

@@ -254,8 +254,7 @@ def step_instance(
         for i in range(len(eta)):
             eta[i], rate[i] = share * eta[i], share * rate[i]
         instance.outside = 0 if is_clamped else 1
-    outside: int = instance.outside
-    return outside
+    return int(instance.outside)
 
 
 @fused

@@ -47,11 +47,11 @@ _SLOPE_AT = 0.35
 _MOST_ENERGY = 3.0
 _STEPS, _FARTHEST, _AT_REST, _NEAR_REST = 20, 0.3, 0.01, 0.05
 
-_BREEZE, _FLUTTER = 10.0, 3.0
+_BREEZE, _STORM, _FLUTTER = 6.0, 25.0, (0.6, 3.0)
 """
-Largest ratio of energy that slopes add to a sway over energy that damping takes, in winds above
-this speed [m/s]: from some three on, eigenvalues of tables of trees with hanging twigs show
-flutter.
+Largest ratio of energy that slopes add to a sway over energy that damping takes, in winds between
+the two speeds [m/s] and above: eigenvalues of tables of trees with hanging twigs show flutter from
+some three on, and the equilibria of storms depend on smaller ones.
 
 """
 
@@ -152,7 +152,8 @@ class WindBasisTable:
                 turning[k, j], damping[k, j] = self._slopes(x, ahead)
                 if SPEEDS[j] > _BREEZE:
                     air = self._damping - s / SPEEDS[j] * np.diag(damping[k, j])
-                    turning[k, j] -= self._feeding(s * turning[k, j], air) / s
+                    most = _FLUTTER[SPEEDS[j] > _STORM]
+                    turning[k, j] -= self._feeding(s * turning[k, j], air, most) / s
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
         load -= load[:, :1]
         for name, values in (('equilibrium', equilibrium), ('amount', amount), ('load', load)):
@@ -165,7 +166,7 @@ class WindBasisTable:
         least = 1e-6 * np.abs(levels).max() * np.arange(N_LEVELS)
         table['levels'] = np.maximum.accumulate(levels, axis=1) + least
 
-    def _feeding(self, slopes: Floats, damping: Floats) -> Floats:
+    def _feeding(self, slopes: Floats, damping: Floats, most: float) -> Floats:
         """
         Find the part of slopes (m, m) [1/s^2] that adds more energy than damping (m,) [1/s] takes.
 
@@ -175,9 +176,9 @@ class WindBasisTable:
         circulating = 0.5 * (slopes - slopes.T)
         scale = 1.0 / np.sqrt(np.maximum(damping, 1e-6 * self._root) * self._root)
         scaled = circulating * scale * scale[:, None]
-        if float(np.linalg.norm(scaled)) <= _FLUTTER:  # at least the spectral norm
+        if float(np.linalg.norm(scaled)) <= most:  # at least the spectral norm
             return np.zeros_like(slopes)
-        return circulating * max(0.0, 1.0 - _FLUTTER / float(np.linalg.norm(scaled, 2)))
+        return circulating * max(0.0, 1.0 - most / float(np.linalg.norm(scaled, 2)))
 
     def _equilibrium(self, at: Floats, s: float, ahead: Floats, turning: Floats) -> Floats:
         """

@@ -109,14 +109,9 @@ class Factors:
 
 
 def reduce_tree(
-    tree: Tree,
-    models: list[BranchModel],
-    modulus: float,
-    shear_modulus: float,
-    gravity: float,
-    *,
-    subtrees: bool = True,
-) -> Reduction:
+    tree: Tree, models: list[BranchModel], modulus: float, shear_modulus: float, gravity: float,
+    *, subtrees: bool = True,
+) -> Reduction:  # fmt: skip
     """
     Assemble the matrices of the key rotations.
 

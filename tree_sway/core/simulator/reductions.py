@@ -201,6 +201,7 @@ class TreeReductions:
             leaf_mass=cut.share * leaf_mass[cut.branch],
             leaf_area=cut.share * self.leaf_load_area[cut.branch],
             root_compliance=species.modulus / species.root_stiffness,
+            gravity=self.settings.gravity / species.modulus,
             known=known,
         )
 

@@ -70,8 +70,6 @@ class WindProfile:
         if self.kind == 'none':
             return np.ones_like(height)
         if self.kind == 'power':
-            power: Floats = (height / self.anemometer_height) ** self.exponent
-            return power
+            return np.asarray((height / self.anemometer_height) ** self.exponent)
         above = np.maximum(height / self.roughness, 1.0)
-        logarithm: Floats = np.log(above) / math.log(self.anemometer_height / self.roughness)
-        return logarithm
+        return np.asarray(np.log(above) / math.log(self.anemometer_height / self.roughness))

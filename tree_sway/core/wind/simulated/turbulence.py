@@ -99,8 +99,7 @@ class Turbulence:
         """Return one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3)."""
         time = self.scales / self.mean_speed
         x = np.asarray(frequency, dtype=np.float64)[..., None] * time
-        spectra: Floats = self.deviations**2 * 4.0 * time / (1.0 + 6.0 * x) ** (5 / 3)
-        return spectra
+        return np.asarray(self.deviations**2 * 4.0 * time / (1.0 + 6.0 * x) ** (5 / 3))
 
     def record(self, n_samples: int, rate: float, rng: np.random.Generator) -> Floats:
         """
@@ -163,8 +162,7 @@ def along_bearing(record: Floats, bearing_to: float) -> Floats:
     """
     sine, cosine = np.sin(bearing_to), np.cos(bearing_to)
     enu_from_wind = np.array([[sine, -cosine, 0.0], [cosine, sine, 0.0], [0.0, 0.0, 1.0]])
-    turned: Floats = record @ enu_from_wind.T
-    return turned
+    return np.asarray(record @ enu_from_wind.T)
 
 
 def simulate_turbulence(
