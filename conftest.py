@@ -6,13 +6,11 @@ import contextlib
 import faulthandler
 import functools
 import hashlib
-import importlib
 import os
 from pathlib import Path
 import random
 import sys
 import tempfile
-import threading
 import time
 
 # Before a participant is made: the profile counts for the whole process.
@@ -42,8 +40,6 @@ LAST_DOMAIN = 101
 """Of those whose ports are not handed out by the system."""
 
 
-CORE = Path(__file__).parent / 'test' / 'core'
-
 LONGEST, LONGEST_LONG = 300.0, 1500.0
 """Time that a test may take with its fixtures, and one that is marked `long` [s]."""
 
@@ -63,37 +59,19 @@ def pytest_runtest_protocol(item):
     """
     longest = LONGEST_LONG if item.get_closest_marker('long') else LONGEST
     faulthandler.dump_traceback_later(longest, exit=True, file=_errors)
-    with contextlib.nullcontext() if CORE in item.path.parents else untraced():
-        yield
+    yield
     faulthandler.cancel_dump_traceback_later()
 
 
 @contextlib.contextmanager
 def untraced():
-    """
-    Leave out the tracer of coverage, which makes all Python slower by a half.
-
-    The core is to be covered by its own tests.
-    """
-    tracer, of_threads = sys.gettrace(), threading.gettrace()
+    """Leave out the tracer of coverage, which makes all Python slower by a half."""
+    tracer = sys.gettrace()
     sys.settrace(None)
-    threading.settrace(None)
     try:
         yield
     finally:
         sys.settrace(tracer)
-        threading.settrace(of_threads)
-
-
-@pytest.hookimpl(hookwrapper=True)
-def pytest_collection():
-    """Collect untraced, but for what runs where modules of the core are imported."""
-    for path in sorted((Path(__file__).parent / 'tree_sway' / 'core').rglob('*.py')):
-        importlib.import_module(
-            '.'.join(path.relative_to(Path(__file__).parent).with_suffix('').parts)
-        )
-    with untraced():
-        yield
 
 
 @contextlib.contextmanager
