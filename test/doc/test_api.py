@@ -39,6 +39,7 @@ def test_every_entry_is_there_and_says_what_it_is(kind: str, entry: str) -> None
         assert found.__doc__.strip()
 
 
+@pytest.mark.long
 def test_the_pages_build_without_a_warning(tmp_path: Path) -> None:
     pytest.importorskip('sphinx', reason='needs sphinx')
     pytest.importorskip('myst_parser', reason='needs myst-parser')

@@ -77,10 +77,8 @@ def middle(simulator, segment):
     return pose[:3] + Rotation.from_quat(pose[3:]).apply(half)
 
 
-@pytest.mark.parametrize(
-    'name',
-    ['leaning', *(pytest.param(each, marks=pytest.mark.long) for each in ('forked', 'palm'))],
-)
+@pytest.mark.long
+@pytest.mark.parametrize('name', ['leaning', 'forked', 'palm'])
 def test_let_go_it_swings_and_decays_as_every_segment_solved(name):
     pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
     tree = forked_tree(0.65, 0.6, generations=3) if name == 'forked' else kind_called(name)

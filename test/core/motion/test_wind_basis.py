@@ -72,7 +72,10 @@ TREES = {
 }
 
 
-@pytest.mark.parametrize('name', TREES)
+@pytest.mark.parametrize(
+    'name',
+    [pytest.param(n, marks=[pytest.mark.long] if n == 'benjamina' else []) for n in TREES],
+)
 def test_it_sways_as_all_coordinates_do(name):
     tree = TREES[name]()
     for speed, most in ((5.0, 0.02), (12.0, 0.04)):
