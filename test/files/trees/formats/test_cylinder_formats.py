@@ -73,7 +73,7 @@ def test_matlab_arrays_of_structs(tmp_path):
         savemat(tmp_path / 'two.mat', {'models': models})
         for tree_file in read_trees(tmp_path / 'two.mat', **AS_SCANNED):
             assert_is_the_fork(tree_file)
-        assert read_tree(tmp_path / 'two.mat').notes[-1] == 'the file holds 1 more trees'
+        assert read_tree(tmp_path / 'two.mat').notes[-1] == 'the file has 1 more trees'
 
 
 def test_matlab_7_3_says_how_to_save_it(tmp_path):
