@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.branch.shapes import MAX_COORDINATES
 from tree_sway.core.motion.fill_records import (
     assign_slots,
     block_records,
@@ -20,7 +19,12 @@ from tree_sway.core.motion.fill_records import (
     segment_records,
 )
 from tree_sway.core.motion.placing import GIVEN, place, room_for
-from tree_sway.core.motion.records import block_layout, BRANCH, SEGMENT
+from tree_sway.core.motion.records import (
+    block_layout,
+    branch_layout,
+    room_for_fields,
+    segment_layout,
+)
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import Description
@@ -96,11 +100,9 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     matrix, turns = arrays['basis_matrix'].astype(np.float64), arrays['turn']
     slope, tip_slope = arrays['segment_slope'], arrays['segment_tip_slope']
     block, _, n_records = assign_slots(first, parent)
-    sizes = len(parent), n_records, len(np.unique(block)) + 1
-    memory = sum(
-        count * layout.itemsize
-        for count, layout in zip(sizes, (BRANCH, SEGMENT, block_layout()), strict=True)
-    )
+    sizes, room = (len(parent), n_records, len(np.unique(block)) + 1), room_for_fields(keys.max())
+    layouts = branch_layout(room), segment_layout(room), block_layout(room)
+    memory = sum(n * layout.itemsize for n, layout in zip(sizes, layouts, strict=True))
     if memory > MOST_MEMORY:
         what = f'a kind of {memory // 2**20} MiB when laid out'
         cure = f'describe a tree of fewer branches: up to {MOST_MEMORY // 2**20} MiB'
@@ -109,12 +111,12 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     branch = np.repeat(np.arange(len(parent)), np.diff(first))
     rank = np.arange(len(branch)) - first[branch]
     # By its slope about the axes across its chord, or by its own rows.
-    turn = np.zeros((len(branch), MAX_COORDINATES, 3))
+    turn = np.zeros((len(branch), room, 3))
     turn[:, 0] = slope[:, None] * frame[branch, 2]
     turn[:, 1] = -slope[:, None] * frame[branch, 1]
     turn[own_turn[branch] >= 0] = 0.0
-    on_parent = np.zeros((len(parent), MAX_COORDINATES, 3))
-    for key in range(MAX_COORDINATES):
+    on_parent = np.zeros((len(parent), room, 3))
+    for key in range(room):
         here = (base_turn >= 0) & (key < keys[parent])
         on_parent[here, key] = turns[base_turn[here] + key]
         here = (own_turn >= 0)[branch] & (key < keys[branch])
@@ -126,7 +128,7 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
         skew, tip_skew, arrays['branch_offset'], on_parent,
         arrays['segment_chord'], arrays['segment_rest'], slope, tip_slope, turn,
     )  # fmt: skip
-    branches, segments = np.zeros(len(parent), BRANCH), segment_records(places)
+    branches, segments = np.zeros(len(parent), layouts[0]), segment_records(places)
     fill_places(places, branches)
     blocks = block_records(branches, segments)
     return _Kind(matrix, int(first[-1]), (segments, blocks, np.zeros((len(branches), 8))))

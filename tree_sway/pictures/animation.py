@@ -55,15 +55,9 @@ def check_film(path: str | Path) -> Path:
 
 
 def animate_poses(
-    tree: Tree,
-    frames: Sequence[ArrayLike],
-    winds: ArrayLike,
-    path: str | Path,
-    *,
-    rate: float = 20.0,
-    leaves: LeafClusters | None = None,
-    pixels: int = 480,
-) -> Path:
+    tree: Tree, frames: Sequence[ArrayLike], winds: ArrayLike, path: str | Path, *,
+    rate: float = 20.0, leaves: LeafClusters | None = None, pixels: int = 480,
+) -> Path:  # fmt: skip
     """
     Draw a moving picture: a GIF or a film, by the suffix.
 

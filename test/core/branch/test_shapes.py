@@ -10,11 +10,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from scipy.linalg import expm
+from scipy.optimize import brentq
 from tree_sway_lab.segments.articulated import ArticulatedTree
 
 from tree_sway.core.branch.beam import energies, RotationField
 from tree_sway.core.branch.model import TreeBeams
-from tree_sway.core.branch.shapes import across, MAX_COORDINATES, N_PAIRS
+from tree_sway.core.branch.shapes import (
+    across,
+    FEWER_PAIRS,
+    MAX_COORDINATES,
+    N_PAIRS,
+    PAIRS_OF_SMALL,
+    ROOMS,
+    SMALL,
+)
 from tree_sway.core.reduction.matrices import reduce_tree
 from tree_sway.core.reduction.modes import natural_modes
 from tree_sway.core.simulator.simulator import SwaySimulator
@@ -64,8 +74,19 @@ def stem_with_limbs(n_limbs):
 def test_an_enriched_branch_has_pairs_and_what_carries_turns(fork):
     models = TreeBeams(fork(), 900.0).models(subtrees=True, enriched=frozenset(range(4)))
     for model in models:
-        most = MAX_COORDINATES if len(model.children) > 1 else 2 * N_PAIRS + 1
+        most = ROOMS[1] if len(model.children) > 1 else 2 * N_PAIRS + 1
         assert 2 * N_PAIRS <= len(model.fields) <= most
+
+
+def test_a_small_tree_of_many_segments_has_more_of_them():
+    tree = stem_with_limbs(4)
+    stem, *limbs = TreeBeams(tree, 900.0).models(subtrees=True, enriched=frozenset(range(5)))
+    assert 2 * PAIRS_OF_SMALL < len(stem.fields) <= MAX_COORDINATES
+    assert [len(limb.fields) for limb in limbs] == [2 * FEWER_PAIRS] * 4
+    larger = TreeBeams(stem_with_limbs(SMALL), 900.0).models(
+        subtrees=True, enriched=frozenset(range(SMALL + 1))
+    )
+    assert all(2 * N_PAIRS <= len(model.fields) <= ROOMS[1] for model in larger)
 
 
 @pytest.mark.parametrize('n_limbs', [2, 4, 8, 16])
@@ -89,12 +110,12 @@ def test_further_fields_are_orthogonal_in_energy(fork):
 
 
 def test_a_uniform_stem_converges_to_the_beams_roots(stem):
-    tree = stem(length=1.0, base=0.02, cuts=12)
+    tree = stem(length=1.0, base=0.002, cuts=12)  # so thin that its sections rotate freely
     roots = np.array([3.5160, 22.034, 61.697])
     found = {}
     for enriched in (frozenset(), frozenset([0])):
         models = TreeBeams(tree, 1.0).models(subtrees=True, enriched=enriched)
-        matrices = reduce_tree(tree, models, 16.0 / 0.02**2, 1.0, 0.0)
+        matrices = reduce_tree(tree, models, 16.0 / 0.002**2, 1.0, 0.0)
         found[len(enriched)] = natural_modes(tree, matrices).circular[::2]
     assert found[0][0] == pytest.approx(3.5160, rel=5e-3)
     # Rayleigh and Ritz give more than the truth.
@@ -102,6 +123,26 @@ def test_a_uniform_stem_converges_to_the_beams_roots(stem):
     assert found[1][:2] == pytest.approx(roots[:2], rel=1e-2)
     assert found[1][2] == pytest.approx(roots[2], rel=0.15)
     assert found[1][0] <= found[0][0]
+
+
+def test_thick_sections_are_hard_to_rotate(stem):
+    """A thick beam has the roots of a beam with rotatory inertia (Rayleigh, 1877), by shooting."""
+    tree, r = stem(length=1.0, base=0.2, cuts=12), 0.05
+    models = TreeBeams(tree, 1.0).models(subtrees=True, enriched=frozenset([0]))
+    matrices = reduce_tree(tree, models, 16.0 / 0.2**2, 1.0, 0.0)
+    found = natural_modes(tree, matrices).circular[:4:2]
+
+    def remaining(w):
+        """Return the determinant of moment and force at the tip of a clamped beam."""
+        along = np.eye(4, k=1)  # of deflection, slope, and their next two derivatives
+        along[3, [0, 2]] = w**2, -((w * r) ** 2)
+        tip = expm(along)
+        return np.linalg.det([tip[2, 2:], tip[3, 2:] + (w * r) ** 2 * tip[1, 2:]])
+
+    thin = (3.5160, 22.034)
+    roots = [brentq(remaining, 0.8 * each, 1.02 * each) for each in thin]
+    assert roots[1] < 0.985 * thin[1]
+    assert found == pytest.approx(roots, rel=5e-3)
 
 
 def test_stiffness_of_bending_and_of_twist(stem, sketch):

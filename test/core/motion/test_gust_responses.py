@@ -27,7 +27,7 @@ def test_slopes_are_those_of_the_load(spire, azimuth):
     reductions, size = spire.reductions, 1e-3
     moments, shapes = reductions.wind_moments, reductions.natural_modes(20).shapes
     still, ahead = np.zeros(len(shapes)), np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-    load, air = gust_slopes(reductions.with_subtrees.branches, shapes, ahead)
+    ((load, air),) = gust_slopes(reductions.with_subtrees.branches, shapes, ahead)
     by_wind = [moments(still, still, ahead + size * e) - moments(still, still, ahead - size * e)
                for e in np.eye(3)]  # fmt: skip
     by_rate = [moments(still, size * e, ahead) - moments(still, -size * e, ahead)

@@ -64,7 +64,6 @@ def test_a_turned_tree_moves_as_alone_in_the_turned_wind(fork, yaw, x, y, model)
     _turned_moves_as_alone(fork, yaw, x, y, model)
 
 
-@pytest.mark.xfail(strict=True, reason='further fields are found by shaking along fixed axes')
 def test_a_turned_tree_of_all_coordinates_moves_as_alone(fork):
     _turned_moves_as_alone(fork, 1.0, 0.0, 0.0, 'full')
 

@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.motion.records import BRANCH, branch_layout, SEGMENT, segment_layout, WORK
+from tree_sway.core.branch.shapes import ROOMS
+from tree_sway.core.motion.records import branch_layout, room_for_fields, segment_layout, WORK
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.reductions import TreeReductions
@@ -127,10 +128,15 @@ def test_a_steady_wind_bends_the_coupled_tree_as_its_stiffness_says(fork):
     assert x == pytest.approx(shapes @ ((shapes.T @ moment) / w2), rel=1e-6, abs=1e-12)
 
 
-def test_records_have_room_for_all_that_a_step_needs(fork):
-    bank = bank_of(fork(), model='full', enrich='all')
-    assert bank.branches.dtype == BRANCH
-    assert bank.segments.dtype == SEGMENT
+@pytest.mark.parametrize(('tree', 'rows'), [('fork', ROOMS[1]), ('stem', ROOMS[2])])
+def test_records_have_room_for_all_that_a_step_needs(fork, stem, tree, rows):
+    bank = bank_of(
+        fork() if tree == 'fork' else stem(base=0.04, cuts=8), model='full', enrich='all'
+    )
+    room = room_for_fields(bank.branches['n_coordinates'].max())
+    assert room == rows
+    assert bank.branches.dtype == branch_layout(room)
+    assert bank.segments.dtype == segment_layout(room)
     assert bank.oscillators.work.dtype == WORK
     assert (bank.branches['n_coordinates'] <= bank.branches['load_mode'].shape[1]).all()
     first = bank.branches['coordinate']
@@ -142,7 +148,7 @@ def test_records_of_plain_branches_have_room_for_no_more(fork):
         bank = bank_of(fork(), model=model)
         assert bank.branches.dtype == branch_layout(2)
         assert bank.segments.dtype == segment_layout(2)
-        assert bank.branches.dtype.itemsize < 0.5 * BRANCH.itemsize
+        assert bank.branches.dtype.itemsize < 0.5 * branch_layout(ROOMS[1]).itemsize
 
 
 @pytest.mark.parametrize('model', [60, 'full', 'auto'])

@@ -23,6 +23,8 @@ from tree_sway.page.scene_state import SceneState
 
 DT = 1.0 / 60.0
 CALM = (0.0, 0.0, 0.0)
+SETTLING, DAMPING = 5.0, 0.3
+"""Time in which a tree that is damped so comes to rest [s], and the ratio of its damping."""
 
 
 @pytest.fixture(scope='module')
@@ -111,8 +113,8 @@ def test_twice_the_force_moves_twice_as_far_where_it_bends_little(tree):
     segment = outer_segment(tree)
     found = []
     for scale in (0.01, 0.02):
-        sim = make_simulator(tree, WOOD, model=60)
-        for _ in range(round(15.0 / DT)):
+        sim = make_simulator(tree, WOOD, model=60, damping_ratio=DAMPING)
+        for _ in range(round(SETTLING / DT)):
             sim.push(segment, (scale, 0.0, 0.0), 1.0)
             sim.step(CALM, DT)
         found.append(moved(sim, segment))
@@ -141,8 +143,8 @@ def test_in_wind_it_adds_to_what_the_wind_does(tree):
     for model in ('full', 60):
         rests = []
         for force in (0.0, 3.0):
-            sim = make_simulator(tree, WOOD, model=model)
-            for _ in range(round(15.0 / DT)):
+            sim = make_simulator(tree, WOOD, model=model, damping_ratio=DAMPING)
+            for _ in range(round(SETTLING / DT)):
                 sim.push(segment, (0.0, force, 0.0), 1.0)
                 sim.step((6.0, 0.0, 0.0), DT)
             rests.append(moved(sim, segment))
@@ -206,10 +208,10 @@ def test_a_reset_ends_every_push(tree):
 @pytest.mark.parametrize('stiffness', [30.0, 1e6])
 def test_a_spring_holds_a_branch_between_its_rest_and_its_place(tree, model, stiffness):
     segment = outer_segment(tree)
-    sim = make_simulator(tree, WOOD, model=model)
+    sim = make_simulator(tree, WOOD, model=model, damping_ratio=DAMPING)
     rest = 0.5 * (tree.start[segment] + tree.end[segment])
     to = rest + np.array([0.2, 0.1, 0.0])
-    for _ in range(round(20.0 / DT)):
+    for _ in range(round(SETTLING / DT)):
         sim.push(segment, Spring(to, stiffness), 0.5)
         sim.step(CALM, DT)
     place = place_of(sim.place(), tree, segment)
@@ -217,8 +219,8 @@ def test_a_spring_holds_a_branch_between_its_rest_and_its_place(tree, model, sti
     assert 0.0 < np.linalg.norm(to - place) < np.linalg.norm(to - rest)
     if stiffness < 100.0:  # as stiff as it is: a step can follow it
         np.testing.assert_allclose(force, stiffness * (to - place), rtol=1e-3, atol=1e-3)
-    pushed = make_simulator(tree, WOOD, model=model)
-    for _ in range(round(20.0 / DT)):
+    pushed = make_simulator(tree, WOOD, model=model, damping_ratio=DAMPING)
+    for _ in range(round(SETTLING / DT)):
         pushed.push(segment, force, 0.5)
         pushed.step(CALM, DT)
     there = moved(pushed, segment)

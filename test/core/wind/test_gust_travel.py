@@ -191,6 +191,7 @@ def test_every_step_of_a_minute_is_kept_as_it_was():
     assert history._at[1] == 4001
 
 
+@pytest.mark.usefixtures('memory_alone')
 def test_a_step_allocates_nothing():
     history = GustHistory(np.random.default_rng(0).uniform(0.0, 100.0, (20, 3)))
     wind = np.array([7.0, 1.0, 0.0])

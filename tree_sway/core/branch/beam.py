@@ -8,6 +8,9 @@ Gauss-Legendre points, at which the diameter is known from the linear taper betw
 segment. Integrals are taken on those points, so the result does not depend on how finely a branch
 is cut; and as the load of a child makes a step or a kink at its base, no panel extends across one.
 
+Branches of as many segments with children at the same places can be one beam, one field or one
+shape: all arrays then have one more axis, the first, that of branches (`many_of`, `one_of`).
+
 Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa =
 M / EI curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
 """
@@ -16,7 +19,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+import math
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -87,39 +91,47 @@ class BranchBeam:
     ) -> None:  # fmt: skip
         """Set the quadrature points along the branch."""
         step = end - start
+        many = step.shape[:-2]
         seats = np.round(children.segment + children.fraction, _DIGITS)
-        cuts = np.unique(np.concatenate([np.arange(len(step) + 1.0), seats]))
-        self.segment: Ints = cuts[:-1].astype(np.int64)
+        cuts = np.unique(np.concatenate([np.arange(step.shape[-2] + 1.0), seats]))
+        on = cuts[:-1].astype(np.int64)
+        self.segment: Ints = np.broadcast_to(on, (*many, len(on)))
         """Segment of each panel, (p,)."""
-        self.segment_length: Floats = np.linalg.norm(step, axis=1)
+        self.segment_length: Floats = np.linalg.norm(step, axis=-1)
         share = np.diff(cuts)
-        self.length = share * self.segment_length[self.segment]
+        self.length = share * self.segment_length[..., on]
         """Length of each panel in [m], (p,)."""
-        self.tangent = (step / self.segment_length[:, None])[self.segment]
-        self.node = np.concatenate([[0.0], np.cumsum(self.length)])
-        self.place = self.node[:-1, None] + self.length[:, None] * _POINTS
-        self.weight = self.length[:, None] * _WEIGHTS
-        along = (cuts[:-1] - self.segment)[:, None] + share[:, None] * _POINTS
-        thinning = (tip_diameter - base_diameter)[self.segment, None]
-        self.diameter = base_diameter[self.segment, None] + thinning * along
-        self.point = start[self.segment, None] + step[self.segment, None] * along[..., None]
-        self.foot: Ints = np.searchsorted(cuts, seats)
-        """Node between panels of each child, (c,)."""
-        self.child_place = self.node[self.foot]
+        self.tangent = (step / self.segment_length[..., None])[..., on, :]
+        self.node = np.zeros((*many, len(cuts)))
+        np.cumsum(self.length, axis=-1, out=self.node[..., 1:])
+        self.place = self.node[..., :-1, None] + self.length[..., None] * _POINTS
+        self.weight = self.length[..., None] * _WEIGHTS
+        along = (cuts[:-1] - on)[:, None] + share[:, None] * _POINTS
+        thinning = (tip_diameter - base_diameter)[..., on, None]
+        self.diameter = base_diameter[..., on, None] + thinning * along
+        self.point = start[..., on, None, :] + step[..., on, None, :] * along[..., None]
+        foot = np.searchsorted(cuts, seats)
+        # Lists are those of all branches.
+        self._feet = foot.tolist()
+        self._first_panels = np.searchsorted(on, np.arange(step.shape[-2])).tolist()
+        self.child_place = self.node[..., foot]
         self.child_point = (
-            start[children.segment] + children.fraction[:, None] * step[children.segment]
+            start[..., children.segment, :]
+            + children.fraction[:, None] * step[..., children.segment, :]
         )
-        chord = end[-1] - start[0]
-        self.chord_length = float(np.linalg.norm(chord))
-        self.chord = chord / self.chord_length if self.chord_length > 1e-9 else self.tangent[0]
+        chord = end[..., -1, :] - start[..., 0, :]
+        self.chord_length = np.linalg.norm(chord, axis=-1)
+        length = self.chord_length[..., None]
+        self.chord = np.where(length > 1e-9, chord, self.tangent[..., 0, :])
+        self.chord /= np.where(length > 1e-9, length, 1.0)
         self.second_moment = np.pi / 64.0 * self.diameter**4
         """
         Second moment of area at each point in [m^4], (p, 5); at the first, a twentieth up the
         first panel, with the spring in series.
         """
         if root_compliance > 0.0:
-            own = 1.0 / self.second_moment[0, 0] + root_compliance / self.weight[0, 0]
-            self.second_moment[0, 0] = 1.0 / own
+            own = 1.0 / self.second_moment[..., 0, 0] + root_compliance / self.weight[..., 0, 0]
+            self.second_moment[..., 0, 0] = 1.0 / own
 
     @property
     def area(self) -> Floats:
@@ -128,8 +140,10 @@ class BranchBeam:
 
     def integral(self, values: Floats) -> Floats:
         """Integral over the branch of values at the points, (p, 5, ...)."""
-        total: Floats = self.weight.ravel() @ values.reshape(self.weight.size, -1)
-        return total.reshape(values.shape[2:])
+        tail = values.shape[self.weight.ndim :]
+        flat = values.reshape(*self.weight.shape[:-2], -1, math.prod(tail))
+        total: Floats = self.weight.reshape(*flat.shape[:-2], 1, -1) @ flat
+        return total.reshape((*flat.shape[:-2], *tail))
 
     def from_base(self, values: Floats) -> tuple[Floats, Floats, Floats]:
         """
@@ -147,20 +161,23 @@ class BranchBeam:
             ...).
 
         """
-        flat = values.reshape(*values.shape[:2], -1)
-        within = (_INTEGRALS @ flat) * self.length[:, None, None]
-        nodes = np.zeros((len(flat) + 1, flat.shape[2]))
-        np.cumsum(within[:, N_POINTS], axis=0, out=nodes[1:])
-        points = within[:, :N_POINTS] + nodes[:-1, None]
-        at_nodes = nodes.reshape(-1, *values.shape[2:])
-        return points.reshape(values.shape), at_nodes, at_nodes[self.foot]
+        tail = values.shape[self.weight.ndim :]
+        flat = values.reshape(*self.weight.shape, math.prod(tail))
+        within = (_INTEGRALS @ flat) * self.length[..., None, None]
+        nodes = np.zeros((*self.node.shape, flat.shape[-1]))
+        np.cumsum(within[..., N_POINTS, :], axis=-2, out=nodes[..., 1:, :])
+        points = within[..., :N_POINTS, :] + nodes[..., :-1, None, :]
+        at_nodes = nodes.reshape(*self.node.shape, *tail)
+        feet = nodes[..., self._feet, :].reshape(*self.child_place.shape, *tail)
+        return points.reshape(values.shape), at_nodes, feet
 
     def over_segments(self, values: Floats) -> Floats:
         """Mean over each segment of values at the points, (p, 5, ...), as (m, ...)."""
-        panels = np.einsum('pg,pg...->p...', self.weight, values)
-        first = np.searchsorted(self.segment, np.arange(len(self.segment_length)))
-        sums = np.add.reduceat(panels, first, axis=0)
-        return np.asarray((sums.T / self.segment_length).T)
+        tail = values.shape[self.weight.ndim :]
+        panels = (self.weight[..., None] * values.reshape(*self.weight.shape, -1)).sum(axis=-2)
+        sums = np.add.reduceat(panels, self._first_panels, axis=-2)
+        sums /= self.segment_length[..., None]
+        return np.asarray(sums.reshape(*self.segment_length.shape, *tail))
 
     def bending_moment(self, load: Floats, force: Floats, moment: Floats) -> Floats:
         """
@@ -180,9 +197,9 @@ class BranchBeam:
 
         """
         points, nodes, _ = self.from_base(load)
-        shear = nodes[-1] - points
+        shear = nodes[..., -1:, None] - points
         points, nodes, _ = self.from_base(shear)
-        bending: Floats = nodes[-1] - points
+        bending: Floats = nodes[..., -1:, None] - points
         if len(force) > 0:
             lever, within = self.child_lever
             bending += lever @ force + within @ moment
@@ -206,10 +223,10 @@ class BranchBeam:
             Moment of the loads beyond each point, about that point, (p, 5, k, 3).
 
         """
-        point = self.point[:, :, None]
+        point = self.point[..., None, :]
         both = np.concatenate([load, cross(point, load)], axis=-1)
         points, nodes, _ = self.from_base(both)
-        beyond = nodes[-1] - points
+        beyond = nodes[..., -1:, None, :, :] - points
         if len(force) > 0:
             handed = np.concatenate([force, moment], axis=-1).reshape(len(force), -1)
             beyond += (self.child_lever[1] @ handed).reshape(beyond.shape)
@@ -217,12 +234,12 @@ class BranchBeam:
 
     def curvature_in_space(self, moment: Floats, shear_ratio: float) -> Floats:
         """Curvature by an internal moment, bending and twist, for a modulus of 1, (p, 5, k, 3)."""
-        along = self.tangent[:, None, None, :]
+        along = self.tangent[..., None, None, :]
         twist = (moment * along).sum(axis=-1, keepdims=True) * along
         bent = moment + (0.5 / shear_ratio - 1.0) * twist
         return np.asarray(bent / self.second_moment[..., None, None])
 
-    @cached_property
+    @property
     def child_lever(self) -> tuple[Floats, Floats]:
         """Lever [m] from each point to each child, and whether it is beyond, (p, 5, c)."""
         lever = np.maximum(self.child_place - self.place[..., None], 0.0)
@@ -240,13 +257,13 @@ class BranchBeam:
         """
         curvature = bending / self.second_moment
         slope, _, _ = self.from_base(curvature)
-        along = self.tangent @ self.chord
-        chord_rotation = float((self.weight * slope).sum(axis=1) @ along) / max(
-            self.chord_length, 1e-9
-        )
-        arc_rotation = float(self.integral(slope)) / float(self.node[-1])
-        scale = chord_rotation if chord_rotation > 0.2 * abs(arc_rotation) else arc_rotation
-        return SlopeShape(self, curvature / scale)
+        along = (self.tangent @ self.chord[..., None])[..., 0]
+        turned = ((self.weight * slope).sum(axis=-1) * along).sum(axis=-1)
+        chord_rotation = turned / np.maximum(self.chord_length, 1e-9)
+        arc_rotation = self.integral(slope) / self.node[..., -1]
+        is_chord = chord_rotation > 0.2 * np.abs(arc_rotation)
+        scale = np.where(is_chord, chord_rotation, arc_rotation)
+        return SlopeShape(self, curvature / scale[..., None, None])
 
 
 class SlopeShape:
@@ -295,14 +312,14 @@ class RotationField:
         self.curvature = curvature
         self.slope, _, self.child_slope = beam.from_base(curvature)
         self.points, self.nodes, self.children = beam.from_base(
-            cross(self.slope, beam.tangent[:, None, :])
+            cross(self.slope, beam.tangent[..., None, :])
         )
         """Displacement in [m/rad]: points (p, 5, 3), nodes (p + 1, 3), children (c, 3)."""
 
     @classmethod
     def about(cls, shape: SlopeShape, axis: Floats) -> RotationField:
         """Make the field of rotations about one axis, (3,), by the slope of a shape."""
-        return cls(shape.beam, shape.curvature[..., None] * axis)
+        return cls(shape.beam, shape.curvature[..., None] * axis[..., None, None, :])
 
 
 def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: float) -> Floats:
@@ -311,13 +328,42 @@ def energies(fields: Sequence[RotationField], modulus: float, shear_modulus: flo
 
     Bending has E I, across the branch in space, and twist about it G J, J = 2 I.
     """
-    beam, n = fields[0].beam, len(fields)
-    curvature = np.stack([one.curvature for one in fields])
-    twisting = (curvature * beam.tangent[:, None, :]).sum(axis=-1)
-    measure = beam.weight * beam.second_moment
-    whole = (measure[..., None] * curvature).reshape(n, -1) @ curvature.reshape(n, -1).T
-    twist = (measure * twisting).reshape(n, -1) @ twisting.reshape(n, -1).T
+    beam = fields[0].beam
+    curvature = np.stack([one.curvature for one in fields], axis=-4)
+    twisting = (curvature * beam.tangent[..., None, :, None, :]).sum(axis=-1)
+    measure = (beam.weight * beam.second_moment)[..., None, :, :]
+    whole = products(measure[..., None] * curvature, curvature, 3)
+    twist = products(measure * twisting, twisting, 2)
     return np.asarray(modulus * (whole - twist) + 2.0 * shear_modulus * twist)
+
+
+def products(a: Floats, b: Floats, n_axes: int) -> Floats:
+    """Sum the products of each of some arrays and each of others, (..., k, last axes)."""
+    flat = [each.reshape(*each.shape[: each.ndim - n_axes], -1) for each in (a, b)]
+    return np.asarray(flat[0] @ flat[1].swapaxes(-1, -2))
+
+
+_Kind = TypeVar('_Kind')
+
+
+def one_of(many: _Kind, number: int, **others: Any) -> _Kind:
+    """Return one of many beams, shapes or fields, which has views of their arrays."""
+    one = object.__new__(type(many))
+    vars(one).update({
+        name: each[number] if isinstance(each, np.ndarray) else each
+        for name, each in vars(many).items()
+    }, **others)  # fmt: skip
+    return one
+
+
+def many_of(ones: Sequence[_Kind], **others: Any) -> _Kind:
+    """Stack the arrays of beams, shapes or fields that are alike: see `one_of`."""
+    many = object.__new__(type(ones[0]))
+    vars(many).update(vars(ones[0]), **others)
+    for name, each in vars(many).items():
+        if isinstance(each, np.ndarray | float) and name not in others:
+            vars(many)[name] = np.array([vars(one)[name] for one in ones])
+    return many
 
 
 def cross(a: Floats, b: Floats) -> Floats:
@@ -331,6 +377,8 @@ def cross(a: Floats, b: Floats) -> Floats:
 
 
 def cross_matrix(v: Floats) -> Floats:
-    """Matrix whose product with a vector is the cross product of v with it, (3, 3)."""
-    x, y, z = v
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    """Matrix whose product with a vector is the cross product of v with it, (..., 3, 3)."""
+    out = np.zeros((*v.shape, 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        out[..., k, j], out[..., j, k] = v[..., i], -v[..., i]
+    return out

@@ -20,14 +20,25 @@ from functools import cached_property
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.branch.beam import Attachments, BranchBeam, cross, RotationField, SlopeShape
+from tree_sway.core.branch.beam import (
+    Attachments,
+    BranchBeam,
+    cross,
+    one_of,
+    RotationField,
+    SlopeShape,
+)
 from tree_sway.core.branch.shapes import (
     bent_by_weight,
+    FEWER_PAIRS,
     FEWER_TURNS,
     N_PAIRS,
     N_TURNS,
+    PAIRS_OF_SMALL,
     shaken_energies,
     shape_fields,
+    SLENDER,
+    SMALL,
     SubtreeSums,
     wind_loads,
 )
@@ -38,6 +49,8 @@ _LEFT = 1e-4
 
 _FEW, _ONE_OF = 24, 50
 """Largest number of branches beside the stem with further shapes, or one branch in this number."""
+
+_NONE = np.zeros(0, dtype=np.int64)
 
 _LIGHT = 1e-3
 """Share of the mass of a tree below which a branch with its subtree is not considered."""
@@ -109,83 +122,87 @@ class TreeBeams:
         Root compliance of the stem in [1/m^3], as in `BranchBeam`.
     gravity
         Gravity over Young's modulus in [m/s^2/Pa]; 0 for no weight.
-    known
-        Known beams of the same wood, and the number of that of each branch, (b,), -1 for none.
 
     """
 
     def __init__(
-        self,
-        tree: Tree,
-        density: float,
-        *,
-        shear_ratio: float = 1.0 / 14.0,
-        speed_profile: Floats | None = None,
-        leaf_mass: Floats | None = None,
-        leaf_area: Floats | None = None,
-        root_compliance: float = 0.0,
-        gravity: float = 0.0,
-        known: tuple[TreeBeams, Ints] | None = None,
-    ) -> None:
+        self, tree: Tree, density: float, *, shear_ratio: float = 1.0 / 14.0,
+        speed_profile: Floats | None = None, leaf_mass: Floats | None = None,
+        leaf_area: Floats | None = None, root_compliance: float = 0.0, gravity: float = 0.0,
+    ) -> None:  # fmt: skip
         """Make the beams and sum up the subtrees."""
         n = tree.n_branches
         self._tree, self._density, self._shear_ratio = tree, density, shear_ratio
         self._gravity = gravity
+        slender = tree.branch_length / tree.base_diameter[tree.branch_first[:-1]]
+        self._is_small = n <= SMALL and SLENDER[0] <= slender.min() and slender.max() <= SLENDER[1]
         self._leaf_mass = np.zeros(n) if leaf_mass is None else leaf_mass
         self._leaf_area = np.zeros(n) if leaf_area is None else leaf_area
         self._speed = np.ones(tree.n_segments) if speed_profile is None else speed_profile
-        self._bare: list[tuple[BranchBeam, Floats, Floats, Ints, Floats]] = []
+        self._bare: dict[int, tuple[BranchBeam, Floats, Floats, Ints, Floats]] = {}
+        self._twigs: list[tuple[Ints, BranchBeam, Floats, Floats, Floats]] = []
         self._known: dict[tuple[int, ...], BranchModel] = {}
         self._blown: dict[tuple[int, int], Floats] = {}
         self._sums = SubtreeSums.zeros(n)
         children_of: list[list[int]] = [[] for _ in range(n)]
         for branch in range(1, n):
             children_of[tree.branch_parent[branch]].append(branch)
-        for branch in range(n - 1, -1, -1):
+        size = np.diff(tree.branch_first)
+        is_twig = np.array([branch > 0 and not here for branch, here in enumerate(children_of)])
+        for count in np.unique(size[is_twig]):
+            rows = np.flatnonzero(is_twig & (size == count))
+            beam, drag_area, mass, loads = self._add(rows, _NONE, 0.0)
+            curvatures = self._bent(beam, loads, _NONE)
+            self._twigs.append((rows, beam, drag_area, mass, curvatures))
+            for k, branch in enumerate(rows.tolist()):
+                bare = one_of(beam, k), drag_area[k], mass[k], _NONE, loads[k]
+                self._bare[branch], self._blown[branch, 0] = bare, curvatures[k]
+        for branch in np.flatnonzero(~is_twig)[::-1].tolist():
             children = np.array(children_of[branch], dtype=np.int64)
-            same = known[1][branch] if known is not None else -1
-            if known is not None and same >= 0:
-                beam, drag_area, mass, _, loads = known[0]._bare[same]
-            else:
-                beam, drag_area, mass = self._beam(
-                    branch, children, root_compliance if branch == 0 else 0.0
-                )
-                loads = wind_loads(beam, drag_area)
-            self._bare.append((beam, drag_area, mass, children, loads))
-            point = beam.point.reshape(-1, 3)
-            dm, load = beam.weight * mass, beam.weight * drag_area
-            own = SubtreeSums(
-                area=load.sum(),
-                area_moment=load.ravel() @ point,
-                force=beam.integral(loads),
-                moment=beam.integral(cross(beam.point[:, :, None], loads)),
-                mass=dm.sum(),
-                mass_moment=dm.ravel() @ point,
-                mass_second=(dm.reshape(-1, 1) * point).T @ point,
-            )
-            for total, here in zip(self._sums, own, strict=True):
-                total[branch] = here + total[children].sum(axis=0)
-        self._bare.reverse()
+            compliance = 0.0 if branch else root_compliance
+            beam, drag_area, mass, loads = self._add(branch, children, compliance)
+            self._bare[branch] = beam, drag_area, mass, children, loads
 
-    def _beam(
-        self, branch: int, children: Ints, root_compliance: float
-    ) -> tuple[BranchBeam, Floats, Floats]:
-        """Make the beam of a branch, and its drag area [m] and mass [kg/m] per length."""
-        tree = self._tree
-        here = tree.segments_of(branch)
+    def _add(
+        self, branch: int | Ints, children: Ints, root_compliance: float
+    ) -> tuple[BranchBeam, Floats, Floats, Floats]:
+        """
+        Make the beam of a branch, or of twigs that are alike, and sum up their subtrees.
+
+        Returns the beam, drag area [m] and mass [kg/m] per length, and `wind_loads`.
+        """
+        tree, foot = self._tree, self._tree.branch_first[children]
+        first = np.asarray(tree.branch_first[branch])[..., None]
+        here = first + np.arange(np.diff(tree.branch_first)[branch].max())
         beam = BranchBeam(
             tree.start[here] - tree.start[0],
             tree.end[here] - tree.start[0],
             tree.base_diameter[here],
             tree.tip_diameter[here],
-            _places(tree, branch, children),
+            Attachments((tree.segment_parent[foot] - first).ravel(), tree.place_on_parent[foot]),
             root_compliance,
         )
-        length = float(beam.node[-1])
-        mass = self._density * beam.area + self._leaf_mass[branch] / length
-        drag_area = beam.diameter + self._leaf_area[branch] / length
-        drag_area *= (self._speed[here] ** 2)[beam.segment, None]
-        return beam, drag_area, mass
+        leaf_mass, leaf_area = (
+            np.asarray(each[branch])[..., None, None] / beam.node[..., -1:, None]
+            for each in (self._leaf_mass, self._leaf_area)
+        )
+        mass = self._density * beam.area + leaf_mass
+        drag_area = beam.diameter + leaf_area
+        drag_area *= (self._speed[first + beam.segment] ** 2)[..., None]
+        loads = wind_loads(beam, drag_area)
+        weighed = mass[..., None] * beam.point
+        own = SubtreeSums(
+            area=beam.integral(drag_area),
+            area_moment=beam.integral(drag_area[..., None] * beam.point),
+            force=beam.integral(loads),
+            moment=beam.integral(cross(beam.point[..., None, :], loads)),
+            mass=beam.integral(mass),
+            mass_moment=beam.integral(weighed),
+            mass_second=beam.integral(weighed[..., None] * beam.point[..., None, :]),
+        )
+        for total, part in zip(self._sums, own, strict=True):
+            total[branch] = part + total[children].sum(axis=0)
+        return beam, drag_area, mass, loads
 
     def turns(self, modulus: float) -> Floats:
         """
@@ -195,11 +212,17 @@ class TreeBeams:
         beams without weight.
         """
         turns = np.zeros(len(self._bare))
-        for branch, (beam, *_, children, _) in enumerate(self._bare):
-            curvatures = self._curvatures(branch, len(children))[:, :, :2]
-            slopes = beam.from_base(curvatures)[0]
-            ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
-            turns[branch] = np.sqrt(np.square(ends).sum(axis=1).max()) / beam.chord_length
+        bent: list[tuple[int | Ints, BranchBeam, Floats]] = [
+            (rows, beam, curvatures) for rows, beam, *_, curvatures in self._twigs
+        ]
+        for branch, (beam, *_, children, _) in self._bare.items():
+            if branch == 0 or len(children):
+                bent.append((branch, beam, self._curvatures(branch, len(children))))
+        for branches, beam, curvatures in bent:
+            slopes = beam.from_base(curvatures[..., :2, :])[0]
+            ends = beam.integral(cross(slopes, beam.tangent[..., None, None, :]))
+            turned = np.sqrt(np.square(ends).sum(axis=-1).max(axis=-1))
+            turns[branches] = turned / beam.chord_length
         return turns / modulus
 
     def _curvatures(self, branch: int, n_subtrees: int) -> Floats:
@@ -207,10 +230,13 @@ class TreeBeams:
         key = branch, n_subtrees
         if key not in self._blown:
             beam, _, _, children, loads = self._bare[branch]
-            subtrees = self._sums.select(children[:n_subtrees])
-            moments = beam.moment_in_space(loads, subtrees.force, subtrees.moment)
-            self._blown[key] = beam.curvature_in_space(moments, self._shear_ratio)
+            self._blown[key] = self._bent(beam, loads, children[:n_subtrees])
         return self._blown[key]
+
+    def _bent(self, beam: BranchBeam, loads: Floats, children: Ints) -> Floats:
+        subtrees = self._sums.select(children)
+        moments = beam.moment_in_space(loads, subtrees.force, subtrees.moment)
+        return beam.curvature_in_space(moments, self._shear_ratio)
 
     def models(
         self, *, subtrees: bool, enriched: frozenset[int] = frozenset()
@@ -232,9 +258,20 @@ class TreeBeams:
             Models in the order of the tree's branches.
 
         """
+        none = self._sums.select(_NONE)
+        for rows, beam, drag_area, mass, curvatures in self._twigs:
+            bent = bent_by_weight(beam, mass, none, curvatures, self._shear_ratio, self._gravity)
+            shape, fields = shape_fields(beam, drag_area, mass, none, bent, self._shear_ratio)
+            for k, branch in enumerate(rows.tolist()):
+                one = self._bare[branch][0]
+                own = one_of(shape, k, beam=one)
+                both = tuple(one_of(field, k, beam=one) for field in fields)
+                model = BranchModel(one, drag_area[k], mass[k], own, both, _NONE)
+                self._known[branch, 0, 1, 0] = model
+        self._twigs = []
         return [
-            self._model(branch, len(bare[3]) if subtrees else 0, *self._richness(branch, enriched))
-            for branch, bare in enumerate(self._bare)
+            self._model(b, len(bare[3]) if subtrees else 0, *self._richness(b, enriched))
+            for b, bare in sorted(self._bare.items())
         ]
 
     def enriched(self, choice: str) -> frozenset[int]:
@@ -244,12 +281,14 @@ class TreeBeams:
         Parameters
         ----------
         choice
-            ``none``, the ``stem``, all ``carriers`` of others, ``all``, or those ``needed``: the
-            stem and the branches whose static fields miss most of the energy when they are shaken,
-            until the others miss no more than `_LEFT` of the energy of all branches.
+            ``none``, the ``stem``, all ``carriers`` of others, ``all``, or those ``needed``: of a
+            small tree all; of others the stem and the branches whose static fields miss most of
+            the energy when they are shaken, until the others miss no more than `_LEFT` of the
+            energy of all branches.
 
         """
         parent = self._tree.branch_parent
+        choice = 'all' if choice == 'needed' and self._is_small else choice
         if choice != 'needed':
             chosen = {
                 'none': (), 'stem': (0,), 'carriers': (0, *parent[1:].tolist()),
@@ -291,16 +330,10 @@ class TreeBeams:
         """Return the number of pairs of a branch, and of fields of rotation about its chord."""
         if branch not in enriched:
             return 1, 0
-        return N_PAIRS, N_TURNS if self._tree.branch_parent[branch] < 0 else FEWER_TURNS
-
-
-def _places(tree: Tree, branch: int, children: Ints) -> Attachments:
-    """Return the places of children on the segments of their parent."""
-    if len(children) == 0:
-        return Attachments(np.zeros(0, dtype=np.int64), np.zeros(0))
-    first = tree.branch_first[children]
-    carrying = tree.segment_parent[first]
-    return Attachments(carrying - tree.branch_first[branch], tree.place_on_parent[first])
+        is_stem = self._tree.branch_parent[branch] < 0
+        if self._is_small:
+            return PAIRS_OF_SMALL if is_stem else FEWER_PAIRS, FEWER_TURNS
+        return N_PAIRS, N_TURNS if is_stem else FEWER_TURNS
 
 
 def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:

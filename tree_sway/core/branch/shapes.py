@@ -18,9 +18,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.branch.beam import BranchBeam, cross, cross_matrix, RotationField, SlopeShape
+from tree_sway.core.branch.beam import BranchBeam, cross, one_of, RotationField, SlopeShape
 
 N_PAIRS = 3
 """Pairs of fields of an enriched branch: the static ones, then by inertia."""
@@ -28,15 +29,25 @@ N_PAIRS = 3
 N_TURNS, FEWER_TURNS = 3, 1
 """Further fields by rotation about the chord: of a stem, and of any other branch."""
 
-MAX_COORDINATES = 12
+SMALL, SLENDER, PAIRS_OF_SMALL, FEWER_PAIRS = 12, (40.0, 60.0), 8, 5
+"""
+Number of branches of a small tree, length of each over its diameter, for short waves need slender
+beams and fling limp ones in a storm, and pairs of fields of its stem and of its others.
+
+"""
+
+_APART, _LEFT_APART, _MOST_APART, _MOST_IN_ALL = 24, 1e-4, 3, 12
+"""
+Cases of subtrees that swing against each other, the largest share of their energy that the fields
+may miss, and the largest number of fields for them, or more up to a number of fields in all.
+
+"""
+
+MAX_COORDINATES = 2 * PAIRS_OF_SMALL + FEWER_TURNS + _MOST_APART
 """Largest number of fields of a branch."""
 
-_APART, _LEFT_APART = 24, 1e-4
-"""
-Cases of subtrees that swing against each other, and the largest share of their energy that the
-fields may miss.
-
-"""
+ROOMS = 2, _MOST_IN_ALL, MAX_COORDINATES
+"""Numbers of fields that records have room for: of plain branches, of others, of small trees."""
 
 _NEGLIGIBLE = 1e-4
 """Smallest share of a field that is orthogonal to those before."""
@@ -89,14 +100,14 @@ class SubtreeSums(NamedTuple):
 
 def across(chord: Floats) -> tuple[Floats, Floats]:
     """
-    Return unit vectors across a chord (3,): e1 in the vertical plane, along x for an upright one.
+    Return unit vectors across chords (..., 3): e1 in the vertical plane, along x for an upright.
 
     (b, e1, e2) is right-handed.
     """
-    reference = np.array([1.0, 0.0, 0.0]) if abs(chord[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
-    e1 = reference - (reference @ chord) * chord
-    e1 /= np.linalg.norm(e1)
-    return e1, cross_matrix(chord) @ e1
+    reference = np.where(np.abs(chord[..., 2:]) > 0.9, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])
+    e1 = reference - (reference * chord).sum(axis=-1, keepdims=True) * chord
+    e1 /= np.linalg.norm(e1, axis=-1, keepdims=True)
+    return e1, cross(chord, e1)
 
 
 def shape_fields(
@@ -112,7 +123,9 @@ def shape_fields(
         The branch.
     drag_area, mass
         Drag area and mass per length at the points in [m] and [kg/m], (p, 5).
-    subtrees Sums over the subtrees of the children; none for an isolated branch. curvatures
+    subtrees
+        Sums over the subtrees of the children; none for an isolated branch.
+    curvatures
         Curvatures of the branch by `wind_loads` on it and its subtrees, for a modulus of 1, (p, 5,
         3, 3).
     shear_ratio
@@ -128,14 +141,14 @@ def shape_fields(
 
     """
     e1, e2 = across(beam.chord)
-    pair = _static_pair(beam, curvatures, e1, e2)
-    if pair is None:
+    pair, is_turned = _static_pair(beam, curvatures, e1, e2)
+    if not is_turned.all():
         drawn = _static_shape(beam, drag_area, subtrees)
-        fields = [RotationField.about(drawn, e2), RotationField.about(drawn, -e1)]
-    else:
-        mean = 0.5 * (pair[0] @ e2 - pair[1] @ e1)
-        drawn = beam.slope_shape(mean * beam.second_moment)
-        fields = [RotationField(beam, each) for each in pair]
+        about = [RotationField.about(drawn, axis).curvature for axis in (e2, -e1)]
+        pair = np.where(is_turned[..., None, None, None], pair, np.stack(about))
+    x, y = ((one @ e[..., None, :, None])[..., 0] for one, e in zip(pair, (e2, e1), strict=True))
+    drawn = beam.slope_shape(0.5 * (x - y) * beam.second_moment)
+    fields = [RotationField(beam, each) for each in pair]
     if n_pairs > 1 or n_turns > 0:
         fields += _further(beam, mass, subtrees, shear_ratio, fields, n_pairs, n_turns)
     return drawn, tuple(fields)
@@ -149,8 +162,9 @@ def wind_loads(beam: BranchBeam, drag_area: Floats) -> Floats:
     the ground of 1 m/s.
     """
     tangent = beam.tangent
-    across = np.eye(3) - tangent[:, :, None] * tangent[:, None, :]
-    return np.asarray((drag_area * exposure(beam)[:, None])[..., None, None] * across[:, None])
+    across = np.eye(3) - tangent[..., :, None] * tangent[..., None, :]
+    exposed = (drag_area * exposure(tangent)[..., None])[..., None, None]
+    return np.asarray(exposed * across[..., None, :, :])
 
 
 def bent_by_weight(
@@ -180,12 +194,19 @@ def bent_by_weight(
 
     """
     before, nodes, _ = beam.from_base(mass)
-    beyond = nodes[-1] - before
+    beyond = nodes[..., -1:, None] - before
     if len(subtrees.mass):
         beyond += beam.child_lever[1] @ subtrees.mass
-    limpness = gravity * float(beam.integral(beyond / beam.second_moment)) * float(beam.node[-1])
-    if limpness < _LIMP:
+    is_limp = gravity * beam.integral(beyond / beam.second_moment) * beam.node[..., -1] >= _LIMP
+    if not is_limp.any():
         return curvatures
+    if is_limp.ndim:
+        bent = curvatures.copy()
+        for k in np.flatnonzero(is_limp).tolist():
+            bent[k] = bent_by_weight(
+                one_of(beam, k), mass[k], subtrees, curvatures[k], shear_ratio, gravity
+            )
+        return bent
 
     def by_weight(vectors: Floats) -> Floats:
         bent = np.moveaxis(_curvature_of(beam, vectors, shear_ratio), 0, 2)
@@ -230,43 +251,41 @@ def _moment_of_weight(
     return np.asarray(moments[:, :, :-1] - cross(slope, moments[:, :, -1:]))
 
 
-def exposure(beam: BranchBeam) -> Floats:
+def exposure(tangent: Floats) -> Floats:
     """Return the share of the wind across each panel, averaged over winds from all sides, (m,)."""
-    level = 1.0 - beam.tangent[:, 2:] ** 2
-    return np.asarray(np.sqrt(1.0 - level * _ALL_SIDES).mean(axis=1))
+    level = 1.0 - tangent[..., 2:] ** 2
+    return np.asarray(np.sqrt(1.0 - level * _ALL_SIDES).mean(axis=-1))
 
 
 _ALL_SIDES = np.cos((np.arange(8) + 0.5) * np.pi / 16.0) ** 2
 
 
-def _static_pair(beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats) -> Floats | None:
+def _static_pair(
+    beam: BranchBeam, curvatures: Floats, e1: Floats, e2: Floats
+) -> tuple[Floats, NDArray[np.bool_]]:
     """
     Curvatures, (2, p, 5, 3), by winds, scaled to rotate the chord by 1 about e2 and about -e1.
 
     They are the best fit to the curvatures by winds along x, y and z, (p, 5, 3, 3) (least squares,
     an upward wind weighted by `_UPWARD`). Where horizontal winds rotate the chord about both axes,
-    their curvatures are exact, and so is the static sway of a tree. The result is None for a
-    branch whose chord no wind rotates.
+    their curvatures are exact, and so is the static sway of a tree. The second result is false for
+    a branch whose chord no wind rotates.
     """
-    slopes = beam.from_base(curvatures)[0]
-    ends = beam.integral(cross(slopes, beam.tangent[:, None, None, :]))
-    turns = _WIND_WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=1)) / beam.chord_length
+    ends = beam.integral(cross(beam.from_base(curvatures)[0], beam.tangent[..., None, None, :]))
+    turns = _WIND_WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=-1))
+    turns /= beam.chord_length[..., None, None]
     sides, largest, winds = np.linalg.svd(turns, full_matrices=False)
-    if not largest[-1] > 0.02 * largest[0]:
-        return None
-    mix = (winds.T / largest) @ sides.T * _WIND_WEIGHTS
-    return np.asarray(np.ascontiguousarray(np.moveaxis(mix @ curvatures, 2, 0)))
+    is_turned = largest[..., -1] > 0.02 * largest[..., 0]
+    largest = np.where(is_turned[..., None], largest, 1.0)[..., None, :]
+    mix = (winds.swapaxes(-1, -2) / largest) @ sides.swapaxes(-1, -2) * _WIND_WEIGHTS
+    pair = np.moveaxis(mix[..., None, None, :, :] @ curvatures, -2, 0)
+    return np.ascontiguousarray(pair), is_turned
 
 
 def _further(
-    beam: BranchBeam,
-    mass: Floats,
-    subtrees: SubtreeSums,
-    shear_ratio: float,
-    pair: list[RotationField],
-    n_pairs: int,
-    n_turns: int,
-) -> list[RotationField]:
+    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, shear_ratio: float,
+    pair: list[RotationField], n_pairs: int, n_turns: int,
+) -> list[RotationField]:  # fmt: skip
     """Find fields beyond the static ones, orthogonal in energy, of unit slope."""
     basis: list[Floats] = []
 
@@ -309,7 +328,8 @@ def _further(
             left -= (left @ np.array(basis).T) @ np.array(basis)
         sizes, ways = np.linalg.svd(left, full_matrices=False)[1:]
         missed = np.cumsum(np.square(sizes[::-1]))[::-1]
-        wanted = ways[missed > _LEFT_APART * whole][: MAX_COORDINATES - len(pair) - len(found)]
+        most = max(_MOST_IN_ALL - len(pair) - len(found), _MOST_APART)
+        wanted = ways[missed > _LEFT_APART * whole][:most]
         for way in wanted:
             field = rest_of(_curvature_of(beam, way, shear_ratio))
             found += [] if field is None else [field]
@@ -318,20 +338,21 @@ def _further(
 
 def _apart(beam: BranchBeam, subtrees: SubtreeSums) -> Floats:
     """
-    Return internal moments as subtrees swing at random against each other, (p, 5, k, 3).
+    Return internal moments as subtrees swing against each other, (p, 5, k, 3).
 
     Limbs that swing against each other bend and twist a stem between their bases, unlike any
-    motion of the whole crown (random vectors find what matters: Halko, Martinsson & Tropp 2011,
-    SIAM Review 53(2), 217-288).
+    motion of the whole crown. Few swing one after the other, many at random (random vectors find
+    what matters: Halko, Martinsson & Tropp 2011, SIAM Review 53(2), 217-288).
     """
     places = beam.child_point[: len(subtrees.area)]
-    rng = np.random.default_rng(0)
-    moved, turn = rng.choice((-1.0, 1.0), (2, len(places), _APART, 3))
+    n, rng = len(places), np.random.default_rng(0)
+    cases = np.eye(6 * n) if 6 * n <= _APART else rng.choice((-1.0, 1.0), (_APART, 6 * n))
+    moved, turn = np.moveaxis(cases.reshape(-1, 2, n, 3), 0, 2)
     hung = subtrees.mass_moment - subtrees.mass[:, None] * places
     trace = np.trace(subtrees.mass_second, axis1=1, axis2=2)
     square = trace - (places * (hung + subtrees.mass_moment)).sum(axis=1)
     radius = np.sqrt(np.maximum(square, 1e-12) / np.maximum(subtrees.mass, 1e-300))
-    load = np.zeros((*beam.weight.shape, _APART, 3))
+    load = np.zeros((*beam.weight.shape, len(cases), 3))
     turn = turn / radius[:, None, None]
     return beam.moment_in_space(load, *_inertial_wrench(places, subtrees, turn, moved))
 

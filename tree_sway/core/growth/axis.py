@@ -50,17 +50,10 @@ def aim(axis: Floats, polar: float, azimuth: float) -> Floats:
 
 
 def grow_axis(
-    origin: Floats,
-    azimuth: float,
-    elevation: tuple[float, float],
-    length: float,
-    n_segments: int,
-    rng: np.random.Generator,
-    *,
-    wander: float = 0.0,
-    unevenness: float = 0.15,
+    origin: Floats, azimuth: float, elevation: tuple[float, float], length: float, n_segments: int,
+    rng: np.random.Generator, *, wander: float = 0.0, unevenness: float = 0.15,
     floor: float = -np.inf,
-) -> Floats:
+) -> Floats:  # fmt: skip
     """
     Draw the nodes (n_segments + 1, 3) [m] of a shoot whose elevation turns evenly.
 

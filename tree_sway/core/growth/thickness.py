@@ -42,15 +42,9 @@ def carried_length(skeleton: Skeleton) -> list[Floats]:
 
 
 def node_diameters(
-    skeleton: Skeleton,
-    diameter: float,
-    *,
-    at_height: float,
-    tip_diameter: float,
-    exponent: float = 2.5,
-    stem_taper: float | None = None,
-    bole_taper: float = 0.0,
-) -> list[Floats]:
+    skeleton: Skeleton, diameter: float, *, at_height: float, tip_diameter: float,
+    exponent: float = 2.5, stem_taper: float | None = None, bole_taper: float = 0.0,
+) -> list[Floats]:  # fmt: skip
     """
     Diameter of every node in [m] by the pipe model, one (k + 1,) per shoot, the stem first.
 

@@ -19,16 +19,9 @@ from tree_sway.core.growth.skeleton import Skeleton
 
 
 def add_twigs(
-    skeleton: Skeleton,
-    shoot: int,
-    length: float,
-    polar: float,
-    sides: Sequence[float],
-    *,
-    first_node: int = 1,
-    lift: float = 0.0,
-    outer_ratio: float = 0.75,
-) -> None:
+    skeleton: Skeleton, shoot: int, length: float, polar: float, sides: Sequence[float], *,
+    first_node: int = 1, lift: float = 0.0, outer_ratio: float = 0.75,
+) -> None:  # fmt: skip
     """
     Add twigs on the nodes of a shoot, from a first node on.
 

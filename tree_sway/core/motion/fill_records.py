@@ -20,11 +20,12 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.branch.beam import cross, cross_matrix
 from tree_sway.core.branch.model import BranchModel
-from tree_sway.core.branch.shapes import across, exposure, MAX_COORDINATES
+from tree_sway.core.branch.shapes import across, exposure
 from tree_sway.core.motion.records import (
     block_layout,
     branch_layout,
     load_layout,
+    room_for_fields,
     segment_layout,
     WIDTH,
     zeros_in_lines,
@@ -68,7 +69,7 @@ def segment_records(places: Places) -> Records:
     """Fill the segments for placing: records of `segment_layout`, in blocks."""
     block, slot, n_records = assign_slots(places.first, places.parent, places.n_coordinates)
     is_plain = places.rotation_mode.shape[1] == 2
-    records = zeros_in_lines(n_records, segment_layout(2) if is_plain else segment_layout())
+    records = zeros_in_lines(n_records, segment_layout(places.rotation_mode.shape[1]))
     records['rest'][:, 0] = 1.0
     size = np.diff(places.first)
     rows = np.arange(len(places.slope)) + np.repeat(block - places.first[:-1], size)
@@ -114,7 +115,7 @@ def rotation_modes_of(branch: np.void, segments: Records) -> Floats:
 
 def block_records(branches: Records, segments: Records) -> Records:
     """
-    Lay the fields for placing out in blocks, from `BRANCH` records whose coordinates are set.
+    Lay the fields for placing out in blocks, from `Branch` records whose coordinates are set.
 
     Records are of `block_layout`, one per block of `assign_slots` and one of scratch memory.
     """
@@ -210,14 +211,18 @@ def places_of(tree: Tree, models: list[BranchModel], reduction: Reduction) -> Pl
         # The third cumulant over 6: the lag of the chord angle, per angle cubed.
         skews.append(np.add.reduceat(share * deviation**3, first) / 6.0)
     counts = np.array([len(model.fields) for model in models])
-    is_plain = (counts == 2).all()
-    rotation_mode = np.zeros((tree.n_segments, 2 if is_plain else MAX_COORDINATES, 3))
-    for branch, model in enumerate(models):
-        rotation_mode[tree.segments_of(branch), : counts[branch]] = _drawn_modes(model)
-    frame = np.array([(m.beam.chord, *across(m.beam.chord)) for m in models])
+    rotation_mode = np.zeros((tree.n_segments, room_for_fields(counts.max()), 3))
+    chord = np.array([model.beam.chord for model in models])
+    e1, e2 = across(chord)
+    # A plain branch rotates by one slope about the axes across its chord.
+    drawn = np.stack([e2, -e1], axis=1)[tree.branch_of_segment]
+    rotation_mode[:, :2] = slope[:, None, None] * drawn
+    for branch in np.flatnonzero(counts > 2).tolist():
+        modes = [models[branch].beam.over_segments(one.slope) for one in models[branch].fields]
+        rotation_mode[tree.segments_of(branch), : len(modes)] = np.stack(modes, axis=1)
     return Places(
-        tree.branch_first, tree.branch_parent, on, reduction.first[:-1], counts, frame,
-        skews[0], skews[1],
+        tree.branch_first, tree.branch_parent, on, reduction.first[:-1], counts,
+        np.stack([chord, e1, e2], axis=1), skews[0], skews[1],
         np.where(on[:, None] >= 0, offset, 0.0), reduction.twist[:, :, 3:],
         following - tree.start, tree.rest_frame, slope, tip_slope, rotation_mode,
     )  # fmt: skip
@@ -232,8 +237,7 @@ def branch_records(
 
     The profile is the wind speed at each segment over that at the anemometer, (n,).
     """
-    layout = branch_layout(2) if places.rotation_mode.shape[1] == 2 else branch_layout()
-    records = np.zeros(tree.n_branches, dtype=layout)
+    records = np.zeros(tree.n_branches, dtype=branch_layout(places.rotation_mode.shape[1]))
     alike: dict[tuple[int, int], list[int]] = {}
     for branch, model in enumerate(models):
         alike.setdefault((len(model.beam.length), len(model.fields)), []).append(branch)
@@ -276,14 +280,14 @@ def _fill_loads(
     share = weight / total[:, None, None]
     centre = np.einsum('ksg,ksgi->ki', share, point)
     records['centre'][rows] = centre
-    records['coupling'][rows] = [cross_matrix(each) for each in centre]
+    records['coupling'][rows] = cross_matrix(centre)
     panels = share.sum(axis=2)
     speed = (panels * speed_profile).sum(axis=1)
     records['speed'][rows] = speed
     records['area'][rows] = np.divide(total, speed**2, out=np.zeros_like(speed), where=speed > 0.0)
     across = np.eye(3) - (panels[:, None] * tangent.swapaxes(1, 2)) @ tangent
     records['projector'][rows] = across[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
-    exposed = np.array([exposure(beam) for beam in beams])
+    exposed = exposure(tangent)
     exposed /= (panels * exposed).sum(axis=1, keepdims=True)
     amounts, axes = np.linalg.eigh(across)
     stored = amounts > _STRAIGHT * amounts[:, -1:]
@@ -385,19 +389,6 @@ class _SlantingWinds:
         return np.asarray(np.linalg.lstsq(self._weights, squares, rcond=None)[0])
 
 
-def _drawn_modes(model: BranchModel) -> Floats:
-    """
-    Rotation vector of each segment per unit of each coordinate, as it is drawn, (m, k, 3).
-
-    A plain branch rotates by one slope about the axes across its chord.
-    """
-    if len(model.fields) == 2:
-        e1, e2 = across(model.beam.chord)
-        return np.multiply.outer(model.shape.segment_slope, np.stack([e2, -e1]))
-    modes = [model.beam.over_segments(one.slope) for one in model.fields]
-    return np.stack(modes, axis=1)
-
-
 def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
     """
     Slope of each segment of a plain branch, and under a load at the tip, both (n,).
@@ -417,7 +408,7 @@ def _slopes(tree: Tree, models: list[BranchModel]) -> tuple[Floats, Floats]:
 
 def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:
     """
-    Lay the wind load of `BRANCH` records, (b,), out in sixteens, (ceil(b / 16),).
+    Lay the wind load of `Branch` records, (b,), out in sixteens, (ceil(b / 16),).
 
     Records are at rest, without force, and of `load_layout` with the rows of the branches, or of a
     layout with further fields, which are zero.

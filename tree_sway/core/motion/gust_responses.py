@@ -10,11 +10,13 @@ describe the motion of many modes. Static responses cover slower and faster wind
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.motion.drag import DragLaw, pressure
-from tree_sway.core.motion.response import base_motion, own_motion, tip_motion
+from tree_sway.core.motion.response import base_motion, own_motion
 from tree_sway.core.reduction.modes import Modes
 
 _SPEEDS = (3.0, 12.0)
@@ -25,7 +27,9 @@ _COUNT, _BEYOND = 20, 1.5
 """Number of frequencies, and their range beyond those of the modes."""
 
 
-def gust_responses(branches: Records, modes: Modes, damping_ratio: Floats, law: DragLaw) -> Floats:
+def gust_responses(
+    branches: Records, modes: Modes, tips: Floats, damping_ratio: Floats, law: DragLaw
+) -> Floats:
     """
     Find the response to turbulence of several speeds and directions, of unit motion of the tips.
 
@@ -33,8 +37,9 @@ def gust_responses(branches: Records, modes: Modes, damping_ratio: Floats, law: 
     ----------
     branches
         Records of the branches.
-    modes, damping_ratio
-        Natural modes, and the damping ratio of the wood in each, (m,).
+    modes, tips, damping_ratio
+        Natural modes, the motion of the tips by each, (any, m), and the damping ratio of the wood
+        in each, (m,).
     law
         Drag law of the whole tree.
 
@@ -49,11 +54,9 @@ def gust_responses(branches: Records, modes: Modes, damping_ratio: Floats, law: 
     # Root of the spectrum w^(-5/3) over bands of width w, constant below the slowest mode.
     gusts = np.maximum(swept, circular[0])[:, :, None] ** (-1.0 / 3.0)
     free = circular**2 - swept**2 + 2j * damping_ratio * circular * swept
-    tips = tip_motion(branches, modes.shapes).reshape(-1, len(circular))
+    winds = (np.array([np.cos(azimuth), np.sin(azimuth), 0.0]) for azimuth in _AZIMUTHS)
     found = []
-    for azimuth in _AZIMUTHS:
-        ahead = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-        load, air = gust_slopes(branches, modes.shapes, ahead)
+    for load, air in gust_slopes(branches, modes.shapes, *winds):
         for speed in _SPEEDS:
             system = 1j * swept[:, :, None] * (pressure(speed, *law) * speed * air)
             system += free[:, :, None] * np.eye(len(circular))
@@ -64,20 +67,23 @@ def gust_responses(branches: Records, modes: Modes, damping_ratio: Floats, law: 
     return np.hstack(found)
 
 
-def gust_slopes(branches: Records, shapes: Floats, ahead: Floats) -> tuple[Floats, Floats]:
+def gust_slopes(
+    branches: Records, shapes: Floats, *winds: Floats
+) -> Iterator[tuple[Floats, Floats]]:
     """
-    Slopes of the load on shapes (N, m) in a wind (3,) of 1 kg/m^3, the tree at rest.
+    Slopes of the load on shapes (N, m) in each wind (3,) of 1 kg/m^3, the tree at rest.
 
-    Returned are slopes by the wind, (m, 3), and, with the opposite sign, by the rates of the
+    Yielded are slopes by the wind, (m, 3), and, with the opposite sign, by the rates of the
     shapes, (m, m).
     """
     m, bases = shapes.shape[1], base_motion(branches, shapes)
     at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
     pushed = (at + own_motion(branches, 'load_mode', shapes)).reshape(-1, m).T
-    slope = _drag_slopes(branches, ahead)
-    load = pushed @ (branches['speed'][:, None, None] * slope).reshape(-1, 3)
-    slowed = slope @ (at + own_motion(branches, 'damping_mode', shapes))
-    return load, pushed @ slowed.reshape(-1, m)
+    at += own_motion(branches, 'damping_mode', shapes)
+    for ahead in winds:
+        slope = _drag_slopes(branches, ahead)
+        load = pushed @ (branches['speed'][:, None, None] * slope).reshape(-1, 3)
+        yield load, pushed @ (slope @ at).reshape(-1, m)
 
 
 def _drag_slopes(branches: Records, ahead: Floats) -> Floats:

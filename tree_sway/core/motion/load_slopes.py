@@ -21,8 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records, Singles
-from tree_sway.core.motion.plain.numpy_passes import cross_matrices, of_slots
-from tree_sway.core.motion.plain.numpy_rotation import cross, quaternions_of
+from tree_sway.core.branch.beam import cross, cross_matrix
+from tree_sway.core.motion.plain.numpy_passes import of_slots
+from tree_sway.core.motion.plain.numpy_rotation import quaternions_of
 from tree_sway.core.motion.response import joint_motion, levels_of, own_motion, sum_outward
 
 _ONE = np.eye(3)
@@ -57,7 +58,7 @@ class LoadSlopes:
         self._branches, count = branches, len(branches)
         bearing, self._on = np.unique(np.maximum(branches['parent'], 0), return_inverse=True)
         self._bearing, self._levels = bearing, levels_of(np.r_[-1, self._on[bearing[1:]]])
-        base = -cross_matrices(branches['base'])
+        base = -cross_matrix(branches['base'])
         self._free = np.concatenate([np.broadcast_to(_ONE, (count, 3, 3)), base], axis=2)
         self._bowed = (
             -2.0 * branches['per_arm'][:, None, None] * (self._free.swapaxes(1, 2) @ self._free)
@@ -92,38 +93,38 @@ class LoadSlopes:
         per_arm, moved = branches['per_arm'][:, None, None], work['displacement']
         leant = -2.0 * per_arm * _outer(branches['arm'], moved)
         slide, spin = self._free + leant @ self._free, np.zeros((count, 3, 6))
-        skew = cross_matrices(work['rotation'])
+        skew = cross_matrix(work['rotation'])
         spin[:, :, 3:] = _ONE + 0.5 * skew + skew @ skew / 6.0
         relative = np.concatenate([slide, spin], axis=1)
-        twist = _blocks(frames, cross_matrices(place) @ frames, 0.0, frames) @ relative
+        twist = _blocks(frames, cross_matrix(place) @ frames, 0.0, frames) @ relative
         pulled, bent = (np.einsum('bji,bj->bi', frames, each) for each in (force, moment))
-        force_cross = cross_matrices(force)
-        about_root = cross_matrices(moment + cross(place, force))
+        force_cross = cross_matrix(force)
+        about_root = cross_matrix(moment + cross(place, force))
         by_parent = twist.swapaxes(1, 2) @ _blocks(0.0, force_cross, force_cross, about_root)
-        by_joint = spin.swapaxes(1, 2) @ cross_matrices(pulled) @ slide
+        by_joint = spin.swapaxes(1, 2) @ cross_matrix(pulled) @ slide
         # The second derivatives of slide and spin times both.
         by_joint += (branches['arm'] * pulled).sum(axis=1)[:, None, None] * self._bowed
-        bent = cross_matrices(bent)
+        bent = cross_matrix(bent)
         by_joint[:, 3:, 3:] += 0.5 * bent + (bent @ skew - 2.0 * skew @ bent) / 6.0
 
         # Each branch on its base, in its own turned frame.
         own = of_slots(self._loads['rotation'], count)
         turn = frame @ _rotations(quaternions_of(own))
         back = turn.swapaxes(1, 2)
-        moving = _blocks(back, -back @ cross_matrices(place), 0.0, back)
-        own = cross_matrices(own)
+        moving = _blocks(back, -back @ cross_matrix(place), 0.0, back)
+        own = cross_matrix(own)
         seeing = _ONE - 0.5 * own + own @ own / 6.0
         air = (frame @ self._in_slots('air_velocity')[..., None])[..., 0]
         air = np.einsum('bji,bj->bi', turn, air)
         drag = self._drag(air)
         own_force, lever = self._in_slots('own_force'), self._in_slots('coupling')
         forces, moments = (
-            cross_matrices(each) for each in (own_force, (lever @ own_force[..., None])[..., 0])
+            cross_matrix(each) for each in (own_force, (lever @ own_force[..., None])[..., 0])
         )
         small: list[Any] = [
             each.astype(np.float32) for each in (
                 twist, by_parent, by_joint, moving, seeing, lever.swapaxes(1, 2), forces, moments,
-                drag @ cross_matrices(air), drag,
+                drag @ cross_matrix(air), drag,
             )
         ]  # fmt: skip
         bases = self._outward(small[0][self._bearing] @ self._joint[self._bearing])
@@ -185,5 +186,5 @@ def _blocks(
 
 def _rotations(quaternions: Floats) -> Floats:
     """Matrices (b, 3, 3) of unit quaternions w x y z, (b, 4)."""
-    turn = cross_matrices(quaternions[:, 1:])
+    turn = cross_matrix(quaternions[:, 1:])
     return np.asarray(_ONE + 2.0 * (quaternions[:, :1, None] * turn + turn @ turn))

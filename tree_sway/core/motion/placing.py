@@ -85,7 +85,7 @@ def place(
     instances, shapes
         Coordinates and shapes of the key rotations (`expand`), or `GIVEN` where these are given.
     segments, blocks
-        Records of `SEGMENT` and `block_layout`.
+        Records of `Segment` and `block_layout`.
     bases
         Orientation of each base from rest, w x y z, then half the stretched key rotation, (b, 8),
         written.

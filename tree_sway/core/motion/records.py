@@ -27,7 +27,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Ints, Records, RecordsOf, Singles
-from tree_sway.core.branch.shapes import MAX_COORDINATES
+from tree_sway.core.branch.shapes import ROOMS
 
 WIDTH = 16
 
@@ -96,7 +96,7 @@ class Block:
     n_parent_rows: int  # largest number of coordinates of a parent
     is_joined: int  # 1 where each segment starts at the end of the one before
     is_at_axes: int  # 1 where all bases are on the axes of their base segments
-    # As in `BRANCH`:
+    # As in `Branch`:
     branch: Annotated[Ints, WIDTH]
     parent: Annotated[Ints, WIDTH]
     coordinate: Annotated[Ints, WIDTH]
@@ -156,7 +156,7 @@ class Load:
     """
 
     n_rows: int  # largest number of coordinates of a branch
-    # As in `BRANCH`:
+    # As in `Branch`:
     speed: Annotated[Floats, WIDTH]
     area: Annotated[Floats, WIDTH]
     spread: Annotated[Floats, WIDTH]
@@ -264,19 +264,21 @@ TimeSteps = RecordsOf[TimeStep]
 Instances = RecordsOf[Instance]
 
 
+def room_for_fields(most: int) -> int:
+    """Return the room of records for a largest number of fields of a branch: one of `ROOMS`."""
+    return next(room for room in ROOMS if most <= room)
+
+
 @cache
-def branch_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
+def branch_layout(n_coordinates: int) -> np.dtype[np.void]:
     """
     Lay out `Branch`, with room for a number of coordinates.
 
-    Where no branch has more than its key rotation, records have no room for more: the speed of a
-    forest is limited by how fast its records are read from memory.
+    There is no room for more than any branch has (`room_for_fields`): the speed of a forest is
+    limited by how fast its records are read from memory.
     """
     return np.dtype(fields_of(Branch, rows=n_coordinates))
 
-
-BRANCH = branch_layout()
-"""With room for every coordinate."""
 
 _LINE = 64
 """Bytes of a cache line, and of the widest vector."""
@@ -311,18 +313,14 @@ def in_lines(records: Records) -> Records:
 
 
 @cache
-def segment_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
+def segment_layout(n_coordinates: int) -> np.dtype[np.void]:
     """Lay out `Segment`, without ``rotation_mode`` where all branches are plain."""
     rows, axes = (n_coordinates, 3) if n_coordinates > 2 else (1, 1)
     return _whole_lines(fields_of(Segment, rows=rows, axes=axes))
 
 
-SEGMENT = segment_layout()
-"""With room for every coordinate."""
-
-
 @cache
-def block_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
+def block_layout(n_coordinates: int) -> np.dtype[np.void]:
     """
     Lay out `Block`.
 
@@ -336,7 +334,7 @@ WORK = np.dtype(fields_of(Work))
 
 
 @cache
-def load_layout(n_coordinates: int = MAX_COORDINATES) -> np.dtype[np.void]:
+def load_layout(n_coordinates: int) -> np.dtype[np.void]:
     """Lay out `Load`, with room for a number of coordinates."""
     return _whole_lines(fields_of(Load, rows=n_coordinates, loads=1 + n_coordinates))
 

@@ -183,7 +183,7 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
     Parameters
     ----------
     branches, work, loads
-        Records of `BRANCH` and `WORK`, (b,), after `outward_pass`, and of `load_layout`, after
+        Records of `Branch` and `WORK`, (b,), after `outward_pass`, and of `load_layout`, after
         `wind_forces`.
     moment
         Moments on the coordinates in [N m], (N,), written.

@@ -149,6 +149,9 @@ class WindBasisTable:
                 if j > 0 and at is weaker:
                     turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
                     continue
+                if j == 0 and (other := k - len(winds) // 2) >= 0:  # the opposite of this wind
+                    turning[k, 0], damping[k, 0] = -turning[other, 0], damping[other, 0]
+                    continue
                 turning[k, j], damping[k, j] = self._slopes(x, ahead)
                 if SPEEDS[j] > _BREEZE:
                     air = self._damping - s / SPEEDS[j] * np.diag(damping[k, j])

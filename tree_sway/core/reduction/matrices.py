@@ -21,14 +21,15 @@ coordinates on each child. SI units.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.branch.beam import cross, cross_matrix, energies
+from tree_sway.core.branch.beam import cross, energies, many_of, products
 from tree_sway.core.branch.model import BranchModel
 from tree_sway.core.branch.shapes import MAX_COORDINATES
 from tree_sway.core.tree.tree import Tree
@@ -125,8 +126,8 @@ def reduce_tree(
         E and G of the wood in [Pa].
     gravity
         Gravity in [m/s^2]; 0 leaves weight out.
-    subtrees Whether children move with their parents and load them; if not, every branch is
-    isolated.
+    subtrees
+        Whether children move with their parents and load them; if not, every branch is isolated.
 
     Returns
     -------
@@ -141,40 +142,39 @@ def reduce_tree(
     body = np.zeros((n_branches, 6, 6))
     compliance = np.zeros((first[-1], MAX_COORDINATES))
     mass, weight, elastic, apart = _Blocks(), _Blocks(), _Blocks(), _Blocks()
-    for branch in range(n_branches - 1, -1, -1):
-        model = models[branch]
-        own = slice(int(first[branch]), int(first[branch + 1]))
-        fields, twists = _motions(model)
-        dm = model.mass * model.beam.weight
-        moved = dm[..., None] * fields
-        own_mass = moved.reshape(len(fields), -1) @ fields.reshape(len(fields), -1).T
-        momentum[own, :3] = moved.sum(axis=(1, 2))
-        lever = model.beam.point.reshape(-1, 3).T @ moved.reshape(len(fields), -1, 3)
-        momentum[own, 3:] = (lever - lever.transpose(0, 2, 1))[:, [1, 2, 0], [2, 0, 1]]
-        own_weight = gravity * _own_geometric(model, body[model.children])
-        for number, child in enumerate(model.children):
-            base_twists = twists[:, number]
-            twist[child, : len(base_twists)] = base_twists
-            if not subtrees:
-                continue
-            carried = base_twists @ body[child]
-            own_mass += carried @ base_twists.T
-            momentum[own] += carried
-            below = slice(int(first[child]), int(first[tree.subtree_end[child]]))
-            mass.add(own, below, base_twists @ momentum[below].T)
+    for branches, model in _together(models):
+        own = first[branches][..., None] + np.arange(len(model.fields))
+        fields = np.stack([one.points for one in model.fields], axis=-4)
+        moved = (model.mass * model.beam.weight)[..., None, :, :, None] * fields
+        slopes = np.stack([one.slope for one in model.fields], axis=-4)
+        spins = _spins(model, slopes)
+        own_mass = products(moved, fields, 3) + products(spins, slopes, 3)
+        turning = cross(model.beam.point[..., None, :, :, :], moved) + spins
+        momentum[own] = np.concatenate([moved, turning], axis=-1).sum(axis=(-3, -2))
+        children = model.children
+        own_weight = gravity * _own_geometric(model, body[children])
+        base_twists = _base_twists(model)
+        if len(children):
+            twist[children, : len(model.fields)] = base_twists
+        if len(children) and subtrees:
+            carried = base_twists @ body[children]
+            own_mass += (carried @ base_twists.swapaxes(-1, -2)).sum(axis=0)
+            momentum[own] += carried.sum(axis=0)
+            ends = first[tree.subtree_end[children]]
+            below = np.arange(first[children[0]], ends[-1])
+            moves = base_twists.repeat(ends - first[children], axis=0)
             lift = momentum[below]
-            tilt = np.outer(base_twists[:, 3], lift[:, 1]) - np.outer(
-                base_twists[:, 4], lift[:, 0]
-            )
-            weight.add(own, below, gravity * tilt)
+            mass.add(own, below, (moves @ lift[..., None])[..., 0].T)
+            tilt = moves[:, :, 3] * lift[:, 1:2] - moves[:, :, 4] * lift[:, :1]
+            weight.add(own, below, gravity * tilt.T)
         mass.add(own, own, own_mass)
         weight.add(own, own, own_weight)
         bent = energies(model.fields, modulus, shear_modulus)
         elastic.add(own, own, bent)
         apart.add(own, own, bent + own_weight)
-        compliance[own, : len(fields)] = np.linalg.inv(bent + own_weight)
+        compliance[own, : len(model.fields)] = np.linalg.inv(bent + own_weight)
         if subtrees:
-            body[branch] = _spatial_inertia(model) + body[model.children].sum(axis=0)
+            body[branches] = _spatial_inertia(model) + body[children].sum(axis=0)
     shape = (int(first[-1]), int(first[-1]))
     matrices = (each.symmetric(shape) for each in (mass, weight, elastic, apart))
     return Reduction(first, twist, compliance, *matrices)
@@ -188,16 +188,13 @@ class _Blocks:
         self.columns: list[Ints] = []
         self.values: list[Floats] = []
 
-    def add(self, rows: slice, columns: slice, values: Floats) -> None:
-        height, width = values.shape
-        r = np.arange(rows.start, rows.stop).repeat(width)
-        c = np.arange(columns.start, columns.stop)[None].repeat(height, axis=0).ravel()
-        self.rows.append(r)
-        self.columns.append(c)
-        self.values.append(values.ravel())
-        if rows != columns:
-            self.rows.append(c)
-            self.columns.append(r)
+    def add(self, rows: Ints, columns: Ints, values: Floats) -> None:
+        """Add blocks (..., k, c) at rows (..., k) and columns (..., c), and their transposes."""
+        both = rows[..., None], columns[..., None, :]
+        r, c = (np.broadcast_to(each, values.shape).ravel() for each in both)
+        for places in ((r, c),) if rows is columns else ((r, c), (c, r)):
+            self.rows.append(places[0])
+            self.columns.append(places[1])
             self.values.append(values.ravel())
 
     def symmetric(self, shape: tuple[int, int]) -> Any:
@@ -208,28 +205,49 @@ class _Blocks:
         return sparse.coo_matrix((entries, where), shape=shape).tocsc()
 
 
-def _motions(model: BranchModel) -> tuple[Floats, Floats]:
-    """Displacement at points (k, p, 5, 3) and twist on children (k, c, 6) of each coordinate."""
+def _together(models: list[BranchModel]) -> Iterator[tuple[int | Ints, BranchModel]]:
+    """Yield branches and their models, children first: twigs that are alike as one model."""
+    twigs: dict[tuple[int, int], list[int]] = {}
+    for branch, model in enumerate(models):
+        if not len(model.children):
+            twigs.setdefault((len(model.beam.length), len(model.fields)), []).append(branch)
+    for alike in twigs.values():
+        ones = [models[branch] for branch in alike]
+        beam = many_of([one.beam for one in ones])
+        fields = zip(*(one.fields for one in ones), strict=True)
+        many = tuple(many_of(each, beam=beam) for each in fields)
+        mass = np.array([one.mass for one in ones])
+        yield np.array(alike), replace(ones[0], beam=beam, mass=mass, fields=many)
+    for branch in range(len(models) - 1, -1, -1):
+        if len(models[branch].children):
+            yield branch, models[branch]
+
+
+def _base_twists(model: BranchModel) -> Floats:
+    """Twist on each child of each coordinate, (c, k, 6)."""
     places = model.beam.child_point
-    twists = [
-        np.hstack([one.children - cross(one.child_slope, places), one.child_slope])
+    parts = [
+        np.concatenate([one.children - cross(one.child_slope, places), one.child_slope], axis=-1)
         for one in model.fields
     ]
-    return np.stack([one.points for one in model.fields]), np.stack(twists)
+    return np.stack(parts, axis=-2)
+
+
+def _spins(model: BranchModel, slopes: Floats) -> Floats:
+    """Spin of cross-sections that rotate by slopes, (..., k, p, 5, 3) both (Rayleigh, 1877)."""
+    beam = model.beam
+    about = (beam.second_moment / beam.area * model.mass * beam.weight)[..., None, :, :, None]
+    tangent = beam.tangent[..., None, :, None, :]
+    return np.asarray(about * (slopes + (slopes * tangent).sum(-1, keepdims=True) * tangent))
 
 
 def _spatial_inertia(model: BranchModel) -> Floats:
     """Inertia (6, 6) of a branch as a rigid body about the root: momentum of a twist (v, w)."""
-    point = model.beam.point
-    dm = model.mass * model.beam.weight
-    mass = dm.sum()
-    cross = cross_matrix(np.einsum('sg,sgk->k', dm, point))
-    second = np.einsum('sg,sgi,sgj->ij', dm, point, point)
-    inertia = np.zeros((6, 6))
-    inertia[:3, :3] = mass * np.eye(3)
-    inertia[:3, 3:] = -cross
-    inertia[3:, :3] = cross
-    inertia[3:, 3:] = np.trace(second) * np.eye(3) - second
+    turning = cross(np.eye(3)[:, None, None], model.beam.point[..., None, :, :, :])
+    moving = np.broadcast_to(np.eye(3)[:, None, None], turning.shape)
+    moves = np.concatenate([moving, turning], axis=-4)
+    inertia = products((model.mass * model.beam.weight)[..., None, :, :, None] * moves, moves, 3)
+    inertia[..., 3:, 3:] += products(_spins(model, moving), moving, 3)
     return inertia
 
 
@@ -247,28 +265,26 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     """
     beam = model.beam
     own, nodes, _ = beam.from_base(model.mass)
-    beyond = nodes[-1] - own
     masses = bodies[:, 0, 0]
-    if len(masses):
-        beyond = beyond + beam.child_lever[1] @ masses
-    slopes = [one.slope for one in model.fields]
-    child_slopes = [one.child_slope for one in model.fields]
-    lever = beam.weight[..., None] * beyond[..., None] * beam.tangent[:, None, :]
     moment = np.stack([bodies[:, 5, 1], bodies[:, 3, 2], bodies[:, 4, 0]], axis=-1)
     hanging = moment - masses[:, None] * beam.child_point
-    arms = np.vstack([lever.reshape(-1, 3), hanging])
+    beyond = nodes[..., -1:, None] - own
+    if len(masses):
+        beyond = beyond + beam.child_lever[1] @ masses
+    lever = beyond[..., None] * beam.tangent[..., None, :]
+    outer = beam.from_base(lever)
+    hung = outer[1][..., -1:, None, :] - outer[0]
+    if len(masses):
+        hung += beam.child_lever[1] @ hanging
+    weight, shape = beam.weight[..., None], (*beam.chord.shape[:-1], -1, 3)
+    arms = np.concatenate([(weight * lever).reshape(shape), hanging], axis=-2)[..., None, :, :]
     turns = np.stack(
-        [np.vstack([a.reshape(-1, 3), c]) for a, c in zip(slopes, child_slopes, strict=True)]
+        [np.concatenate([f.slope.reshape(shape), f.child_slope], axis=-2) for f in model.fields],
+        axis=-3,
     )
-    once = turns[..., 2] @ (turns * arms).sum(axis=-1).T
-    n = len(turns)
-    both = (turns * arms[:, 2:]).reshape(n, -1) @ turns.reshape(n, -1).T
-    outer = beam.from_base(lever / beam.weight[..., None])
-    hung = outer[1][-1] - outer[0] + beam.child_lever[1] @ hanging
-    borne = beam.weight[..., None] * np.stack(
-        [hung[..., 1], -hung[..., 0], np.zeros_like(beam.weight)], axis=-1
-    )
-    curvatures = np.stack([one.curvature for one in model.fields]).reshape(n, -1)
-    about = np.stack([cross(borne, slope) for slope in slopes]).reshape(n, -1)
-    unlike = about @ curvatures.T
-    return np.asarray(0.5 * (once + once.T + unlike + unlike.T) - both)
+    once = turns[..., 2] @ (turns * arms).sum(axis=-1).swapaxes(-1, -2)
+    both = products(turns * arms[..., 2:], turns, 2)
+    borne = weight * np.stack([hung[..., 1], -hung[..., 0], 0.0 * hung[..., 0]], axis=-1)
+    about = np.stack([cross(borne, one.slope) for one in model.fields], axis=-4)
+    once += products(about, np.stack([one.curvature for one in model.fields], axis=-4), 3)
+    return np.asarray(0.5 * (once + once.swapaxes(-1, -2)) - both)

@@ -11,7 +11,7 @@ branch.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -117,9 +117,7 @@ def natural_modes(tree: Tree, reduction: Reduction, count: int | None = None) ->
     return Modes(circular, np.ascontiguousarray(shapes[:, slowest_first] * circular))
 
 
-def leading_modes(
-    reduction: Reduction, answers: Floats, moved: Callable[[Floats], Floats], count: int
-) -> Modes:
+def leading_modes(reduction: Reduction, answers: Floats, tips: Floats, count: int) -> Modes:
     """
     Find the coordinates that cover most of the motion of a tree in winds.
 
@@ -130,8 +128,9 @@ def leading_modes(
     ----------
     reduction
         Reduction of the tree.
-    responses Key rotations [rad], (N, k), multiplied by their weights. moved
-        Motion of the tips, (any, k), by key rotations (N, k).
+    answers, tips
+        Key rotations [rad], (N, k), multiplied by their weights, and the motion of the tips by
+        them, (any, k).
     count
         Largest number of coordinates.
 
@@ -145,18 +144,18 @@ def leading_modes(
     from scipy import linalg
 
     stiffness, mass = reduction.stiffness, reduction.mass
-    tips = moved(answers)
     squares, mixes = np.linalg.eigh(tips.T @ tips)
     chosen = [i for i in np.argsort(-squares)[:count] if squares[i] > _NEW * squares[-1]]
-    shapes = answers @ mixes[:, chosen]
-    shapes /= np.sqrt(np.einsum('nl,nl->l', shapes, stiffness @ shapes))
-    inverse_squares, mixes = linalg.eigh(
-        shapes.T @ (mass @ shapes), shapes.T @ (stiffness @ shapes)
-    )
+    shapes, tips = answers @ mixes[:, chosen], tips @ mixes[:, chosen]
+    stiff = stiffness @ shapes
+    scale = 1.0 / np.sqrt(np.einsum('nl,nl->l', shapes, stiff))
+    shapes *= scale
+    inverse_squares, mixes = linalg.eigh(shapes.T @ (mass @ shapes), shapes.T @ (stiff * scale))
     circular = 1.0 / np.sqrt(np.maximum(inverse_squares, 1e-12 * inverse_squares.max()))
     shapes = (shapes @ mixes) * circular
-    amounts = np.square(shapes.T @ (mass @ answers)).sum(axis=1)
-    order = np.argsort(-amounts * np.square(moved(shapes)).sum(axis=0), kind='stable')
+    amounts = np.square((mass @ shapes).T @ answers).sum(axis=1)
+    tips = (tips * scale @ mixes) * circular
+    order = np.argsort(-amounts * np.square(tips).sum(axis=0), kind='stable')
     return Modes(circular[order], np.ascontiguousarray(shapes[:, order]))
 
 

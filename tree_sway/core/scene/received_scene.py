@@ -60,16 +60,9 @@ class ReceivedScene:
     """
 
     def __init__(
-        self,
-        kinds: Sequence[ReceivedKind],
-        kind_of: Ints,
-        places: Floats,
-        speeds: Floats,
-        *,
-        dt: float,
-        anemometer: ArrayLike | None = None,
-        convection_ratio: float = 1.0,
-    ) -> None:
+        self, kinds: Sequence[ReceivedKind], kind_of: Ints, places: Floats, speeds: Floats, *,
+        dt: float, anemometer: ArrayLike | None = None, convection_ratio: float = 1.0,
+    ) -> None:  # fmt: skip
         """Begin at rest."""
         self._dt, self._sizes = dt, [len(kind.arrays['stiffness']) for kind in kinds]
         n_harmonics = max(len(kind.arrays['harmonics']) for kind in kinds)

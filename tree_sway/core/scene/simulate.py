@@ -186,11 +186,9 @@ def moment_per_rotation(reductions: TreeReductions) -> Floats:
 
 
 def _steps(
-    simulator: SwaySimulator,
-    wind: WindSamples | ArrayLike,
-    rate: float,
+    simulator: SwaySimulator, wind: WindSamples | ArrayLike, rate: float,
     measure: Callable[[int, Floats], None],
-) -> tuple[int, Iterator[None]]:
+) -> tuple[int, Iterator[None]]:  # fmt: skip
     """Return the number of steps in a wind, and an iterator over them."""
     if isinstance(wind, WindSamples):
         duration = float(wind.time[-1] - wind.time[0]) if len(wind.time) else 0.0
@@ -211,21 +209,16 @@ def _steps(
 
 
 def _through_record(
-    simulator: SwaySimulator,
-    wind: WindSamples,
-    rate: float,
+    simulator: SwaySimulator, wind: WindSamples, rate: float,
     measure: Callable[[int, Floats], None],
-) -> Iterator[None]:
+) -> Iterator[None]:  # fmt: skip
     """Step through a record like a live wind, with all samples known in advance."""
     ahead = float(np.median(np.diff(wind.time)))
     hold = max(LONGEST_HOLD, 3.0 * ahead) + ahead
     run = Run(
-        simulator,
-        rate,
-        intake=WindIntake(gate=WindGate(max_speed=FASTEST_WIND)),
-        make_wind=lambda: WindAverage(hold),
-        stepped=measure,
-    )
+        simulator, rate, intake=WindIntake(gate=WindGate(max_speed=FASTEST_WIND)),
+        make_wind=lambda: WindAverage(hold), stepped=measure,
+    )  # fmt: skip
     stamps = np.rint(1e9 * (wind.time - wind.time[0])).astype(np.int64).tolist()
     samples = deque(zip(stamps, wind.velocity.tolist(), strict=True))
     for step in itertools.count(1):

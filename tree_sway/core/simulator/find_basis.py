@@ -34,6 +34,9 @@ SPEEDS = (3.0, 9.0, 15.0, 22.0)
 TRIAL_SPEED = 20.0
 """Mean wind in [m/s] of a further run for its error."""
 
+_BETWEEN = 0.1
+"""Motion between base and tip by a unit of a coordinate, over the length of its branch in [1]."""
+
 _DT, _STEPS, _EVERY, _RUN_IN = 1.0 / 60.0, 960, 4, 60
 
 
@@ -79,20 +82,28 @@ def _run(simulator: SwaySimulator, speed: float, seed: int, turns: float) -> Ite
 
 
 def _singular_shapes(joints: Records, runs: list[Floats]) -> tuple[Floats, Floats]:
-    """Shapes by decreasing share in the motion of the tips, (N, m), and their inverse, (m, N)."""
+    """
+    Shapes by decreasing share in the motion of the tips, (N, m), and their inverse, (m, N).
+
+    The shapes between base and tip have a share by the rotations of each branch over its length.
+    """
     shapes, projections = [], []
+    length = np.linalg.norm(joints['tip'] - joints['base'], axis=1)
+    between = _BETWEEN * np.repeat(length, joints['n_coordinates'])[:, None]
     for rotations in runs:
         tips = tip_motion(joints, rotations).reshape(-1, rotations.shape[1])
         size = max(float(np.linalg.norm(tips)), np.finfo(np.float64).tiny)
         shapes.append(rotations / size)
-        projections.append(tips / size)
+        projections.append(np.vstack([tips, between * rotations]) / size)
     moved = np.hstack(projections)
     squares, mixes = np.linalg.eigh(moved.T @ moved)
     chosen = np.flatnonzero(squares > 1e-14 * squares[-1])[::-1]
     mixes = mixes[:, chosen] / np.sqrt(np.maximum(squares[chosen], np.finfo(np.float64).tiny))
     mixes *= np.sign(mixes[np.abs(mixes).argmax(axis=0), np.arange(len(chosen))])
-    tips = (moved @ mixes).reshape(len(joints), 3, -1)
-    return np.hstack(shapes) @ mixes, tip_moments(joints, tips).T
+    moved = moved @ mixes
+    tips = moved[: 3 * len(joints)].reshape(len(joints), 3, -1)
+    moments = tip_moments(joints, tips) + between * moved[3 * len(joints) :]
+    return np.hstack(shapes) @ mixes, moments.T
 
 
 def tip_moments(joints: Records, forces: Floats) -> Floats:

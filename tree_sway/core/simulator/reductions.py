@@ -127,13 +127,15 @@ class TreeReductions:
         def moved(rotations: Floats) -> Floats:
             return np.asarray(tip_motion(branches, rotations).reshape(-1, rotations.shape[1]))
 
-        loss = self.damping_ratio * np.ones(candidates)
-        gusts = gust_responses(branches, natural, loss, self.drag_law)
+        loss, tips = self.damping_ratio * np.ones(candidates), moved(natural.shapes)
+        gusts = gust_responses(branches, natural, tips, loss, self.drag_law)
         squares, mixes = np.linalg.eigh(gusts @ gusts.T)
-        gusts = natural.shapes @ (mixes * np.sqrt(np.maximum(squares, 0.0)))
+        mixes *= np.sqrt(np.maximum(squares, 0.0))
         steady = self._static_responses()
-        steady *= _STEADY * np.linalg.norm(moved(gusts)) / np.linalg.norm(moved(steady))
-        return leading_modes(reduction, np.hstack([gusts, steady]), moved, count)
+        tips, moved_steadily = tips @ mixes, moved(steady)
+        weight = _STEADY * np.linalg.norm(tips) / np.linalg.norm(moved_steadily)
+        answers = np.hstack([natural.shapes @ mixes, weight * steady])
+        return leading_modes(reduction, answers, np.hstack([tips, weight * moved_steadily]), count)
 
     def _static_responses(self) -> Floats:
         """Responses of the tree to winds as key rotations, per pressure of 1 kg/m/s^2."""
@@ -170,8 +172,7 @@ class TreeReductions:
         turns = dynamic_pressure * self._beams.turns(self.species.modulus)
         cut, beams = cut_tree(self.tree, pieces_by_turn(self.tree, turns)), self._beams
         if cut.tree.n_branches > self.tree.n_branches:
-            same = np.where(cut.share == 1.0, cut.branch, -1)
-            beams = self._beams_of(cut, (self._beams, same))
+            beams = self._beams_of(cut)
         enriched = beams.enriched(self.settings.enrich)
         models = beams.models(subtrees=True, enriched=enriched)
         return self._reduced(cut, models, subtrees=True)
@@ -187,7 +188,7 @@ class TreeReductions:
         """Return the beams of whole branches."""
         return self._beams_of(whole_tree(self.tree))
 
-    def _beams_of(self, cut: CutTree, known: tuple[TreeBeams, Ints] | None = None) -> TreeBeams:
+    def _beams_of(self, cut: CutTree) -> TreeBeams:
         species, leaf_mass = self.species, np.zeros(self.tree.n_branches)
         if self.settings.leaf_mass is not None:
             leaf_mass = one_of_each(
@@ -202,7 +203,6 @@ class TreeReductions:
             leaf_area=cut.share * self.leaf_load_area[cut.branch],
             root_compliance=species.modulus / species.root_stiffness,
             gravity=self.settings.gravity / species.modulus,
-            known=known,
         )
 
     @one_thread()
@@ -218,7 +218,7 @@ class TreeReductions:
         row, on = cut.row[records['first']], records['base_segment']
         records['end'] += row - records['first']
         records['first'], records['base_segment'] = row, np.where(on < 0, -1, cut.row[on])
-        mass = float(sum(model.beam.integral(model.mass) for model in models))
+        mass = float(sum((model.beam.weight * model.mass).sum() for model in models))
         segments = segment_records(places)
         return ReducedTree(tree, cut.branch, models, reduction, records, segments, mass)
 

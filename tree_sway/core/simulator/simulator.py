@@ -115,7 +115,7 @@ class SwaySimulator:
         self.mass = self.bank.mass
         """Mass of wood and leaves in [kg]."""
         self.joints: Records = self.bank.branches
-        """Records of `BRANCH`, whose coordinates are the key rotations, (b,)."""
+        """Records of `Branch`, whose coordinates are the key rotations, (b,)."""
         self.drag_law = self.reductions.drag_law
         self._advance = self.bank.oscillators.advance
         self._in_one_call: Callable[[float, float, float], int] | None = None

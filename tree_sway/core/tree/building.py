@@ -25,17 +25,10 @@ MAX_COORDINATE = 1e8
 
 
 def tree_from_segments(
-    start: ArrayLike,
-    end: ArrayLike,
-    diameter: ArrayLike,
-    *,
-    parent: ArrayLike | None = None,
-    branch: ArrayLike | None = None,
-    branch_names: Sequence[str] | None = None,
-    name: str = 'tree',
-    species: str = 'broadleaf',
-    labels: Sequence[str] | None = None,
-) -> Tree:
+    start: ArrayLike, end: ArrayLike, diameter: ArrayLike, *, parent: ArrayLike | None = None,
+    branch: ArrayLike | None = None, branch_names: Sequence[str] | None = None, name: str = 'tree',
+    species: str = 'broadleaf', labels: Sequence[str] | None = None,
+) -> Tree:  # fmt: skip
     """
     Build a tree from its segments.
 

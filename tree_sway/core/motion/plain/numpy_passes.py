@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.branch.beam import cross_matrix
 from tree_sway.core.motion.plain.numpy_rotation import (
     cross,
     quaternion_product,
@@ -43,7 +44,7 @@ class Bases(NamedTuple):
 
 class NumpyPasses:
     """
-    Outward pass, wind and inward pass over `BRANCH` records, parents before children.
+    Outward pass, wind and inward pass over `Branch` records, parents before children.
 
     Subtrees are contiguous runs.
     """
@@ -58,7 +59,7 @@ class NumpyPasses:
             name: np.ascontiguousarray(branches[name])
             for name in (*names, 'spread', 'area', 'frame')
         }
-        self._coupling = branches['coupling'] - cross_matrices(branches['base'])
+        self._coupling = branches['coupling'] - cross_matrix(branches['base'])
         xx, yy, zz, xy, xz, yz = branches['projector'].T
         self._projector = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
         self.levels = levels_of(branches['parent'])
@@ -94,15 +95,9 @@ class NumpyPasses:
         return bases
 
     def wind_forces(
-        self,
-        bases: Bases,
-        x: Floats,
-        v: Floats,
-        wind: Floats,
-        per_speed_squared: float,
-        compliance: Floats,
-        impulse: Floats,
-    ) -> Floats:
+        self, bases: Bases, x: Floats, v: Floats, wind: Floats, per_speed_squared: float,
+        compliance: Floats, impulse: Floats,
+    ) -> Floats:  # fmt: skip
         """
         Find the force of the wind on each branch, in its turned frame, in [N], (b, 3).
 
@@ -160,13 +155,6 @@ class NumpyPasses:
             np.add.at(own, parent, np.einsum('bck,bk->bc', twist, np.hstack([f, m])))
         moment[self._column[self.is_there]] = own[self.is_there]
         return world
-
-
-def cross_matrices(vectors: Floats) -> Floats:
-    """Matrices whose products are the cross products of vectors (n, 3), (n, 3, 3)."""
-    matrices = np.zeros((len(vectors), 3, 3))
-    matrices[:, [2, 0, 1], [1, 2, 0]], matrices[:, [1, 2, 0], [2, 0, 1]] = vectors, -vectors
-    return matrices
 
 
 def of_slots(field: Floats, count: int) -> Floats:

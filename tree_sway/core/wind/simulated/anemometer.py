@@ -44,15 +44,9 @@ class AnemometerModel:
     """
 
     def __init__(
-        self,
-        mean_speed: float = 5.0,
-        *,
-        bearing_to: float = 0.5 * np.pi,
-        height: float = 10.0,
-        intensity: float | None = None,
-        rate: float = 20.0,
-        seed: int = 0,
-    ) -> None:
+        self, mean_speed: float = 5.0, *, bearing_to: float = 0.5 * np.pi, height: float = 10.0,
+        intensity: float | None = None, rate: float = 20.0, seed: int = 0,
+    ) -> None:  # fmt: skip
         """Check the parameters."""
         within('mean_speed', mean_speed, 0.0, 40.0, 'm/s')
         within('rate', rate, 1.0, 100.0, 'Hz')

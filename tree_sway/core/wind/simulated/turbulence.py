@@ -166,15 +166,9 @@ def along_bearing(record: Floats, bearing_to: float) -> Floats:
 
 
 def simulate_turbulence(
-    mean_speed: float,
-    *,
-    rate: float,
-    duration: float,
-    rng: np.random.Generator,
-    height: float = 10.0,
-    intensity: float | None = None,
-    bearing_to: float = 0.5 * np.pi,
-) -> Floats:
+    mean_speed: float, *, rate: float, duration: float, rng: np.random.Generator,
+    height: float = 10.0, intensity: float | None = None, bearing_to: float = 0.5 * np.pi,
+) -> Floats:  # fmt: skip
     """
     Simulate the wind at one point: its mean and its turbulence.
 
