@@ -40,8 +40,19 @@ LAST_DOMAIN = 101
 """Of those whose ports are not handed out by the system."""
 
 
+OF_CORE = Path(__file__).parent / 'test' / 'core'
+"""Tests that alone measure the coverage of the core."""
+
+
 LONGEST, LONGEST_LONG = 300.0, 1500.0
 """Time that a test may take with its fixtures, and one that is marked `long` [s]."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config):
+    """With -n, let a worker that has no tests left take some from another."""
+    if getattr(config.option, 'numprocesses', None) and config.option.dist == 'no':
+        config.option.dist = 'worksteal'
 
 
 def pytest_configure(config):
@@ -59,13 +70,35 @@ def pytest_runtest_protocol(item):
     """
     longest = LONGEST_LONG if item.get_closest_marker('long') else LONGEST
     faulthandler.dump_traceback_later(longest, exit=True, file=_errors)
-    yield
+    with contextlib.nullcontext() if item.path.is_relative_to(OF_CORE) else unmeasured():
+        yield
     faulthandler.cancel_dump_traceback_later()
 
 
 @contextlib.contextmanager
+def unmeasured():
+    """Stop to measure coverage, in all threads: it makes all Python slower by a half."""
+    module = sys.modules.get('coverage')
+    measured = module and module.Coverage.current()
+    if measured:
+        measured.stop()
+    try:
+        yield
+    finally:
+        if measured:
+            measured.start()
+
+
+@pytest.fixture
+def memory_alone():
+    """Measure no coverage in a test that counts memory: lines that are seen take some."""
+    with unmeasured():
+        yield
+
+
+@contextlib.contextmanager
 def untraced():
-    """Leave out the tracer of coverage, which makes all Python slower by a half."""
+    """Leave out the tracer of coverage in this thread."""
     tracer = sys.gettrace()
     sys.settrace(None)
     try:

@@ -81,14 +81,19 @@ def test_replays_are_the_same_bit_for_bit_whatever_the_machine_does_beside(
     compose, observer, wind_file, tree_file
 ):
     """Samples that arrive within `wind_delay` act at their own times."""
-    first, *others = [
-        poses_of(compose, observer, wind_file, tree_file, r) for r in (1.0, 1.0, 4.0)
-    ]
-    assert max(poses[2][0] for poses in first.values()) > 1e-3
-    for found in others:
-        both = [stamp for stamp in sorted({*first} & {*found}) if stamp > 10**9]
-        assert len(both) > 60  # beside three nodes the observer hears not every frame
-        assert [stamp for stamp in both if found[stamp] != first[stamp]] == []
+    known = poses_of(compose, observer, wind_file, tree_file, 1.0)
+    assert max(poses[2][0] for poses in known.values()) > 1e-3
+    for rate in (1.0, 4.0):
+        compared = 0
+        for _ in range(6):  # beside three nodes the observer hears not every frame
+            found = poses_of(compose, observer, wind_file, tree_file, rate)
+            both = [stamp for stamp in sorted({*known} & {*found}) if stamp > 10**9]
+            assert [stamp for stamp in both if found[stamp] != known[stamp]] == []
+            compared += len(both)
+            known |= found
+            if compared > 60:
+                break
+        assert compared > 60
 
 
 def test_nothing_begins_before_a_subscriber_is_there_nor_does_the_clock(

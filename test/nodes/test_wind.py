@@ -285,6 +285,10 @@ def test_a_foreign_sample_is_reported_for_a_while_and_cut(
     )
     assert len(statuses('wind: frame').message) < 200
     observer.until(
-        lambda: mast.say(4.0) and [each.name for each in reports[-1].status] == ['wind: wind'],
+        lambda: (
+            mast.say(4.0)
+            and [[each.name for each in report.status] for report in reports[-1:]]
+            == [['wind: wind']]
+        ),
         'a report of the wind alone',
     )

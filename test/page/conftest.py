@@ -10,6 +10,11 @@ import functools
 import pytest
 from tree_sway_lab.browser import Browser, Chromium, chromium
 
+FEWER_FRAMES = (
+    '{const draw = window.requestAnimationFrame.bind(window);'
+    ' window.requestAnimationFrame = (frame) => setTimeout(() => draw(frame), 50);}'
+)
+
 
 @pytest.fixture(scope='session')
 def one_chromium() -> Iterator[Chromium]:
@@ -21,7 +26,22 @@ def one_chromium() -> Iterator[Chromium]:
     made.close()
 
 
+class SlowScreen(Browser):
+    """A page that is drawn some fifteen times a second, as on a slow machine."""
+
+    async def __aenter__(self) -> Browser:
+        await super().__aenter__()
+        await self.call('Page.addScriptToEvaluateOnNewDocument', source=FEWER_FRAMES)
+        return self
+
+
 @pytest.fixture
 def browser_class(one_chromium: Chromium) -> Callable[[], Browser]:
-    """`Browser`, where there is a Chromium; without a graphics card every pixel costs time."""
+    """Make pages on a slow screen: without a graphics card every pixel and frame costs time."""
+    return functools.partial(SlowScreen, one_chromium, scale=0.5)
+
+
+@pytest.fixture
+def swift_browser_class(one_chromium: Chromium) -> Callable[[], Browser]:
+    """Make pages that draw every frame they can."""
     return functools.partial(Browser, one_chromium, scale=0.5)

@@ -151,9 +151,11 @@ async def pull_and_let_go(browser: Browser) -> str:
     return str(await browser.run(f'{PULL}.csv()'))
 
 
-@pytest.mark.parametrize('kind', ['live', 'stand', 'file'])
+@pytest.mark.parametrize(
+    'kind', ['live', *(pytest.param(k, marks=pytest.mark.long) for k in ('stand', 'file'))]
+)
 def test_a_branch_that_is_dragged_follows_and_swings_when_let_go(
-    kind: str, request: pytest.FixtureRequest, browser_class: Any, tmp_path: Path
+    kind: str, request: pytest.FixtureRequest, swift_browser_class: Any, tmp_path: Path
 ) -> None:
     async def script(browser: Browser) -> None:
         if kind == 'file':
@@ -167,7 +169,7 @@ def test_a_branch_that_is_dragged_follows_and_swings_when_let_go(
                 break
         (tmp_path / 'pull_test.csv').write_text(rows, encoding='utf-8')
 
-    visit(browser_class, request.getfixturevalue(kind), script)
+    visit(swift_browser_class, request.getfixturevalue(kind), script)
     record = np.loadtxt(tmp_path / 'pull_test.csv', delimiter=',', skiprows=1)
     swing = np.linalg.norm(record[:, 1:], axis=1)
     assert swing[record[:, 0] < 1.0].max() > 0.01
