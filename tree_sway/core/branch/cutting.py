@@ -21,7 +21,7 @@ from tree_sway.core.tree.tree import Tree
 TURN = np.deg2rad(15.0)
 """Largest rotation of one key segment in [rad]."""
 
-BOW = np.deg2rad(25.0)
+BOW = np.deg2rad(15.0)
 """Largest angle between the ends of one key segment at rest in [rad]."""
 
 MOST_PIECES = 3

@@ -29,6 +29,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.motion.bent_tree import BentTree
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway.core.motion.modal import ModalBank
@@ -73,6 +74,8 @@ class WindBasisTable:
         C and N of the species.
     degree
         Degree of the harmonics, 1, 3 or 5.
+    bent
+        Inertia and weight of the bent tree.
 
     Attributes
     ----------
@@ -89,10 +92,11 @@ class WindBasisTable:
         return made
 
     def __init__(
-        self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw, degree: int
-    ) -> None:
+        self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw, degree: int,
+        bent: BentTree,
+    ) -> None:  # fmt: skip
         """Find the loads of the tree in all winds."""
-        self._shapes, self._moments = bank.shapes, wind_moments
+        self._shapes, self._moments, self._bent = bank.shapes, wind_moments, bent
         self._slopes = wind_moments.slopes(bank.shapes)
         n, m = bank.shapes.shape
         self._root, self._damping = np.sqrt(bank.stiffness), bank.damping
@@ -146,6 +150,7 @@ class WindBasisTable:
                 x = shapes @ at
                 equilibrium[k, j] = at
                 load[k, j] = self._moments(x, self._still, ahead) @ shapes
+                load[k, j] += self._bent.weight(at) / s if j > 0 else 0.0
                 if j > 0 and at is weaker:
                     turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
                     continue
@@ -157,6 +162,9 @@ class WindBasisTable:
                     air = self._damping - s / SPEEDS[j] * np.diag(damping[k, j])
                     most = _FLUTTER[SPEEDS[j] > _STORM]
                     turning[k, j] -= self._feeding(s * turning[k, j], air, most) / s
+        for k, poses in enumerate(equilibrium):
+            for j in range(1, N_LEVELS):
+                self._turn_inertia(poses[j], pressures[j], turning[k, j], damping[k, j])
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
         load -= load[:, :1]
         for name, values in (('equilibrium', equilibrium), ('amount', amount), ('load', load)):
@@ -168,6 +176,20 @@ class WindBasisTable:
         levels = np.einsum('ajm,am->aj', table['equilibrium'], table['amount'])
         least = 1e-6 * np.abs(levels).max() * np.arange(N_LEVELS)
         table['levels'] = np.maximum.accumulate(levels, axis=1) + least
+
+    def _turn_inertia(self, at: Floats, s: float, turning: Floats, damping: Floats) -> None:
+        """
+        Apply the inertia at an equilibrium to the slopes there, both (m, m), in place.
+
+        Loads and springs accelerate the tree by the inverse inertia A. What that changes in the
+        springs, ``K - A K``, is zero at the equilibrium with the load, and is taken per dynamic
+        pressure [kg/m/s^2].
+        """
+        q, inverse = self._bent.count, self._bent.inverse_inertia(at)
+        stiffness = np.square(self._root[:q, None])
+        for slopes in (turning, damping):
+            slopes[:, :q] = slopes[:, :q] @ inverse
+        turning[:q, :q] += stiffness * (np.eye(q) - inverse) / s
 
     def _feeding(self, slopes: Floats, damping: Floats, most: float) -> Floats:
         """
@@ -197,6 +219,7 @@ class WindBasisTable:
         inverse: Floats = np.eye(len(at))
         for turn in range(_STEPS):
             load = s * (self._moments(self._shapes @ at, self._still, ahead) @ self._shapes)
+            load += self._bent.weight(at)
             load, missed = load / self._root, rest
             rest = self._root * at - load
             size = float(np.linalg.norm(rest)) / max(float(np.linalg.norm(load)), 1e-300)

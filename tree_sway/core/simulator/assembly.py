@@ -15,7 +15,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Records
 from tree_sway.core.motion.fill_records import block_records
-from tree_sway.core.motion.records import in_lines
+from tree_sway.core.motion.records import in_lines, instance_layout
 from tree_sway.core.reduction.modes import refuse_buckling, solvable
 from tree_sway.core.reduction.one_thread import one_thread
 from tree_sway.core.simulator.bank import Bank, Oscillators
@@ -121,10 +121,17 @@ def _modal_arrays(reductions: TreeReductions, model: int | str) -> dict[str, Any
 
 @one_thread()
 def _table(reductions: TreeReductions, modal: ModalBank) -> WindBasisTable:
+    from tree_sway.core.motion.bent_tree import BentTree
+    from tree_sway.core.motion.harmonics import COUNT
     from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
-    law, degree = reductions.drag_law, reductions.settings.degree
-    return WindBasisTable(modal, reductions.wind_moments, law, degree)
+    law, degree, tree = reductions.drag_law, reductions.settings.degree, reductions.tree
+    instance = np.zeros(1, instance_layout(modal.shapes.shape[1], COUNT[degree]))
+    mass = reductions.species.density * tree.volume
+    mass += (reductions.leaf_mass / tree.branch_length)[tree.branch_of_segment] * tree.length
+    segments, gravity = reductions.with_subtrees.segments, reductions.settings.gravity
+    bent = BentTree(modal, segments, instance, mass, tree.length, gravity)
+    return WindBasisTable(modal, reductions.wind_moments, law, degree, bent)
 
 
 @one_thread()

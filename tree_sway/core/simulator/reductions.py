@@ -184,16 +184,18 @@ class TreeReductions:
         return self.settings.profile.over_anemometer(middle)
 
     @cached_property
+    def leaf_mass(self) -> Floats:
+        """Leaf mass of each branch in [kg], (b,)."""
+        n, given = self.tree.n_branches, self.settings.leaf_mass
+        return one_of_each('leaf_mass', np.zeros(n) if given is None else given, n, 'branch')
+
+    @cached_property
     def _beams(self) -> TreeBeams:
         """Return the beams of whole branches."""
         return self._beams_of(whole_tree(self.tree))
 
     def _beams_of(self, cut: CutTree) -> TreeBeams:
-        species, leaf_mass = self.species, np.zeros(self.tree.n_branches)
-        if self.settings.leaf_mass is not None:
-            leaf_mass = one_of_each(
-                'leaf_mass', self.settings.leaf_mass, self.tree.n_branches, 'branch'
-            )
+        species, leaf_mass = self.species, self.leaf_mass
         return TreeBeams(
             cut.tree,
             species.density,
