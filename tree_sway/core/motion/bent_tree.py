@@ -11,15 +11,12 @@ lever as the twig hangs down. Both are found by moving the placed tree along eac
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.kernel import entry_of
-from tree_sway.core.motion.fill_records import block_records
-from tree_sway.core.motion.modal import ModalBank
-from tree_sway.core.motion.placing import GIVEN, place, room_for
+from tree_sway.core.arrays import Floats
 from tree_sway.core.tree.segment_frame import ends_of_poses
 
 _Found = TypeVar('_Found')
@@ -28,17 +25,20 @@ _LEADING = 12
 """
 Number of coordinates whose inertia and weight change: those that do most of the motion.
 
-The others are fast, and follow the load. Errors of trees of nine kinds are least with 8 to 14.
+The others are fast, and follow the load. Errors of trees of nine kinds are least with 6 to 14.
 """
 
 _STEP = 2e-3
 """Largest rotation by which a pose is moved [rad]."""
 
+_FAR = 10.0
+"""Steps by which the tree is bent to find how its inertia changes."""
+
 _UNTURNED = np.deg2rad(1.0)
 """Rotation of a branch up to which the force of the weight is not found again [rad]."""
 
-_LIGHTER, _HEAVIER = 0.5, 2.0
-"""Range of the inertia of any motion, over that at rest."""
+MOST_CHANGE = 0.5
+"""Largest change of the inertia of any motion, over that at rest."""
 
 
 class BentTree:
@@ -47,49 +47,34 @@ class BentTree:
 
     Parameters
     ----------
-    bank
-        Bank of the coordinates.
-    segments, instance
-        Records of `segment_layout`; an instance, by which `place` is compiled once.
+    place
+        Function that places segments by key rotations, as `Bank.place`.
+    shapes
+        Key rotations per unit of each coordinate, (N, m).
     mass, length
         Mass [kg] and length [m] of each segment, (n,).
     gravity
         Gravity in [m/s^2].
 
-    Attributes
-    ----------
-    count
-        Number of leading coordinates, q.
-
     """
 
     def __init__(
-        self, bank: ModalBank, segments: Records, instance: Records, mass: Floats, length: Floats,
-        gravity: float,
+        self, place: Callable[[Floats, Floats, Floats], None], shapes: Floats, mass: Floats,
+        length: Floats, gravity: float,
     ) -> None:  # fmt: skip
-        """Find inertia and weight at rest."""
-        self._shapes = bank.shapes
-        n, m = bank.shapes.shape
-        self.count = min(_LEADING, m)
-        self._mass, self._half, self._gravity = mass, 0.5 * length, gravity
-        blocks, bases = block_records(bank.branches, segments), np.zeros((len(bank.branches), 8))
-        origin, self._poses = np.zeros(3), np.zeros((len(mass), 7))
-        first = instance, GIVEN[1], segments, blocks, bases, 1.0, 0.0, 1.0, room_for(n)
-        compiled = entry_of(place, *first, np.zeros(1), origin, self._poses)
-        self._place = lambda x: compiled(*first, x, origin, self._poses)
-        self._steps = _STEP / np.maximum(np.abs(bank.shapes).max(axis=0), 1e-12)
-        at_rest = np.zeros(m)
-        self._inertia = self._inertia_at(at_rest)
-        self._force, self._turned = np.zeros(m), np.zeros(n)
-        self._lift, self._linear = self._lift_at(at_rest), np.zeros((self.count, m))
-        for k, step in enumerate(self._steps if gravity > 0.0 else ()):
-            self._linear[:, k] = (self._lift_at(step * np.eye(m)[k]) - self._lift) / step
+        """Begin at rest."""
+        self._place, self._shapes, self._mass, self._half = place, shapes, mass, 0.5 * length
+        self._gravity, self._origin, self._poses = gravity, np.zeros(3), np.zeros((len(mass), 7))
+        self._count = min(_LEADING, shapes.shape[1])
+        self._steps = _STEP / np.maximum(np.abs(shapes).max(axis=0), 1e-12)
+        self._force, self._turned = np.zeros(shapes.shape[1]), np.zeros(len(shapes))
 
-    def inverse_inertia(self, at: Floats) -> Floats:
-        """Return the inverse inertia of the leading coordinates at a pose (m,), (q, q)."""
-        change = self._inertia_at(at) - self._inertia
-        inertias, motions = np.linalg.eigh(np.eye(self.count) + change)
-        return np.asarray((motions / np.clip(inertias, _LIGHTER, _HEAVIER)) @ motions.T)
+    @cached_property
+    def inertia_slopes(self) -> Floats:
+        """Slopes of the inertia of leading coordinates, by each as the last axis, (q, q, q)."""
+        bent = np.diag(_FAR * self._steps)[: self._count]
+        changes = [self._inertia_at(one) - self._inertia_at(-one) for one in bent]
+        return np.stack(changes, axis=-1) / (2.0 * _FAR * self._steps[: self._count])
 
     def weight(self, at: Floats) -> Floats:
         """
@@ -99,34 +84,50 @@ class BentTree:
         """
         x = self._shapes @ at
         if self._gravity > 0.0 and np.abs(x - self._turned).max() > _UNTURNED:
-            self._force[: self.count] = self._lift + self._linear @ at - self._lift_at(at)
+            lift, linear = self._at_rest
+            self._force[: self._count] = lift + linear @ at - self._lift_at(at)
             self._turned = x
         return self._force
 
+    @cached_property
+    def _at_rest(self) -> tuple[Floats, Floats]:
+        """Lift at rest, (q,), and its slopes by all coordinates, (q, m)."""
+        rest = self._lift_at(np.zeros(len(self._steps)))
+        moved = [self._lift_at(step) - rest for step in np.diag(self._steps)]
+        return rest, np.stack(moved, axis=1) / self._steps
+
     def _inertia_at(self, at: Floats) -> Floats:
         here, ahead = self._around(at, self._middles)
-        moved = (np.array(ahead) - here) / self._steps[: self.count, None, None]
-        flat = moved.reshape(self.count, -1)
+        moved = (np.array(ahead) - here) / self._steps[: self._count, None, None]
+        flat = moved.reshape(self._count, -1)
         return np.asarray((flat * np.repeat(self._mass, 3)) @ flat.T)
 
     def _lift_at(self, at: Floats) -> Floats:
         """Potential of the weight per unit of each leading coordinate, (q,)."""
         here, ahead = self._around(at, self._potential)
-        return np.asarray((np.array(ahead) - here) / self._steps[: self.count])
+        return np.asarray((np.array(ahead) - here) / self._steps[: self._count])
 
-    def _around(self, at: Floats, found: Callable[[Floats], _Found]) -> tuple[_Found, list[_Found]]:
+    def _around(
+        self, at: Floats, found: Callable[[Floats], _Found]
+    ) -> tuple[_Found, list[_Found]]:
         """Return what is found at a pose, and as each leading coordinate is moved by its step."""
         x = self._shapes @ at
-        moves = self._shapes[:, : self.count] * self._steps[: self.count]
+        moves = self._shapes[:, : self._count] * self._steps[: self._count]
         return found(x), [found(x + move) for move in moves.T]
 
     def _potential(self, x: Floats) -> float:
-        self._place(x)
+        self._place(x, self._origin, self._poses)
         qx, qy, qz, qw = self._poses[:, 3:].T
         risen = self._poses[:, 2] @ self._mass
         risen += 2.0 * ((qx * qz - qw * qy) @ (self._half * self._mass))
         return self._gravity * float(risen)
 
     def _middles(self, x: Floats) -> Floats:
-        self._place(x)
+        self._place(x, self._origin, self._poses)
         return ends_of_poses(self._poses, self._half)[1]
+
+
+def inertia_change(slopes: Floats, at: Floats) -> Floats:
+    """Change of the inertia of the leading coordinates at a pose (m,), bounded, (q, q)."""
+    change: Floats = slopes @ at[: len(slopes)]
+    return change * min(1.0, MOST_CHANGE / max(float(np.linalg.norm(change)), 1e-300))

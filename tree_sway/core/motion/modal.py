@@ -25,6 +25,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.motion.bent_tree import MOST_CHANGE
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.records import Branches, Loads, WIDTH, WORK, Works
@@ -41,6 +42,9 @@ MOST_TRIALS = 12
 ENOUGH = 0.02
 """Tolerance of the load, as the rotation that it makes [rad]."""
 
+
+TURNS = 10
+"""Iterations for the accelerations of the bent tree: each leaves `MOST_CHANGE` of the error."""
 
 FARTHEST, MOST_TURN = 2.0, 1.0
 """Largest rotation of a branch on its parent, and in a step, in [rad]."""
@@ -72,6 +76,7 @@ class ModalBank(Branchwise):
         Compliance of every isolated branch, (N, 9), and of the modes of isolated branches, (m, m).
         """
         self._momentum = made_of['momentum'].T
+        self.bend(np.zeros((0, 0, 0)))
         self._participation = made_of['participation']
         self.work = np.zeros(len(branches), dtype=WORK)
         self.loads = load_records(branches)
@@ -84,6 +89,11 @@ class ModalBank(Branchwise):
         self._fastest = np.zeros(1)
         self._tried = np.zeros((2 + 2 * MOST_TRIALS, n))
 
+    def bend(self, inertia_slopes: Floats) -> None:
+        """Let the inertia change as the tree bends, by `BentTree.inertia_slopes`, (q, q, q)."""
+        self.inertia_slopes = inertia_slopes
+        self._springs = np.zeros((5 + len(inertia_slopes), len(self.stiffness)))
+
     @property
     def mean_square_motion(self) -> Floats:
         """Mean square motion of the loaded pieces, per unit of each mode, (m,)."""
@@ -94,6 +104,7 @@ class ModalBank(Branchwise):
         """Refill the propagator of the modes for a time step [s]."""
         one = np.ones(len(self.stiffness))
         self._fastest[0] = MOST_TURN / dt
+        self._springs[0], self._springs[1] = self.stiffness, self.damping
         fill_propagator(one, self.damping, self.stiffness, dt, self.whole)
         fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
 
@@ -120,6 +131,7 @@ class ModalBank(Branchwise):
         arrays = (
             self.branches, self.work, self.loads, self.modal, self.state, self._shapes,
             self.limit, self.whole, self.half, self._tried, self._momentum, self._fastest,
+            self.inertia_slopes, self._springs,
         )  # fmt: skip
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
@@ -241,6 +253,7 @@ def wind_moments(
 def _advance(
     branches: Branches, work: Works, loads: Loads, modal: Floats, state: Floats, shapes: Floats,
     limit: Floats, whole: Floats, half: Floats, trials: Floats, momentum: Floats, fastest: Floats,
+    inertia_slopes: Floats, springs: Floats,
     wx: float, wy: float, wz: float, per_speed_squared: float,
 ) -> int:  # fmt: skip
     eta, rate, force = modal[0], modal[1], modal[2]
@@ -274,7 +287,9 @@ def _advance(
         for i in range(len(moment)):
             load += shapes[k, i] * moment[i]
         force[k] = load
-        c, old = whole[k], eta[k]
+    _add_inertia(modal, inertia_slopes, springs)
+    for k in range(len(eta)):
+        c, old, load = whole[k], eta[k], force[k]
         eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * load
         rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * load
         total += 0.0 * eta[k] + 0.0 * rate[k]
@@ -285,6 +300,36 @@ def _advance(
             _clamp(modal, state, shapes, momentum, fastest[0])
             return clamped + 1
     return clamped
+
+
+@part
+def _add_inertia(modal: Floats, slopes: Floats, springs: Floats) -> None:
+    """
+    Add to the forces on leading coordinates what the inertia of the bent tree changes.
+
+    Rows of ``springs`` are stiffness and damping; accelerations and the change of the inertia are
+    written.
+    """
+    eta, rate, force, q, square = modal[0], modal[1], modal[2], len(slopes), 0.0
+    free, new, before, change = springs[2], springs[3], springs[4], springs[5:]
+    for i in range(q):
+        free[i] = force[i] - springs[0, i] * eta[i] - springs[1, i] * rate[i]
+        new[i] = free[i]
+        for j in range(q):
+            change[i, j] = 0.0
+            for k in range(q):
+                change[i, j] += slopes[i, j, k] * eta[k]
+            square += change[i, j] * change[i, j]
+    scale = min(1.0, MOST_CHANGE / math.sqrt(max(square, 1e-300)))
+    for _ in range(TURNS):
+        for i in range(q):
+            before[i] = new[i]
+        for i in range(q):
+            new[i] = free[i]
+            for j in range(q):
+                new[i] -= scale * change[i, j] * before[j]
+    for i in range(q):
+        force[i] += new[i] - free[i]
 
 
 @part

@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.motion.bent_tree import BentTree
+from tree_sway.core.motion.bent_tree import BentTree, inertia_change
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway.core.motion.modal import ModalBank
@@ -75,7 +75,7 @@ class WindBasisTable:
     degree
         Degree of the harmonics, 1, 3 or 5.
     bent
-        Inertia and weight of the bent tree.
+        Weight of the bent tree.
 
     Attributes
     ----------
@@ -97,6 +97,7 @@ class WindBasisTable:
     ) -> None:  # fmt: skip
         """Find the loads of the tree in all winds."""
         self._shapes, self._moments, self._bent = bank.shapes, wind_moments, bent
+        self._inertia_slopes = bank.inertia_slopes
         self._slopes = wind_moments.slopes(bank.shapes)
         n, m = bank.shapes.shape
         self._root, self._damping = np.sqrt(bank.stiffness), bank.damping
@@ -163,7 +164,7 @@ class WindBasisTable:
                     most = _FLUTTER[SPEEDS[j] > _STORM]
                     turning[k, j] -= self._feeding(s * turning[k, j], air, most) / s
         for k, poses in enumerate(equilibrium):
-            for j in range(1, N_LEVELS):
+            for j in range(1, np.searchsorted(SPEEDS, _STORM)):
                 self._turn_inertia(poses[j], pressures[j], turning[k, j], damping[k, j])
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
         load -= load[:, :1]
@@ -185,7 +186,8 @@ class WindBasisTable:
         springs, ``K - A K``, is zero at the equilibrium with the load, and is taken per dynamic
         pressure [kg/m/s^2].
         """
-        q, inverse = self._bent.count, self._bent.inverse_inertia(at)
+        q = len(self._inertia_slopes)
+        inverse = np.linalg.inv(np.eye(q) + inertia_change(self._inertia_slopes, at))
         stiffness = np.square(self._root[:q, None])
         for slopes in (turning, damping):
             slopes[:, :q] = slopes[:, :q] @ inverse

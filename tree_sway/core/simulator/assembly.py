@@ -9,7 +9,7 @@ Modules of one model are imported where that model is made.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, TYPE_CHECKING
+from typing import Any, cast, TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from tree_sway.core.state.tree_state import digest_of
 from tree_sway.errors import ParameterError
 
 if TYPE_CHECKING:
+    from tree_sway.core.motion.bent_tree import BentTree
     from tree_sway.core.motion.modal import ModalBank
     from tree_sway.core.motion.wind_basis_table import WindBasisTable
     from tree_sway.set_up_files import SetUpFiles
@@ -84,20 +85,21 @@ def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFil
 
         kind = NumpyModalBank
     modal = kind(branches, made_of, reductions.damping_ratio)
-    oscillators: Oscillators = modal
+    segments = made_of['segments'] if found is None else in_lines(made_of['segments'])
+    laid = _laid_out(modal, branches, segments, float(made_of['tree_mass']), reductions.plain)
+    if found is None:
+        made_of['inertia_slopes'] = _bent_tree(reductions, laid).inertia_slopes
+    modal.bend(made_of['inertia_slopes'])
     if model != 'full' and model != 0 and not reductions.plain:
         from tree_sway.core.motion.wind_basis import WindBasisBank
         from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
-        table = _table(reductions, modal) if found is None else WindBasisTable.of_arrays(found)
+        table = _table(reductions, laid) if found is None else WindBasisTable.of_arrays(found)
         made_of['table'] = table.record
-        oscillators = WindBasisBank(modal, table)
+        laid = replace(laid, oscillators=WindBasisBank(modal, table))
     if found is None and cache is not None:
         cache.write(digest, made_of)
-    segments = made_of['segments'] if found is None else in_lines(made_of['segments'])
-    return _laid_out(
-        oscillators, branches, segments, float(made_of['tree_mass']), reductions.plain
-    )
+    return laid
 
 
 @one_thread()
@@ -120,18 +122,26 @@ def _modal_arrays(reductions: TreeReductions, model: int | str) -> dict[str, Any
 
 
 @one_thread()
-def _table(reductions: TreeReductions, modal: ModalBank) -> WindBasisTable:
-    from tree_sway.core.motion.bent_tree import BentTree
-    from tree_sway.core.motion.harmonics import COUNT
+def _table(reductions: TreeReductions, laid: Bank) -> WindBasisTable:
     from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
-    law, degree, tree = reductions.drag_law, reductions.settings.degree, reductions.tree
-    instance = np.zeros(1, instance_layout(modal.shapes.shape[1], COUNT[degree]))
+    law, degree = reductions.drag_law, reductions.settings.degree
+    modal, bent = cast('ModalBank', laid.oscillators), _bent_tree(reductions, laid)
+    return WindBasisTable(modal, reductions.wind_moments, law, degree, bent)
+
+
+def _bent_tree(reductions: TreeReductions, laid: Bank) -> BentTree:
+    """Place the tree by key rotations, with the kernel that its simulator places it with."""
+    from tree_sway.core.motion.bent_tree import BentTree
+    from tree_sway.core.motion.harmonics import COUNT
+
+    tree, settings, shapes = reductions.tree, reductions.settings, laid.oscillators.shapes
+    layout = instance_layout(shapes.shape[1], COUNT[settings.degree])
+    is_full = reductions.settings.model == 'full'
+    place = laid.place if is_full else laid.place_by(np.zeros(1, layout))
     mass = reductions.species.density * tree.volume
     mass += (reductions.leaf_mass / tree.branch_length)[tree.branch_of_segment] * tree.length
-    segments, gravity = reductions.with_subtrees.segments, reductions.settings.gravity
-    bent = BentTree(modal, segments, instance, mass, tree.length, gravity)
-    return WindBasisTable(modal, reductions.wind_moments, law, degree, bent)
+    return BentTree(place, shapes, mass, tree.length, settings.gravity)
 
 
 @one_thread()

@@ -14,7 +14,15 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.motion.modal import ENOUGH, FARTHEST, ModalBank, MOST_TRIALS, MOST_TURN
+from tree_sway.core.motion.bent_tree import inertia_change
+from tree_sway.core.motion.modal import (
+    ENOUGH,
+    FARTHEST,
+    ModalBank,
+    MOST_TRIALS,
+    MOST_TURN,
+    TURNS,
+)
 from tree_sway.core.motion.plain.numpy_passes import Bases, into_slots, NumpyPasses, of_slots
 from tree_sway.core.motion.plain.numpy_rotation import two_axis_moment, within_guard
 from tree_sway.core.motion.uncoupled import UncoupledBank
@@ -143,6 +151,11 @@ class NumpyModalBank(ModalBank):
             force[:] = np.einsum('mi,i->m', self._shapes, moment)
         into_slots(impulse, self.loads['drag_impulse'])
         force[:] = np.einsum('mi,i->m', self._shapes, moment)
+        change = inertia_change(self.inertia_slopes, eta)
+        new = free = (force - self.stiffness * eta - self.damping * rate)[: len(change)]
+        for _ in range(TURNS):
+            new = free - change @ new
+        force[: len(change)] += new - free
         new_eta = c[0] * eta + c[1] * rate + (c[2] + c[3]) * force
         rate[:] = c[4] * eta + c[5] * rate + (c[6] + c[7]) * force
         eta[:] = new_eta
