@@ -25,7 +25,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
-from tree_sway.core.motion.bent_tree import MOST_CHANGE
+from tree_sway.core.motion.bent_inertia import MOST_CHANGE
 from tree_sway.core.motion.branchwise import Branchwise, Tunable
 from tree_sway.core.motion.fill_records import load_records
 from tree_sway.core.motion.records import Branches, Loads, WIDTH, WORK, Works
@@ -76,7 +76,9 @@ class ModalBank(Branchwise):
         Compliance of every isolated branch, (N, 9), and of the modes of isolated branches, (m, m).
         """
         self._momentum = made_of['momentum'].T
-        self.bend(np.zeros((0, 0, 0)))
+        self.inertia_slopes = made_of['inertia_slopes']
+        """Slopes of the inertia by leading coordinates, (q, q, q), as `inertia_slopes`."""
+        self._springs = np.zeros((5 + len(self.inertia_slopes), m))
         self._participation = made_of['participation']
         self.work = np.zeros(len(branches), dtype=WORK)
         self.loads = load_records(branches)
@@ -88,11 +90,6 @@ class ModalBank(Branchwise):
         self.whole, self.half = np.zeros((2, m, 8))
         self._fastest = np.zeros(1)
         self._tried = np.zeros((2 + 2 * MOST_TRIALS, n))
-
-    def bend(self, inertia_slopes: Floats) -> None:
-        """Let the inertia change as the tree bends, by `BentTree.inertia_slopes`, (q, q, q)."""
-        self.inertia_slopes = inertia_slopes
-        self._springs = np.zeros((5 + len(inertia_slopes), len(self.stiffness)))
 
     @property
     def mean_square_motion(self) -> Floats:
@@ -307,10 +304,12 @@ def _add_inertia(modal: Floats, slopes: Floats, springs: Floats) -> None:
     """
     Add to the forces on leading coordinates what the inertia of the bent tree changes.
 
+    It is that of the middle of the step.
+
     Rows of ``springs`` are stiffness and damping; accelerations and the change of the inertia are
     written.
     """
-    eta, rate, force, q, square = modal[0], modal[1], modal[2], len(slopes), 0.0
+    eta, rate, force, q, square = modal[3], modal[4], modal[2], len(slopes), 0.0
     free, new, before, change = springs[2], springs[3], springs[4], springs[5:]
     for i in range(q):
         free[i] = force[i] - springs[0, i] * eta[i] - springs[1, i] * rate[i]

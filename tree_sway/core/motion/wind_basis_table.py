@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.motion.bent_tree import BentTree, inertia_change
+from tree_sway.core.motion.bent_inertia import inertia_change
 from tree_sway.core.motion.drag import DragLaw, pressure
 from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
 from tree_sway.core.motion.modal import ModalBank
@@ -74,8 +74,6 @@ class WindBasisTable:
         C and N of the species.
     degree
         Degree of the harmonics, 1, 3 or 5.
-    bent
-        Weight of the bent tree.
 
     Attributes
     ----------
@@ -92,11 +90,10 @@ class WindBasisTable:
         return made
 
     def __init__(
-        self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw, degree: int,
-        bent: BentTree,
-    ) -> None:  # fmt: skip
+        self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw, degree: int
+    ) -> None:
         """Find the loads of the tree in all winds."""
-        self._shapes, self._moments, self._bent = bank.shapes, wind_moments, bent
+        self._shapes, self._moments = bank.shapes, wind_moments
         self._inertia_slopes = bank.inertia_slopes
         self._slopes = wind_moments.slopes(bank.shapes)
         n, m = bank.shapes.shape
@@ -151,7 +148,6 @@ class WindBasisTable:
                 x = shapes @ at
                 equilibrium[k, j] = at
                 load[k, j] = self._moments(x, self._still, ahead) @ shapes
-                load[k, j] += self._bent.weight(at) / s if j > 0 else 0.0
                 if j > 0 and at is weaker:
                     turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
                     continue
@@ -221,7 +217,6 @@ class WindBasisTable:
         inverse: Floats = np.eye(len(at))
         for turn in range(_STEPS):
             load = s * (self._moments(self._shapes @ at, self._still, ahead) @ self._shapes)
-            load += self._bent.weight(at)
             load, missed = load / self._root, rest
             rest = self._root * at - load
             size = float(np.linalg.norm(rest)) / max(float(np.linalg.norm(load)), 1e-300)

@@ -9,13 +9,13 @@ Modules of one model are imported where that model is made.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, cast, TYPE_CHECKING
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 
 from tree_sway.core.arrays import Records
 from tree_sway.core.motion.fill_records import block_records
-from tree_sway.core.motion.records import in_lines, instance_layout
+from tree_sway.core.motion.records import in_lines
 from tree_sway.core.reduction.modes import refuse_buckling, solvable
 from tree_sway.core.reduction.one_thread import one_thread
 from tree_sway.core.simulator.bank import Bank, Oscillators
@@ -24,7 +24,6 @@ from tree_sway.core.state.tree_state import digest_of
 from tree_sway.errors import ParameterError
 
 if TYPE_CHECKING:
-    from tree_sway.core.motion.bent_tree import BentTree
     from tree_sway.core.motion.modal import ModalBank
     from tree_sway.core.motion.wind_basis_table import WindBasisTable
     from tree_sway.set_up_files import SetUpFiles
@@ -85,30 +84,31 @@ def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFil
 
         kind = NumpyModalBank
     modal = kind(branches, made_of, reductions.damping_ratio)
-    segments = made_of['segments'] if found is None else in_lines(made_of['segments'])
-    laid = _laid_out(modal, branches, segments, float(made_of['tree_mass']), reductions.plain)
-    if found is None:
-        made_of['inertia_slopes'] = _bent_tree(reductions, laid).inertia_slopes
-    modal.bend(made_of['inertia_slopes'])
+    oscillators: Oscillators = modal
     if model != 'full' and model != 0 and not reductions.plain:
         from tree_sway.core.motion.wind_basis import WindBasisBank
         from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
-        table = _table(reductions, laid) if found is None else WindBasisTable.of_arrays(found)
+        table = _table(reductions, modal) if found is None else WindBasisTable.of_arrays(found)
         made_of['table'] = table.record
-        laid = replace(laid, oscillators=WindBasisBank(modal, table))
+        oscillators = WindBasisBank(modal, table)
     if found is None and cache is not None:
         cache.write(digest, made_of)
-    return laid
+    segments = made_of['segments'] if found is None else in_lines(made_of['segments'])
+    return _laid_out(
+        oscillators, branches, segments, float(made_of['tree_mass']), reductions.plain
+    )
 
 
 @one_thread()
 def _modal_arrays(reductions: TreeReductions, model: int | str) -> dict[str, Any]:
     """Find the arrays by which modes are stepped and placed."""
+    from tree_sway.core.motion.bent_inertia import inertia_slopes
     from tree_sway.core.motion.modal import modal_arrays
 
     reduced = reductions.with_subtrees
-    arrays = modal_arrays(reduced.branches, reduced.reduction, reductions.modes(model))
+    modes = reductions.modes(model)
+    arrays = modal_arrays(reduced.branches, reduced.reduction, modes)
     n_even = min(EVENLY_DAMPED, reduced.reduction.n_coordinates)
     even = reductions.natural_modes(n_even).circular
     return {
@@ -117,31 +117,17 @@ def _modal_arrays(reductions: TreeReductions, model: int | str) -> dict[str, Any
         'segments': reduced.segments,
         'loss': np.maximum(arrays['circular'] / even[-1], 1.0),
         'natural': reductions.circular,
-        'tree_mass': np.array(reduced.mass),
+        'inertia_slopes': inertia_slopes(reduced.tree, reduced.places, modes.shapes, reduced.mass),
+        'tree_mass': reduced.mass.sum(),
     }
 
 
 @one_thread()
-def _table(reductions: TreeReductions, laid: Bank) -> WindBasisTable:
+def _table(reductions: TreeReductions, modal: ModalBank) -> WindBasisTable:
     from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
     law, degree = reductions.drag_law, reductions.settings.degree
-    modal, bent = cast('ModalBank', laid.oscillators), _bent_tree(reductions, laid)
-    return WindBasisTable(modal, reductions.wind_moments, law, degree, bent)
-
-
-def _bent_tree(reductions: TreeReductions, laid: Bank) -> BentTree:
-    """Place the tree by key rotations, with the kernel that its simulator places it with."""
-    from tree_sway.core.motion.bent_tree import BentTree
-    from tree_sway.core.motion.harmonics import COUNT
-
-    tree, settings, shapes = reductions.tree, reductions.settings, laid.oscillators.shapes
-    layout = instance_layout(shapes.shape[1], COUNT[settings.degree])
-    is_full = reductions.settings.model == 'full'
-    place = laid.place if is_full else laid.place_by(np.zeros(1, layout))
-    mass = reductions.species.density * tree.volume
-    mass += (reductions.leaf_mass / tree.branch_length)[tree.branch_of_segment] * tree.length
-    return BentTree(place, shapes, mass, tree.length, settings.gravity)
+    return WindBasisTable(modal, reductions.wind_moments, law, degree)
 
 
 @one_thread()
@@ -168,7 +154,8 @@ def _bank_of_branches(reductions: TreeReductions) -> Bank:
 
         kind = NumpyUncoupledBank
     oscillators = kind(branches, inertia, damping, stiffness, weight)
-    return _laid_out(oscillators, branches, reduced.segments, reduced.mass, reductions.plain)
+    mass = float(reduced.mass.sum())
+    return _laid_out(oscillators, branches, reduced.segments, mass, reductions.plain)
 
 
 def _laid_out(

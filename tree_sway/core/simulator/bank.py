@@ -108,18 +108,12 @@ class Bank:
 
         Arrays are not checked: they must be contiguous, of float64 and of these shapes.
         """
-        from tree_sway.core.motion.placing import GIVEN
-
-        return self.place_by((self.oscillators.to_place or GIVEN)[0])
-
-    def place_by(self, instance: Records) -> Callable[[Floats, Floats, Floats], None]:
-        """Place as `place`, by the kernel of instances of one layout."""
         if self.plain:
             return self._plain_placing.place
         from tree_sway.core.motion.placing import GIVEN, room_for
 
-        x = room_for(int(self.branches['n_coordinates'].sum()))
-        return self._placing(instance, GIVEN[1], x)
+        instance, shapes = (self.oscillators.to_place or GIVEN)[0], GIVEN[1]
+        return self._placing(instance, shapes, room_for(int(self.branches['n_coordinates'].sum())))
 
     def _placing(self, instance: Records, shapes: Singles, x: Floats) -> Callable[..., None]:
         from tree_sway.core.motion.placing import place

@@ -21,7 +21,7 @@ from tree_sway.core.branch.model import BranchModel, TreeBeams
 from tree_sway.core.checks import one_of_each
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.drag import crown_drag, DragLaw, pressure
-from tree_sway.core.motion.fill_records import branch_records, places_of, segment_records
+from tree_sway.core.motion.fill_records import branch_records, Places, places_of, segment_records
 from tree_sway.core.reduction.matrices import reduce_tree, Reduction
 from tree_sway.core.reduction.modes import leading_modes, Modes, natural_modes, solvable
 from tree_sway.core.reduction.one_thread import one_thread
@@ -51,7 +51,8 @@ class ReducedTree:
     """
     A tree reduced in one of the two ways.
 
-    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,).
+    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,); each
+    segment has its ``mass`` [kg], with leaves, (n,).
     """
 
     tree: Tree
@@ -60,7 +61,8 @@ class ReducedTree:
     reduction: Reduction
     branches: Records
     segments: Records
-    mass: float
+    places: Places
+    mass: Floats
 
 
 class TreeReductions:
@@ -184,18 +186,16 @@ class TreeReductions:
         return self.settings.profile.over_anemometer(middle)
 
     @cached_property
-    def leaf_mass(self) -> Floats:
-        """Leaf mass of each branch in [kg], (b,)."""
-        n, given = self.tree.n_branches, self.settings.leaf_mass
-        return one_of_each('leaf_mass', np.zeros(n) if given is None else given, n, 'branch')
-
-    @cached_property
     def _beams(self) -> TreeBeams:
         """Return the beams of whole branches."""
         return self._beams_of(whole_tree(self.tree))
 
     def _beams_of(self, cut: CutTree) -> TreeBeams:
-        species, leaf_mass = self.species, self.leaf_mass
+        species, leaf_mass = self.species, np.zeros(self.tree.n_branches)
+        if self.settings.leaf_mass is not None:
+            leaf_mass = one_of_each(
+                'leaf_mass', self.settings.leaf_mass, self.tree.n_branches, 'branch'
+            )
         return TreeBeams(
             cut.tree,
             species.density,
@@ -220,9 +220,11 @@ class TreeReductions:
         row, on = cut.row[records['first']], records['base_segment']
         records['end'] += row - records['first']
         records['first'], records['base_segment'] = row, np.where(on < 0, -1, cut.row[on])
-        mass = float(sum((model.beam.weight * model.mass).sum() for model in models))
+        mass = np.concatenate([
+            model.beam.over_segments(model.mass) * model.beam.segment_length for model in models
+        ])  # fmt: skip
         segments = segment_records(places)
-        return ReducedTree(tree, cut.branch, models, reduction, records, segments, mass)
+        return ReducedTree(tree, cut.branch, models, reduction, records, segments, places, mass)
 
 
 def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:

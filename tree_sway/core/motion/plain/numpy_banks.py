@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.motion.bent_tree import inertia_change
+from tree_sway.core.motion.bent_inertia import inertia_change
 from tree_sway.core.motion.modal import (
     ENOUGH,
     FARTHEST,
@@ -119,8 +119,9 @@ class NumpyModalBank(ModalBank):
         compliance = of_slots(self.loads['compliance'], n)
         trials: list[tuple[Floats, Floats]] = []
         for trial in range(MOST_TRIALS):
-            x = _summed(h[0] * eta + h[1] * rate + (h[2] + h[3]) * force, self._shapes)
-            v = _summed(h[4] * eta + h[5] * rate + (h[6] + h[7]) * force, self._shapes)
+            middle = h[0] * eta + h[1] * rate + (h[2] + h[3]) * force
+            middle_rate = h[4] * eta + h[5] * rate + (h[6] + h[7]) * force
+            x, v = _summed(middle, self._shapes), _summed(middle_rate, self._shapes)
             angles, rates = passes.per_branch(x), passes.per_branch(v)
             bases = passes.outward(angles, rates)
             on_branches = passes.wind_forces(
@@ -151,8 +152,9 @@ class NumpyModalBank(ModalBank):
             force[:] = np.einsum('mi,i->m', self._shapes, moment)
         into_slots(impulse, self.loads['drag_impulse'])
         force[:] = np.einsum('mi,i->m', self._shapes, moment)
-        change = inertia_change(self.inertia_slopes, eta)
-        new = free = (force - self.stiffness * eta - self.damping * rate)[: len(change)]
+        change = inertia_change(self.inertia_slopes, middle)
+        free = (force - self.stiffness * middle - self.damping * middle_rate)[: len(change)]
+        new = free
         for _ in range(TURNS):
             new = free - change @ new
         force[: len(change)] += new - free
