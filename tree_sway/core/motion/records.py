@@ -346,7 +346,7 @@ def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
     One layout serves most trees, so that the kernel is compiled once.
     """
     m = max(_LEAST_MODES, -(-n_modes // _MODES_TOGETHER) * _MODES_TOGETHER)
-    return np.dtype(fields_of(Table, modes=m, harmonics=n_harmonics))
+    return _whole_lines(fields_of(Table, modes=m, harmonics=n_harmonics))
 
 
 @cache
