@@ -10,6 +10,7 @@ the numpy form of functions over a tree.
 from __future__ import annotations
 
 from collections.abc import Callable
+import gc
 from typing import Any, cast, TypeVar
 
 from tree_sway.kernel_cache import KernelCache, why_no_compiler
@@ -65,7 +66,7 @@ def _compiled(function: _F, **options: Any) -> _F:
         return function
     from numba import njit
 
-    dispatcher = njit(error_model='numpy', nogil=True, **options)(function)
+    dispatcher = njit(error_model='numpy', nogil=True, no_cfunc_wrapper=True, **options)(function)
     if hasattr(dispatcher, '_cache'):  # not where NUMBA_DISABLE_JIT leaves the plain function
         dispatcher._cache = KernelCache(function, repr(sorted(options)))
     return cast(_F, dispatcher)
@@ -85,5 +86,11 @@ def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any
     from numba import typeof
 
     types = tuple(typeof(argument) for argument in arguments)
-    function.compile(types)  # type: ignore[attr-defined]
+    # The compiler makes little garbage; to look for it takes a tenth of the first start.
+    before = gc.get_threshold()
+    gc.set_threshold(0)
+    try:
+        function.compile(types)  # type: ignore[attr-defined]
+    finally:
+        gc.set_threshold(*before)
     return cast(Callable[..., Any], find(types))

@@ -67,7 +67,20 @@ class Attachments:
     fraction: Floats
 
 
-class BranchBeam:
+class Viewed:
+    """What may be one of many (`one_of`): its arrays are views, made when they are first read."""
+
+    def __getattr__(self, name: str) -> Any:
+        """Return the view of an array of all, or what all have in common."""
+        many = vars(self).get('_many')
+        if many is None or name not in vars(many):
+            raise AttributeError(name)
+        each = vars(many)[name]
+        vars(self)[name] = each[self._number] if isinstance(each, np.ndarray) else each
+        return vars(self)[name]
+
+
+class BranchBeam(Viewed):
     """
     A branch as a clamped beam.
 
@@ -266,7 +279,7 @@ class BranchBeam:
         return SlopeShape(self, curvature / scale[..., None, None])
 
 
-class SlopeShape:
+class SlopeShape(Viewed):
     """
     A shape in which a branch bends: slope psi(s) per unit of its coordinate.
 
@@ -293,7 +306,7 @@ class SlopeShape:
         return float(self.beam.integral(rigidity * self.curvature * self.curvature))
 
 
-class RotationField:
+class RotationField(Viewed):
     """
     Field by which a branch bends and twists in space: rotation phi(s) per unit of coordinate.
 
@@ -343,26 +356,32 @@ def products(a: Floats, b: Floats, n_axes: int) -> Floats:
     return np.asarray(flat[0] @ flat[1].swapaxes(-1, -2))
 
 
-_Kind = TypeVar('_Kind')
+_Kind = TypeVar('_Kind', bound=Viewed)
 
 
 def one_of(many: _Kind, number: int, **others: Any) -> _Kind:
     """Return one of many beams, shapes or fields, which has views of their arrays."""
     one = object.__new__(type(many))
-    vars(one).update({
-        name: each[number] if isinstance(each, np.ndarray) else each
-        for name, each in vars(many).items()
-    }, **others)  # fmt: skip
+    vars(one).update(others, _many=many, _number=number)
     return one
+
+
+def stacked(ones: Sequence[Viewed], name: str) -> Any:
+    """Stack one array of beams, shapes or fields that are alike."""
+    whole = vars(ones[0]).get('_many')
+    numbers = [vars(one)['_number'] for one in ones if vars(one).get('_many') is whole is not None]
+    if len(numbers) == len(ones):
+        return vars(whole)[name][numbers]
+    return np.array([getattr(one, name) for one in ones])
 
 
 def many_of(ones: Sequence[_Kind], **others: Any) -> _Kind:
     """Stack the arrays of beams, shapes or fields that are alike: see `one_of`."""
     many = object.__new__(type(ones[0]))
-    vars(many).update(vars(ones[0]), **others)
-    for name, each in vars(many).items():
-        if isinstance(each, np.ndarray | float) and name not in others:
-            vars(many)[name] = np.array([vars(one)[name] for one in ones])
+    for name, each in vars(vars(ones[0]).get('_many', ones[0])).items():
+        is_own = isinstance(each, np.ndarray | float) and name not in others
+        vars(many)[name] = stacked(ones, name) if is_own else each
+    vars(many).update(others)
     return many
 
 

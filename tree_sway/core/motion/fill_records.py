@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.branch.beam import cross, cross_matrix
+from tree_sway.core.branch.beam import cross, cross_matrix, stacked
 from tree_sway.core.branch.model import BranchModel
 from tree_sway.core.branch.shapes import across, exposure
 from tree_sway.core.motion.records import (
@@ -238,9 +238,10 @@ def branch_records(
     The profile is the wind speed at each segment over that at the anemometer, (n,).
     """
     records = np.zeros(tree.n_branches, dtype=branch_layout(places.rotation_mode.shape[1]))
-    alike: dict[tuple[int, int], list[int]] = {}
+    alike: dict[tuple[int, int, bool], list[int]] = {}
     for branch, model in enumerate(models):
-        alike.setdefault((len(model.beam.length), len(model.fields)), []).append(branch)
+        kind = len(model.beam.length), len(model.fields), len(model.children) > 0
+        alike.setdefault(kind, []).append(branch)
     for branches in alike.values():
         _fill_loads([models[branch] for branch in branches], speed_profile[
             np.array([tree.branch_first[b] + models[b].beam.segment for b in branches])
@@ -269,13 +270,14 @@ def _fill_loads(
     The speed profile is the wind speed at their panels over that at the anemometer, (k, p).
     """
     beams, n = [model.beam for model in models], len(models[0].fields)
-    point, tangent = (np.array([getattr(b, name) for b in beams]) for name in ('point', 'tangent'))
-    weight = np.array([model.drag_area * model.beam.weight for model in models])
-    fields, slopes = (
-        np.array([[getattr(one, name) for one in model.fields] for model in models])
-        for name in ('points', 'slope')
+    point, tangent = stacked(beams, 'point'), stacked(beams, 'tangent')
+    weight = np.array([model.drag_area for model in models]) * stacked(beams, 'weight')
+    alike = list(zip(*(model.fields for model in models), strict=True))
+    fields, slopes, nodes = (
+        np.stack([stacked(each, name) for each in alike], axis=1)
+        for name in ('points', 'slope', 'nodes')
     )
-    records['tip_mode'][rows, :n] = [[one.nodes[-1] for one in model.fields] for model in models]
+    records['tip_mode'][rows, :n] = nodes[:, :, -1]
     total = weight.sum(axis=(1, 2))
     share = weight / total[:, None, None]
     centre = np.einsum('ksg,ksgi->ki', share, point)

@@ -57,6 +57,11 @@ NONE = np.zeros(0)
 @fused
 def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
     """Write key rotations (N,) of the first instance, by the shapes of `shapes_together`."""
+    _expand(instances, shapes, x)
+
+
+@part
+def _expand(instances: Instances, shapes: Singles, x: Floats) -> None:
     instance = instances[0]
     eta, faded, shown = instance.eta, instance.faded, instance.wanted
     for k in range(len(eta)):
@@ -104,7 +109,7 @@ def place(
 
     """
     if len(shapes) > 0:
-        expand(instances, shapes, x)
+        _expand(instances, shapes, x)
     else:
         for i in range(len(given)):
             x[i] = given[i]

@@ -116,9 +116,8 @@ class Block:
     parent_key: Annotated[Floats, 'rows', WIDTH]  # half of each parent's further coordinates
     parent_base: Annotated[Floats, 8, WIDTH]  # bases of `place`
     support: Annotated[Floats, 7, WIDTH]  # pose of the base segment
-    base_half: Annotated[
-        Floats, 3, WIDTH
-    ]  # half the rotation vector from the parent's base to its base
+    # Half the rotation vector from the parent's base to its base:
+    base_half: Annotated[Floats, 3, WIDTH]
     base: Annotated[Floats, 8, WIDTH]  # bases of the branches themselves
     blend: Annotated[Floats, WIDTH]  # share of the tip-load slope
     half_rotation: Annotated[Floats, 3, WIDTH]  # half the rotation vector per unit of slope
@@ -141,9 +140,8 @@ class Work:
     orientation: Annotated[Floats, 4]  # rotation of the base from rest, w x y z
     force: Annotated[Floats, 3]  # wind force on the branch in the last step [N]
     rotation: Annotated[Floats, 3]  # rotation vector of the base from the parent's base
-    displacement: Annotated[
-        Floats, 3
-    ]  # displacement of the base in the frame of the parent's base
+    # Displacement of the base in the frame of the parent's base:
+    displacement: Annotated[Floats, 3]
     arm: Annotated[Floats, 3]  # position of the base from the parent's base, bent
     wrench: Annotated[Floats, 6]  # force and moment on the branch and its subtree (`tree_passes`)
 
@@ -190,9 +188,8 @@ class Oscillators(Load):
     now_x: Annotated[Floats, 2, WIDTH]
     now_v: Annotated[Floats, 2, WIDTH]
     whole: Annotated[Floats, 8, WIDTH]  # rows of the propagator of a step
-    half: Annotated[
-        Floats, 6, WIDTH
-    ]  # rows of the propagator of half a step under a constant load
+    # Rows of the propagator of half a step under a constant load:
+    half: Annotated[Floats, 6, WIDTH]
     guard: Annotated[Floats, 3, WIDTH]  # rows of `two_axis.guards`
 
 
@@ -229,9 +226,8 @@ class TimeStep:
     """Propagator of the coordinates of a table over a time step."""
 
     whole: Annotated[Floats, 8, 'modes']  # columns of the propagator of a step
-    half: Annotated[
-        Floats, 6, 'modes'
-    ]  # columns of the propagator of half a step under a constant load
+    # Columns of the propagator of half a step under a constant load:
+    half: Annotated[Floats, 6, 'modes']
 
 
 class Instance:
@@ -350,7 +346,7 @@ def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
     One layout serves most trees, so that the kernel is compiled once.
     """
     m = max(_LEAST_MODES, -(-n_modes // _MODES_TOGETHER) * _MODES_TOGETHER)
-    return np.dtype(fields_of(Table, modes=m, harmonics=n_harmonics))
+    return _whole_lines(fields_of(Table, modes=m, harmonics=n_harmonics))
 
 
 @cache

@@ -75,7 +75,7 @@ def add_shapes(shapes: Any, block: int, amounts: Any, into: Any) -> None:
 
 if not WHY_PLAIN:
     from numba.core import cgutils, types
-    from numba.extending import intrinsic, overload
+    from numba.extending import intrinsic, lower_builtin, overload, type_callable
 
     ir = cgutils.ir
     _VECTOR = ir.VectorType(ir.DoubleType(), 4)
@@ -102,48 +102,40 @@ if not WHY_PLAIN:
         low, high = [0, 1, 4, 5], [2, 3, 6, 7]
         return mixed(ab, cd, low), mixed(ba, dc, low), mixed(ab, cd, high), mixed(ba, dc, high)
 
+    def _generated(function: Any, typed: Any) -> Any:
+        """Generate code for a function, which compiles faster than a call of an intrinsic."""
+        type_callable(function)(lambda context: typed)
+        return lower_builtin(function, types.VarArg(types.Any))  # type: ignore[attr-defined]
+
     def _carried(is_put: bool) -> Any:
-        def carry(typing, slots, row, slot, array, a, b, c, d, first):  # type: ignore[no-untyped-def]  # noqa: E501
-            def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-                kinds = signature.args
-                slots, row, slot, array, *rows, first = values
-                source = [
-                    _place(
-                        context, builder, kinds[0], slots,
-                        builder.add(row, row.type(k)), slot,
-                    )
-                    for k in range(4)
-                ]  # fmt: skip
-                if kinds[3].ndim == 2:
-                    to = [_place(context, builder, kinds[3], array, each, first) for each in rows]
-                else:
-                    at = [builder.add(each, first) for each in rows]
-                    to = [_place(context, builder, kinds[3], array, each) for each in at]
-                source, to = (source, to) if is_put else (to, source)
-                read = [builder.load(where, align=8) for where in source]
-                for value, where in zip(_turned(builder, read), to, strict=True):
-                    builder.store(value, where, align=8)
-                return context.get_dummy_value()
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            turn = 0 if is_put else 6
+            kinds, given = (each[turn:] + each[:turn] for each in (signature.args, tuple(values)))
+            slots, row, slot, array, *at, first = given
+            rows = [builder.add(row, row.type(k)) for k in range(4)]
+            source = [_place(context, builder, kinds[0], slots, each, slot) for each in rows]
+            if kinds[3].ndim == 2:
+                to = [_place(context, builder, kinds[3], array, each, first) for each in at]
+            else:
+                at = [builder.add(each, first) for each in at]
+                to = [_place(context, builder, kinds[3], array, each) for each in at]
+            source, to = (source, to) if is_put else (to, source)
+            read = [builder.load(where, align=8) for where in source]
+            for value, where in zip(_turned(builder, read), to, strict=True):
+                builder.store(value, where, align=8)
+            return context.get_dummy_value()
 
-            whole = types.intp
-            given = (slots, whole, whole, array, whole, whole, whole, whole, whole)
-            return types.none(*given), generate
+        return generate
 
-        return intrinsic(carry)
-
-    _put, _take = _carried(True), _carried(False)
-
-    @overload(put_four, inline='always')
-    def _put_four(slots, row, slot, array, a, b, c, d, first):  # type: ignore[no-untyped-def]
-        return lambda slots, row, slot, array, a, b, c, d, first: _put(
-            slots, row, slot, array, a, b, c, d, first
-        )
-
-    @overload(take_four, inline='always')
-    def _take_four(array, a, b, c, d, first, slots, row, slot):  # type: ignore[no-untyped-def]
-        return lambda array, a, b, c, d, first, slots, row, slot: _take(
-            slots, row, slot, array, a, b, c, d, first
-        )
+    _AT, _ROWS = 2 * (types.intp,), 5 * (types.intp,)
+    _generated(
+        put_four,
+        lambda slots, row, slot, rows, a, b, c, d, first: types.none(slots, *_AT, rows, *_ROWS),
+    )(_carried(is_put=True))
+    _generated(
+        take_four,
+        lambda rows, a, b, c, d, first, slots, row, slot: types.none(rows, *_ROWS, slots, *_AT),
+    )(_carried(is_put=False))
 
     _LINE = ir.VectorType(ir.DoubleType(), 8)
 
@@ -162,50 +154,36 @@ if not WHY_PLAIN:
 
     _SINGLES = ir.VectorType(ir.FloatType(), 8)
 
-    @intrinsic
-    def _add_shapes(typing, shapes, block, amounts, into):  # type: ignore[no-untyped-def]
-        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            kinds, (table, row, shares, to) = signature.args, values
-            none = ir.Constant(_LINE, None)
-            sums = [cgutils.alloca_once_value(builder, none) for _ in range(TOGETHER // 8)]
-            count = context.make_array(kinds[2])(context, builder, shares).nitems
-            with cgutils.for_range(builder, count) as loop:
-                share = builder.load(_element(context, builder, kinds[2], shares, loop.index))
-                one = builder.insert_element(none, share, ir.IntType(32)(0))
-                every = ir.Constant(ir.VectorType(ir.IntType(32), 8), None)
-                shared = builder.shuffle_vector(one, none, every)
-                at = _element(context, builder, kinds[0], table, row, loop.index, row.type(0))
-                at = builder.bitcast(at, _SINGLES.as_pointer())
-                for k, total in enumerate(sums):
-                    read = builder.load(builder.gep(at, [row.type(k)]), align=32)
-                    part = builder.fmul(builder.fpext(read, _LINE), shared, flags=['contract'])
-                    whole = builder.fadd(builder.load(total), part, flags=['contract'])
-                    builder.store(whole, total)
-            at = builder.mul(row, row.type(TOGETHER))
+    @_generated(add_shapes, lambda table, block, by, to: types.none(table, types.intp, by, to))
+    def _add(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        kinds, (table, row, shares, to) = signature.args, values
+        none = ir.Constant(_LINE, None)
+        sums = [cgutils.alloca_once_value(builder, none) for _ in range(TOGETHER // 8)]
+        count = context.make_array(kinds[2])(context, builder, shares).nitems
+        with cgutils.for_range(builder, count) as loop:
+            share = builder.load(_element(context, builder, kinds[2], shares, loop.index))
+            one = builder.insert_element(none, share, ir.IntType(32)(0))
+            every = ir.Constant(ir.VectorType(ir.IntType(32), 8), None)
+            shared = builder.shuffle_vector(one, none, every)
+            at = _element(context, builder, kinds[0], table, row, loop.index, row.type(0))
+            at = builder.bitcast(at, _SINGLES.as_pointer())
             for k, total in enumerate(sums):
-                first = builder.add(at, row.type(8 * k))
-                where = _element(context, builder, kinds[3], to, first)
-                written = builder.bitcast(where, _LINE.as_pointer())
-                builder.store(builder.load(total), written, align=8)
-            return context.get_dummy_value()
+                read = builder.load(builder.gep(at, [row.type(k)]), align=32)
+                part = builder.fmul(builder.fpext(read, _LINE), shared, flags=['contract'])
+                whole = builder.fadd(builder.load(total), part, flags=['contract'])
+                builder.store(whole, total)
+        at = builder.mul(row, row.type(TOGETHER))
+        for k, total in enumerate(sums):
+            first = builder.add(at, row.type(8 * k))
+            where = _element(context, builder, kinds[3], to, first)
+            written = builder.bitcast(where, _LINE.as_pointer())
+            builder.store(builder.load(total), written, align=8)
+        return context.get_dummy_value()
 
-        return types.none(shapes, types.intp, amounts, into), generate
-
-    @overload(add_shapes, inline='always')
-    def _sum_of_shapes(shapes, block, amounts, into):  # type: ignore[no-untyped-def]
-        return lambda shapes, block, amounts, into: _add_shapes(shapes, block, amounts, into)
-
-    @intrinsic
-    def _fence(typing):  # type: ignore[no-untyped-def]
-        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            builder.fence('seq_cst')
-            return context.get_dummy_value()
-
-        return types.none(), generate
-
-    @overload(settle, inline='always')
-    def _settle():  # type: ignore[no-untyped-def]
-        return lambda: _fence()
+    @_generated(settle, lambda: types.none())
+    def _fence(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        builder.fence('seq_cst')
+        return context.get_dummy_value()
 
     @overload(write_past_caches)
     def _write_past_caches(of, into):  # type: ignore[no-untyped-def]

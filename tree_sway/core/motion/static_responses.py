@@ -99,17 +99,18 @@ def static_responses(
 
     """
     rest = np.zeros(moments.n)
-    found = []
-    for azimuth in _AZIMUTHS:
-        direction = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-        at_rest = moments(rest, rest, direction)
-        found.append(solve(at_rest))
-        for speed in _SPEEDS:
-            scale, x = pressure(speed), rest
-            for turn in range(_TURNS):
-                x = x + (solve(scale * moments(x, rest, direction)) - x) / (turn + 2.0) ** 0.5
-                x *= min(1.0, _FARTHEST / max(float(np.abs(x).max()), 1e-12))
-            found.append(x / scale)
+    directions = np.array([[np.cos(each), np.sin(each), 0.0] for each in _AZIMUTHS])
+    found = list(solve(np.array([moments(rest, rest, each) for each in directions]).T).T)
+    scale = np.array([pressure(speed) for speed in _SPEEDS])
+    x = np.zeros((len(directions), len(scale), moments.n))
+    for turn in range(_TURNS):
+        loads = [
+            moments(row, rest, d) for rows, d in zip(x, directions, strict=True) for row in rows
+        ]
+        scaled = np.tile(scale, len(directions))[:, None] * loads
+        x += (solve(scaled.T).T.reshape(x.shape) - x) / (turn + 2.0) ** 0.5
+        x *= np.minimum(1.0, _FARTHEST / np.maximum(np.abs(x).max(axis=2), 1e-12))[..., None]
+    found.extend((x / scale[:, None]).reshape(-1, moments.n))
     for rise in (-np.pi / 2.0, -np.pi / 4.0, np.pi / 4.0, np.pi / 2.0):
         for azimuth in _AZIMUTHS[::2] if abs(rise) < 1.5 else _AZIMUTHS[:1]:
             level = np.cos(rise)

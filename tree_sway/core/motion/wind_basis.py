@@ -34,6 +34,7 @@ from tree_sway.core.motion.records import (
     time_step_layout,
     TimeStep,
     TimeSteps,
+    zeros_in_lines,
 )
 from tree_sway.core.motion.simd import shapes_together, TOGETHER
 from tree_sway.core.motion.wind_basis_force import wind_force
@@ -72,7 +73,7 @@ class WindBasisBank:
             self.__dict__.pop(compiled, None)
         table_record = self.table.record
         count = COUNT[int(table_record['degree'][0])]
-        self.record = np.zeros(1, dtype=table_layout(n_modes, count))
+        self.record = zeros_in_lines(1, table_layout(n_modes, count))
         for name in table_record.dtype.names or ():
             values = table_record[name]
             self.record[name][tuple(map(slice, values.shape))] = values

@@ -105,7 +105,7 @@ class Factors:
         return bool((self._factors.U.diagonal() > 0.0).all())
 
     def solve(self, right: Floats) -> Floats:
-        """Solve for one right side, (N,)."""
+        """Solve for one right side, (N,), or some, (N, k)."""
         return np.asarray(self._factors.solve(right[::-1])[::-1])
 
 

@@ -312,7 +312,9 @@ class SceneSimulator:
         layout = instance_layout(n_modes, COUNT[self.settings.degree])
         self._instances = np.zeros(len(self.names) if banks else 0, dtype=layout)
         self._time_steps = np.zeros(0, dtype=time_step_layout(n_modes))
-        self._tables = np.concatenate([bank.record for bank in banks]) if banks else _NO_TABLES
+        self._tables = zeros_in_lines(len(banks), banks[0].record.dtype) if banks else _NO_TABLES
+        for number, bank in enumerate(banks):
+            self._tables[number] = bank.record[0]
         self._laws = np.array([model.drag_law for model in self._models])
         self._scratch = []
         """Scratch memory for placing each kind."""
