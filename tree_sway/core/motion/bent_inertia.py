@@ -25,7 +25,7 @@ Number of coordinates whose inertia changes: those that do most of the motion.
 The others are fast, and follow the load. Errors of trees of nine kinds are least with 6 to 14.
 """
 
-MOST_CHANGE = 0.5
+MOST_CHANGE = 0.2
 """Largest change of the inertia of any motion, over that at rest."""
 
 
