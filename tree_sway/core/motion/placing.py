@@ -58,9 +58,9 @@ NONE = np.zeros(0)
 def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
     """Write key rotations (N,) of the first instance, by the shapes of `shapes_together`."""
     instance = instances[0]
-    eta, faded, shown = instance.eta, instance.faded, instance.wanted
+    eta, hidden, shown = instance.eta, instance.hidden, instance.wanted
     for k in range(len(eta)):
-        shown[k] = (1.0 - faded[k]) * eta[k]
+        shown[k] = eta[k] - hidden[k]
     shown = shown[: shapes.shape[1] - instance.left_out]
     for block in range(len(shapes)):
         add_shapes(shapes, block, shown, x)
