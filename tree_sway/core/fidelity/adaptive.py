@@ -8,11 +8,12 @@ present wind, are estimated (`estimate`). The cheapest number within the toleran
 chosen, or, where none is within the budget, the most accurate one that is.
 
 All coordinates are always stepped; those that are left out are not shown, and do not change the
-load of the others. So added coordinates need no initial state: they fade in.
+load of the others. So added coordinates need no initial state.
 
 **Up at once.** A load beyond that of the choice is detected in its first step. A load beyond all
-of the last minute is solved with all coordinates within the budget, as it is unknown. They are
-shown in full within 0.4 s.
+of the last minute is solved with all coordinates within the budget, as it is unknown. What they
+do from then on is shown at once, less the displacement that they begin with, which is nothing
+after a calm. That fades in within 0.4 s.
 
 **Down slowly.** Coordinates that are not needed fade within a second. They are left out only when
 the others suffice with a margin of a third, so that a wind at the border does not switch them on
@@ -50,7 +51,7 @@ LEAVE_IN = 1.0
 """Time in [s] in which coordinates that are left out fade."""
 
 ADD_IN = 0.4
-"""Time in [s] in which added coordinates are shown in full."""
+"""Time in [s] in which the displacement that added coordinates begin with is faded in."""
 
 SURPRISE = 1.2
 """Ratio of the load to the largest load of the choice above which the choice is made again."""
@@ -113,8 +114,8 @@ class AdaptiveSimulator(SwaySimulator):
             8.0, rate=20.0, duration=60.0, rng=np.random.default_rng(0), intensity=0.2
         )
         self._expected_wind = WindClimate.of_samples(breeze, 20.0)
-        self._shares = np.zeros(self.bank.oscillators.shapes.shape[1])
-        self._wanted = np.zeros(1)
+        self._shares, self._begun = np.zeros((2, self.bank.oscillators.shapes.shape[1]))
+        self._left = np.zeros(1)
         self._expect()
 
     @property
@@ -132,14 +133,15 @@ class AdaptiveSimulator(SwaySimulator):
         return self._estimator.estimates(climate)
 
     def memory(self) -> tuple[Floats, ...]:
-        """Return views of the state, and of the shown share of each coordinate."""
-        return *super().memory(), self._shares, self._wanted
+        """Return views of the state, and of how each coordinate is shown."""
+        return *super().memory(), self._shares, self._begun, self._left
 
     def set_state(self, state: TreeState) -> None:
         """Continue from a state and its shown shares; see `SwaySimulator.set_state`."""
         super().set_state(state)
         estimates = self.estimates(self._tracker.climate)
-        self.choice = next(e for e in estimates if e.n_coordinates >= self._wanted[0])
+        count = int((self._shares == 1.0).sum())
+        self.choice = next(e for e in estimates if e.n_coordinates >= count)
         self._show()
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -176,6 +178,7 @@ class AdaptiveSimulator(SwaySimulator):
             self.choice = max(self._affordable(estimates), key=lambda e: e.n_coordinates)
         else:
             self.choice = self._choose(estimates, self.choice, at_best=at_best)
+        self._add()
         return self.choice
 
     def reset(self) -> None:
@@ -189,22 +192,33 @@ class AdaptiveSimulator(SwaySimulator):
         self._gust, self._bearing, self._since_review = 0.0, np.array([1.0, 0.0, 0.0]), 0.0
         self._judged = float(np.linalg.norm(self._expected_wind.mean))
         self.choice = self._choose(self.estimates(self._expected_wind))
+        self._add()
         self._fade(math.inf)
 
+    def _add(self) -> None:
+        """Show in full what was not, from its present displacement on."""
+        count = self.choice.n_coordinates
+        if self._shares[:count].min(initial=1.0) < 1.0:
+            self._begun[:count], self._shares[:count], self._left[:] = self._hidden[:count], 1, 1
+            self._show()
+
     def _fade(self, dt: float) -> None:
-        """Fade the shown shares towards the choice."""
-        shares, count = self._shares, self.choice.n_coordinates
-        self._wanted[0] = count
-        if not (shares[:count].min(initial=1.0) < 1.0 or shares[count:].max(initial=0.0) > 0.0):
-            return
-        shares[:count] = np.minimum(shares[:count] + dt / ADD_IN, 1.0)
-        shares[count:] = np.maximum(shares[count:] - dt / LEAVE_IN, 0.0)
-        self._show()
+        """Fade what is left out, and the displacement that added coordinates began with."""
+        left_out, before = self._shares[self.choice.n_coordinates :], _smooth(self._left)
+        if before > 0.0 or left_out.max(initial=0.0) > 0.0:
+            self._left[:] = np.maximum(self._left - dt / ADD_IN, 0.0)
+            self._begun *= _smooth(self._left) / np.maximum(before, 1e-300)
+            left_out[:] = np.maximum(left_out - dt / LEAVE_IN, 0.0)
+            self._show()
+
+    @property
+    def _hidden(self) -> Floats:
+        """Return the part of each coordinate that is not shown, (m,)."""
+        now = dialled(self.bank).swing[0]
+        return np.asarray(now - _smooth(self._shares) * (now - self._begun))
 
     def _show(self) -> None:
-        shares = self._shares
-        smooth = shares * shares * (3.0 - 2.0 * shares)
-        dialled(self.bank).show(smooth, int((shares > 0.0).sum()))
+        dialled(self.bank).show(self._hidden, int((self._shares > 0.0).sum()))
 
     def _check_load(self, wind_mean: ArrayLike, dt: float) -> None:
         """Detect a load beyond that of the choice before its step."""
@@ -239,6 +253,11 @@ class AdaptiveSimulator(SwaySimulator):
             careful = _least(affordable, _SPARE * self.tolerance)
             return careful if careful is not None and careful.cost < same.cost else same
         return wanted
+
+
+def _smooth(shares: Floats) -> Floats:
+    """Let shares from 0 to 1 begin and end without a jump of their rate."""
+    return shares * shares * (3.0 - 2.0 * shares)
 
 
 def _least(estimates: Sequence[Estimate], tolerance: float) -> Estimate | None:

@@ -107,8 +107,11 @@ class Dialled(Oscillators, Protocol):
     def air_damping(self) -> Floats:
         """Damping of each coordinate by the air per drag and speed, at least, (m,)."""
 
-    def show(self, shares: Floats, count: int) -> None:
-        """Show coordinates by shares from 0 to 1, (m,), and let the first of them respond."""
+    swing: tuple[Floats, ...]
+    """Displacement, rate and force of each coordinate, (m,)."""
+
+    def show(self, hidden: Floats, count: int) -> None:
+        """Show and load the first coordinates only, without a hidden part of each, (m,)."""
 
 
 class ErrorEstimator:

@@ -63,9 +63,9 @@ def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
 @part
 def _expand(instances: Instances, shapes: Singles, x: Floats) -> None:
     instance = instances[0]
-    eta, faded, shown = instance.eta, instance.faded, instance.wanted
+    eta, hidden, shown = instance.eta, instance.hidden, instance.wanted
     for k in range(len(eta)):
-        shown[k] = (1.0 - faded[k]) * eta[k]
+        shown[k] = eta[k] - hidden[k]
     shown = shown[: shapes.shape[1] - instance.left_out]
     for block in range(len(shapes)):
         add_shapes(shapes, block, shown, x)

@@ -246,7 +246,7 @@ class Instance:
     scratch: Annotated[Singles, 4, 'modes']
     values: Annotated[Floats, 'harmonics']
     left_out: int  # number of last coordinates that are neither shown nor loaded
-    faded: Annotated[Floats, 'modes']  # hidden share of each coordinate
+    hidden: Annotated[Floats, 'modes']  # part of each coordinate that is not shown
 
 
 Branches = RecordsOf[Branch]

@@ -81,10 +81,10 @@ class WindBasisBank:
         self.instance = np.zeros(1, dtype=instance_layout(n_modes, count))
         self.laid_shapes = shapes_together(self.all_shapes)
 
-    def show(self, shares: Floats, count: int) -> None:
-        """Show coordinates by shares from 0 to 1, (m,), and let the first of them respond."""
-        self.instance['faded'][0, : len(shares)] = 1.0 - shares
-        self.instance['left_out'] = len(shares) - count
+    def show(self, hidden: Floats, count: int) -> None:
+        """Show and load the first coordinates only, without a hidden part of each, (m,)."""
+        self.instance['hidden'][0, : len(hidden)] = hidden
+        self.instance['left_out'] = len(hidden) - count
 
     def room_for_rotations(self) -> Floats:
         """Return zeros for `expand` to write key rotations to, (N,) and some more."""

@@ -328,10 +328,7 @@ class SceneSimulator:
         """Hide the coordinates of the table that a tree does not have."""
         for _, bank, those in self.shared:
             left_out = np.maximum(bank.shapes.shape[1] - self._numbers[those], 0)
-            m = self._instances['faded'].shape[1]
-            last = np.arange(m) >= self._numbers[those, None]
             self._instances['left_out'][those] = left_out
-            self._instances['faded'][those] = last
 
     @property
     def shared(self) -> list[tuple[SwaySimulator, WindBasisBank, Ints]]:
@@ -343,8 +340,8 @@ class SceneSimulator:
     def shares(self, numbers: Ints) -> Floats:
         """Coordinates of trees of one kind, (t, m)."""
         n_modes = self._banks[self._placed['kind'][numbers[0]]].shapes.shape[1]
-        shown = (1.0 - self._instances['faded'][numbers]) * self._instances['eta'][numbers]
-        return np.asarray(shown[:, :n_modes])
+        is_shown = np.arange(n_modes) < self._numbers[numbers, None]
+        return np.asarray(np.where(is_shown, self._instances['eta'][numbers, :n_modes], 0.0))
 
     def _place_kind(self, kind: int, rows: Ints, out: Floats) -> None:
         """Place trees of one table: their numbers and first rows in a pose block, (w, 2)."""

@@ -104,14 +104,14 @@ def judged(case: tuple[str, Path | None]) -> list[Judged]:
         }
     auto = AdaptiveSimulator(tree, WOOD, SETTINGS)
     shown = SwaySimulator(tree, WOOD, SETTINGS)
-    oscillators, numbers = dialled(shown.bank), np.arange(shown.bank.oscillators.shapes.shape[1])
+    oscillators, hidden = dialled(shown.bank), np.zeros(shown.bank.oscillators.shapes.shape[1])
     found = []
     for name, wind in winds.items():
         truth = true_tips(tree, wind, QUICK)
         for estimate in auto.estimates(WindClimate.of_samples(wind, 1.0 / FRAME)):
             count = estimate.n_coordinates
             shown.reset()
-            oscillators.show((numbers < count).astype(float), count)
+            oscillators.show(hidden, count)
             apart = record_tips(shown, tree, wind[: len(truth)], FRAME) - truth
             metres = float(np.sqrt(np.square(apart).sum(axis=2).mean()))
             found.append(Judged(kind, name, count, metres / estimate.error))

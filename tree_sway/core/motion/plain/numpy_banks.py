@@ -102,11 +102,11 @@ class NumpyModalBank(ModalBank):
         """Lay out as `ModalBank`, and sort by levels."""
         super().__init__(*arguments)
         self._passes = NumpyPasses(self.branches)
-        self._shares = np.ones(len(self.stiffness))
+        self._hidden, self._count = np.zeros(len(self.stiffness)), len(self.stiffness)
 
-    def show(self, shares: Floats, count: int) -> None:
-        """Show coordinates by shares from 0 to 1, (m,)."""
-        self._shares = shares.copy()
+    def show(self, hidden: Floats, count: int) -> None:
+        """Show the first coordinates only, without a hidden part of each, (m,)."""
+        self._hidden, self._count = hidden.copy(), count
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `ModalBank.advance`."""
@@ -174,7 +174,8 @@ class NumpyModalBank(ModalBank):
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
         x: Floats = self.state[1]
-        x[:] = _summed(self._shares * self.modal[0], self._shapes)
+        shown = (self.modal[0] - self._hidden)[: self._count]
+        x[:] = _summed(shown, self._shapes[: self._count])
         return x
 
 
