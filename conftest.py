@@ -5,6 +5,7 @@
 import contextlib
 import faulthandler
 import functools
+import gc
 import hashlib
 import os
 from pathlib import Path
@@ -59,6 +60,16 @@ def pytest_configure(config):
     """Keep what errors are written to, before tests have it captured."""
     global _errors
     _errors = os.dup(2)
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_collection():
+    """Search no garbage among what lasts: thousands of tests and the modules that they load."""
+    gc.disable()
+    yield
+    gc.collect()
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.hookimpl(hookwrapper=True)

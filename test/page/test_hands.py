@@ -31,7 +31,7 @@ from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
 Browser = Any
 LIVE = "window.treeSway && treeSway.state === 'live' && treeSway.fps > 0"
 PULL = 'treeSway.hands.drag.pull'
-ATTEMPTS, LARGEST_GAP = 12, 0.06
+ATTEMPTS, LARGEST_GAP = 24, 0.06
 MOVED = (
     '((s) => Math.hypot(...treeSway.scene.position(s).map((x, c) => x -'
     ' treeSway.scene.restPosition(s)[c])))({})'
@@ -146,7 +146,7 @@ async def pull_and_let_go(browser: Browser) -> str:
     await mouse(browser, 'Released', x + 120, y + 10)
     assert shown > 0.01
     assert await browser.run('treeSway.scene.camera.azimuth') == azimuth
-    await browser.until(f"{PULL}.seconds > 6 && !document.getElementById('pull-save').hidden")
+    await browser.until(f"{PULL}.seconds > 3 && !document.getElementById('pull-save').hidden")
     assert await browser.run(f'{label}.hidden')
     return str(await browser.run(f'{PULL}.csv()'))
 

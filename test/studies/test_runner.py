@@ -10,6 +10,7 @@ from pathlib import Path
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import pytest
@@ -21,6 +22,7 @@ from tree_sway.studies import runner
 from tree_sway.studies.compute import compute
 from tree_sway.studies.plan import Case, read_study
 from tree_sway.studies.runner import (
+    _held_interrupt,
     batches,
     compute_to_file,
     estimated_time,
@@ -151,6 +153,39 @@ def ctrl_c():
     signal.signal(signal.SIGINT, before)
 
 
+@pytest.mark.skipif(not hasattr(signal, 'sigpending'), reason='needs signals that can be blocked')
+@pytest.mark.usefixtures('ctrl_c')
+def test_ctrl_c_waits_until_what_is_begun_is_whole():
+    over = threading.Event()
+    threading.Thread(target=over.wait).start()  # not blocked there: it may receive the signal
+    before = signal.getsignal(signal.SIGINT)
+    with _held_interrupt() as held:
+        os.kill(os.getpid(), signal.SIGINT)
+        until(lambda: signal.SIGINT in signal.sigpending(), 10.0)
+        with pytest.raises(KeyboardInterrupt):
+            held.close()
+    over.set()
+    assert signal.getsignal(signal.SIGINT) is before
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+
+
+#: The command, whose cluster writes a line to its log as the last thing it does.
+TALKATIVE = '''
+import logging, sys
+from distributed.deploy.cluster import Cluster
+from tree_sway.commands.cli import main
+
+close = Cluster._close
+
+async def say_and_close(self):
+    logging.getLogger('distributed.batched').info('Batched Comm Closed')
+    await close(self)
+
+Cluster._close = say_and_close
+sys.exit(main(sys.argv[1:]))
+'''
+
+
 @pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find the workers')
 @pytest.mark.usefixtures('ctrl_c')
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
@@ -158,7 +193,7 @@ def test_whatever_ends_a_study_ends_its_workers(tmp_path, number):
     study = tmp_path / 'study.yaml'
     study.write_text('trees: [benjamina]\nwinds: [{speed: 4, seeds: 9}]\nseconds: 3600\n')
     words = ['study', str(study), '-o', str(tmp_path / 'o.csv'), '--workers', '2']
-    command = [sys.executable, '-m', 'tree_sway.commands.cli', *words]
+    command = [sys.executable, '-c', TALKATIVE, *words]
     with subprocess.Popen(command, start_new_session=True, stderr=subprocess.PIPE) as process:
         workers = until(lambda: [w for w in workers_of(process.pid) if is_busy(w)], 60.0)
         began = time.monotonic()
@@ -166,7 +201,10 @@ def test_whatever_ends_a_study_ends_its_workers(tmp_path, number):
         process.wait(10.0)
         until(lambda: not any(Path('/proc', str(each)).exists() for each in workers), 10.0)
         assert time.monotonic() - began < 10.0
-        assert b'Traceback' not in process.stderr.read()
+        said = process.stderr.read().decode()
+    assert 'Traceback' not in said
+    if number == signal.SIGINT:
+        assert set(said.splitlines()[1:]) <= {'cases ...'}
     assert process.returncode == (130 if number == signal.SIGINT else -number)
 
 
@@ -181,7 +219,7 @@ def until(found, seconds):
 
 def is_busy(process: int) -> bool:
     """Whether a worker has loaded what it computes with."""
-    return b'libscipy' in Path('/proc', str(process), 'maps').read_bytes()
+    return b'/scipy/' in Path('/proc', str(process), 'maps').read_bytes()
 
 
 def test_a_case_that_cannot_be_leaves_the_others(tmp_path):

@@ -86,12 +86,9 @@ def _wind(case: Case) -> WindRecord | Floats:
         return replace(record, velocity=case.wind['scale'] * record.velocity)
     rng = np.random.default_rng(case.wind['seed'])
     return simulate_turbulence(
-        case.wind['speed'],
-        rate=case.rate,
-        duration=case.seconds,
-        rng=rng,
+        case.wind['speed'], rate=case.rate, duration=case.seconds, rng=rng,
         intensity=case.wind['intensity'],
-    )
+    )  # fmt: skip
 
 
 def _prefixed(what: str, asked: Plain) -> Plain:

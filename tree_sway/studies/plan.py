@@ -10,7 +10,6 @@ follows from all its input: its values, the content of its files, and the source
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, fields
 import hashlib
 from importlib.resources import files
@@ -154,7 +153,8 @@ def _settings(varied: Plain, path: Path) -> list[Plain]:
             where=f'{path}: settings',
             cure=nearest(unknown[0], known) or f'use one of: {", ".join(sorted(known))}',
         )
-    found = list(_products(varied))
+    combinations = itertools.product(*map(_listed, varied.values()))
+    found = [dict(zip(varied, values, strict=True)) for values in combinations]
     for each in found:
         try:
             Settings(**each)
@@ -162,12 +162,6 @@ def _settings(varied: Plain, path: Path) -> list[Plain]:
             where = f'{path}: settings'
             raise ParameterError(f'{each}: {error}', where=where, cure='give numbers') from None
     return found
-
-
-def _products(varied: Plain) -> Iterator[Plain]:
-    names = list(varied)
-    for values in itertools.product(*(_listed(varied[name]) for name in names)):
-        yield dict(zip(names, values, strict=True))
 
 
 def _listed(value: Any) -> list[Any]:

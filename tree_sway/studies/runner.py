@@ -11,13 +11,14 @@ The case of a killed worker is computed by a different one.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, ExitStack
 from importlib import import_module
 import json
 from multiprocessing import resource_tracker
 import os
 from pathlib import Path
 import signal
+import threading
 from typing import Any
 
 from tree_sway.commands.progress import bar
@@ -63,11 +64,9 @@ def run_study(cases: list[Case], folder: Path, *, workers: int | None = None) ->
     folder.mkdir(parents=True, exist_ok=True)
     missing = missing_cases(cases, folder)
     outcomes = _outcomes(missing, folder, workers or os.cpu_count() or 1) if missing else iter(())
-    failed: TreeSwayError | None = None
-    for _, outcome in zip(bar(missing, 'cases'), outcomes, strict=True):
-        failed = failed or outcome
-    if failed is not None:
-        raise failed
+    failed = [each for _, each in zip(bar(missing, 'cases'), outcomes, strict=True) if each]
+    if failed:
+        raise failed[0]
     return [json.loads(result_path(folder, case).read_text(encoding='utf-8')) for case in cases]
 
 
@@ -105,8 +104,7 @@ def compute_batch(cases: list[Case], folder: Path) -> list[TreeSwayError | None]
             compute_to_file(case, folder)
             outcomes.append(None)
         except TreeSwayError as error:
-            where = f'tree {case.tree}, wind {case.wind}'
-            outcomes.append(TreeSwayError(str(error), where=where))
+            outcomes.append(TreeSwayError(str(error), where=f'tree {case.tree}, wind {case.wind}'))
     return outcomes
 
 
@@ -119,20 +117,15 @@ def batches(cases: list[Case], workers: int) -> list[list[Case]]:
 
     """
     most = -(-len(cases) // (4 * workers))
-    found: dict[str, list[list[Case]]] = {}
+    found: dict[str, list[Case]] = {}
     for case in cases:
-        parts = found.setdefault(json.dumps([case.tree, case.settings], sort_keys=True), [[]])
-        if len(parts[-1]) == most:
-            parts.append([])
-        parts[-1].append(case)
-    return [part for parts in found.values() for part in parts]
+        found.setdefault(json.dumps([case.tree, case.settings], sort_keys=True), []).append(case)
+    return [same[k : k + most] for same in found.values() for k in range(0, len(same), most)]
 
 
 def _outcomes(cases: list[Case], folder: Path, workers: int) -> Iterator[TreeSwayError | None]:
     """Yield the result of each finished case: None, or its error."""
-    distributed = import_module('distributed')
-    import_module('cryptography')  # keys that exclude other users of this machine
-    with _cluster(distributed, workers) as client:
+    with _cluster(workers) as (distributed, client):
         futures = [
             client.submit(compute_batch, part, folder.resolve(), key=part[0].name)
             for part in batches(cases, workers)
@@ -149,28 +142,45 @@ def _outcomes(cases: list[Case], folder: Path, workers: int) -> Iterator[TreeSwa
 
 
 @contextmanager
-def _cluster(distributed: Any, workers: int) -> Iterator[Any]:
-    """Client of separate processes, which end at once with the study."""
-    import dask
+def _cluster(workers: int) -> Iterator[tuple[Any, Any]]:
+    """
+    Dask and a client of separate processes, which end at once with the study.
 
-    # Only this process handles Ctrl-C: its threads, and the workers that they start, inherit is
-    # blocked here. The tracker would unblock it as it starts.
-    resource_tracker.ensure_running()
-    block = getattr(signal, 'pthread_sigmask', lambda *_: None)
-    block(signal.SIG_BLOCK, [signal.SIGINT])
-    quiet = {'distributed.scheduler.allowed-failures': ATTEMPTS - 1}
-    with (
-        dask.config.set(quiet),
-        distributed.LocalCluster(
-            n_workers=workers, threads_per_worker=1, memory_limit=0,
-            dashboard_address=None, silence_logs='CRITICAL', security=True,
-        ) as local,
-        distributed.Client(local) as client,
-    ):  # fmt: skip
-        try:
-            block(signal.SIG_UNBLOCK, [signal.SIGINT])
-            yield client
-        except BaseException:  # Ctrl-C: running cases are computed in the next run
-            for worker in local.workers.values():
-                os.kill(worker.pid, signal.SIGKILL)
-            raise
+    Only this process handles Ctrl-C, and not before dask is loaded and the cluster up, half of
+    which it would leave open. Its log is silent until the last of its threads has ended.
+    """
+    quiet = {'distributed.nanny.pre-spawn-environ.DASK_LOGGING__DISTRIBUTED': 'critical'}
+    page = {'dashboard': False, 'dashboard_address': '127.0.0.1:0'}  # none, and at a free port
+    with _held_interrupt() as held:
+        dask, distributed = import_module('dask'), import_module('distributed')
+        import_module('cryptography')  # keys that exclude other users of this machine
+        with (
+            dask.config.set(quiet),
+            distributed.utils.silence_logging_cmgr('CRITICAL'),
+            distributed.LocalCluster(
+                n_workers=workers, threads_per_worker=1, memory_limit=0, silence_logs='CRITICAL',
+                scheduler_kwargs={'allowed_failures': ATTEMPTS - 1, **page}, security=True,
+            ) as local,
+            distributed.Client(local) as client,
+        ):  # fmt: skip
+            try:
+                held.close()
+                yield distributed, client
+            except BaseException:  # Ctrl-C: running cases are computed in the next run
+                for worker in local.workers.values():
+                    os.kill(worker.pid, signal.SIGKILL)
+                raise
+
+
+def _held_interrupt() -> ExitStack:
+    """Hold Ctrl-C back until closed; threads and processes started before then never get it."""
+    held = ExitStack()
+    if hasattr(signal, 'pthread_sigmask'):
+        resource_tracker.ensure_running()  # it would unblock the signal as it starts
+        signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+        held.callback(signal.pthread_sigmask, signal.SIG_UNBLOCK, [signal.SIGINT])
+        if threading.current_thread() is threading.main_thread():
+            # An earlier thread may receive it, for Python to handle here: then it waits here.
+            usual = signal.signal(signal.SIGINT, lambda number, _: signal.raise_signal(number))
+            held.callback(signal.signal, signal.SIGINT, usual)
+    return held
