@@ -45,28 +45,17 @@ if TYPE_CHECKING:
 __version__ = '0.1.0'
 
 _HOMES = {
-    'PlacedTree': 'core.scene.placed_tree',
-    'Scene': 'core.scene.scene',
-    'Settings': 'core.simulator.settings',
-    'Simulator': 'core.scene.scene_simulator',
-    'Species': 'core.tree.wood',
-    'StreamClient': 'page.client',
-    'SwayRecord': 'core.scene.sway_record',
-    'Tree': 'core.tree.tree',
-    'TreeSwayError': 'errors',
-    'WindAverage': 'core.wind.averaging',
-    'calibrate': 'core.identification.calibration',
-    'grow': 'core.growth.grow',
-    'make_simulator': 'core.scene.make',
-    'open_scene': 'files.trees.source',
-    'open_tree': 'files.trees.source',
-    'read_wind': 'files.wind.wind_file',
-    'simulate': 'core.scene.simulate',
-    'simulate_turbulence': 'core.wind.simulated.turbulence',
-    'species_named': 'core.tree.species',
-    'tree_from_segments': 'core.tree.building',
-    'write_tree': 'files.export.tree_export',
-}
+    'PlacedTree': 'core.scene.placed_tree', 'Scene': 'core.scene.scene',
+    'Settings': 'core.simulator.settings', 'Simulator': 'core.scene.scene_simulator',
+    'Species': 'core.tree.wood', 'StreamClient': 'page.client',
+    'SwayRecord': 'core.scene.sway_record', 'Tree': 'core.tree.tree', 'TreeSwayError': 'errors',
+    'WindAverage': 'core.wind.averaging', 'calibrate': 'core.identification.calibration',
+    'grow': 'core.growth.grow', 'make_simulator': 'core.scene.make',
+    'open_scene': 'files.trees.source', 'open_tree': 'files.trees.source',
+    'read_wind': 'files.wind.wind_file', 'simulate': 'core.scene.simulate',
+    'simulate_turbulence': 'core.wind.simulated.turbulence', 'species_named': 'core.tree.species',
+    'tree_from_segments': 'core.tree.building', 'write_tree': 'files.export.tree_export',
+}  # fmt: skip
 """Module that each public name lives in."""
 
 __all__ = sorted((*_HOMES, '__version__'))

@@ -95,28 +95,17 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
     frequencies = [mode['frequency'] for mode in modes]
     slow = sway_oddity(tree, species, min(frequencies)) if modes else None
     return {
-        'name': tree.name,
-        'notes': notes,
-        'warnings': [*oddities(tree, species), *filter(None, [slow])],
-        'branches': tree.n_branches,
-        'segments': tree.n_segments,
-        'height': tree.height,
-        'length': float(tree.length.sum()),
-        'volume': float(tree.volume.sum()),
-        'base_diameter': float(tree.base_diameter[0]),
-        'breast_height_diameter': _breast_height_diameter(tree),
-        'species': species.key,
+        'name': tree.name, 'notes': notes,
+        'warnings': [*oddities(tree, species), *filter(None, [slow])], 'branches': tree.n_branches,
+        'segments': tree.n_segments, 'height': tree.height, 'length': float(tree.length.sum()),
+        'volume': float(tree.volume.sum()), 'base_diameter': float(tree.base_diameter[0]),
+        'breast_height_diameter': _breast_height_diameter(tree), 'species': species.key,
         'wood': f'{species.title}{" (an estimate)" if species.is_estimate else ""}',
-        'modulus': species.modulus,
-        'density': species.density,
-        'mass': mass,
+        'modulus': species.modulus, 'density': species.density, 'mass': mass,
         'root_stiffness': None if math.isinf(species.root_stiffness) else species.root_stiffness,
-        'gravity': settings.gravity,
-        'in_leaf': settings.in_leaf,
-        'strength': used and used.plain(),
-        'frequencies': frequencies,
-        'modes': modes,
-    }
+        'gravity': settings.gravity, 'in_leaf': settings.in_leaf,
+        'strength': used and used.plain(), 'frequencies': frequencies, 'modes': modes,
+    }  # fmt: skip
 
 
 def _breast_height_diameter(tree: Tree) -> float | None:

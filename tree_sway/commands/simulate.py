@@ -53,14 +53,10 @@ def run(arguments: argparse.Namespace) -> int:
             raise ParameterError(f"no branch '{name}'", where='--branch', cure=cure)
     with waiting('simulating'):
         record = simulate(
-            tree_file,
-            _wind(arguments),
-            rate=arguments.rate,
-            seconds=arguments.seconds,
+            tree_file, _wind(arguments), rate=arguments.rate, seconds=arguments.seconds,
             branches=[names.index(name) for name in arguments.branch] or None,
-            model=arguments.model,
-            in_leaf=chosen_leaves(arguments),
-        )
+            model=arguments.model, in_leaf=chosen_leaves(arguments),
+        )  # fmt: skip
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     print(f'{output}: {record}')
     print(record.strength)

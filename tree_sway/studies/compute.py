@@ -49,15 +49,11 @@ def compute(case: Case) -> Plain:
     record = rig.run(_wind(case), rate=case.rate, seconds=case.seconds)
     row: Plain = {**_prefixed('tree', case.tree), **_prefixed('wind', case.wind), **case.settings}
     row |= {
-        'length [s]': case.seconds,
-        'branches': tree.n_branches,
-        'segments': tree.n_segments,
-        'height [m]': tree.height,
-        'model': record.model,
-        'frequency [Hz]': frequency,
+        'length [s]': case.seconds, 'branches': tree.n_branches, 'segments': tree.n_segments,
+        'height [m]': tree.height, 'model': record.model, 'frequency [Hz]': frequency,
         'wind_mean [m/s]': float(np.linalg.norm(record.wind.mean(axis=0))),
         'wind_largest [m/s]': float(np.linalg.norm(record.wind, axis=1).max()),
-    }
+    }  # fmt: skip
     row |= _summary('tip', 'm', record.tips[:, 0])
     row |= _summary('base_moment', 'N m', record.base_moment)
     row['strain_largest [-]'] = float(np.abs(record.base_strain).max())

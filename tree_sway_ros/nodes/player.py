@@ -39,16 +39,11 @@ class PlayerNode(TreeSwayNode):
             )
             epoch = None
         self._playback = Playback(
-            self._record.time,
-            self._publish,
-            may_start=lambda: self._wind.get_subscription_count() > 0,
-            on_end=self._end,
-            on_error=self.fail,
-            start_at=self.values['start'],
-            epoch=epoch,
-            has_clock=has_clock,
+            self._record.time, self._publish,
+            may_start=lambda: self._wind.get_subscription_count() > 0, on_end=self._end,
+            on_error=self.fail, start_at=self.values['start'], epoch=epoch, has_clock=has_clock,
             **self.values('rate', 'loop'),
-        )
+        )  # fmt: skip
         self.report_with(self._record.source, self._report)
 
     def activate(self) -> None:

@@ -94,14 +94,9 @@ def cut_tree(tree: Tree, pieces: Ints) -> CutTree:
     key = np.repeat(first, size) + within * np.repeat(pieces, size) // np.repeat(size, size)
     names = np.repeat(np.array(tree.branch_names, dtype=object), pieces)
     cut = tree_from_segments(
-        tree.start,
-        tree.end,
-        np.stack([tree.base_diameter, tree.tip_diameter], axis=1),
-        parent=tree.segment_parent,
-        branch=key,
-        branch_names=names.tolist(),
-        name=tree.name,
+        tree.start, tree.end, np.stack([tree.base_diameter, tree.tip_diameter], axis=1),
+        parent=tree.segment_parent, branch=key, branch_names=names.tolist(), name=tree.name,
         species=tree.species,
-    )
+    )  # fmt: skip
     branch = tree.branch_of_segment[cut.source_index[cut.branch_first[:-1]]]
     return CutTree(cut, branch, cut.source_index, cut.branch_length / tree.branch_length[branch])

@@ -110,15 +110,11 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
     quiet = float(outside.max(initial=0.0) / envelope[peak])
     share = slow[first:last].var(axis=0).sum() / motion[first:last].var(axis=0).sum()
     return FreeDecay(
-        circular / (2.0 * np.pi),
-        -fit.pole.real / circular,
+        circular / (2.0 * np.pi), -fit.pole.real / circular,
         float(np.hypot(fit.error, spread[0]) / (2.0 * np.pi)),
-        float(np.hypot(fit.error / circular, spread[1])),
-        cycles,
-        fit.explained * min(float(share), 1.0),
-        quiet,
-        float(envelope[peak]) * rough,
-    )
+        float(np.hypot(fit.error / circular, spread[1])), cycles,
+        fit.explained * min(float(share), 1.0), quiet, float(envelope[peak]) * rough,
+    )  # fmt: skip
 
 
 def _filtered(motion: Floats, dt: float, rough: float) -> tuple[Floats, Floats]:

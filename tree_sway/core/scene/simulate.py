@@ -132,18 +132,10 @@ class Rig:
         radius = 0.5 * float(tree.base_diameter[0])
         per_moment = radius / (self.reductions.species.modulus * np.pi / 4.0 * radius**4)
         return SwayRecord(
-            tree.name,
-            simulator.model,
-            np.arange(1, count + 1) / rate,
-            means,
-            chosen,
-            tuple(tree.branch_names[branch] for branch in chosen),
-            tips,
-            moment,
-            per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1),
-            strain,
-            gauge.use(),
-        )
+            tree.name, simulator.model, np.arange(1, count + 1) / rate, means, chosen,
+            tuple(tree.branch_names[branch] for branch in chosen), tips, moment,
+            per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1), strain, gauge.use(),
+        )  # fmt: skip
 
     def strength_curve(
         self, speeds: ArrayLike, *, rng: np.random.Generator, seconds: float = 60.0

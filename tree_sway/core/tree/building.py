@@ -106,19 +106,12 @@ def tree_from_segments(
     base_parent = segment_parent[branch_first[:-1]]
     branch_parent = np.where(base_parent < 0, -1, owner[base_parent]).astype(np.int64)
     return Tree(
-        start=starts[order],
-        end=ends[order],
-        base_diameter=diameters[order, 0],
-        tip_diameter=diameters[order, 1],
-        segment_parent=segment_parent.astype(np.int64),
-        branch_first=branch_first,
-        branch_parent=branch_parent,
-        subtree_end=_subtree_end(branch_parent),
-        source_index=order.astype(np.int64),
-        branch_names=tuple(names),
-        name=name,
-        species=species,
-    )
+        start=starts[order], end=ends[order], base_diameter=diameters[order, 0],
+        tip_diameter=diameters[order, 1], segment_parent=segment_parent.astype(np.int64),
+        branch_first=branch_first, branch_parent=branch_parent,
+        subtree_end=_subtree_end(branch_parent), source_index=order.astype(np.int64),
+        branch_names=tuple(names), name=name, species=species,
+    )  # fmt: skip
 
 
 def _check_geometry(

@@ -56,25 +56,17 @@ class GltfDocument:
         if target == ARRAY_BUFFER and stride % 4:  # vertices begin at multiples of 4 bytes
             rows = np.pad(columns, ((0, 0), (0, -stride % 4 // columns.itemsize)))
         view = self.add(
-            'bufferViews',
-            buffer=0,
-            byteOffset=len(self._bytes),
-            byteLength=rows.nbytes,
-            byteStride=rows.strides[0] if rows is not columns else None,
-            target=target,
-        )
+            'bufferViews', buffer=0, byteOffset=len(self._bytes), byteLength=rows.nbytes,
+            byteStride=rows.strides[0] if rows is not columns else None, target=target,
+        )  # fmt: skip
         self._bytes += np.ascontiguousarray(rows).astype(rows.dtype.newbyteorder('<')).tobytes()
         self._bytes += b'\0' * (-len(self._bytes) % 4)
         return self.add(
-            'accessors',
-            bufferView=view,
-            componentType=_COMPONENTS[array.dtype.name],
-            normalized=is_share or None,
-            count=len(array),
-            type=_SHAPES[array.shape[1:]],
+            'accessors', bufferView=view, componentType=_COMPONENTS[array.dtype.name],
+            normalized=is_share or None, count=len(array), type=_SHAPES[array.shape[1:]],
             min=columns.min(axis=0).tolist() if bounds else None,
             max=columns.max(axis=0).tolist() if bounds else None,
-        )
+        )  # fmt: skip
 
     def glb(self) -> bytes:
         """Return the document in the binary form."""

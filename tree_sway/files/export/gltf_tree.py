@@ -138,13 +138,9 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
         },
     )
     shown = document.add(
-        'nodes',
-        name=tree.name,
-        mesh=body,
-        rotation=_Y_UP,
-        scale=[size] * 3,
+        'nodes', name=tree.name, mesh=body, rotation=_Y_UP, scale=[size] * 3,
         translation=Rotation.from_quat(_Y_UP).apply(middle).tolist(),
-    )
+    )  # fmt: skip
     document.add('scenes', nodes=[shown])
     quantised = ['KHR_mesh_quantization']
     document.set(scene=0, extensionsUsed=quantised, extensionsRequired=quantised)

@@ -104,15 +104,10 @@ def hinged_tree(simulator: SwaySimulator) -> HingedTree:
     damping_time = 2.0 * simulator.check_tuning().damping_ratio / circular
     limit = damping_time + math.hypot(damping_time, 2.0 / math.sqrt(factor * fastest))
     return HingedTree(
-        names=plain_names(tree),
-        poses=poses_on_parents(tree, tree.rest_poses),
-        mass=mass,
-        centre=centre,
-        inertia=inertia,
-        stiffness=factor / compliance,
-        damping_time=damping_time,
+        names=plain_names(tree), poses=poses_on_parents(tree, tree.rest_poses), mass=mass,
+        centre=centre, inertia=inertia, stiffness=factor / compliance, damping_time=damping_time,
         largest_step=_MARGIN * limit,
-    )
+    )  # fmt: skip
 
 
 def _eigenvalue(matrix: sparse.csc_matrix, **options: Any) -> float:

@@ -97,19 +97,13 @@ def _comment(simulator: SwaySimulator, hinged: HingedTree) -> str:
 def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
     """Yield the values for the templates, of each segment."""
     columns = {
-        'place': hinged.poses[:, :3],
-        'xyzw': hinged.poses[:, 3:],
-        'wxyz': hinged.poses[:, [6, 3, 4, 5]],
-        'centre': hinged.centre,
-        'mass': hinged.mass,
-        'turning': hinged.inertia[:, 0],
-        'across': hinged.inertia[:, 1],
-        'stiffness': hinged.stiffness,
-        'damping': hinged.damping_time * hinged.stiffness,
-        'length': tree.length,
-        'middle': 0.5 * tree.length,
+        'place': hinged.poses[:, :3], 'xyzw': hinged.poses[:, 3:],
+        'wxyz': hinged.poses[:, [6, 3, 4, 5]], 'centre': hinged.centre, 'mass': hinged.mass,
+        'turning': hinged.inertia[:, 0], 'across': hinged.inertia[:, 1],
+        'stiffness': hinged.stiffness, 'damping': hinged.damping_time * hinged.stiffness,
+        'length': tree.length, 'middle': 0.5 * tree.length,
         'radius': 0.25 * (tree.base_diameter + tree.tip_diameter),
-    }
+    }  # fmt: skip
     for i, parent in enumerate(tree.segment_parent.tolist()):
         carrier = hinged.names[parent] if parent >= 0 else ''
         yield {

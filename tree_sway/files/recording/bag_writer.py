@@ -75,16 +75,11 @@ class BagWriter:
 
         never = QosTime(9223372036, 854775807)
         quality = Qos(
-            QosHistory.KEEP_LAST,
-            depth,
+            QosHistory.KEEP_LAST, depth,
             QosReliability.RELIABLE if reliable else QosReliability.BEST_EFFORT,
-            QosDurability.TRANSIENT_LOCAL if latched else QosDurability.VOLATILE,
-            never,
-            never,
-            QosLiveliness.AUTOMATIC,
-            never,
-            False,
-        )
+            QosDurability.TRANSIENT_LOCAL if latched else QosDurability.VOLATILE, never, never,
+            QosLiveliness.AUTOMATIC, never, False,
+        )  # fmt: skip
         with self._room():
             self._connections[topic] = self._writer.add_connection(
                 topic, type_name, typestore=self._types, offered_qos_profiles=[quality]

@@ -142,15 +142,10 @@ class WindRows:
             raise FormatError(what, where=self.source, cure='check that it is a file of wind')
         time, velocity = time[rows], np.ascontiguousarray(velocity[rows])
         return WindRecord(
-            time - time[0],
-            velocity,
-            self.source,
-            self.refused,
-            self.first_refused,
-            None if epoch is None else epoch + float(time[0]),
-            notes,
+            time - time[0], velocity, self.source, self.refused, self.first_refused,
+            None if epoch is None else epoch + float(time[0]), notes,
             None if self.gust is None else self.gust[rows],
-        )
+        )  # fmt: skip
 
 
 def increasing(time: Floats) -> NDArray[np.bool_]:

@@ -52,14 +52,8 @@ def tree_of_cylinders(cylinders: Cylinders, path: Path) -> TreeFile:
     if len(cylinders.start) < count:
         notes.append(f'{count - len(cylinders.start)} cylinders of zero length were left out')
     tree = built_tree(
-        source,
-        cylinders.start,
-        cylinders.end,
-        cylinders.diameter,
-        parent=cylinders.parent,
-        branch=branch_keys(cylinders),
-        labels=cylinders.labels,
-        name=cylinders.name or path.stem,
+        source, cylinders.start, cylinders.end, cylinders.diameter, parent=cylinders.parent,
+        branch=branch_keys(cylinders), labels=cylinders.labels, name=cylinders.name or path.stem,
         species=species.key,
-    )
+    )  # fmt: skip
     return TreeFile(tree, species, source, tuple(notes))

@@ -49,10 +49,6 @@ def cylinders_of_nodes(
     stem = roots[np.argmax(diameter[outer][roots])]
     above[roots[roots != stem]] = stem
     return Cylinders(
-        point[inner],
-        point[outer],
-        np.stack([base, diameter[outer]], axis=1),
-        above,
-        None,
+        point[inner], point[outer], np.stack([base, diameter[outer]], axis=1), above, None,
         [labels[index] for index in outer],
-    )
+    )  # fmt: skip

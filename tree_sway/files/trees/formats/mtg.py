@@ -82,14 +82,10 @@ def _read(path: Path) -> tuple[Cylinders, ...]:
         f'{len(tip)} of them segments'
     )
     cylinders = Cylinders(
-        points[base],
-        points[tip],
-        np.stack([at_base, width[tip]], axis=1),
-        np.array(parent, dtype=np.int64),
-        np.array(continues, dtype=np.bool_),
-        [vertices[index].label for index in tip],
-        notes=(note,),
-    )
+        points[base], points[tip], np.stack([at_base, width[tip]], axis=1),
+        np.array(parent, dtype=np.int64), np.array(continues, dtype=np.bool_),
+        [vertices[index].label for index in tip], notes=(note,),
+    )  # fmt: skip
     return (cylinders,)
 
 

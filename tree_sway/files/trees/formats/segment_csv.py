@@ -35,14 +35,9 @@ def _read(path: Path) -> TreeFile:
         branch = text.whole(text.strict(['branch'])[:, 0], 'branch')
     wood = species_named('broadleaf')
     tree = built_tree(
-        str(path),
-        *np.hsplit(values, [3, 6]),
-        parent=parents,
-        branch=branch,
-        labels=labels,
-        name=path.stem,
-        species=wood.key,
-    )
+        str(path), *np.hsplit(values, [3, 6]), parent=parents, branch=branch, labels=labels,
+        name=path.stem, species=wood.key,
+    )  # fmt: skip
     return TreeFile(tree, wood, str(path))
 
 
