@@ -243,7 +243,7 @@ class Instance:
     middle_rate: Annotated[Floats, 'modes']
     wanted: Annotated[Floats, 'modes']
     diagonal: Annotated[Floats, 'modes']
-    scratch: Annotated[Singles, 4, 'modes']
+    scratch: Annotated[Singles, 7, 'modes']
     values: Annotated[Floats, 'harmonics']
     left_out: int  # number of last coordinates that are neither shown nor loaded
     hidden: Annotated[Floats, 'modes']  # part of each coordinate that is not shown

@@ -71,7 +71,7 @@ def wind_force(
     eta, rate
         Coordinates and their rates, (m,).
     values, scratch
-        Harmonics, (h,), and scratch memory in single precision, (4, m), both written.
+        Harmonics, (h,), and scratch memory in single precision, (7, m), both written.
     force, diagonal
         Modal forces, and their slopes by the rate of the coordinate, (m,), both written; the
         slopes include those by the others, with equal rates.
@@ -86,14 +86,18 @@ def wind_force(
     level, slant, pole = 1.0 - steep, min(max(z, -STEEP), STEEP), 1 if z > 0.0 else 0
     e, f = level * (1.0 - share), level * share
     a, b, c, d = e * (1.0 - up), e * up, f * (1.0 - up), f * up
-    turned, damped, off, rates = scratch[0], scratch[1], scratch[2], scratch[3]
+    turned, damped, rates, off = scratch[0], scratch[1], scratch[2], scratch[3:]
     moving = dynamic_pressure / per_speed_squared if per_speed_squared > 0.0 else 0.0
     for i in range(m):
-        off[i] = eta[i] - (1.0 - share) * (
-            (1.0 - up) * table.equilibrium[first, j, i] + up * table.equilibrium[first, j + 1, i]
-        ) - share * (
-            (1.0 - up) * table.equilibrium[second, j, i] + up * table.equilibrium[second, j + 1, i]
-        )  # fmt: skip
+        on = table.equilibrium[first, j + 1, i] - table.equilibrium[first, j, i]
+        by = table.equilibrium[second, j + 1, i] - table.equilibrium[second, j, i]
+        away = eta[i] - (1.0 - share) * (table.equilibrium[first, j, i] + up * on)
+        away -= share * (table.equilibrium[second, j, i] + up * by)
+        # Half of the way to each pose, so that loads between levels are cubic.
+        off[0, i] = a * (away + 0.5 * up * on)
+        off[1, i] = b * (away - 0.5 * (1.0 - up) * on)
+        off[2, i] = c * (away + 0.5 * up * by)
+        off[3, i] = d * (away - 0.5 * (1.0 - up) * by)
         rates[i] = rate[i]
         moving += table.motion[i] * rate[i] * rate[i]
         force[i] = (
@@ -108,8 +112,8 @@ def wind_force(
     a4, b4, c4, d4 = np.float32(a), np.float32(b), np.float32(c), np.float32(d)
     e4, f4 = np.float32(e * slant), np.float32(f * slant)
     for k in range(n_coupled):
-        moved, moving_at, slow = off[k], rates[k], np.float32(eta[k])
-        am, bm, cm, dm = a4 * moved, b4 * moved, c4 * moved, d4 * moved
+        moving_at, slow = rates[k], np.float32(eta[k])
+        am, bm, cm, dm = off[0, k], off[1, k], off[2, k], off[3, k]
         av, bv, cv, dv = a4 * moving_at, b4 * moving_at, c4 * moving_at, d4 * moving_at
         em, fm = e4 * slow, f4 * slow
         for i in range(m):

@@ -14,11 +14,9 @@ import { Touch } from "./touch.js";
 /** Time step of a stand unless it is given another [s]. */
 export const STEP = 1 / 60;
 
-const AZIMUTHS = 24;
-const LEVELS = 7;
+const [AZIMUTHS, LEVELS] = [24, 7];
 /** Sine of the elevation from which on a wind goes over to one straight up or down. */
-const STEEP = Math.sin(Math.PI / 4);
-const MOST_COORDINATES = 1000;
+const [STEEP, MOST_COORDINATES] = [Math.sin(Math.PI / 4), 1000];
 const HALF_AIR_DENSITY = 0.5 * 1.225; // [kg/m^3]
 /** Speeds between which leaves streamline [m/s]. */
 const [STREAMLINING_FROM, STREAMLINING_TO] = [4, 20];
@@ -78,7 +76,7 @@ export class Table {
     this.steep = this._slopes(arrays, ["steep_turning", "steep_damping"]);
     this.lean = this._slopes(arrays, ["lean"]);
     /** What is worked in. */
-    this.scratch = Array.from({ length: 7 }, () => new Float64Array(m));
+    this.scratch = Array.from({ length: 10 }, () => new Float64Array(m));
     this.values = new Float64Array(size.h);
   }
 
@@ -212,22 +210,24 @@ export class TreeState {
 function windForce(table, [x, y, z], push, drag) {
   const { m, slopes, lean, values, arrays } = table;
   const { motion, load, limit, equilibrium, harmonics, cross_damping: cross } = arrays;
-  const [eta, rate, force, diagonal, off, leaning, leaned] = table.scratch;
+  const [eta, rate, force, diagonal, leaning, leaned, offA, offB, offC, offD] = table.scratch;
   fillHarmonics(x, y, z, table.degree, values);
   const { here, there, first, second, share, up } = corners(table, x, y);
   const steep = Math.max(0, (Math.abs(z) - STEEP) / (1 - STEEP));
   const slant = Math.min(Math.max(z, -STEEP), STEEP);
   const [from, to, slight] = [1 - share, share, 1 - steep];
-  const [sa, sb, sc, sd] = [from * (1 - up), from * up, to * (1 - up), to * up];
-  const [a, b, c, d] = [slight * sa, slight * sb, slight * sc, slight * sd];
+  const [a, b, c, d] = [from * (1 - up), from * up, to * (1 - up), to * up].map((each) => slight * each);
   const [ia, ib, ic, id] = [first * m, (first + 1) * m, second * m, (second + 1) * m];
   let moving = drag > 0 ? push / drag : 0;
   // Slopes are in single precision, and so are their weights.
   const [e, f] = [slight * from * slant, slight * to * slant];
   const [a4, b4, c4, d4, e4, f4, s4] = [a, b, c, d, e, f, steep].map(Math.fround);
   for (let i = 0; i < m; i++) {
-    off[i] = eta[i] - sa * equilibrium[ia + i] - sb * equilibrium[ib + i]
-      - sc * equilibrium[ic + i] - sd * equilibrium[id + i];
+    const [on, by] = [equilibrium[ib + i] - equilibrium[ia + i], equilibrium[id + i] - equilibrium[ic + i]];
+    const away = eta[i] - from * (equilibrium[ia + i] + up * on) - to * (equilibrium[ic + i] + up * by);
+    // Half of the way to each pose, so that loads between levels are cubic.
+    offA[i] = a * (away + 0.5 * up * on), offB[i] = b * (away - 0.5 * (1 - up) * on);
+    offC[i] = c * (away + 0.5 * up * by), offD[i] = d * (away - 0.5 * (1 - up) * by);
     moving += motion[i] * rate[i] * rate[i];
     let sum = a * load[ia + i] + b * load[ib + i] + c * load[ic + i] + d * load[id + i];
     for (let k = 0, at = i; k < values.length; k++, at += m) sum += values[k] * harmonics[at];
@@ -242,7 +242,7 @@ function windForce(table, [x, y, z], push, drag) {
     const own = at + 2 * i + 1;
     let [turned, damped] = [0, 0];
     for (let k = 0; k < m; k++, at += 2, flat++) {
-      turned += off[k] * (a4 * ta[at] + b4 * tb[at] + c4 * tc[at] + d4 * td[at])
+      turned += offA[k] * ta[at] + offB[k] * tb[at] + offC[k] * tc[at] + offD[k] * td[at]
         + leaning[k] * near[flat] + leaned[k] * next[flat];
       damped += rate[k] * (a4 * ta[at + 1] + b4 * tb[at + 1] + c4 * tc[at + 1] + d4 * td[at + 1]);
     }
