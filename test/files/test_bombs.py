@@ -121,7 +121,7 @@ def matlab(path: Path, count: int) -> None:
 
 
 def many_cells(path: Path) -> None:
-    matlab(path, 1_500_000)
+    matlab(path, 400_000)
     assert path.stat().st_size < 400_000
 
 
