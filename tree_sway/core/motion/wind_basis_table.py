@@ -101,7 +101,7 @@ class WindBasisTable:
         self._still = np.zeros(n)
         self.record = np.zeros(1, dtype=table_layout(m, COUNT[degree]))
         table = self.record[0]
-        # Loads are computed at some azimuths and interpolated, for they are smooth.
+        # Equilibria and slopes are found at some azimuths and interpolated, for they are smooth.
         each = 2 if len(wind_moments.branches) <= _LARGE else 3
         self._azimuths = 2.0 * np.pi * np.arange(0, N_AZIMUTHS, each) / N_AZIMUTHS
         table['n_modes'], table['degree'] = m, degree
@@ -134,7 +134,7 @@ class WindBasisTable:
         """Find loads and their slopes at the equilibria in winds of each speed."""
         shapes, m = self._shapes, int(table['n_modes'])
         stiffness = table['stiffness'][:m]
-        equilibrium, load = np.zeros((2, len(self._azimuths), N_LEVELS, m))
+        equilibrium = np.zeros((len(self._azimuths), N_LEVELS, m))
         amount = np.zeros((len(self._azimuths), m))
         turning, damping = np.zeros((2, *equilibrium.shape, m))
         winds = direction(self._azimuths, 0.0)
@@ -147,7 +147,6 @@ class WindBasisTable:
                 at = self._equilibrium(at, s, ahead, turning[k, j - 1]) if j > 0 else at
                 x = shapes @ at
                 equilibrium[k, j] = at
-                load[k, j] = self._moments(x, self._still, ahead) @ shapes
                 if j > 0 and at is weaker:
                     turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
                     continue
@@ -162,10 +161,15 @@ class WindBasisTable:
         for k, poses in enumerate(equilibrium):
             for j in range(1, np.searchsorted(SPEEDS, _STORM)):
                 self._turn_inertia(poses[j], pressures[j], turning[k, j], damping[k, j])
+        table['equilibrium'][..., :m] = equilibrium = _between(equilibrium)
+        table['amount'][..., :m] = _between(amount)
+        winds = direction(2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, 0.0)
+        load = np.array([
+            [self._moments(x, self._still, ahead) for x in poses @ shapes.T] @ shapes
+            for poses, ahead in zip(equilibrium, winds, strict=True)
+        ])  # fmt: skip
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
-        load -= load[:, :1]
-        for name, values in (('equilibrium', equilibrium), ('amount', amount), ('load', load)):
-            table[name][..., :m] = _between(values)
+        table['load'][..., :m] = load - load[:, :1]
         table['turning'][..., :m, :m] = _between(turning)
         table['damping'][..., :m, :m] = _between(damping)
         table['cross_damping'] = np.abs(table['damping']).sum(axis=2)
