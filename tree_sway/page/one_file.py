@@ -59,7 +59,7 @@ def page_of_state(scene: SceneState, script: str = '') -> str:
     tables = scene.tables()
     if tables is None:
         what = f"model '{scene.simulator.model}' has no table to solve it by"
-        cure = 'give a number of coordinates, such as 60'
+        cure = 'give a number of coordinates, such as 60, and a crown_coherence of 1'
         raise ParameterError(what, where='--model', cure=cure)
     planes = [_in_planes(message) for message in (scene.description, tables)]
     packed = _packed(struct.pack('<I', len(planes[0])) + b''.join(planes))

@@ -19,13 +19,16 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
     """
     Write the tables of a scene that is described with an identity.
 
-    Returns None where a tree is on no table: on ``branch``, ``full`` or ``auto``.
+    Returns None where a tree is on no table, on ``branch``, ``full`` or ``auto``, or where gusts
+    reach its limbs one after another.
     """
     entries, arrays = [], dict[str, Array]()
     for number, kind in enumerate(kinds):
         model = kind.simulator
         bank = model.bank.oscillators
         if not isinstance(model, SwaySimulator) or not isinstance(bank, WindBasisBank):
+            return None
+        if model.settings.crown_coherence < 1.0:
             return None
         numbers, own = exported_table(bank)
         state = bank.all_shapes @ kind.basis.projection.T

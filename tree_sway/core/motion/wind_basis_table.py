@@ -42,6 +42,7 @@ SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
 BEYOND = 1.1
 """Largest dynamic pressure of the table, over that of the last of `SPEEDS`."""
 
+_AZIMUTHS = 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS
 _ELEVATIONS = np.deg2rad([-90.0, -60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0, 90.0])
 _ELEVATION_SPREAD = 0.25
 _SLOPE_AT = 0.35
@@ -103,32 +104,20 @@ class WindBasisTable:
         table = self.record[0]
         # Equilibria and slopes are found at some azimuths and interpolated, for they are smooth.
         each = 2 if len(wind_moments.branches) <= _LARGE else 3
-        self._azimuths = 2.0 * np.pi * np.arange(0, N_AZIMUTHS, each) / N_AZIMUTHS
+        self._azimuths = _AZIMUTHS[::each]
         table['n_modes'], table['degree'] = m, degree
         table['stiffness'] = 1.0
         table['stiffness'][:m] = bank.stiffness
         table['motion'][:m] = bank.mean_square_motion
-        self._fit_harmonics(table, degree)
+        table['harmonics'][:, :m], table['limit'][:m] = fit_harmonics(
+            wind_moments, bank.shapes, degree
+        )
         pressures = [pressure(each, *drag_law) * each**2 for each in SPEEDS]
         self._fill_standing(table, pressures)
         self._fill_aslant(table)
         table['most_pressure'] = BEYOND * pressures[-1]
         energy = table['equilibrium'][:, -1] ** 2 @ table['stiffness']
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
-
-    def _fit_harmonics(self, table: np.void, degree: int) -> None:
-        """Fit the load at rest in winds of all azimuths, horizontal ones with most weight."""
-        elevation, azimuth = np.meshgrid(
-            _ELEVATIONS, 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, indexing='ij'
-        )
-        directions = direction(azimuth.ravel(), elevation.ravel())
-        weight = np.sqrt(np.exp(-0.5 * (elevation.ravel() / _ELEVATION_SPREAD) ** 2) + 0.02)
-        weight *= np.sqrt(np.maximum(np.cos(elevation.ravel()), 1.0 / N_AZIMUTHS))
-        loads = self._moments.at_rest(directions, self._shapes)
-        values = harmonics_at(directions, degree) * weight[:, None]
-        table['limit'][: table['n_modes']] = np.abs(loads).max(axis=0)
-        fitted = np.linalg.lstsq(values, loads * weight[:, None], rcond=None)[0]
-        table['harmonics'][:, : table['n_modes']] = fitted
 
     def _fill_standing(self, table: np.void, pressures: list[float]) -> None:
         """Find loads and their slopes at the equilibria in winds of each speed."""
@@ -163,7 +152,7 @@ class WindBasisTable:
                 self._turn_inertia(poses[j], pressures[j], turning[k, j], damping[k, j])
         table['equilibrium'][..., :m] = equilibrium = _between(equilibrium)
         table['amount'][..., :m] = _between(amount)
-        winds = direction(2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS, 0.0)
+        winds = direction(_AZIMUTHS, 0.0)
         load = np.array([
             [self._moments(x, self._still, ahead) for x in poses @ shapes.T] @ shapes
             for poses, ahead in zip(equilibrium, winds, strict=True)
@@ -252,6 +241,22 @@ class WindBasisTable:
         turning, damping = self._slopes(self._still, direction(0.0, np.pi / 2.0))
         table['steep_turning'][:, :m, :m] = -turning, turning
         table['steep_damping'][:, :m, :m] = damping
+
+
+def fit_harmonics(moments: WindMoments, shapes: Floats, degree: int) -> tuple[Floats, Floats]:
+    """
+    Fit the load on shapes (N, m) at rest in all winds, horizontal ones with most weight.
+
+    Returns harmonics, (h, m), and the largest loads, (m,), both at 1 kg/m/s^2.
+    """
+    elevation, azimuth = np.meshgrid(_ELEVATIONS, _AZIMUTHS, indexing='ij')
+    directions = direction(azimuth.ravel(), elevation.ravel())
+    weight = np.sqrt(np.exp(-0.5 * (elevation.ravel() / _ELEVATION_SPREAD) ** 2) + 0.02)
+    weight *= np.sqrt(np.maximum(np.cos(elevation.ravel()), 1.0 / N_AZIMUTHS))
+    loads = moments.at_rest(directions, shapes)
+    values = harmonics_at(directions, degree) * weight[:, None]
+    fitted = np.linalg.lstsq(values, loads * weight[:, None], rcond=None)[0]
+    return np.asarray(fitted), np.abs(loads).max(axis=0)
 
 
 def _between(values: Floats) -> Floats:

@@ -91,8 +91,9 @@ class SceneSimulator:
         models = [settings.model if each.model is None else each.model for each in trees]
         kind = scene.kind_numbers
         counts = np.array([each if isinstance(each, int) else -1 for each in models])
-        # Without a compiler there are no tables: each tree is stepped branch by branch.
-        is_own = np.ones(len(models), dtype=bool) if WHY_PLAIN else counts < 0
+        # Without a compiler there are no tables, and winds of limbs are those of one tree.
+        is_alone = bool(WHY_PLAIN) or settings.crown_coherence < 1.0
+        is_own = np.ones(len(models), dtype=bool) if is_alone else counts < 0
         used = np.unique(kind[~is_own]).tolist()
         self._models: list[SwaySimulator] = []
         for k in used:

@@ -3,19 +3,29 @@
 """
 Gusts that reach the limbs of a tree one after another.
 
-Models that step branches give each limb its own wind. `wind_basis` has uniform winds only, and
-uses the mean of the limbs' winds, weighted by their loads.
+Models that step branches give each limb its own wind. `wind_basis` has uniform winds only. It
+uses the mean of the limbs' winds, weighted by their loads, and adds for the limbs of each delay
+what their own wind would do more to the tree at rest than the mean.
 """
 
 from __future__ import annotations
 
+from functools import partial
+import math
+from typing import Any
+
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.motion.harmonics import fill_harmonics
 from tree_sway.core.motion.plain.numpy_passes import into_slots
+from tree_sway.core.motion.records import Instances, Table, Tables, TimeSteps
+from tree_sway.core.motion.static_responses import WindMoments
+from tree_sway.core.motion.wind_basis_table import fit_harmonics
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind
+from tree_sway.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind, N_DELAYS
 
 
 def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
@@ -29,25 +39,93 @@ def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
 
 
 class CrownGusts:
-    """The wind of a crown and the loads it acts on; None for a model of uniform winds."""
+    """The wind of a crown, and the model that is advanced in it."""
 
-    def __init__(self, reductions: TreeReductions, loads: Records | None) -> None:
+    def __init__(self, reductions: TreeReductions, oscillators: Any) -> None:
         """Start without wind."""
         settings = reductions.settings
         whole = delays_of(reductions.tree, reductions.leaf_load_area)
         pieces = reductions.reduced(settings.model).branch
         self._delays = delays = whole._replace(of_branch=whole.of_branch[pieces])
-        self.wind, self._loads = CrownWind(delays.spread, settings.crown_coherence), loads
+        self.wind = CrownWind(delays.spread, settings.crown_coherence)
+        self._oscillators = oscillators
+        if oscillators.loads is None:
+            moments, shapes = [], oscillators.modal.shapes
+            for delay in range(N_DELAYS):
+                limbs = reductions.with_subtrees.branches.copy()
+                limbs['area'][delays.of_branch != delay] = 0.0
+                moments.append(fit_harmonics(WindMoments(limbs), shapes, settings.degree)[0])
+            arrays = (
+                oscillators.record, oscillators.time_step, oscillators.instance, np.array(moments),
+                self.wind.record['apart'][0], np.zeros((3, max(moments[0].shape))),
+            )  # fmt: skip
+            compiled = entry_of(add_gusts, *arrays, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            self._add_gusts = partial(compiled, *arrays)
 
-    def winds_of_step(self, x: float, y: float, z: float, dt: float) -> tuple[float, float, float]:
-        """
-        Set the limbs' winds by the mean wind [m/s] of a step of dt [s]; return the wind to use.
-
-        That is the given wind, or the mean of the limbs' winds for a model of uniform winds.
-        """
-        apart = self.wind.push(x, y, z, dt)
-        if self._loads is not None:
-            into_slots(apart[self._delays.of_branch], self._loads['gust'])
-            return x, y, z
+    def advance(self, x: float, y: float, z: float, per_speed_squared: float, dt: float) -> int:
+        """Advance a step of dt [s] in a mean wind [m/s]; the result is that of the model."""
+        apart, oscillators = self.wind.push(x, y, z, dt), self._oscillators
+        if oscillators.loads is not None:
+            into_slots(apart[self._delays.of_branch], oscillators.loads['gust'])
+            return int(oscillators.advance(x, y, z, per_speed_squared))
         ax, ay, az = (self._delays.share @ apart).tolist()
-        return x + ax, y + ay, z + az
+        outcome = int(oscillators.advance(x + ax, y + ay, z + az, per_speed_squared))
+        self._add_gusts(x, y, z, ax, ay, az, per_speed_squared)
+        return outcome
+
+
+@fused
+def add_gusts(
+    tables: Tables, time_steps: TimeSteps, instances: Instances, moments: Floats, apart: Floats,
+    room: Floats, x: float, y: float, z: float, ax: float, ay: float, az: float,
+    per_speed_squared: float,
+) -> None:  # fmt: skip
+    """
+    Add to a step what the winds of the limbs of each delay do beside their mean.
+
+    Parameters
+    ----------
+    tables, time_steps, instances
+        Records, as in `step_instance`, the first of each.
+    moments
+        Harmonics of the loads on the limbs of each delay, (d, h, m).
+    apart
+        Wind of each delay less the wind in [m/s], (d, 3).
+    room
+        Scratch memory, (3, h or m, whichever is more).
+    x, y, z, ax, ay, az
+        The wind, and the mean of the winds of the limbs less the wind in [m/s].
+    per_speed_squared
+        `drag.pressure` in [kg/m^3].
+
+    """
+    table, whole, half = tables[0], time_steps[0].whole, time_steps[0].half
+    instance, mean, own, force = instances[0], room[0], room[1], room[2]
+    _load(table, x + ax, y + ay, z + az, per_speed_squared, mean)
+    force[:] = 0.0
+    for delay in range(len(moments)):
+        _load(
+            table, x + apart[delay, 0], y + apart[delay, 1], z + apart[delay, 2],
+            per_speed_squared, own,
+        )  # fmt: skip
+        for k in range(moments.shape[1]):
+            change = own[k] - mean[k]
+            for i in range(moments.shape[2]):
+                force[i] += change * moments[delay, k, i]
+    for i in range(moments.shape[2]):
+        added = force[i] / (1.0 - instance.diagonal[i] * half[5, i])  # as in `step_instance`
+        instance.eta[i] += (whole[2, i] + whole[3, i]) * added
+        instance.rate[i] += (whole[6, i] + whole[7, i]) * added
+        instance.force[i] += added
+
+
+@part
+def _load(
+    table: Table, x: float, y: float, z: float, per_speed_squared: float, out: Floats
+) -> None:
+    """Write the harmonics of a wind [m/s] times its dynamic pressure."""
+    speed = max(math.sqrt(x * x + y * y + z * z), 1e-12)
+    pressure = min(per_speed_squared * speed * speed, table.most_pressure)
+    fill_harmonics(x / speed, y / speed, z / speed, table.degree, out)
+    for k in range(len(out)):
+        out[k] *= pressure

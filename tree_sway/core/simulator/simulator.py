@@ -124,8 +124,7 @@ class SwaySimulator:
         if self.settings.crown_coherence < 1.0:
             from tree_sway.core.simulator import crown_gusts
 
-            loads = self.bank.oscillators.loads
-            self._gusts = crown_gusts.CrownGusts(self.reductions, loads)
+            self._gusts = crown_gusts.CrownGusts(self.reductions, self.bank.oscillators)
         self._tuning: LiveTuning | None = None
         self.touch: Touch | None = None
         """Pushes, until their effect is gone."""
@@ -265,9 +264,11 @@ class SwaySimulator:
             counts.refused += 1
         wx, wy, wz = self._wind.tolist()
         load = pressure(math.hypot(wx, wy, wz), *self.drag_law)
-        if self._gusts is not None:
-            wx, wy, wz = self._gusts.winds_of_step(wx, wy, wz, dt)
-        return status | self._count(self._advance(wx, wy, wz, load)) | self.touched(dt)
+        if self._gusts is None:
+            outcome = self._advance(wx, wy, wz, load)
+        else:
+            outcome = self._gusts.advance(wx, wy, wz, load, dt)
+        return status | self._count(outcome) | self.touched(dt)
 
     def push(
         self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
