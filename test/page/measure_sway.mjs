@@ -32,7 +32,7 @@ export function madeUp(m) {
     add(`${name}_rows`, [rows, 2], singles(2 * rows, 1e-9));
     add(`${name}_shapes`, [2, m * m], Int16Array.from({ length: 2 * m * m }, () => 1000 * random()));
   }
-  return new Table({ degree: 5, most_pressure: 1e3, most_energy: 1e9, drag_law: [0.5, 0.3, 0.2] }, arrays);
+  return new Table({ most_pressure: 1e3, most_energy: 1e9, drag_law: [0.5, 0.3, 0.2] }, arrays);
 }
 
 /** Least time of a frame [us]. @param {number} m @param {number} count of trees */

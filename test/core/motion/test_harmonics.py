@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import eval_legendre
 
-from tree_sway.core.motion.harmonics import COUNT
+from tree_sway.core.motion.harmonics import N_HARMONICS
 from tree_sway.core.motion.wind_basis_table import harmonics_at
 
 
@@ -23,25 +23,22 @@ def sphere():
     return directions.reshape(-1, 3), np.repeat(weight / 48.0, 24)
 
 
-@pytest.mark.parametrize('degree', COUNT)
-def test_they_are_orthonormal(degree):
+def test_they_are_orthonormal():
     directions, weight = sphere()
-    values = harmonics_at(directions, degree)
-    assert values.T @ (weight[:, None] * values) == pytest.approx(np.eye(COUNT[degree]), abs=1e-13)
+    values = harmonics_at(directions)
+    assert values.T @ (weight[:, None] * values) == pytest.approx(np.eye(N_HARMONICS), abs=1e-13)
 
 
-@pytest.mark.parametrize('degree', COUNT)
-def test_the_opposite_wind_has_the_opposite_values(degree):
+def test_the_opposite_wind_has_the_opposite_values():
     directions, _ = sphere()
-    assert harmonics_at(-directions, degree) == pytest.approx(
-        -harmonics_at(directions, degree), abs=1e-14
+    assert harmonics_at(-directions) == pytest.approx(
+        -harmonics_at(directions), abs=1e-14
     )
 
 
-@pytest.mark.parametrize('degree', COUNT)
-def test_the_addition_theorem_holds_for_every_degree(degree):
+def test_the_addition_theorem_holds_():
     directions, _ = sphere()
-    values = harmonics_at(directions[:40], degree)
+    values = harmonics_at(directions[:40])
     cosine = np.clip(directions[:40] @ directions[:40].T, -1.0, 1.0)
-    wanted = sum((2 * n + 1) * eval_legendre(n, cosine) for n in range(1, degree + 1, 2))
+    wanted = sum((2 * n + 1) * eval_legendre(n, cosine) for n in (1, 3, 5))
     assert values @ values.T == pytest.approx(wanted, abs=1e-12)

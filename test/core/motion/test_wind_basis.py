@@ -17,7 +17,6 @@ from tree_sway.core.motion.static_responses import WindMoments
 from tree_sway.core.motion.wind_basis_table import direction, SPEEDS
 from tree_sway.core.simulator.simulator import SwaySimulator, WIND_REFUSED
 from tree_sway.core.tree.building import tree_from_segments
-from tree_sway.errors import ParameterError
 
 DT = 1.0 / 60.0
 
@@ -129,7 +128,7 @@ def moves(sim, winds):
 
 
 @pytest.mark.compiled  # without the compiler there is no table
-@pytest.mark.parametrize(('seed', 'most'), [(1, 1.3), (4, 1.0)])
+@pytest.mark.parametrize(('seed', 'most'), [(1, 1.3), (4, 1.2), (5, 1.4)])
 def test_a_storm_beyond_the_table_is_clamped_and_flings_no_tip(seed, most):
     """In a frame a tip moves at most `most` times as far as with all coordinates."""
     sim, other = (SwaySimulator(crooked(seed), model=m) for m in (60, 'full'))
@@ -188,12 +187,6 @@ def test_the_base_moment_is_that_of_all_coordinates():
         other.base_moment, abs=0.03 * np.abs(other.base_moment).max()
     )
     assert (one.place() == before).all()
-
-
-@pytest.mark.parametrize('degree', [0, 2, 4, 7])
-def test_a_degree_that_is_none_is_refused(fork, degree):
-    with pytest.raises(ParameterError, match=f"unknown degree '{degree}'"):
-        SwaySimulator(fork(), model=60, degree=degree)
 
 
 @pytest.mark.compiled  # without the compiler there is no table

@@ -30,7 +30,6 @@ def test_every_model_can_be_asked_for(model):
     ('given', 'message'),
     [
         ({'model': 'fast'}, "unknown model 'fast'; use one of: auto, branch, full, or a number"),
-        ({'degree': 2}, "unknown degree '2'; use one of: 1, 3, 5"),
         ({'enrich': 'some'}, "unknown enrich 'some'; use one of: none"),
         (
             {'volume_stiffness': 1e5, 'model': 12},

@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records, Singles
-from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.records import table_layout
 from tree_sway.core.motion.wind_basis import WindBasisBank
 
@@ -37,7 +36,7 @@ PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'equilibrium', '
          'cross_damping')  # fmt: skip
 """Fields that are exported as they are, in single precision."""
 
-NUMBERS = ('degree', 'most_pressure', 'most_energy')
+NUMBERS = ('most_pressure', 'most_energy')
 
 _ROUNDED = {'equilibrium': 8, 'load': 8, 'rows': 8, 'cross_damping': 16}
 """Number of last bits that are left out of some fields: to 1.5e-5, and a bound to 0.4 %."""
@@ -75,7 +74,7 @@ def table_of(
 ) -> Records:
     """Return the record of `table_layout`, (1,), of an exported table, with room for more."""
     m = len(arrays['stiffness'])
-    record = np.zeros(1, dtype=table_layout(max(m, room), COUNT[int(numbers['degree'])]))
+    record = np.zeros(1, dtype=table_layout(max(m, room)))
     table = record[0]
     table['n_modes'], table['stiffness'] = m, 1.0
     for name in NUMBERS:

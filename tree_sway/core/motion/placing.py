@@ -48,7 +48,7 @@ _PER_BLEND = 1.0 / (_BLEND_TO - _BLEND_FROM)
 _STRETCH_TO = np.deg2rad(90.0) ** 2
 
 
-GIVEN = np.zeros(1, instance_layout(0, 1)), np.zeros((0, 0, TOGETHER), dtype=np.float32)
+GIVEN = np.zeros(1, instance_layout(0)), np.zeros((0, 0, TOGETHER), dtype=np.float32)
 """An instance and shapes for `place` where key rotations are given."""
 
 NONE = np.zeros(0)

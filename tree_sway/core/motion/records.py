@@ -28,6 +28,7 @@ import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Ints, Records, RecordsOf, Singles
 from tree_sway.core.branch.shapes import ROOMS
+from tree_sway.core.motion.harmonics import N_HARMONICS
 
 WIDTH = 16
 
@@ -201,14 +202,13 @@ class Table:
     """
 
     n_modes: int
-    degree: int
     levels: Annotated[Floats, N_AZIMUTHS, N_LEVELS]  # lean of the tree in steady winds, ascending
     most_pressure: float  # largest dynamic pressure of the table [kg/m/s^2]
     most_energy: float  # twice the largest strain and kinetic energy by wind [J]
     stiffness: Annotated[Floats, 'modes']
     limit: Annotated[Floats, 'modes']  # largest load of a steady wind, per dynamic pressure
     motion: Annotated[Floats, 'modes']  # mean square motion of the loaded pieces
-    harmonics: Annotated[Floats, 'harmonics', 'modes']
+    harmonics: Annotated[Floats, N_HARMONICS, 'modes']
     equilibrium: Annotated[Floats, N_AZIMUTHS, N_LEVELS, 'modes']  # coordinates in steady winds
     amount: Annotated[Floats, N_AZIMUTHS, 'modes']  # weights of the coordinates in the lean
     load: Annotated[Floats, N_AZIMUTHS, N_LEVELS, 'modes']
@@ -244,7 +244,7 @@ class Instance:
     wanted: Annotated[Floats, 'modes']
     diagonal: Annotated[Floats, 'modes']
     scratch: Annotated[Singles, 7, 'modes']
-    values: Annotated[Floats, 'harmonics']
+    values: Annotated[Floats, N_HARMONICS]
     left_out: int  # number of last coordinates that are neither shown nor loaded
     hidden: Annotated[Floats, 'modes']  # part of each coordinate that is not shown
 
@@ -339,24 +339,24 @@ OSCILLATORS = _whole_lines(fields_of(Oscillators, rows=2, loads=3))
 
 
 @cache
-def table_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
+def table_layout(n_modes: int) -> np.dtype[np.void]:
     """
     Lay out `Table`; coordinates are filled up to a multiple of eight, at least 24.
 
     One layout serves most trees, so that the kernel is compiled once.
     """
     m = max(_LEAST_MODES, -(-n_modes // _MODES_TOGETHER) * _MODES_TOGETHER)
-    return _whole_lines(fields_of(Table, modes=m, harmonics=n_harmonics))
+    return _whole_lines(fields_of(Table, modes=m))
 
 
 @cache
 def time_step_layout(n_modes: int) -> np.dtype[np.void]:
     """Lay out `TimeStep`."""
-    return np.dtype(fields_of(TimeStep, modes=table_layout(n_modes, 0)['stiffness'].shape[0]))
+    return np.dtype(fields_of(TimeStep, modes=table_layout(n_modes)['stiffness'].shape[0]))
 
 
 @cache
-def instance_layout(n_modes: int, n_harmonics: int) -> np.dtype[np.void]:
+def instance_layout(n_modes: int) -> np.dtype[np.void]:
     """Lay out `Instance`."""
-    m = table_layout(n_modes, n_harmonics)['stiffness'].shape[0]
-    return np.dtype(fields_of(Instance, modes=m, harmonics=n_harmonics))
+    m = table_layout(n_modes)['stiffness'].shape[0]
+    return np.dtype(fields_of(Instance, modes=m))

@@ -21,7 +21,6 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.motion.drag import DragLaw, pressure
-from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.modal import ModalBank
 from tree_sway.core.motion.placing import expand, room_for
 from tree_sway.core.motion.records import (
@@ -72,13 +71,12 @@ class WindBasisBank:
         for compiled in ('_step', '_expand'):
             self.__dict__.pop(compiled, None)
         table_record = self.table.record
-        count = COUNT[int(table_record['degree'][0])]
-        self.record = zeros_in_lines(1, table_layout(n_modes, count))
+        self.record = zeros_in_lines(1, table_layout(n_modes))
         for name in table_record.dtype.names or ():
             values = table_record[name]
             self.record[name][tuple(map(slice, values.shape))] = values
         self.time_step = np.zeros(1, dtype=time_step_layout(n_modes))
-        self.instance = np.zeros(1, dtype=instance_layout(n_modes, count))
+        self.instance = np.zeros(1, dtype=instance_layout(n_modes))
         self.laid_shapes = shapes_together(self.all_shapes)
 
     def show(self, hidden: Floats, count: int) -> None:

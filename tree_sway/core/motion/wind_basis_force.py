@@ -80,7 +80,7 @@ def wind_force(
 
     """
     m = len(eta)
-    fill_harmonics(x, y, z, table.degree, values)
+    fill_harmonics(x, y, z, values)
     first, second, j, share, up = table_corners(table, x, y, eta)
     steep = max(0.0, (abs(z) - STEEP) / (1.0 - STEEP))
     level, slant, pole = 1.0 - steep, min(max(z, -STEEP), STEEP), 1 if z > 0.0 else 0

@@ -31,7 +31,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.motion.bent_inertia import inertia_change
 from tree_sway.core.motion.drag import DragLaw, pressure
-from tree_sway.core.motion.harmonics import COUNT, fill_harmonics
+from tree_sway.core.motion.harmonics import fill_harmonics, N_HARMONICS
 from tree_sway.core.motion.modal import ModalBank
 from tree_sway.core.motion.records import N_AZIMUTHS, N_LEVELS, table_layout
 from tree_sway.core.motion.static_responses import WindMoments
@@ -46,7 +46,7 @@ _AZIMUTHS = 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS
 _ELEVATIONS = np.deg2rad([-90.0, -60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0, 90.0])
 _ELEVATION_SPREAD = 0.25
 _SLOPE_AT = 0.35
-_MOST_ENERGY = 3.0
+_MOST_ENERGY = 1.5
 _STEPS, _FARTHEST, _AT_REST, _NEAR_REST = 20, 0.3, 0.01, 0.05
 
 _BREEZE, _STORM, _FLUTTER = 6.0, 25.0, (0.6, 3.0)
@@ -73,8 +73,6 @@ class WindBasisTable:
         Loads of the tree.
     drag_law
         C and N of the species.
-    degree
-        Degree of the harmonics, 1, 3 or 5.
 
     Attributes
     ----------
@@ -91,7 +89,7 @@ class WindBasisTable:
         return made
 
     def __init__(
-        self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw, degree: int
+        self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw
     ) -> None:
         """Find the loads of the tree in all winds."""
         self._shapes, self._moments = bank.shapes, wind_moments
@@ -100,18 +98,17 @@ class WindBasisTable:
         n, m = bank.shapes.shape
         self._root, self._damping = np.sqrt(bank.stiffness), bank.damping
         self._still = np.zeros(n)
-        self.record = np.zeros(1, dtype=table_layout(m, COUNT[degree]))
+        self.record = np.zeros(1, dtype=table_layout(m))
         table = self.record[0]
         # Equilibria and slopes are found at some azimuths and interpolated, for they are smooth.
         each = 2 if len(wind_moments.branches) <= _LARGE else 3
         self._azimuths = _AZIMUTHS[::each]
-        table['n_modes'], table['degree'] = m, degree
+        table['n_modes'] = m
         table['stiffness'] = 1.0
         table['stiffness'][:m] = bank.stiffness
         table['motion'][:m] = bank.mean_square_motion
-        table['harmonics'][:, :m], table['limit'][:m] = fit_harmonics(
-            wind_moments, bank.shapes, degree
-        )
+        fitted, table['limit'][:m] = fit_harmonics(wind_moments, bank.shapes)
+        table['harmonics'][:, :m] = fitted
         pressures = [pressure(each, *drag_law) * each**2 for each in SPEEDS]
         self._fill_standing(table, pressures)
         self._fill_aslant(table)
@@ -123,7 +120,7 @@ class WindBasisTable:
         """Find loads and their slopes at the equilibria in winds of each speed."""
         shapes, m = self._shapes, int(table['n_modes'])
         stiffness = table['stiffness'][:m]
-        equilibrium = np.zeros((len(self._azimuths), N_LEVELS, m))
+        equilibrium, load = np.zeros((2, len(self._azimuths), N_LEVELS, m))
         amount = np.zeros((len(self._azimuths), m))
         turning, damping = np.zeros((2, *equilibrium.shape, m))
         winds = direction(self._azimuths, 0.0)
@@ -136,6 +133,7 @@ class WindBasisTable:
                 at = self._equilibrium(at, s, ahead, turning[k, j - 1]) if j > 0 else at
                 x = shapes @ at
                 equilibrium[k, j] = at
+                load[k, j] = self._moments(x, self._still, ahead) @ shapes
                 if j > 0 and at is weaker:
                     turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
                     continue
@@ -147,16 +145,17 @@ class WindBasisTable:
                     air = self._damping - s / SPEEDS[j] * np.diag(damping[k, j])
                     most = _FLUTTER[SPEEDS[j] > _STORM]
                     turning[k, j] -= self._feeding(s * turning[k, j], air, most) / s
+        calm = int(np.searchsorted(SPEEDS, _STORM))
         for k, poses in enumerate(equilibrium):
-            for j in range(1, np.searchsorted(SPEEDS, _STORM)):
+            for j in range(1, calm):
                 self._turn_inertia(poses[j], pressures[j], turning[k, j], damping[k, j])
         table['equilibrium'][..., :m] = equilibrium = _between(equilibrium)
         table['amount'][..., :m] = _between(amount)
-        winds = direction(_AZIMUTHS, 0.0)
-        load = np.array([
-            [self._moments(x, self._still, ahead) for x in poses @ shapes.T] @ shapes
-            for poses, ahead in zip(equilibrium, winds, strict=True)
-        ])  # fmt: skip
+        # Poses in between are no equilibria, which counts up to a gale; storms are calmer without.
+        load = _between(load)
+        for poses, ahead, loads in zip(equilibrium, direction(_AZIMUTHS, 0.0), load, strict=True):
+            moments = [self._moments(x, self._still, ahead) for x in poses[:calm] @ shapes.T]
+            loads[:calm] = moments @ shapes
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
         table['load'][..., :m] = load - load[:, :1]
         table['turning'][..., :m, :m] = _between(turning)
@@ -243,7 +242,7 @@ class WindBasisTable:
         table['steep_damping'][:, :m, :m] = damping
 
 
-def fit_harmonics(moments: WindMoments, shapes: Floats, degree: int) -> tuple[Floats, Floats]:
+def fit_harmonics(moments: WindMoments, shapes: Floats) -> tuple[Floats, Floats]:
     """
     Fit the load on shapes (N, m) at rest in all winds, horizontal ones with most weight.
 
@@ -254,7 +253,7 @@ def fit_harmonics(moments: WindMoments, shapes: Floats, degree: int) -> tuple[Fl
     weight = np.sqrt(np.exp(-0.5 * (elevation.ravel() / _ELEVATION_SPREAD) ** 2) + 0.02)
     weight *= np.sqrt(np.maximum(np.cos(elevation.ravel()), 1.0 / N_AZIMUTHS))
     loads = moments.at_rest(directions, shapes)
-    values = harmonics_at(directions, degree) * weight[:, None]
+    values = harmonics_at(directions) * weight[:, None]
     fitted = np.linalg.lstsq(values, loads * weight[:, None], rcond=None)[0]
     return np.asarray(fitted), np.abs(loads).max(axis=0)
 
@@ -273,10 +272,10 @@ def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
     return np.asarray(np.stack([x, y, np.sin(elevation)], axis=-1))
 
 
-def harmonics_at(directions: Floats, degree: int) -> Floats:
+def harmonics_at(directions: Floats) -> Floats:
     """Harmonics of unit vectors (k, 3), (k, h)."""
-    out = np.zeros((COUNT[degree], len(directions)))
-    _fill_harmonics(*directions.T, degree, out)
+    out = np.zeros((N_HARMONICS, len(directions)))
+    _fill_harmonics(*directions.T, out)
     return out.T
 
 

@@ -65,10 +65,9 @@ class ReceivedScene:
     ) -> None:  # fmt: skip
         """Begin at rest."""
         self._dt, self._sizes = dt, [len(kind.arrays['stiffness']) for kind in kinds]
-        n_harmonics = max(len(kind.arrays['harmonics']) for kind in kinds)
         m = max(self._sizes)
         self.tables = np.concatenate([table_of(k.numbers, k.arrays, m) for k in kinds])
-        self.instances = np.zeros(len(places), dtype=instance_layout(m, n_harmonics))
+        self.instances = np.zeros(len(places), dtype=instance_layout(m))
         self._laws = np.array([kind.drag_law for kind in kinds])
         self._kind_of = np.asarray(kind_of)
         found, step = own_steps(self._kind_of, places[:, 4], dt)

@@ -24,7 +24,6 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
 from tree_sway.core.kernel import WHY_PLAIN
-from tree_sway.core.motion.harmonics import COUNT
 from tree_sway.core.motion.placing import GIVEN, place
 from tree_sway.core.motion.records import instance_layout, time_step_layout, zeros_in_lines
 from tree_sway.core.motion.stand import place_stand, PLACEMENT, step_stand
@@ -310,7 +309,7 @@ class SceneSimulator:
         n_modes = max((bank.shapes.shape[1] for bank in banks), default=1)
         for bank in banks:
             bank.lay_out(n_modes)
-        layout = instance_layout(n_modes, COUNT[self.settings.degree])
+        layout = instance_layout(n_modes)
         self._instances = np.zeros(len(self.names) if banks else 0, dtype=layout)
         self._time_steps = np.zeros(0, dtype=time_step_layout(n_modes))
         self._tables = zeros_in_lines(len(banks), banks[0].record.dtype) if banks else _NO_TABLES

@@ -126,8 +126,7 @@ def _modal_arrays(reductions: TreeReductions, model: int | str) -> dict[str, Any
 def _table(reductions: TreeReductions, modal: ModalBank) -> WindBasisTable:
     from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
-    law, degree = reductions.drag_law, reductions.settings.degree
-    return WindBasisTable(modal, reductions.wind_moments, law, degree)
+    return WindBasisTable(modal, reductions.wind_moments, reductions.drag_law)
 
 
 @one_thread()

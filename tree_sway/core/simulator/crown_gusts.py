@@ -54,7 +54,7 @@ class CrownGusts:
             for delay in range(N_DELAYS):
                 limbs = reductions.with_subtrees.branches.copy()
                 limbs['area'][delays.of_branch != delay] = 0.0
-                moments.append(fit_harmonics(WindMoments(limbs), shapes, settings.degree)[0])
+                moments.append(fit_harmonics(WindMoments(limbs), shapes)[0])
             arrays = (
                 oscillators.record, oscillators.time_step, oscillators.instance, np.array(moments),
                 self.wind.record['apart'][0], np.zeros((3, max(moments[0].shape))),
@@ -126,6 +126,6 @@ def _load(
     """Write the harmonics of a wind [m/s] times its dynamic pressure."""
     speed = max(math.sqrt(x * x + y * y + z * z), 1e-12)
     pressure = min(per_speed_squared * speed * speed, table.most_pressure)
-    fill_harmonics(x / speed, y / speed, z / speed, table.degree, out)
+    fill_harmonics(x / speed, y / speed, z / speed, out)
     for k in range(len(out)):
         out[k] *= pressure

@@ -54,8 +54,6 @@ class Settings:
         Number of coordinates of the tree, or all if there are fewer; 0 does not move. Or
         ``branch``, the paper's, isolated branches; ``full``, all coordinates and the load of every
         branch; or ``auto``, the smallest number that suffices for the scene.
-    degree
-        Degree of the harmonics of the wind's direction: 1, 3 or 5.
     volume_stiffness, volume_damping
         The two constants of the paper's rule for the model ``branch``, stiffness and damping of a
         branch over its volume in [N m/rad/m^3] and [N m s/rad/m^3]; a stiffness of 0 for that of
@@ -86,7 +84,6 @@ class Settings:
     """
 
     model: int | str = USUAL
-    degree: int = 5
     volume_stiffness: float = 0.0
     volume_damping: float = 2.0e3
     damping_ratio: float | None = None
@@ -108,7 +105,6 @@ class Settings:
             if value is not None:
                 within(name, value, low, high, unit, above=above)
         one_of('enrich', self.enrich, ENRICHED)
-        one_of('degree', self.degree, (1, 3, 5))
         if self.volume_stiffness and self.model != 'branch':
             raise ParameterError(
                 f"the volume rule on model '{self.model}'",

@@ -29,8 +29,8 @@ const [SLOWEST_GUST, LARGEST_STRETCH, AVERAGING, MEMORY] = [0.5, 0.5, 60, 60];
  * taken to go within a step, at least. */
 const [SPACING, SLOWEST] = [0.05, 0.3];
 
-/** Functions up to each degree of the harmonics. @type {Record<number, number>} */
-const HARMONICS = { 1: 3, 3: 10, 5: 21 };
+/** Highest degree of the harmonics. */
+const DEGREE = 5;
 
 /** Read tables; a `ProtocolError` with a sentence if they are damaged. */
 export const decodeTables = reader("tables", (header, kinds, own) => {
@@ -50,9 +50,8 @@ export class Table {
   constructor(numbers, arrays) {
     const size = sizesOf(arrays, FORMS.tables);
     const { m, n } = size;
-    const { degree, most_pressure: mostPressure, most_energy: mostEnergy, drag_law: law } = numbers;
+    const { most_pressure: mostPressure, most_energy: mostEnergy, drag_law: law } = numbers;
     need(m > 0 && m <= MOST_COORDINATES && size["m m"] === m * m, "stiffness");
-    need(HARMONICS[degree] === size.h, "harmonics");
     need(mostPressure > 0 && mostEnergy > 0, "most_pressure");
     need(law?.length === 3 && law.every(Number.isFinite), "drag_law");
     need(arrays.stiffness.values.every((each) => each > 0), "stiffness");
@@ -60,8 +59,6 @@ export class Table {
     /** Coordinates, and those of the description. */
     this.m = m;
     this.n = n;
-    /** @type {number} */
-    this.degree = degree;
     /** Dynamic pressure [kg/m/s^2] and twice the energy [J] up to which the table holds. */
     this.mostPressure = /** @type {number} */ (mostPressure);
     this.mostEnergy = /** @type {number} */ (mostEnergy);
@@ -77,7 +74,7 @@ export class Table {
     this.lean = this._slopes(arrays, ["lean"]);
     /** What is worked in. */
     this.scratch = Array.from({ length: 10 }, () => new Float64Array(m));
-    this.values = new Float64Array(size.h);
+    this.values = new Float64Array(arrays.harmonics.values.length / m);
   }
 
   /** Slopes from their factors, a row of each direction of the wind: by the coordinate that is loaded, the
@@ -211,7 +208,7 @@ function windForce(table, [x, y, z], push, drag) {
   const { m, slopes, lean, values, arrays } = table;
   const { motion, load, limit, equilibrium, harmonics, cross_damping: cross } = arrays;
   const [eta, rate, force, diagonal, leaning, leaned, offA, offB, offC, offD] = table.scratch;
-  fillHarmonics(x, y, z, table.degree, values);
+  fillHarmonics(x, y, z, values);
   const { here, there, first, second, share, up } = corners(table, x, y);
   const steep = Math.max(0, (Math.abs(z) - STEEP) / (1 - STEEP));
   const slant = Math.min(Math.max(z, -STEEP), STEEP);
@@ -286,15 +283,15 @@ const NORMS = [0, 1, 2, 3, 4, 5].map((degree) => {
   });
 });
 
-/** Real spherical harmonics of odd degree up to 1, 3 or 5, as of tree_sway/core/motion/harmonics.py.
- * @param {number} x @param {number} y @param {number} z a unit vector @param {number} most degree
+/** Real spherical harmonics of odd degree, as of tree_sway/core/motion/harmonics.py.
+ * @param {number} x @param {number} y @param {number} z a unit vector
  * @param {Float64Array} out */
-function fillHarmonics(x, y, z, most, out) {
+function fillHarmonics(x, y, z, out) {
   let [c, s, first] = [1, 0, 1];
-  for (let order = 0; order <= most; order++) {
+  for (let order = 0; order <= DEGREE; order++) {
     // Legendre functions over the sine to the power of their order, by their recurrence in the degree.
     let [before, now] = [0, first];
-    for (let degree = order; degree <= most; degree++) {
+    for (let degree = order; degree <= DEGREE; degree++) {
       const middle = (degree * (degree + 1)) / 2;
       if (degree % 2) out[middle - order] = NORMS[degree][order] * now * s;
       if (degree % 2) out[middle + order] = NORMS[degree][order] * now * c;
