@@ -130,8 +130,7 @@ def place(
             if is_short:
                 _bend_and_join(segment, scratch, scale, n)
             else:
-                _bend(segment, scratch, block.n_rows, largest, n)
-                _join(segment, scratch, scale, block.is_joined, n)
+                _bend(segment, scratch, scale, block, largest, n)
             _write_poses(block, scratch, rank, segment.n_slots, out)
 
 
@@ -227,6 +226,7 @@ def _rotate_bases(
     key, parent, steepest = scratch.key, scratch.parent_base, block.steepest
     rotation, frame, base, sine = scratch.base_half, block.frame, scratch.base, scratch.sine_part
     half_rotation, half_key, bound = scratch.half_rotation, scratch.half_key, scratch.bound
+    support, start, offset = scratch.support, scratch.next, block.offset
     _half_angles(scratch, 0.0 if is_near else np.inf, n)
     for j in range(n):
         u, v = key[0, j], key[1, j]
@@ -253,7 +253,9 @@ def _rotate_bases(
         sine[1, j] = bw * wx + by * wz - bz * wy
         sine[2, j] = bw * wy - bx * wz + bz * wx
         sine[3, j] = bw * wz + bx * wy - by * wx
-    _transform(scratch.support, scratch.next, scale, block.offset, block.is_at_axes, n)
+        start[0, j], start[1, j], start[2, j] = _along(support, j, scale * offset[0, j])
+    if not block.is_at_axes:
+        _go_aside(support, start, scale, offset, n)
     if block.n_rows > 2:
         # The square of a sum of n is at most n times the sum of the squares.
         for j in range(0, n, 4):
@@ -303,34 +305,26 @@ def _write_poses(block: Block, scratch: Block, rank: int, n_slots: int, out: Flo
 
 
 @part
-def _transform(
-    pose: Floats, out: Floats, scale: float, local: Floats, is_on_axis: int, n: int
-) -> None:
-    """Transform points in frames of segments, all on their x axes or not, by poses."""
-    for j in range(n):
-        x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
-        length = scale * local[0, j]
-        twice = length + length
-        px = pose[0, j] + length - twice * (y * y + z * z)
-        py = pose[1, j] + twice * (x * y + w * z)
-        out[0, j], out[1, j], out[2, j] = px, py, pose[2, j] + twice * (x * z - w * y)
-    if not is_on_axis:
-        for j in range(n):
-            x, y, z = rotated(
-                pose[6, j], pose[3, j], pose[4, j], pose[5, j], 0.0, local[1, j], local[2, j]
-            )
-            out[0, j] += scale * x
-            out[1, j] += scale * y
-            out[2, j] += scale * z
+def _along(pose: Floats, j: int, length: float) -> tuple[float, float, float]:
+    """Return the point at a length along the x axis of a pose."""
+    x, y, z, w, twice = pose[3, j], pose[4, j], pose[5, j], pose[6, j], length + length
+    return (
+        pose[0, j] + length - twice * (y * y + z * z),
+        pose[1, j] + twice * (x * y + w * z),
+        pose[2, j] + twice * (x * z - w * y),
+    )
 
 
 @part
-def _join(segment: Segment, scratch: Block, scale: float, is_joined: int, n: int) -> None:
-    """Join sixteen rotated segments to those before them, and find the start of the next ones."""
-    pose, start = scratch.pose, scratch.next
+def _go_aside(pose: Floats, point: Floats, scale: float, local: Floats, n: int) -> None:
+    """Add the parts across the x axes of points in frames of segments."""
     for j in range(n):
-        pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
-    _transform(pose, start, scale, segment.own_chord, is_joined, n)
+        x, y, z = rotated(
+            pose[6, j], pose[3, j], pose[4, j], pose[5, j], 0.0, local[1, j], local[2, j]
+        )
+        point[0, j] += scale * x
+        point[1, j] += scale * y
+        point[2, j] += scale * z
 
 
 @part
@@ -347,23 +341,20 @@ def _bend_and_join(segment: Segment, scratch: Block, scale: float, n: int) -> No
             c * base[2, j] + s * sine[2, j], c * base[3, j] + s * sine[3, j],
             rest[0, j], rest[1, j], rest[2, j], rest[3, j],
         )  # fmt: skip
-        length = scale * chord[0, j]
-        twice = length + length
-        px, py, pz = start[0, j], start[1, j], start[2, j]
-        pose[0, j], pose[1, j], pose[2, j] = px, py, pz
+        pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
         pose[3, j], pose[4, j], pose[5, j], pose[6, j] = x, y, z, w
-        start[0, j] = px + length - twice * (y * y + z * z)
-        start[1, j] = py + twice * (x * y + w * z)
-        start[2, j] = pz + twice * (x * z - w * y)
+        start[0, j], start[1, j], start[2, j] = _along(pose, j, scale * chord[0, j])
 
 
 @part
-def _bend(segment: Segment, scratch: Block, n_rows: int, largest: float, n: int) -> None:
-    """Rotate sixteen segments from rest by all coordinates of their branches."""
+def _bend(
+    segment: Segment, scratch: Block, scale: float, block: Block, largest: float, n: int
+) -> None:
+    """Rotate sixteen segments from rest by all coordinates of their branches, and join them."""
     mode, half, square, rest = segment.rotation_mode, scratch.half, scratch.square, segment.rest
     base, half_key, rotation = scratch.base, scratch.half_key, scratch.half_rotation
-    pose, blend = scratch.pose, scratch.blend
-    if n_rows == 2:
+    pose, blend, start, chord = scratch.pose, scratch.blend, scratch.next, segment.own_chord
+    if block.n_rows == 2:
         for j in range(n):
             slope = segment.slope[j]
             slope += blend[j] * (segment.tip_slope[j] - slope)
@@ -387,6 +378,9 @@ def _bend(segment: Segment, scratch: Block, n_rows: int, largest: float, n: int)
             base[0, j], base[1, j], base[2, j], base[3, j],
             c, s * half[0, j], s * half[1, j], s * half[2, j],
         )  # fmt: skip
-        pose[6, j], pose[3, j], pose[4, j], pose[5, j] = product(
-            w, x, y, z, rest[0, j], rest[1, j], rest[2, j], rest[3, j]
-        )
+        w, x, y, z = product(w, x, y, z, rest[0, j], rest[1, j], rest[2, j], rest[3, j])
+        pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
+        pose[3, j], pose[4, j], pose[5, j], pose[6, j] = x, y, z, w
+        start[0, j], start[1, j], start[2, j] = _along(pose, j, scale * chord[0, j])
+    if not block.is_joined:
+        _go_aside(pose, start, scale, chord, n)
