@@ -122,7 +122,7 @@ def place(
         n = 8 * min(block.n_eights, WIDTH // 8)
         _read_parents(block, scratch, bases, x, origin, cosine, sine, out, n)
         is_near = _rotate_on_parents(block, scratch, n)
-        largest = _rotate_bases(block, scratch, scale, x, is_near, n)
+        largest = _rotate_bases(block, scratch, scale, x, n)
         _write_bases(block, scratch, bases)
         is_short = is_near and largest <= NEAR_LIMIT and block.n_rows == 2 and block.is_joined == 1
         for rank in range(block.n_records):
@@ -181,21 +181,22 @@ def _rotate_on_parents(block: Block, scratch: Block, n: int) -> bool:
     """
     parent_key, mode, half = scratch.parent_key, block.base_rotation, scratch.base_half
     base, key, square, n_beyond = scratch.parent_base, scratch.key, scratch.square, 0
+    is_further = block.n_parent_rows > 2
     for j in range(n):
         u, v = base[4, j], base[5, j]
-        for k in range(3):
-            half[k, j] = u * mode[0, k, j] + v * mode[1, k, j]
-    if block.n_parent_rows > 2:
-        for j in range(n):
-            hx, hy, hz = half[0, j], half[1, j], half[2, j]
+        hx = u * mode[0, 0, j] + v * mode[1, 0, j]
+        hy = u * mode[0, 1, j] + v * mode[1, 1, j]
+        hz = u * mode[0, 2, j] + v * mode[1, 2, j]
+        if is_further:
             for c in range(2, mode.shape[0]):
                 u = 0.5 * parent_key[c, j]
                 hx, hy, hz = hx + u * mode[c, 0, j], hy + u * mode[c, 1, j], hz + u * mode[c, 2, j]
-            half[0, j], half[1, j], half[2, j] = hx, hy, hz
-    for j in range(n):
-        hx, hy, hz, u, v = half[0, j], half[1, j], half[2, j], key[0, j], key[1, j]
-        square[j] = hx * hx + hy * hy + hz * hz
-        n_beyond += 1 if square[j] > NEAR_LIMIT or u * u + v * v > _BLEND_FROM else 0
+        u, v, t = key[0, j], key[1, j], hx * hx + hy * hy + hz * hz
+        half[0, j], half[1, j], half[2, j], square[j] = hx, hy, hz, t
+        scratch.cosine[j], scratch.sinc[j] = half_angle_near(t)
+        n_beyond += 1 if t > NEAR_LIMIT or u * u + v * v > _BLEND_FROM else 0
+    if n_beyond > 0:
+        _half_angles(scratch, np.inf, n)
     return n_beyond == 0
 
 
@@ -215,9 +216,7 @@ def _half_angles(scratch: Block, largest: float, n: int) -> None:
 
 
 @part
-def _rotate_bases(
-    block: Block, scratch: Block, scale: float, x: Floats, is_near: bool, n: int
-) -> float:
+def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, n: int) -> float:
     """
     Rotate and place the bases of sixteen branches, and set their amounts of bending.
 
@@ -227,7 +226,6 @@ def _rotate_bases(
     rotation, frame, base, sine = scratch.base_half, block.frame, scratch.base, scratch.sine_part
     half_rotation, half_key, bound = scratch.half_rotation, scratch.half_key, scratch.bound
     support, start, offset = scratch.support, scratch.next, block.offset
-    _half_angles(scratch, 0.0 if is_near else np.inf, n)
     for j in range(n):
         u, v = key[0, j], key[1, j]
         t = u * u + v * v
