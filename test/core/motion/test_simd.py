@@ -48,13 +48,13 @@ def _sum(shapes, amounts, into):
 @pytest.mark.parametrize('n', [1, 64, 150])
 def test_shapes_are_summed_as_by_numpy_compiled_and_plain(n: int) -> None:
     rng = np.random.default_rng(n)
-    exact, amounts = rng.normal(0.0, 1.0, (36, n)), rng.normal(0.0, 1.0, 36)
+    exact, amounts = rng.normal(0.0, 1.0, (36, n)), rng.normal(0.0, 1.0, 36).astype(np.float32)
     shapes = exact.astype(np.float32).astype(np.float64)
     laid = shapes_together(shapes)
     for function in (_sum, _sum.py_func):
         found = np.full(len(laid) * 64, np.nan)
         function(laid, amounts, found)
-        np.testing.assert_allclose(found[:n], amounts @ shapes, atol=1e-13)
+        np.testing.assert_allclose(found[:n], amounts @ shapes, atol=1e-5)
         assert (found[n:] == 0.0).all()
 
 

@@ -30,6 +30,7 @@ from tree_sway.core.motion.records import (
     Instances,
     Segment,
     Segments,
+    WIDTH,
 )
 from tree_sway.core.motion.simd import add_shapes, put_four, take_four, TOGETHER
 from tree_sway.core.rotation import (
@@ -63,7 +64,7 @@ def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
 @part
 def _expand(instances: Instances, shapes: Singles, x: Floats) -> None:
     instance = instances[0]
-    eta, hidden, shown = instance.eta, instance.hidden, instance.wanted
+    eta, hidden, shown = instance.eta, instance.hidden, instance.scratch[0]
     for k in range(len(eta)):
         shown[k] = eta[k] - hidden[k]
     shown = shown[: shapes.shape[1] - instance.left_out]
@@ -117,35 +118,36 @@ def place(
     scratch = blocks[last]
     for number in range(last):
         block = blocks[number]
-        _read_parents(block, scratch, bases, x, origin, cosine, sine, out)
-        is_near = _rotate_on_parents(block, scratch)
-        largest = _rotate_bases(block, scratch, scale, x, is_near)
+        # The compiler is told the most slots, else it makes ready for long loops.
+        n = 8 * min(block.n_eights, WIDTH // 8)
+        _read_parents(block, scratch, bases, x, origin, cosine, sine, out, n)
+        is_near = _rotate_on_parents(block, scratch, n)
+        largest = _rotate_bases(block, scratch, scale, x, n)
         _write_bases(block, scratch, bases)
         is_short = is_near and largest <= NEAR_LIMIT and block.n_rows == 2 and block.is_joined == 1
         for rank in range(block.n_records):
             segment = segments[block.first_record + rank]
             if is_short:
-                _bend_and_join(segment, scratch, scale, block.n_eights)
+                _bend_and_join(segment, scratch, scale, n)
             else:
-                _bend(segment, scratch, block.n_rows, largest, block.n_eights)
-                _join(segment, scratch, scale, block.is_joined, block.n_eights)
+                _bend(segment, scratch, scale, block, largest, n)
             _write_poses(block, scratch, rank, segment.n_slots, out)
 
 
 @part
 def _read_parents(
     block: Block, scratch: Block, bases: Floats, x: Floats, origin: Floats,
-    cosine: float, sine: float, out: Floats,
+    cosine: float, sine: float, out: Floats, n: int,
 ) -> None:  # fmt: skip
     """Read the keys of sixteen branches, and the bases and base segments of their parents."""
     key, parent_key, support = scratch.key, scratch.parent_key, scratch.support
     base, parents, on = scratch.parent_base, block.parent, block.base_segment
     coordinate = block.coordinate
-    for j in range(8 * block.n_eights):  # empty slots have the keys of the stem
+    for j in range(n):  # empty slots have the keys of the stem
         i = np.uintp(coordinate[j])
         key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
     if parents[0] < 0:  # the stem
-        for j in range(8 * block.n_eights):
+        for j in range(n):
             for row in range(7):
                 base[row, j] = support[row, j] = 0.0
             base[0, j], base[3, j], support[5, j], support[6, j] = cosine, sine, sine, cosine
@@ -171,7 +173,7 @@ def _read_further(x: Floats, first: Ints, keys: Floats, j: int) -> None:
 
 
 @part
-def _rotate_on_parents(block: Block, scratch: Block) -> bool:
+def _rotate_on_parents(block: Block, scratch: Block, n: int) -> bool:
     """
     Find half the rotation vectors of sixteen bases from the bases of their parents.
 
@@ -179,41 +181,42 @@ def _rotate_on_parents(block: Block, scratch: Block) -> bool:
     """
     parent_key, mode, half = scratch.parent_key, block.base_rotation, scratch.base_half
     base, key, square, n_beyond = scratch.parent_base, scratch.key, scratch.square, 0
-    for j in range(8 * block.n_eights):
+    is_further = block.n_parent_rows > 2
+    for j in range(n):
         u, v = base[4, j], base[5, j]
-        for k in range(3):
-            half[k, j] = u * mode[0, k, j] + v * mode[1, k, j]
-    if block.n_parent_rows > 2:
-        for j in range(8 * block.n_eights):
-            hx, hy, hz = half[0, j], half[1, j], half[2, j]
+        hx = u * mode[0, 0, j] + v * mode[1, 0, j]
+        hy = u * mode[0, 1, j] + v * mode[1, 1, j]
+        hz = u * mode[0, 2, j] + v * mode[1, 2, j]
+        if is_further:
             for c in range(2, mode.shape[0]):
                 u = 0.5 * parent_key[c, j]
                 hx, hy, hz = hx + u * mode[c, 0, j], hy + u * mode[c, 1, j], hz + u * mode[c, 2, j]
-            half[0, j], half[1, j], half[2, j] = hx, hy, hz
-    for j in range(8 * block.n_eights):
-        hx, hy, hz, u, v = half[0, j], half[1, j], half[2, j], key[0, j], key[1, j]
-        square[j] = hx * hx + hy * hy + hz * hz
-        n_beyond += 1 if square[j] > NEAR_LIMIT or u * u + v * v > _BLEND_FROM else 0
+        u, v, t = key[0, j], key[1, j], hx * hx + hy * hy + hz * hz
+        half[0, j], half[1, j], half[2, j], square[j] = hx, hy, hz, t
+        scratch.cosine[j], scratch.sinc[j] = half_angle_near(t)
+        n_beyond += 1 if t > NEAR_LIMIT or u * u + v * v > _BLEND_FROM else 0
+    if n_beyond > 0:
+        _half_angles(scratch, np.inf, n)
     return n_beyond == 0
 
 
 @part
-def _half_angles(scratch: Block, largest: float, n_eights: int) -> None:
+def _half_angles(scratch: Block, largest: float, n: int) -> None:
     """Find cosine and sinc of sixteen half angles from squares up to the largest."""
     square, cosine, sinc = scratch.square, scratch.cosine, scratch.sinc
     if largest <= NEAR_LIMIT:
-        for j in range(8 * n_eights):
+        for j in range(n):
             cosine[j], sinc[j] = half_angle_near(square[j])
     elif largest <= SERIES_LIMIT:
-        for j in range(8 * n_eights):
+        for j in range(n):
             cosine[j], sinc[j] = half_angle_series(square[j])
     else:
-        for j in range(8 * n_eights):
+        for j in range(n):
             cosine[j], sinc[j] = half_angle(square[j])
 
 
 @part
-def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, is_near: bool) -> float:
+def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, n: int) -> float:
     """
     Rotate and place the bases of sixteen branches, and set their amounts of bending.
 
@@ -222,8 +225,8 @@ def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, is_near
     key, parent, steepest = scratch.key, scratch.parent_base, block.steepest
     rotation, frame, base, sine = scratch.base_half, block.frame, scratch.base, scratch.sine_part
     half_rotation, half_key, bound = scratch.half_rotation, scratch.half_key, scratch.bound
-    _half_angles(scratch, 0.0 if is_near else np.inf, block.n_eights)
-    for j in range(8 * block.n_eights):
+    support, start, offset = scratch.support, scratch.next, block.offset
+    for j in range(n):
         u, v = key[0, j], key[1, j]
         t = u * u + v * v
         blend = min(max((t - _BLEND_FROM) * _PER_BLEND, 0.0), 1.0)
@@ -248,13 +251,14 @@ def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, is_near
         sine[1, j] = bw * wx + by * wz - bz * wy
         sine[2, j] = bw * wy - bx * wz + bz * wx
         sine[3, j] = bw * wz + bx * wy - by * wx
-    offset, eights = block.offset, block.n_eights
-    _transform(scratch.support, scratch.next, scale, offset, block.is_at_axes, eights)
+        start[0, j], start[1, j], start[2, j] = _along(support, j, scale * offset[0, j])
+    if not block.is_at_axes:
+        _go_aside(support, start, scale, offset, n)
     if block.n_rows > 2:
         # The square of a sum of n is at most n times the sum of the squares.
-        for j in range(0, 8 * block.n_eights, 4):
+        for j in range(0, n, 4):
             _read_further(x, block.coordinate, half_key, j)
-        for j in range(8 * block.n_eights):
+        for j in range(n):
             most = bound[j]
             for c in range(2, half_key.shape[0]):
                 half = 0.5 * half_key[c, j]
@@ -262,11 +266,11 @@ def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, is_near
                 most += half * half * steepest[c, j]
             bound[j] = most * block.bound_factor[j]
     total, largest = 0.0, 0.0
-    for j in range(8 * block.n_eights):
+    for j in range(n):
         total += bound[j]
     if total <= NEAR_LIMIT:
         return total
-    for j in range(8 * block.n_eights):
+    for j in range(n):
         largest = max(largest, bound[j])
     return largest
 
@@ -299,42 +303,34 @@ def _write_poses(block: Block, scratch: Block, rank: int, n_slots: int, out: Flo
 
 
 @part
-def _transform(
-    pose: Floats, out: Floats, scale: float, local: Floats, is_on_axis: int, n_eights: int
-) -> None:
-    """Transform points in frames of segments, all on their x axes or not, by poses."""
-    for j in range(8 * n_eights):
-        x, y, z, w = pose[3, j], pose[4, j], pose[5, j], pose[6, j]
-        length = scale * local[0, j]
-        twice = length + length
-        out[0, j] = pose[0, j] + length - twice * (y * y + z * z)
-        out[1, j] = pose[1, j] + twice * (x * y + w * z)
-        out[2, j] = pose[2, j] + twice * (x * z - w * y)
-    if not is_on_axis:
-        for j in range(8 * n_eights):
-            x, y, z = rotated(
-                pose[6, j], pose[3, j], pose[4, j], pose[5, j], 0.0, local[1, j], local[2, j]
-            )
-            out[0, j] += scale * x
-            out[1, j] += scale * y
-            out[2, j] += scale * z
+def _along(pose: Floats, j: int, length: float) -> tuple[float, float, float]:
+    """Return the point at a length along the x axis of a pose."""
+    x, y, z, w, twice = pose[3, j], pose[4, j], pose[5, j], pose[6, j], length + length
+    return (
+        pose[0, j] + length - twice * (y * y + z * z),
+        pose[1, j] + twice * (x * y + w * z),
+        pose[2, j] + twice * (x * z - w * y),
+    )
 
 
 @part
-def _join(segment: Segment, scratch: Block, scale: float, is_joined: int, n_eights: int) -> None:
-    """Join sixteen rotated segments to those before them, and find the start of the next ones."""
-    pose, start = scratch.pose, scratch.next
-    for j in range(8 * n_eights):
-        pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
-    _transform(pose, start, scale, segment.own_chord, is_joined, n_eights)
+def _go_aside(pose: Floats, point: Floats, scale: float, local: Floats, n: int) -> None:
+    """Add the parts across the x axes of points in frames of segments."""
+    for j in range(n):
+        x, y, z = rotated(
+            pose[6, j], pose[3, j], pose[4, j], pose[5, j], 0.0, local[1, j], local[2, j]
+        )
+        point[0, j] += scale * x
+        point[1, j] += scale * y
+        point[2, j] += scale * z
 
 
 @part
-def _bend_and_join(segment: Segment, scratch: Block, scale: float, n_eights: int) -> None:
+def _bend_and_join(segment: Segment, scratch: Block, scale: float, n: int) -> None:
     """Rotate and join sixteen straight segments of branches that bend a little about one axis."""
     base, sine, rest, chord = scratch.base, scratch.sine_part, segment.rest, segment.own_chord
     pose, start = scratch.pose, scratch.next
-    for j in range(8 * n_eights):
+    for j in range(n):
         slope = segment.slope[j]
         c, s = half_angle_near(slope * slope * scratch.rotation_square[j])
         s *= slope
@@ -343,24 +339,21 @@ def _bend_and_join(segment: Segment, scratch: Block, scale: float, n_eights: int
             c * base[2, j] + s * sine[2, j], c * base[3, j] + s * sine[3, j],
             rest[0, j], rest[1, j], rest[2, j], rest[3, j],
         )  # fmt: skip
-        length = scale * chord[0, j]
-        twice = length + length
-        px, py, pz = start[0, j], start[1, j], start[2, j]
-        pose[0, j], pose[1, j], pose[2, j] = px, py, pz
+        pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
         pose[3, j], pose[4, j], pose[5, j], pose[6, j] = x, y, z, w
-        start[0, j] = px + length - twice * (y * y + z * z)
-        start[1, j] = py + twice * (x * y + w * z)
-        start[2, j] = pz + twice * (x * z - w * y)
+        start[0, j], start[1, j], start[2, j] = _along(pose, j, scale * chord[0, j])
 
 
 @part
-def _bend(segment: Segment, scratch: Block, n_rows: int, largest: float, n_eights: int) -> None:
-    """Rotate sixteen segments from rest by all coordinates of their branches."""
+def _bend(
+    segment: Segment, scratch: Block, scale: float, block: Block, largest: float, n: int
+) -> None:
+    """Rotate sixteen segments from rest by all coordinates of their branches, and join them."""
     mode, half, square, rest = segment.rotation_mode, scratch.half, scratch.square, segment.rest
     base, half_key, rotation = scratch.base, scratch.half_key, scratch.half_rotation
-    pose, blend = scratch.pose, scratch.blend
-    if n_rows == 2:
-        for j in range(8 * n_eights):
+    pose, blend, start, chord = scratch.pose, scratch.blend, scratch.next, segment.own_chord
+    if block.n_rows == 2:
+        for j in range(n):
             slope = segment.slope[j]
             slope += blend[j] * (segment.tip_slope[j] - slope)
             hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]
@@ -368,7 +361,7 @@ def _bend(segment: Segment, scratch: Block, n_rows: int, largest: float, n_eight
             square[j] = hx * hx + hy * hy + hz * hz
     else:
         # All rows of the record: with a count known at compile time the slots are a vector.
-        for j in range(8 * n_eights):
+        for j in range(n):
             slope = blend[j] * (segment.tip_slope[j] - segment.slope[j])
             hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]
             for c in range(mode.shape[0]):
@@ -376,13 +369,16 @@ def _bend(segment: Segment, scratch: Block, n_rows: int, largest: float, n_eight
                 hx, hy, hz = hx + u * mode[c, 0, j], hy + u * mode[c, 1, j], hz + u * mode[c, 2, j]
             half[0, j], half[1, j], half[2, j] = hx, hy, hz
             square[j] = hx * hx + hy * hy + hz * hz
-    _half_angles(scratch, largest, n_eights)
-    for j in range(8 * n_eights):
+    _half_angles(scratch, largest, n)
+    for j in range(n):
         c, s = scratch.cosine[j], scratch.sinc[j]
         w, x, y, z = product(
             base[0, j], base[1, j], base[2, j], base[3, j],
             c, s * half[0, j], s * half[1, j], s * half[2, j],
         )  # fmt: skip
-        pose[6, j], pose[3, j], pose[4, j], pose[5, j] = product(
-            w, x, y, z, rest[0, j], rest[1, j], rest[2, j], rest[3, j]
-        )
+        w, x, y, z = product(w, x, y, z, rest[0, j], rest[1, j], rest[2, j], rest[3, j])
+        pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
+        pose[3, j], pose[4, j], pose[5, j], pose[6, j] = x, y, z, w
+        start[0, j], start[1, j], start[2, j] = _along(pose, j, scale * chord[0, j])
+    if not block.is_joined:
+        _go_aside(pose, start, scale, chord, n)

@@ -5,7 +5,7 @@ Operations that compilers do not vectorise.
 
 The pose of a branch is a row, and sixteen branches are computed in slots: to transpose them number
 by number takes longer than to compute them. The shapes of a tree of many branches are its largest
-table: each is read once, stored in single precision and summed in double.
+table: each is read once, stored and summed in single precision.
 """
 
 from __future__ import annotations
@@ -152,32 +152,32 @@ if not WHY_PLAIN:
 
         return types.none(into, types.intp, of, types.intp), generate
 
-    _SINGLES = ir.VectorType(ir.FloatType(), 8)
+    _SINGLES, _DOUBLES = (ir.VectorType(kind(), 16) for kind in (ir.FloatType, ir.DoubleType))
 
     @_generated(add_shapes, lambda table, block, by, to: types.none(table, types.intp, by, to))
     def _add(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         kinds, (table, row, shares, to) = signature.args, values
-        none = ir.Constant(_LINE, None)
-        sums = [cgutils.alloca_once_value(builder, none) for _ in range(TOGETHER // 8)]
+        none = ir.Constant(_SINGLES, None)
+        sums = [cgutils.alloca_once_value(builder, none) for _ in range(TOGETHER // 16)]
         count = context.make_array(kinds[2])(context, builder, shares).nitems
         with cgutils.for_range(builder, count) as loop:
             share = builder.load(_element(context, builder, kinds[2], shares, loop.index))
             one = builder.insert_element(none, share, ir.IntType(32)(0))
-            every = ir.Constant(ir.VectorType(ir.IntType(32), 8), None)
+            every = ir.Constant(ir.VectorType(ir.IntType(32), 16), None)
             shared = builder.shuffle_vector(one, none, every)
             at = _element(context, builder, kinds[0], table, row, loop.index, row.type(0))
             at = builder.bitcast(at, _SINGLES.as_pointer())
             for k, total in enumerate(sums):
-                read = builder.load(builder.gep(at, [row.type(k)]), align=32)
-                part = builder.fmul(builder.fpext(read, _LINE), shared, flags=['contract'])
+                read = builder.load(builder.gep(at, [row.type(k)]), align=64)
+                part = builder.fmul(read, shared, flags=['contract'])
                 whole = builder.fadd(builder.load(total), part, flags=['contract'])
                 builder.store(whole, total)
         at = builder.mul(row, row.type(TOGETHER))
         for k, total in enumerate(sums):
-            first = builder.add(at, row.type(8 * k))
+            first = builder.add(at, row.type(16 * k))
             where = _element(context, builder, kinds[3], to, first)
-            written = builder.bitcast(where, _LINE.as_pointer())
-            builder.store(builder.load(total), written, align=8)
+            written = builder.bitcast(where, _DOUBLES.as_pointer())
+            builder.store(builder.fpext(builder.load(total), _DOUBLES), written, align=8)
         return context.get_dummy_value()
 
     @_generated(settle, lambda: types.none())
