@@ -179,7 +179,7 @@ def test_ctrl_c_waits_until_what_is_begun_is_whole():
 
 
 #: The command, whose cluster writes a line to its log as the last thing it does.
-TALKATIVE = '''
+TALKATIVE = """
 import logging, sys
 from distributed.deploy.cluster import Cluster
 from tree_sway.commands.cli import main
@@ -192,7 +192,7 @@ async def say_and_close(self):
 
 Cluster._close = say_and_close
 sys.exit(main(sys.argv[1:]))
-'''
+"""
 
 
 @pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find the workers')
