@@ -46,7 +46,7 @@ def branch_wood(tree):
 def first_frequency(tree, settings):
     """Frequency of the one coordinate of a tree on one; its table of winds is not made."""
     wood = species_named(tree.species)
-    reductions = TreeReductions(tree, wood, in_season(tree, wood, settings))
+    reductions = TreeReductions(tree, wood, settings)
     return reductions.modes(1).circular[0] / (2.0 * np.pi)
 
 
