@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 import re
 import sys
@@ -77,13 +78,20 @@ def room_of(module: str) -> str:
     return module.split('.')[1] if '.' in module else ''
 
 
+@cache
+def import_nodes(path: Path) -> list[ast.Import | ast.ImportFrom]:
+    """Return the import statements of a file."""
+    nodes = ast.walk(ast.parse(path.read_text(encoding='utf-8')))
+    return [node for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
+
+
 def imports_of(path: Path) -> Iterator[tuple[int, str, ast.AST]]:
     """Each imported module with its line; names that are modules themselves are written out."""
-    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+    for node in import_nodes(path):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield node.lineno, alias.name, node
-        elif isinstance(node, ast.ImportFrom) and not node.level:
+        elif not node.level:
             assert node.module is not None
             for alias in node.names:
                 inner = f'{node.module}.{alias.name}'
@@ -112,7 +120,7 @@ def test_a_package_imports_none_above_it() -> None:
 def test_imports_are_absolute_and_never_from_the_package_root() -> None:
     wrong = []
     for path in FILES:
-        for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+        for node in import_nodes(path):
             if isinstance(node, ast.ImportFrom) and node.level:
                 wrong.append(f'{path}:{node.lineno} is relative')
         for line, module, _ in imports_of(path):

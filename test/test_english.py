@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 import io
 from pathlib import Path
 import re
@@ -67,10 +68,16 @@ def prose_of(source: str) -> Iterator[tuple[int, str]]:
             yield token.start[0], token.string
 
 
+@cache
+def pieces_of(path: Path) -> list[tuple[int, str]]:
+    """Return what of a file is words, each piece with its line."""
+    text = path.read_text(encoding='utf-8')
+    return list(prose_of(text) if path.suffix == '.py' else enumerate(text.splitlines(), 1))
+
+
 def faults_of(path: Path, finder: re.Pattern[str] = FINDER) -> list[str]:
     """Return each word of a file that has a plainer one, with its line."""
-    text = path.read_text(encoding='utf-8')
-    pieces = prose_of(text) if path.suffix == '.py' else enumerate(text.splitlines(), 1)
+    pieces = pieces_of(path)
     return [
         f'{path.relative_to(ROOT)}:{line + piece[: found.start()].count(chr(10))}: {found[0]!r}'
         for line, piece in pieces

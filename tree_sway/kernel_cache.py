@@ -81,7 +81,9 @@ class KernelCache:
         self._codec = import_module('numba.core.caching').CompileResultCacheImpl
         self._dumps = import_module('numba.core.serialize').dumps
         code = function.__code__
-        own = _package(Path(code.co_filename))
+        own = Path(code.co_filename).parent
+        while (own.parent / '__init__.py').is_file():  # up to its package
+            own = own.parent
         digest = source_digest(ROOT / 'core') + source_digest(own) * (own != ROOT)
         self._name = f'{function.__module__.rpartition(".")[2]}.{function.__qualname__}'
         self._key = '\0'.join(
@@ -150,11 +152,3 @@ def source_digest(folder: Path) -> str:
     for path in paths:
         digest.update(path.relative_to(folder).as_posix().encode() + b'\0' + path.read_bytes())
     return digest.hexdigest() if paths else ''
-
-
-def _package(path: Path) -> Path:
-    """Folder of the package of a file."""
-    top = path.parent
-    while (top.parent / '__init__.py').is_file():
-        top = top.parent
-    return top

@@ -66,7 +66,7 @@ def why_unsafe(place: Path) -> str:
         return ''
     for folder in (place, *place.parents):
         found = folder.lstat()
-        if found.st_uid not in (os.getuid(), 0) or (folder == place and not _is_mine(found)):
+        if found.st_uid != os.getuid() and (found.st_uid != 0 or folder == place):
             return f'{folder} belongs to other users; set {FOLDER_VARIABLE} to a folder of yours'
         is_shared = found.st_mode & stat.S_ISVTX and folder != place
         if found.st_mode & _BY_OTHERS and not is_shared:
@@ -87,7 +87,7 @@ def read_own(path: Path) -> bytes:
     with open(os.open(path, os.O_RDONLY | getattr(os, 'O_NOFOLLOW', 0)), 'rb') as file:
         found = os.fstat(file.fileno())
         if not stat.S_ISREG(found.st_mode) or (
-            hasattr(os, 'getuid') and (not _is_mine(found) or found.st_mode & _BY_OTHERS)
+            hasattr(os, 'getuid') and (found.st_uid != os.getuid() or found.st_mode & _BY_OTHERS)
         ):
             raise PermissionError(f'others may have written {path}')
         with suppress(OSError):
@@ -105,10 +105,6 @@ def write_own(path: Path, content: bytes) -> None:
     except OSError:
         Path(partial).unlink(missing_ok=True)
         raise
-
-
-def _is_mine(found: os.stat_result) -> bool:
-    return found.st_uid == os.getuid()
 
 
 def _clean(folder: Path) -> None:

@@ -44,7 +44,7 @@ COMMANDS: dict[str, Command] = {
     ),
     'validate': Command(
         'every check with its figure and its limit, as validation.md',
-        'validate --kind limbs2 --wind 9 --quick',
+        'validate --kind limbs8 --wind 9 --quick',
         'tree_sway_lab.validation.command',
     ),
 }

@@ -15,6 +15,7 @@ import pytest
 
 from tree_sway.commands import cli
 
+SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
 #: All commands but those of the laboratory.
 ALL, _ = cli._table('')
 
@@ -207,14 +208,14 @@ def run_process(command: str, **environment: str) -> subprocess.CompletedProcess
 
 @pytest.mark.skipif(not Path('/dev/full').exists(), reason='needs the device /dev/full')
 def test_a_full_disk_under_standard_output_is_one_line() -> None:
-    result = run_process('$TREE_SWAY info goldcrest --quiet > /dev/full')
+    result = run_process(f'$TREE_SWAY info {SEEDLING} --quiet > /dev/full')
     assert result.returncode == 2
     assert 'No space left on device' in one_line(result.stderr)
 
 
 @pytest.mark.parametrize('where', ['>&-', '2>&-', '>&- 2>&-'])
 def test_closed_output_is_no_error(where: str) -> None:
-    result = run_process(f'$TREE_SWAY info goldcrest {where}')
+    result = run_process(f'$TREE_SWAY info {SEEDLING} {where}')
     assert result.returncode == 0
     assert 'Traceback' not in result.stderr
 
@@ -222,9 +223,9 @@ def test_closed_output_is_no_error(where: str) -> None:
 def test_letters_that_a_terminal_lacks_are_escaped(tmp_path: Path) -> None:
     plain = {'LC_ALL': 'C', 'PYTHONUTF8': '0', 'PYTHONCOERCECLOCALE': '0'}
     name = tmp_path / 'b\u00e4um.yaml'
-    result = run_process(f"$TREE_SWAY convert goldcrest -o '{name}'", **plain)
+    result = run_process(f"$TREE_SWAY convert {SEEDLING} -o '{name}'", **plain)
     assert result.returncode == 0, result.stderr
-    assert 'um.yaml: goldcrest' in result.stdout
+    assert 'um.yaml: seedling' in result.stdout
     result = run_process(f"$TREE_SWAY info -q '{name}'", **plain, PYTHONIOENCODING='ascii')
     assert result.stderr == ''
 

@@ -24,6 +24,7 @@ from tree_sway.studies.plan import Case, read_study
 from tree_sway.studies.runner import (
     _held_interrupt,
     batches,
+    compute_batch,
     compute_to_file,
     estimated_time,
     result_path,
@@ -76,7 +77,7 @@ def test_what_is_finished_is_not_computed_again(alone, tmp_path):
     for case in cases(2):
         compute_to_file(case, tmp_path)
     stamps = {case.name: result_path(tmp_path, case).stat().st_mtime_ns for case in cases(2)}
-    assert run_study(cases(), tmp_path, workers=2) == alone
+    assert run_study(cases(), tmp_path, workers=1) == alone
     assert all(
         result_path(tmp_path, case).stat().st_mtime_ns == stamps[case.name] for case in cases(2)
     )
@@ -92,7 +93,7 @@ def test_trees_of_any_size_are_on_one_model():
     assert {row['model'] for row in rows} == {str(USUAL)}
 
 
-def test_the_time_is_estimated_before_anything_is_computed(tmp_path, capsys):
+def test_the_time_is_estimated_before_anything_is_computed(tmp_path, capsys, monkeypatch):
     assert estimated_time([], 2) == 0.0
     few, many = estimated_time(cases(8), 2), estimated_time(cases(8, seconds=600.0), 2)
     assert many - few == pytest.approx(8 * 599 * 60 * 2e-4 / 2)
@@ -102,8 +103,16 @@ def test_the_time_is_estimated_before_anything_is_computed(tmp_path, capsys):
     folder = table.with_suffix('.cases')
     folder.mkdir()
     compute_to_file(read_study(study)[0], folder)
+    said = []
+
+    def outcomes(missing, folder, workers):
+        said.append(capsys.readouterr().err)
+        assert workers == 2
+        return compute_batch(missing, folder)  # in this process: others take long to start
+
+    monkeypatch.setattr(runner, '_outcomes', outcomes)
     assert cli.main(['study', str(study), '-o', str(table), '--workers', '2']) == 0
-    assert '2 of 3 cases to compute: some 7 s on 2 cores' in capsys.readouterr().err
+    assert '2 of 3 cases to compute: some 7 s on 2 cores' in said[0]
 
 
 def test_a_tree_is_set_up_once_for_many_winds():
@@ -170,7 +179,7 @@ def test_ctrl_c_waits_until_what_is_begun_is_whole():
 
 
 #: The command, whose cluster writes a line to its log as the last thing it does.
-TALKATIVE = '''
+TALKATIVE = """
 import logging, sys
 from distributed.deploy.cluster import Cluster
 from tree_sway.commands.cli import main
@@ -183,7 +192,7 @@ async def say_and_close(self):
 
 Cluster._close = say_and_close
 sys.exit(main(sys.argv[1:]))
-'''
+"""
 
 
 @pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find the workers')

@@ -22,7 +22,7 @@ def read(path):
 
 def test_fidelity_grows_with_the_dial_and_is_written(tmp_path):
     points = chart_fidelity(
-        tmp_path, kinds=['limbs4'], models=('3', 'full', 'branch'), engines=(), fineness=QUICK
+        tmp_path, kinds=['limbs8'], models=('3', 'full', 'branch'), engines=(), fineness=QUICK
     )
     error = {point.model: point.error for point in points}
     assert error['full'] < min(error['3'], error['branch'])

@@ -76,7 +76,7 @@ def test_a_truth_is_computed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_models_are_called_by_number_or_by_name() -> None:
-    tree = kind_called('limbs2')
+    tree = kind_called('limbs8')
     assert judged_simulator('branch', tree).model == 'branch'
     assert judged_simulator('default', tree).model
     with pytest.raises(ParameterError, match='modes twelve'):
@@ -84,7 +84,7 @@ def test_models_are_called_by_number_or_by_name() -> None:
 
 
 def test_all_coordinates_are_near_the_truth_on_a_stem_with_limbs() -> None:
-    trial = tried('limbs2', '9', 'full', QUICK)
+    trial = tried('limbs8', '9', 'full', QUICK)
     assert trial.error < 0.04
     assert 0.8 < trial.roughness < 1.2
     assert np.isnan(trial.jump)

@@ -55,7 +55,7 @@ def joint_modes(bodies: Bodies, gravity: float, count: int) -> JointModes:
     # Lanczos gives unit stiffness; unit mass is asked for.
     circular = 1.0 / np.sqrt(inverse_square[order])
     turn = vectors[:, order].T * circular[:, None]
-    momentum = (mass @ turn.T).T
+    momentum = np.ascontiguousarray((mass @ turn.T).T)  # laid out as the turns, as kernels expect
     shape = (len(circular), -1, 3)
     return JointModes(circular / (2.0 * np.pi), turn.reshape(shape), momentum.reshape(shape))
 

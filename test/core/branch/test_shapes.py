@@ -27,7 +27,8 @@ from tree_sway.core.branch.shapes import (
 )
 from tree_sway.core.reduction.matrices import reduce_tree
 from tree_sway.core.reduction.modes import natural_modes
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.simulator.reductions import TreeReductions
+from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import Species
 
@@ -96,7 +97,7 @@ def test_limbs_that_swing_apart_have_the_frequencies_of_every_segment(n_limbs):
         tree, 8e9, 900.0, gravity=9.81, subdivisions=2, twist_ratio=2.0 / 14.0
     ).linear_modes(8)[0]
     wood = Species('w', 'w', 8e9, 900.0, damping_bare=0.05, shear_ratio=1.0 / 14.0)
-    found = SwaySimulator(tree, wood).frequencies(8)
+    found = TreeReductions(tree, wood, Settings()).natural_frequencies(8)
     assert found == pytest.approx(truth, rel=0.01)
 
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from tree_sway_lab.bench.sizes import against, gusts_and_turns
+from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.motion.drag import DragLaw, pressure
@@ -53,6 +54,22 @@ def crooked(seed, n_branches=40, cuts=6):
     return tree_from_segments(start, end, thick, parent=np.array(parent), branch=np.array(number))
 
 
+def without_twigs(name):
+    """Make a built-in tree without the branches of its last order."""
+    tree = builtin_tree(name)
+    order = branch_order(tree)
+    kept = (order < order.max())[tree.branch_of_segment]
+    number = np.cumsum(kept) - 1
+    return tree_from_segments(
+        tree.start[kept],
+        tree.end[kept],
+        np.stack([tree.base_diameter, tree.tip_diameter], axis=1)[kept],
+        parent=np.where(tree.segment_parent < 0, -1, number[tree.segment_parent])[kept],
+        branch=tree.branch_of_segment[kept],
+        species=tree.species,
+    )
+
+
 gusty = gusts_and_turns
 
 
@@ -65,16 +82,21 @@ def against_all(tree, winds):
 TREES = {
     'benjamina': lambda: builtin_tree('benjamina'),
     'goldcrest': lambda: builtin_tree('goldcrest'),
+    'benjamina without twigs': lambda: without_twigs('benjamina'),
+    'goldcrest without twigs': lambda: without_twigs('goldcrest'),
     'crooked 1': lambda: crooked(1),
     'crooked 2': lambda: crooked(2),
     'crooked 4': lambda: crooked(4),
 }
 
 
-@pytest.mark.parametrize(
-    'name',
-    [pytest.param(n, marks=[pytest.mark.long] if n == 'benjamina' else []) for n in TREES],
-)
+def marked(names):
+    """Return the names of trees, those of hundreds of branches as long to compute."""
+    whole = ('benjamina', 'goldcrest')
+    return [pytest.param(n, marks=[pytest.mark.long] if n in whole else []) for n in names]
+
+
+@pytest.mark.parametrize('name', marked(TREES))
 def test_it_sways_as_all_coordinates_do(name):
     tree = TREES[name]()
     for speed, most in ((5.0, 0.02), (12.0, 0.04)):
@@ -92,7 +114,9 @@ def test_a_steep_wind_is_in_the_table(wind):
     assert np.linalg.norm(one.place()[:, :3] - other.place()[:, :3], axis=1).max() <= 0.08 * moved
 
 
-@pytest.mark.parametrize('name', ['benjamina', 'crooked 1', 'crooked 2'])
+@pytest.mark.parametrize(
+    'name', marked(['benjamina', 'benjamina without twigs', 'crooked 1', 'crooked 2'])
+)
 def test_a_step_of_the_wind_moves_no_tip_at_once(name):
     one, other = (SwaySimulator(TREES[name](), model=m) for m in (60, 'full'))
     moved = []

@@ -16,6 +16,7 @@ from tree_sway.core.leaves.foliage import foliage_of
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
@@ -43,8 +44,10 @@ def branch_wood(tree):
 
 
 def first_frequency(tree, settings):
-    sim = SwaySimulator(tree, species_named(tree.species), settings, model=1)
-    return np.sqrt(sim.bank.oscillators.tunable.stiffness[0]) / (2.0 * np.pi)
+    """Frequency of the one coordinate of a tree on one; its table of winds is not made."""
+    wood = species_named(tree.species)
+    reductions = TreeReductions(tree, wood, settings)
+    return reductions.modes(1).circular[0] / (2.0 * np.pi)
 
 
 def test_leaves_weigh_catch_and_damp(fork):

@@ -263,7 +263,7 @@ def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
             goal = whole @ way  # of little forces, so 1 mm far
             force = 0.001 / np.linalg.norm(goal) * way
             sim.reset()
-            for _ in range(600):
+            for _ in range(round(SETTLING / DT)):
                 sim.push(segment, force, 1.0, along=0.0)
                 sim.step(CALM, DT)
             frame = decode_frame(state.frame(0))

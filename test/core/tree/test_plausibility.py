@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -23,6 +24,11 @@ OAK = species_named('oak')
 
 def oak(height: float = 12.0) -> Tree:
     return grow('oak', height, rng=np.random.default_rng(0))
+
+
+@cache
+def goldcrest() -> Tree:
+    return builtin_tree('goldcrest')
 
 
 def in_units(tree: Tree, length: float = 1.0, diameter: float = 1.0) -> Tree:
@@ -126,7 +132,7 @@ def test_a_sway_of_no_tree_of_its_size_is_reported() -> None:
 def test_whatever_is_given_is_refused_or_reported_in_sentences(
     length: float, diameter: float, modulus: float
 ) -> None:
-    tree = in_units(builtin_tree('goldcrest'), length, diameter)
+    tree = in_units(goldcrest(), length, diameter)
     wood = replace(OAK, modulus=modulus)
     try:
         refuse_implausible(tree, wood)

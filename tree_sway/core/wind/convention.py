@@ -157,13 +157,21 @@ class WindConvention:
             Unit quaternion w, x, y, z of the rotation from the plane's axes to ENU, (4,).
 
         """
-        along = self.project(np.asarray(vector, dtype=np.float64))
-        if not math.hypot(*along) >= CALM_SPEED:
-            if previous is not None:
-                return previous
-            east, north = self.project(np.eye(3)[0]), self.project(np.eye(3)[1])
-            along = east if np.linalg.norm(east) > 0.1 else north
-        return quaternions_of_axes(along / math.hypot(*along), self.normal)
+        axes, at_zero, half_turned = self._plane
+        x, y = axes @ np.asarray(vector, dtype=np.float64)
+        if math.hypot(x, y) >= CALM_SPEED:
+            half = 0.5 * math.atan2(y, x)
+            return np.asarray(math.cos(half) * at_zero + math.sin(half) * half_turned)
+        return at_zero if previous is None else previous
+
+    @cached_property
+    def _plane(self) -> tuple[Floats, Floats, Floats]:
+        """Axes in the plane as rows, the quaternion along the first, and that of half a turn."""
+        east, north = (self.project(axis) for axis in np.eye(3)[:2])
+        along = east if np.linalg.norm(east) > 0.1 else north
+        axes = np.stack([along, np.cross(self.normal, along)]) / np.linalg.norm(along)
+        at_zero = quaternions_of_axes(axes[0], self.normal)
+        return axes, at_zero, at_zero[::-1] * [-1.0, 1.0, -1.0, 1.0]
 
 
 def quaternions_of_axes(along: Floats, normal: Floats) -> Floats:
@@ -171,5 +179,4 @@ def quaternions_of_axes(along: Floats, normal: Floats) -> Floats:
     from scipy.spatial.transform import Rotation  # it takes long to load, and few need it
 
     axes = np.stack([along, np.cross(normal, along), normal], axis=-1)
-    quaternions = Rotation.from_matrix(axes).as_quat()[..., [3, 0, 1, 2]]
-    return np.asarray(quaternions)
+    return np.asarray(Rotation.from_matrix(axes).as_quat()[..., [3, 0, 1, 2]])
