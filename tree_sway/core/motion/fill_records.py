@@ -181,7 +181,7 @@ def assign_slots(
     block, slot = np.zeros((2, len(size)), dtype=np.int64)
     # The time to place sixteen branches is that of the one with most fields.
     rich = (-fields if fields is not None else 0 * size).tolist()
-    begin, ready = 0, [(rich[0], -int(size[0]), -int(carried[0]), 0)]
+    begin, ready = 0, [(rich[0], -int(size[0]), 0, -int(carried[0]), 0)]
     while ready:
         together = [heappop(ready)[-1] for _ in range(min(WIDTH, len(ready)))]
         # Records have segments of the first slots only.
@@ -190,7 +190,7 @@ def assign_slots(
         begin += int(size[together[0]])
         for branch in together:
             for child in children[branch]:
-                heappush(ready, (rich[child], -int(size[child]), -int(carried[child]), child))
+                heappush(ready, (rich[child], -int(size[child]), rich[branch], -int(carried[child]), child))
     return block, slot, begin
 
 
