@@ -190,7 +190,8 @@ def assign_slots(
         begin += int(size[together[0]])
         for branch in together:
             for child in children[branch]:
-                heappush(ready, (rich[child], -int(size[child]), rich[branch], -int(carried[child]), child))
+                last = rich[branch], -int(carried[child]), child
+                heappush(ready, (rich[child], -int(size[child]), *last))
     return block, slot, begin
 
 
