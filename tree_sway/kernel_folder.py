@@ -54,7 +54,12 @@ def kernel_folder() -> Path | None:
                 probe.write(b'\0' * 4096)
         except OSError:
             continue
-        _clean(place)
+        # Kernels that are no longer read, and unfinished files.
+        for suffix, age in (('kernel', UNUSED), ('part', _PART_LEFT)):
+            for path in place.glob(f'*.{suffix}'):
+                with suppress(OSError):
+                    if time.time() - path.lstat().st_mtime > age:
+                        path.unlink()
         return place
     complain('no folder for compiled kernels can be written; they are compiled in every process')
     return None
@@ -105,15 +110,6 @@ def write_own(path: Path, content: bytes) -> None:
     except OSError:
         Path(partial).unlink(missing_ok=True)
         raise
-
-
-def _clean(folder: Path) -> None:
-    """Remove kernels that are no longer read, and unfinished files."""
-    for suffix, age in (('kernel', UNUSED), ('part', _PART_LEFT)):
-        for path in folder.glob(f'*.{suffix}'):
-            with suppress(OSError):
-                if time.time() - path.lstat().st_mtime > age:
-                    path.unlink()
 
 
 _said: set[str] = set()

@@ -11,7 +11,6 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 APACHE_BY_SPDX = SimpleNamespace(
-    name='Apache License, Version 2.0, by its SPDX name', spdx='Apache-2.0',
-    file_headers=('{copyright}\nSPDX-License-Identifier: Apache-2.0',),
-    license_files=(), contributing_files=(),
+    name='Apache License, Version 2.0, by its SPDX name', spdx='Apache-2.0', license_files=(),
+    file_headers=('{copyright}\nSPDX-License-Identifier: Apache-2.0',), contributing_files=(),
 )  # fmt: skip

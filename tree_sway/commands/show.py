@@ -130,14 +130,13 @@ def _controls(
     choices: Choices, wind: WindSource, *, is_one_tree: bool = True
 ) -> tuple[Control, ...]:
     """Make the controls of viewers, with the ranges of the nodes' parameters."""
-    controls = []
+    controls = list[Control]()
     if isinstance(wind, SimulatedWind):
-        for name in ('mean_speed', 'intensity', 'bearing_to'):
-            controls.append(Control.of(SWAY[name], _LABELS[name], wind.values[name]))
+        names = 'mean_speed', 'intensity', 'bearing_to'
+        controls += [Control.of(SWAY[name], _LABELS[name], wind.values[name]) for name in names]
     if isinstance(wind, RecordedWind):
-        controls.append(
-            Control('record_time', 'Time', 0.0, 'Of the record.', 's', 0.0, wind.length)
-        )
+        span = 's', 0.0, wind.length
+        controls.append(Control('record_time', 'Time', 0.0, 'Of the record.', *span))
     if is_one_tree:
         models = tuple(dict.fromkeys(('auto', *map(str, DIAL), *MODELS[1:], choices.model)))
         controls.append(replace(Control.of(SWAY['model'], 'Model', choices.model), choices=models))

@@ -29,8 +29,7 @@ _S0, _S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8 = (
 @part
 def half_angle_series(t: float) -> tuple[float, float]:
     """Return the same as `half_angle`, by series, for t up to `SERIES_LIMIT`."""
-    cosine = _C8 * t + _C7
-    sinc = _S8 * t + _S7
+    cosine, sinc = _C8 * t + _C7, _S8 * t + _S7
     cosine, sinc = cosine * t + _C6, sinc * t + _S6
     cosine, sinc = cosine * t + _C5, sinc * t + _S5
     cosine, sinc = cosine * t + _C4, sinc * t + _S4

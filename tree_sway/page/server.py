@@ -122,10 +122,6 @@ class _Client:
         self.last_heard = time.monotonic()
         self.sending_since = math.inf
 
-    def is_lost(self, now: float) -> bool:
-        """Whether it has neither sent nor read for too long by a time [s]."""
-        return now - self.last_heard > IDLE_TIME or now - self.sending_since > _SEND_TIMEOUT
-
     def thinned(self, frame: bytes, now: float) -> bytes:
         """Return the part of a frame for a client that solves: wind, sometimes coordinates."""
         if self.wants_nothing_else:
@@ -540,7 +536,8 @@ class PageServer:
             await asyncio.sleep(STATUS_PERIOD)
             now = time.monotonic()
             for client in tuple(self._clients):
-                if client.is_lost(now):
+                # It has neither sent nor read for too long.
+                if now > min(client.last_heard + IDLE_TIME, client.sending_since + _SEND_TIMEOUT):
                     self._drop(client)
             if self._clients:
                 self._send_all({'status': {**self._status(), 'clients': len(self._clients)}})

@@ -60,7 +60,9 @@ class LineSource(Worker):
                     why = self._listen(read)
             except Exception as error:  # an instrument may fail in any way, and is connected again
                 why = f'{type(error).__name__}: {error}'
-            self._lose(why)
+            if not self._stopping.is_set() and (self.is_up or why != self.failure):
+                self.log(f'{self.address}: {why}; trying again')
+            self.is_up, self.failure = False, why
             pause = self.first_pause if self.lines > before else min(2.0 * pause, LONGEST_PAUSE)
             self._stopping.wait(pause)
 
@@ -82,11 +84,6 @@ class LineSource(Worker):
                 self.lines += 1
                 self.take(line)
         return ''
-
-    def _lose(self, why: str) -> None:
-        if not self._stopping.is_set() and (self.is_up or why != self.failure):
-            self.log(f'{self.address}: {why}; trying again')
-        self.is_up, self.failure = False, why
 
 
 @contextmanager

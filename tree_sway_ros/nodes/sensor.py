@@ -7,7 +7,6 @@ from __future__ import annotations
 from typing import Any
 
 from tree_sway.files.wind.nmea import parse_nmea
-from tree_sway.files.wind.sensor_line import SensorLine
 from tree_sway.files.wind.sonic_ascii import parse_sonic
 from tree_sway_ros.link.address import read_address
 from tree_sway_ros.link.line_source import LineSource
@@ -44,7 +43,8 @@ class SensorNode(TreeSwayNode):
         read_address(values['address'])
 
     def _take(self, line: str) -> None:
-        said = self._parsed(line)
+        heading = self.values['heading']
+        said = parse_nmea(line, heading, self.values['declination']) or parse_sonic(line, heading)
         if said is None:
             self._other += 1
             return
@@ -60,10 +60,6 @@ class SensorNode(TreeSwayNode):
             self._accepted += 1
             stamp = self.get_clock().now().nanoseconds
             self._publisher.publish(self._writer.message(stamp, said.velocity))
-
-    def _parsed(self, line: str) -> SensorLine | None:
-        heading = self.values['heading']
-        return parse_nmea(line, heading, self.values['declination']) or parse_sonic(line, heading)
 
     def _report(self) -> list[Status]:
         source = self._source

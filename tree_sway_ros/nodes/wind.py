@@ -73,7 +73,10 @@ class WindNode(TreeSwayNode):
         sample = wind_from_message(message)
         frame_id, turn = self.values['frame_id'], None
         if sample.frame_id not in ('', frame_id):
-            self._frames = self._frames or self._listen_for_frames()
+            # It is slow to load, and seldom needed.
+            from tree_sway_ros.wire.frames import FrameListener
+
+            self._frames = self._frames or FrameListener(self, frame_id)
             turn = self._frames.rotation(sample.frame_id)
             if self._frames.is_waiting:
                 return
@@ -91,12 +94,6 @@ class WindNode(TreeSwayNode):
         )
         self._attitude = self._convention.force_plane_quaternion(vector, self._attitude)
         self._plane.publish(plane_message(time, frame_id, self._attitude))
-
-    def _listen_for_frames(self) -> Any:
-        """Load the listener of transforms, which is slow, when a sample has a different frame."""
-        from tree_sway_ros.wire.frames import FrameListener
-
-        return FrameListener(self, self.values['frame_id'])
 
     def _statuses(self) -> list[Status]:
         gate, others = self._intake.gate, self._types_not_read()

@@ -172,7 +172,10 @@ class AdaptiveSimulator(SwaySimulator):
         """Choose again once the tolerance has changed; with ``at_best`` whatever the tolerance."""
         self._since_review, self._judged = 0.0, self._gust
         climate = self._tracker.climate
-        both = self.estimates(climate), self.estimates(self._in_gust(climate))
+        # The wind to come has the last gust and the last minute's turbulence.
+        mean = self._bearing * (self._gust / max(float(np.linalg.norm(self._bearing)), 1e-9))
+        gust = replace(climate, mean=mean, speed=math.sqrt(self._gust))
+        both = self.estimates(climate), self.estimates(gust)
         estimates = [max(each, key=lambda e: e.error) for each in zip(*both, strict=True)]
         if self._touched_for > 0.0:  # the effect of a push is not estimated
             self.choice = max(self._affordable(estimates), key=lambda e: e.n_coordinates)
@@ -229,11 +232,6 @@ class AdaptiveSimulator(SwaySimulator):
             self._gust, self._bearing = load, np.array([x, y, z])
             if load > SURPRISE * self._judged:
                 self.review(at_best=load > LOAD_JUMP * self._tracker.largest_load)
-
-    def _in_gust(self, climate: WindClimate) -> WindClimate:
-        """Forecast the wind from the last gust and the last minute's turbulence."""
-        mean = self._bearing * (self._gust / max(float(np.linalg.norm(self._bearing)), 1e-9))
-        return replace(climate, mean=mean, speed=math.sqrt(self._gust))
 
     def _affordable(self, estimates: list[Estimate]) -> list[Estimate]:
         """Find the numbers within the budget, or the cheapest one."""

@@ -91,7 +91,12 @@ def node_diameters(
     below_top = (top - stem.nodes[:, 2]) / (top - stem.nodes[0, 2] - at_height)
     own = diameters[0] * np.clip(below_top, 0.0, 1.0) ** bole_taper
     diameters[0] = np.maximum(own, tip_diameter)
-    _support(skeleton, diameters)
+    # Thicken every shoot that is too thin for its children, and below.
+    for shoot, own in zip(reversed(skeleton.shoots), reversed(diameters), strict=True):
+        own[:] = np.maximum.accumulate(own[::-1])[::-1]
+        if shoot.parent >= 0:
+            below = diameters[shoot.parent]
+            below[shoot.at] = max(below[shoot.at], own[0] / INSERTION_RATIO)
     # Between two nodes a segment is a straight cone, not the law's curve: correct that difference.
     diameters[0] *= diameter / _at_height(stem, diameters[0], at_height)
     for shoot, own in zip(skeleton.shoots[1:], diameters[1:], strict=True):
@@ -124,15 +129,6 @@ def finished_tree(
         **law,
     )
     return skeleton.to_tree(diameters, species, species)
-
-
-def _support(skeleton: Skeleton, diameters: list[Floats]) -> None:
-    """Thicken every shoot that is too thin for its children, and below."""
-    for shoot, own in zip(reversed(skeleton.shoots), reversed(diameters), strict=True):
-        own[:] = np.maximum.accumulate(own[::-1])[::-1]
-        if shoot.parent >= 0:
-            below = diameters[shoot.parent]
-            below[shoot.at] = max(below[shoot.at], own[0] / INSERTION_RATIO)
 
 
 def _at_height(stem: Shoot, values: Floats, height: float) -> float:

@@ -309,15 +309,12 @@ def _fill_loads(
     slopes = slopes.reshape(len(rows), n, -1, 3)
     records['load_rotation'][rows, :n] = (work @ slopes)[:, :, 0]
     bows = np.abs((tangent * tangent[:, :1]).sum(axis=2) - 1.0).max(axis=1)
-    square, cube = ((share * each).sum(axis=(1, 2)) for each in (moved, _cubes(moved)))
+    # As if both axes were alike.
+    cubes = 2.0 * np.maximum(0.5 * moved, 0.0) ** 1.5
+    square, cube = ((share * each).sum(axis=(1, 2)) for each in (moved, cubes))
     for k in np.flatnonzero(bows > 1e-9):
         _fit_load(models[k], share[k], records[rows[k]])
     _fill_damping(records, rows, mean, square, cube)
-
-
-def _cubes(squares: Floats) -> Floats:
-    """Cubes of displacements from the sum of their squares, as if both axes were alike."""
-    return np.asarray(2.0 * np.maximum(0.5 * squares, 0.0) ** 1.5)
 
 
 def _fit_load(model: BranchModel, share: Floats, record: np.void) -> None:

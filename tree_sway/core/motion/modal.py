@@ -218,12 +218,18 @@ def _to_middle(modal: Floats, state: Floats, shapes: Floats, half: Floats) -> No
         h = half[k]
         middle_eta[k] = h[0] * eta[k] + h[1] * rate[k] + (h[2] + h[3]) * force[k]
         middle_rate[k] = h[4] * eta[k] + h[5] * rate[k] + (h[6] + h[7]) * force[k]
+    _expand_both(shapes, middle_eta, middle_rate, x, v)
+
+
+@part
+def _expand_both(shapes: Floats, eta: Floats, rate: Floats, x: Floats, v: Floats) -> None:
+    """Expand modes and their rates to key rotations and their rates."""
     for i in range(len(x)):
         x[i], v[i] = 0.0, 0.0
     for k in range(len(eta)):
         for i in range(len(x)):
-            x[i] += shapes[k, i] * middle_eta[k]
-            v[i] += shapes[k, i] * middle_rate[k]
+            x[i] += shapes[k, i] * eta[k]
+            v[i] += shapes[k, i] * rate[k]
 
 
 @fused
@@ -335,12 +341,7 @@ def _add_inertia(modal: Floats, slopes: Floats, springs: Floats) -> None:
 def _clamp(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastest: float) -> None:
     """Clamp rotations and rates of branches to the limits of a step."""
     eta, rate, x, v = modal[0], modal[1], state[1], state[2]
-    for i in range(len(x)):
-        x[i], v[i] = 0.0, 0.0
-    for k in range(len(eta)):
-        for i in range(len(x)):
-            x[i] += shapes[k, i] * eta[k]
-            v[i] += shapes[k, i] * rate[k]
+    _expand_both(shapes, eta, rate, x, v)
     for i in range(len(x)):
         x[i] = min(max(x[i], -FARTHEST), FARTHEST)
         v[i] = min(max(v[i], -fastest), fastest)

@@ -129,21 +129,12 @@ def wind_forces(loads: Loads, per_speed_squared: float) -> None:
             ux, uy, uz = turned(-tx, -ty, -tz, ux, uy, uz)
             wx, wy, wz = turned(-tx, -ty, -tz, base[3, j], base[4, j], base[5, j])
             beta = group.compliance[j]
-            ux += (
-                beta * impulse[0, j]
-                - own_velocity[0, j]
-                - (coupling[0, 0, j] * wx + coupling[1, 0, j] * wy + coupling[2, 0, j] * wz)
-            )
-            uy += (
-                beta * impulse[1, j]
-                - own_velocity[1, j]
-                - (coupling[0, 1, j] * wx + coupling[1, 1, j] * wy + coupling[2, 1, j] * wz)
-            )
-            uz += (
-                beta * impulse[2, j]
-                - own_velocity[2, j]
-                - (coupling[0, 2, j] * wx + coupling[1, 2, j] * wy + coupling[2, 2, j] * wz)
-            )
+            sx = coupling[0, 0, j] * wx + coupling[1, 0, j] * wy + coupling[2, 0, j] * wz
+            sy = coupling[0, 1, j] * wx + coupling[1, 1, j] * wy + coupling[2, 1, j] * wz
+            sz = coupling[0, 2, j] * wx + coupling[1, 2, j] * wy + coupling[2, 2, j] * wz
+            ux += beta * impulse[0, j] - own_velocity[0, j] - sx
+            uy += beta * impulse[1, j] - own_velocity[1, j] - sy
+            uz += beta * impulse[2, j] - own_velocity[2, j] - sz
             fx, fy, fz, f = drag(
                 p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
                 per_speed_squared * group.area[j], beta, ux, uy, uz,

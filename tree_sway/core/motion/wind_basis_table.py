@@ -120,7 +120,7 @@ class WindBasisTable:
         """Find loads and their slopes at the equilibria in winds of each speed."""
         shapes, m = self._shapes, int(table['n_modes'])
         stiffness = table['stiffness'][:m]
-        equilibrium, load = np.zeros((2, len(self._azimuths), N_LEVELS, m))
+        equilibrium = np.zeros((len(self._azimuths), N_LEVELS, m))
         amount = np.zeros((len(self._azimuths), m))
         turning, damping = np.zeros((2, *equilibrium.shape, m))
         winds = direction(self._azimuths, 0.0)
@@ -133,7 +133,6 @@ class WindBasisTable:
                 at = self._equilibrium(at, s, ahead, turning[k, j - 1]) if j > 0 else at
                 x = shapes @ at
                 equilibrium[k, j] = at
-                load[k, j] = self._moments(x, self._still, ahead) @ shapes
                 if j > 0 and at is weaker:
                     turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
                     continue
@@ -151,8 +150,8 @@ class WindBasisTable:
                 self._turn_inertia(poses[j], pressures[j], turning[k, j], damping[k, j])
         table['equilibrium'][..., :m] = equilibrium = _between(equilibrium)
         table['amount'][..., :m] = _between(amount)
-        # Poses in between are no equilibria, which counts up to a gale; storms are calmer without.
-        load = _between(load)
+        # Loads in storms are those of the springs; up to a gale poses in between are none at rest.
+        load = stiffness * equilibrium / np.maximum(pressures, 1e-300)[:, None]
         for poses, ahead, loads in zip(equilibrium, direction(_AZIMUTHS, 0.0), load, strict=True):
             moments = [self._moments(x, self._still, ahead) for x in poses[:calm] @ shapes.T]
             loads[:calm] = moments @ shapes

@@ -91,8 +91,7 @@ class SceneSimulator:
         kind = scene.kind_numbers
         counts = np.array([each if isinstance(each, int) else -1 for each in models])
         # Without a compiler there are no tables, and winds of limbs are those of one tree.
-        is_alone = bool(WHY_PLAIN) or settings.crown_coherence < 1.0
-        is_own = np.ones(len(models), dtype=bool) if is_alone else counts < 0
+        is_own = (counts < 0) | bool(WHY_PLAIN) | (settings.crown_coherence < 1.0)
         used = np.unique(kind[~is_own]).tolist()
         self._models: list[SwaySimulator] = []
         for k in used:

@@ -17,7 +17,6 @@ from tree_sway.core.motion.drag import DragLaw
 
 if TYPE_CHECKING:
     from tree_sway.core.motion.branchwise import Tunable
-    from tree_sway.core.motion.plain.numpy_placing import NumpyPlacing
 
 
 class Oscillators(Protocol):
@@ -96,12 +95,6 @@ class Bank:
         return np.zeros((len(self.branches), 8))
 
     @cached_property
-    def _plain_placing(self) -> NumpyPlacing:
-        from tree_sway.core.motion.plain.numpy_placing import NumpyPlacing
-
-        return NumpyPlacing(self.branches, self.segments)
-
-    @cached_property
     def place(self) -> Callable[[Floats, Floats, Floats], None]:
         """
         Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7).
@@ -109,7 +102,9 @@ class Bank:
         Arrays are not checked: they must be contiguous, of float64 and of these shapes.
         """
         if self.plain:
-            return self._plain_placing.place
+            from tree_sway.core.motion.plain.numpy_placing import NumpyPlacing
+
+            return NumpyPlacing(self.branches, self.segments).place
         from tree_sway.core.motion.placing import GIVEN, room_for
 
         instance, shapes = (self.oscillators.to_place or GIVEN)[0], GIVEN[1]

@@ -68,10 +68,8 @@ def tree_from_segments(
     n = len(starts)
     called = labels if labels is not None else [f'segment {index}' for index in range(n)]
     _check_geometry(starts, ends, diameters, called)
-    if parent is None:
-        parents = _parents_by_nodes(starts, ends)
-    else:
-        parents = _integers(parent, n, 'parent')
+    given = None if parent is None else _integers(parent, n, 'parent')
+    parents = _parents_by_nodes(starts, ends) if given is None else given
     depth_order = checked_order(parents, called)
     for second in np.flatnonzero(parents == -1)[1:2]:
         first = int(np.argmax(parents == -1))

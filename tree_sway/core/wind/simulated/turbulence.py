@@ -115,7 +115,8 @@ class Turbulence:
         phase = rng.uniform(0.0, 2.0 * np.pi, size=(3, n_lines)).T
         # For a coherency c of u and w, w is opposite to u up to a phase of up to +-a, the mean of
         # whose cosine is sin a / a = c.
-        widest = _widest_phase(self._coherency(frequency, power))
+        angle = np.linspace(0.0, np.pi, 2001)
+        widest = np.interp(-self._coherency(frequency, power), -np.sinc(angle / np.pi), angle)
         phase[:, 2] = phase[:, 0] + np.pi + widest * (phase[:, 2] / np.pi - 1.0)
         lines = np.zeros((n_samples // 2 + 1, 3), dtype=np.complex128)
         lines[1 : n_lines + 1] = n_samples * np.sqrt(0.5 * power) * np.exp(1j * phase)
@@ -141,12 +142,6 @@ class Turbulence:
             is_less = float((np.minimum(middle * ratio, 1.0) * both).sum()) < wanted
             low, high = (middle, high) if is_less else (low, middle)
         return np.minimum(high * ratio, 1.0)
-
-
-def _widest_phase(coherency: Floats) -> Floats:
-    """Angle a in [rad] of ``sin a / a = coherency``, (n,)."""
-    angle = np.linspace(0.0, np.pi, 2001)
-    return np.interp(-coherency, -np.sinc(angle / np.pi), angle)
 
 
 def turbulence_scale(height: float) -> float:
