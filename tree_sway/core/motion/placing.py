@@ -118,7 +118,7 @@ def place(
     scratch = blocks[last]
     for number in range(last):
         block = blocks[number]
-        # The compiler is told the most slots, else it makes ready for long loops.
+        # With a known largest number of slots the compiler makes short loops.
         n = 8 * min(block.n_eights, WIDTH // 8)
         _read_parents(block, scratch, bases, x, origin, cosine, sine, out, n)
         is_near = _rotate_on_parents(block, scratch, n)

@@ -4,8 +4,8 @@
 Gusts that reach the limbs of a tree one after another.
 
 Models that step branches give each limb its own wind. `wind_basis` has uniform winds only. It
-uses the mean of the limbs' winds, weighted by their loads, and adds for the limbs of each delay
-what their own wind would do more to the tree at rest than the mean.
+uses the mean of the limbs' winds, weighted by their loads, and adds the difference of load between
+the wind of each delay and the mean, on the limbs of this delay of the tree at rest.
 """
 
 from __future__ import annotations
