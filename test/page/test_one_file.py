@@ -19,10 +19,12 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytest.importorskip('numba', reason='numba is not installed')
 Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 
+from tree_sway_lab.bench.bench_tree import bench_tree  # noqa: E402
+
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.core.simulator.settings import Settings  # noqa: E402
+from tree_sway.core.simulator.simulator import SwaySimulator  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
-from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.page.one_file import page_of_scene  # noqa: E402
 
 Browser = Any
@@ -172,7 +174,9 @@ def test_a_browser_without_webgl_says_what_to_do(file: Path, browser_class: Any)
     asyncio.run(whole())
 
 
-def test_a_model_without_a_table_is_refused() -> None:
-    simulator = open_scene('goldcrest').simulator(Settings(), model='branch')
+@pytest.mark.parametrize('changes', [{'model': 'branch'}, {'model': 20, 'crown_coherence': 0.5}])
+def test_a_model_without_a_table_is_refused(changes: dict[str, Any]) -> None:
+    # A page has one wind for a tree, and none of each limb.
+    simulator = SwaySimulator(bench_tree(), settings=Settings(**changes))
     with pytest.raises(ParameterError, match='no table to solve it by'):
         page_of_scene(simulator)
