@@ -8,7 +8,14 @@ from pathlib import Path
 
 import pytest
 from tree_sway_lab.validation.section import Effort
-from tree_sway_lab.validation.sections.table import Departure, departure, LIMIT, measure
+from tree_sway_lab.validation.sections.table import (
+    Departure,
+    departure,
+    LIMB_BY_LIMB,
+    limb_by_limb,
+    LIMIT,
+    measure,
+)
 
 OURS = Path(__file__).resolve().parents[3] / 'files' / 'data' / 'tree121.csv'
 
@@ -18,17 +25,20 @@ def test_a_tree_that_is_too_far_from_modes_misses(tmp_path: Path) -> None:
     (tmp_path / 'trees' / 'walnut.mtg').touch()
 
     def each(function, sources):
+        if function is limb_by_limb:
+            return [[0.01, LIMIT + 0.01 * (source == LIMB_BY_LIMB[1])] for source in sources]
         return [
             Departure(9, [LIMIT + 0.01 * source.endswith('.mtg')] * 4, [0.5] * 4, [0.1] * 4)
             for source in sources
         ]
 
     section = measure(Effort(each, data=tmp_path))
-    *trees, over = section.checks
+    *trees, over, apart = section.checks
     missed = [check.what for check in trees if not check.holds]
     assert len(trees) == 4
     assert missed == ['`walnut.mtg`, largest error over motion']
     assert over.holds
+    assert not apart.holds
     assert '| walnut.mtg | 9 | 0.040 | 0.040 | 0.040 | 0.040 | 0.50 | 0.100 |' in section.table
 
 
