@@ -17,7 +17,7 @@ from tree_sway_lab.validation.sections.table import (
     measure,
 )
 
-OURS = Path(__file__).resolve().parents[3] / 'files' / 'data' / 'tree121.csv'
+OURS = Path(__file__).resolve().parents[4] / 'test' / 'files' / 'data' / 'tree121.csv'
 
 
 def test_a_tree_that_is_too_far_from_modes_misses(tmp_path: Path) -> None:
