@@ -81,7 +81,7 @@ def response_slopes(
 
     """
     tree = grow(species, HEIGHTS[species_named(species).habit], rng=np.random.default_rng(seed))
-    rig = Rig(tree, Settings(crown_coherence=coherence, in_leaf=in_leaf, model='full'))
+    rig = Rig(tree, Settings(crown_coherence=coherence, in_leaf=in_leaf))
     wind = simulate_turbulence(
         mean_speed, rate=_RATE, duration=seconds, rng=np.random.default_rng(seed)
     )

@@ -127,9 +127,6 @@ def test_goldcrest_sways_as_slowly_as_its_leaves_make_it():
 _too_heavy = pytest.mark.xfail(
     strict=True, reason="leaves at 60 % of the branches' mass bring it to 0.50 to 0.69"
 )
-_too_light = pytest.mark.xfail(
-    strict=True, reason="leaves at 15 % of the branches' mass leave it at 0.9504"
-)
 
 
 @pytest.mark.parametrize(
@@ -138,7 +135,7 @@ _too_light = pytest.mark.xfail(
         ('pine', (0.15, 0.60)),
         ('benjamina', (0.15, 0.44)),
         pytest.param('spruce', (0.20, 0.60), marks=_long),
-        pytest.param('spruce', (0.15, 0.60), marks=[_long, _too_light]),
+        pytest.param('spruce', (0.15, 0.60), marks=_long),
         pytest.param('goldcrest', (0.15, 0.60), marks=_long),
         pytest.param('broadleaf', (0.15, 0.33), marks=_long),
         pytest.param('broadleaf', (0.15, 0.60), marks=[_long, _too_heavy]),
