@@ -54,9 +54,9 @@ def measure(effort: Effort) -> Section:
     ]
     text = (
         'Slope in logarithms of the power spectrum between 1.3 and 3.5 times the first frequency, '
-        f'along the wind and across it, by the default model in {seconds:g} s of simulated wind of '
-        '7 m/s; checked is '
-        'the strain of the stem at its base with gusts that meet the crown limb by limb '
+        f'along the wind and across it, by the default model in {seconds:g} s of simulated wind '
+        'of 7 m/s; checked is the strain of the stem at its base with gusts that meet the crown '
+        'limb by limb '
         f'(`crown_coherence` {USUAL_COHERENCE:g}), in the mean over {len(SEEDS)} trees of each '
         'species, each in a wind of its own. Trees of one species differ by up to 4 as their '
         'limbs do, one tree from wind to wind by 0.1 to 0.3. Strain is what was measured on real '
