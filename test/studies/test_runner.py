@@ -22,7 +22,7 @@ from tree_sway.studies import runner
 from tree_sway.studies.compute import compute
 from tree_sway.studies.plan import Case, read_study
 from tree_sway.studies.runner import (
-    _held_interrupt,
+    _delayed_interrupt,
     batches,
     compute_batch,
     compute_to_file,
@@ -168,11 +168,11 @@ def test_ctrl_c_waits_until_what_is_begun_is_whole():
     over = threading.Event()
     threading.Thread(target=over.wait).start()  # not blocked there: it may receive the signal
     before = signal.getsignal(signal.SIGINT)
-    with _held_interrupt() as held:
+    with _delayed_interrupt() as delayed:
         os.kill(os.getpid(), signal.SIGINT)
         until(lambda: signal.SIGINT in signal.sigpending(), 10.0)
         with pytest.raises(KeyboardInterrupt):
-            held.close()
+            delayed.close()
     over.set()
     assert signal.getsignal(signal.SIGINT) is before
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])

@@ -151,7 +151,7 @@ def _cluster(workers: int) -> Iterator[tuple[Any, Any]]:
     """
     quiet = {'distributed.nanny.pre-spawn-environ.DASK_LOGGING__DISTRIBUTED': 'critical'}
     page = {'dashboard': False, 'dashboard_address': '127.0.0.1:0'}  # none, and at a free port
-    with _held_interrupt() as held:
+    with _delayed_interrupt() as delayed:
         dask, distributed = import_module('dask'), import_module('distributed')
         import_module('cryptography')  # keys that exclude other users of this machine
         with (
@@ -164,7 +164,7 @@ def _cluster(workers: int) -> Iterator[tuple[Any, Any]]:
             distributed.Client(local) as client,
         ):  # fmt: skip
             try:
-                held.close()
+                delayed.close()
                 yield distributed, client
             except BaseException:  # Ctrl-C: running cases are computed in the next run
                 for worker in local.workers.values():
@@ -172,15 +172,15 @@ def _cluster(workers: int) -> Iterator[tuple[Any, Any]]:
                 raise
 
 
-def _held_interrupt() -> ExitStack:
-    """Hold Ctrl-C back until closed; threads and processes started before then never get it."""
-    held = ExitStack()
+def _delayed_interrupt() -> ExitStack:
+    """Delay Ctrl-C until closed; threads and processes started before then never get it."""
+    delayed = ExitStack()
     if hasattr(signal, 'pthread_sigmask'):
         resource_tracker.ensure_running()  # it would unblock the signal as it starts
         signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
-        held.callback(signal.pthread_sigmask, signal.SIG_UNBLOCK, [signal.SIGINT])
+        delayed.callback(signal.pthread_sigmask, signal.SIG_UNBLOCK, [signal.SIGINT])
         if threading.current_thread() is threading.main_thread():
             # An earlier thread may receive it, for Python to handle here: then it waits here.
             usual = signal.signal(signal.SIGINT, lambda number, _: signal.raise_signal(number))
-            held.callback(signal.signal, signal.SIGINT, usual)
-    return held
+            delayed.callback(signal.signal, signal.SIGINT, usual)
+    return delayed

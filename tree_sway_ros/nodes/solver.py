@@ -197,9 +197,9 @@ class SolverNode(TreeSwayNode):
             **self.values('tolerance', 'tolerance_angle', 'budget'),
         )
 
-    def slip(self, error: Exception) -> None:
+    def note_failure(self, error: Exception) -> None:
         """Continue from rest, as the state within a step is invalid."""
-        super().slip(error)
+        super().note_failure(error)
         self._run.request(self.simulator.reset)
 
     def _tick(self, tick: Tick) -> None:

@@ -66,4 +66,4 @@ class StatePublisher:
         except TreeSwayError as error:
             self._node.get_logger().warning(f'no {TREE_STATE.name}: {error}')
         except Exception as error:
-            self._node.slip(error)
+            self._node.note_failure(error)

@@ -206,7 +206,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     def pacer_of(self, work: Callable[[Tick], None]) -> Pacer:
         """Make the pacer that calls `work` at the parameter `rate`, by the clock of the node."""
-        return Pacer(self.get_clock(), self.values['rate'], work, self.fail, self.slip)
+        return Pacer(self.get_clock(), self.values['rate'], work, self.fail, self.note_failure)
 
     def run_worker(self, worker: Worker) -> None:
         """Start a worker thread; it stops with the node."""
@@ -221,7 +221,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         """Store the error that ended a thread of the node; it is raised by `spin`."""
         self.failure = error
 
-    def slip(self, error: Exception) -> None:
+    def note_failure(self, error: Exception) -> None:
         """Record the failure of one tick of a thread, which continues with the next."""
         if self.context.ok():  # otherwise the graph is closed, and the thread will end
             self.guard.note(error)

@@ -40,11 +40,11 @@ def grow_benjamina(
         stem, roll = skeleton.add(nodes, stock, at), rng.uniform(0.0, 2.0 * np.pi)
         for i, node in enumerate((3, 4, 5, 5, 6, 7, 7, 8, 9, 9, 10, 10)):
             # Branches shorten to the top; away from the middle of the plant there is light.
-            reach = 0.50 * (1.0 - 0.6 * (node / _N_NODES)) * rng.uniform(0.8, 1.2)
+            length = 0.50 * (1.0 - 0.6 * (node / _N_NODES)) * rng.uniform(0.8, 1.2)
             angle, along = rng.uniform(0.5, 0.9), skeleton.shoots[stem].tangent(node)
             heading = aim(along, angle, roll + i * GOLDEN_ANGLE)
             heading = heading + 1.5 * nodes[node] * np.array([1.0, 1.0, 0.0])
-            add_branch(stem, node, heading_of(heading), reach)
+            add_branch(stem, node, heading_of(heading), length)
 
     def add_branch(stem: int, at: int, heading: tuple[float, float], length: float) -> None:
         """Add a branch that rises, arches over and hangs, with its twigs."""

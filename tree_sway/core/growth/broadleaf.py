@@ -42,7 +42,7 @@ def grow_broadleaf(
         rise = low + (high - low) * here + rng.uniform(-0.1, 0.1)
         end = min(rise + bent_low + (bent_high - bent_low) * here, 1.4)
         heading = direction_of(azimuth, 0.5 * (rise + end))
-        length = max(0.85 * form.outline.reach(origin, heading), 0.08) * rng.uniform(0.85, 1.0)
+        length = max(0.85 * form.outline.room(origin, heading), 0.08) * rng.uniform(0.85, 1.0)
         axis = grow_axis(origin, azimuth, (rise, end), length, 8, rng, wander=form.wander)
         limb = skeleton.add(axis, trunk, at)
         roll = rng.uniform(0.0, np.pi)
@@ -57,7 +57,7 @@ def grow_broadleaf(
         origin = skeleton.shoots[limb].nodes[at]
         azimuth, rise = heading_of(heading)
         longest = 0.55 * form.outline.half_width
-        length = float(np.clip(0.85 * form.outline.reach(origin, heading), 0.06, longest))
+        length = float(np.clip(0.85 * form.outline.room(origin, heading), 0.06, longest))
         length *= rng.uniform(0.8, 1.0)
         ends = rise, float(np.clip(rise + form.branch_turn, -1.3, 1.4))
         segments, wander = 6 if length > 0.1 else 4, 1.2 * form.wander

@@ -37,7 +37,7 @@ def grow_conifer(
         low, high = form.rise
         first = low + (high - low) * here + rng.uniform(-0.08, 0.08)
         heading = direction_of(azimuth, first + 0.5 * form.turn)
-        length = max(form.outline.reach(origin, heading), 0.012) * rng.uniform(0.85, 1.08)
+        length = max(form.outline.room(origin, heading), 0.012) * rng.uniform(0.85, 1.08)
         segments, ends = 6 if here < 0.7 else 4 if here < 0.9 else 2, (first, first + form.turn)
         wander = form.wander
         axis = grow_axis(origin, azimuth, ends, length, segments, rng, wander=wander, floor=0.01)

@@ -51,7 +51,7 @@ class Outline:
         power = np.where(u < self.widest, self.below, self.above)
         return np.asarray(self.half_width * (1.0 - away**power) ** (1.0 / power))
 
-    def reach(self, origin: Floats, way: Floats) -> float:
+    def room(self, origin: Floats, way: Floats) -> float:
         """Distance from a point along a unit vector to the crown's surface; 0 from the outside."""
         steps = np.linspace(0.0, 1.0, 101)
         x, y, z = (origin + steps[:, None] * way).T

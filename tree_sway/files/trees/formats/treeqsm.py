@@ -119,7 +119,7 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
     """Cylinders from the columns, (n, 10), with the name of each row in errors."""
     if len(table) == 0:
         raise FormatError('no cylinders', where=source)
-    reach, starts, axes, relatives = table[:, 1], table[:, 2:5], table[:, 5:8], table[:, 8:10]
+    length, starts, axes, relatives = table[:, 1], table[:, 2:5], table[:, 5:8], table[:, 8:10]
     is_whole = (relatives == np.round(relatives)) & (np.abs(relatives) <= 2**53)
     for row, column in np.argwhere(~is_whole)[:1]:
         what = f'parent or extension is {relatives[row, column]:g}, not a whole number'
@@ -133,9 +133,9 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
         )
     above, after = relatives.T.astype(np.int64) - first
     norm = np.linalg.norm(axes, axis=1)
-    for row in np.flatnonzero((norm == 0.0) & (reach > 0.0))[:1]:
+    for row in np.flatnonzero((norm == 0.0) & (length > 0.0))[:1]:
         raise FormatError('an axis without direction', where=labels[row])
-    ends = starts + (reach / np.where(norm > 0.0, norm, 1.0))[:, None] * axes
+    ends = starts + (length / np.where(norm > 0.0, norm, 1.0))[:, None] * axes
     valid = (after >= 0) & (after < len(table))
     continues = np.zeros(len(table), dtype=np.bool_)
     child = after[valid]

@@ -126,10 +126,10 @@ def _attachment(branch: Values, on: _Placed, first_node: Floats, where: str) -> 
     if 'at' in branch and 'segment' in branch:
         raise FormatError('both at and segment', where=where, cure='give one of the two')
     if 'at' in branch:
-        reach = np.cumsum(length)
-        along = branch['at'] * reach[-1]
-        segment = int(min(np.searchsorted(reach, along), len(length) - 1))
-        fraction = 1.0 - (reach[segment] - along) / max(length[segment], 1e-12)
+        ends = np.cumsum(length)
+        along = branch['at'] * ends[-1]
+        segment = int(min(np.searchsorted(ends, along), len(length) - 1))
+        fraction = 1.0 - (ends[segment] - along) / max(length[segment], 1e-12)
         return segment, on.start[segment] + fraction * axis[segment]
     if 'segment' not in branch:
         return _nearest(branch, on, first_node, where), np.zeros(3)
