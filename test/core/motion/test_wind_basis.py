@@ -152,14 +152,18 @@ def moves(sim, winds):
 
 
 @pytest.mark.compiled  # without the compiler there is no table
-@pytest.mark.parametrize(('seed', 'most'), [(1, 1.3), (4, 1.2), (5, 1.4)])
+@pytest.mark.parametrize(('seed', 'most'), [(1, 0.75), (4, 2.6), (5, 2.3), (8, 0.7)])
 def test_a_storm_beyond_the_table_is_clamped_and_flings_no_tip(seed, most):
-    """In a frame a tip moves at most `most` times as far as with all coordinates."""
-    sim, other = (SwaySimulator(crooked(seed), model=m) for m in (60, 'full'))
+    """
+    In a frame a tip moves by at most ``most`` [m].
+
+    All coordinates move it by 0.59, 1.9 or 7.2, 1.4 or 4.5, and 0.64 m: their last bits decide.
+    """
+    sim = SwaySimulator(crooked(seed), model=60)
     moved = moves(sim, 1.8 * gusty(35.0))
     assert sim.bank.oscillators.n_outside > 0
     assert sim.counts.clamped == sim.bank.oscillators.n_outside
-    assert moved < most * moves(other, 1.8 * gusty(35.0))
+    assert moved < most
     for _ in range(3000):
         sim.step((0.0, 0.0, 0.0), DT)
     assert np.abs(sim.rotations()).max() < 0.01

@@ -57,7 +57,7 @@ def test_a_table_meets_the_gusts_limb_by_limb(tree, speed):
     settings = Settings(crown_coherence=0.3)
     full, table = (SwaySimulator(tree, WOOD, settings, model=each) for each in ('full', 60))
     wind = turbulent(speed, 12.0, 3)
-    assert against(table, full, wind) < 0.05  # 0.3 to 0.5 with the mean of the limbs' winds
+    assert against(table, full, wind) < 0.03  # 0.3 to 0.5 with the mean of the limbs' winds
 
 
 @pytest.mark.compiled

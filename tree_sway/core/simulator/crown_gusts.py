@@ -5,7 +5,8 @@ Gusts that reach the limbs of a tree one after another.
 
 Models that step branches give each limb its own wind. `wind_basis` has uniform winds only. It
 uses the mean of the limbs' winds, weighted by their loads, and adds the difference of load between
-the wind of each delay and the mean, on the limbs of this delay of the tree at rest.
+the wind of each delay and the mean, on the limbs of this delay of the tree at rest, reduced as the
+load on the bent tree is.
 """
 
 from __future__ import annotations
@@ -59,8 +60,7 @@ class CrownGusts:
                 oscillators.record, oscillators.time_step, oscillators.instance, np.array(moments),
                 self.wind.record['apart'][0], np.zeros((3, max(moments[0].shape))),
             )  # fmt: skip
-            compiled = entry_of(add_gusts, *arrays, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-            self._add_gusts = partial(compiled, *arrays)
+            self._add_gusts = partial(entry_of(add_gusts, *arrays, *[0.0] * 7), *arrays)
 
     def advance(self, x: float, y: float, z: float, per_speed_squared: float, dt: float) -> int:
         """Advance a step of dt [s] in a mean wind [m/s]; the result is that of the model."""
@@ -104,28 +104,33 @@ def add_gusts(
     _load(table, x + ax, y + ay, z + az, per_speed_squared, mean)
     force[:] = 0.0
     for delay in range(len(moments)):
-        _load(
-            table, x + apart[delay, 0], y + apart[delay, 1], z + apart[delay, 2],
-            per_speed_squared, own,
-        )  # fmt: skip
+        more = apart[delay]
+        _load(table, x + more[0], y + more[1], z + more[2], per_speed_squared, own)
         for k in range(moments.shape[1]):
             change = own[k] - mean[k]
             for i in range(moments.shape[2]):
                 force[i] += change * moments[delay, k, i]
+    bent, upright = 0.0, 1e-300
     for i in range(moments.shape[2]):
-        added = force[i] / (1.0 - instance.diagonal[i] * half[5, i])  # as in `step_instance`
+        at_rest = 0.0
+        for k in range(moments.shape[1]):
+            at_rest += mean[k] * table.harmonics[k, i]
+        bent += at_rest * instance.wanted[i] / table.stiffness[i]
+        upright += at_rest * at_rest / table.stiffness[i]
+    share = min(max(bent / upright, 0.0), 1.0)
+    for i in range(moments.shape[2]):
+        # As in `step_instance`.
+        added = share * force[i] / (1.0 - instance.diagonal[i] * half[5, i])
         instance.eta[i] += (whole[2, i] + whole[3, i]) * added
         instance.rate[i] += (whole[6, i] + whole[7, i]) * added
         instance.force[i] += added
 
 
 @part
-def _load(
-    table: Table, x: float, y: float, z: float, per_speed_squared: float, out: Floats
-) -> None:
-    """Write the harmonics of a wind [m/s] times its dynamic pressure."""
+def _load(table: Table, x: float, y: float, z: float, per_speed: float, out: Floats) -> None:
+    """Write the harmonics of a wind [m/s] times its dynamic pressure, by `drag.pressure`."""
     speed = max(math.sqrt(x * x + y * y + z * z), 1e-12)
-    pressure = min(per_speed_squared * speed * speed, table.most_pressure)
+    pressure = min(per_speed * speed * speed, table.most_pressure)
     fill_harmonics(x / speed, y / speed, z / speed, out)
     for k in range(len(out)):
         out[k] *= pressure

@@ -208,7 +208,11 @@ class WindGate:
             reason = self._judge(time, x, y, z)
             self._time, self._stamp = time, stamp
             self._arrival = stamp if arrival is None else arrival
-            self._watch_for_frozen(time, (x, y, z))
+            if (x, y, z) != self._seen or self._seen == (0.0, 0.0, 0.0):
+                self._seen, self._equal_since, self.is_frozen = (x, y, z), time, False
+            elif not self.is_frozen and time - self._equal_since >= self._frozen_after:
+                self.is_frozen = True
+                self.counts.frozen += 1
         self.counts.add(reason)
         is_good = reason == 'accepted'
         if is_good:
@@ -273,10 +277,3 @@ class WindGate:
         self.counts.forced += 1
         self._before = self._before or self._good
         return 'accepted'
-
-    def _watch_for_frozen(self, time: int, sample: tuple[float, float, float]) -> None:
-        if sample != self._seen or sample == (0.0, 0.0, 0.0):
-            self._seen, self._equal_since, self.is_frozen = sample, time, False
-        elif not self.is_frozen and time - self._equal_since >= self._frozen_after:
-            self.is_frozen = True
-            self.counts.frozen += 1
