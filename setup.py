@@ -70,10 +70,22 @@ extras = {
     'film': ['matplotlib>=3.6', 'imageio-ffmpeg>=0.5'],
     # colcon runs pytest only where an extra of this name asks for it.
     'test': [
-        *('pytest>=7,<9', 'pytest-xdist>=3.2', 'pytest-cov>=4', 'hypothesis>=6.60', 'mpmath>=1.2'),
-        *('pygltflib>=1.16', 'trimesh>=4.0', 'usd-core>=24.5'),
+        'pytest>=7,<9',
+        'pytest-xdist>=3.2',
+        'pytest-cov>=4',
+        'hypothesis>=6.60',
+        'mpmath>=1.2',
+        'pygltflib>=1.16',
+        'trimesh>=4.0',
+        'usd-core>=24.5',
     ],
-    'lint': ['ruff>=0.8', 'mypy>=1.11', 'types-PyYAML', 'types-jsonschema'],
+    'lint': [
+        'ruff>=0.8',
+        'mypy>=1.11',
+        'codespell[toml]>=2.3',
+        'types-PyYAML',
+        'types-jsonschema',
+    ],
     # Studies on all cores or a cluster, and their tables as Parquet.
     'study': ['distributed>=2023.1', 'cryptography>=41', 'pyarrow>=12'],
     'docs': ['sphinx>=7', 'myst-parser>=2'],
@@ -97,7 +109,11 @@ setup(
     data_files=data_files,
     python_requires='>=3.10',
     install_requires=[
-        *('setuptools', 'numpy>=1.26', 'scipy>=1.11', 'PyYAML>=6', 'jsonschema>=4.10'),
+        'setuptools',
+        'numpy>=1.26',
+        'scipy>=1.11',
+        'PyYAML>=6',
+        'jsonschema>=4.10',
         'aiohttp>=3.8',
     ],
     extras_require=extras,

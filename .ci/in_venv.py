@@ -49,12 +49,19 @@ NEEDS = {
     **dict.fromkeys(
         ('pytest', 'py.test'),
         (
-            *('ros', 'serial', 'bag', 'film', 'plot', 'study', 'test'),
-            *('lab', 'docs'),
+            'ros',
+            'serial',
+            'bag',
+            'film',
+            'plot',
+            'study',
+            'test',
+            'lab',
+            'docs',
         ),
     ),
     'coverage': ('test',),
-    **dict.fromkeys(('ruff', 'mypy', 'pre-commit'), ('lint',)),
+    **dict.fromkeys(('ruff', 'mypy', 'codespell', 'pre-commit'), ('lint',)),
     'sphinx-build': ('docs',),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.

@@ -69,21 +69,19 @@ def test_whatever_is_imported_is_depended_on(package: ElementTree.Element) -> No
 
 #: Asked for by a part that says so when it is missing; they come with an extra, not with rosdep.
 OPTIONAL = {
-    *(
-        'PIL',
-        'cryptography',
-        'dask',
-        'distributed',
-        'imageio_ffmpeg',
-        'mpl_toolkits',
-        'mpmath',
-        'mujoco',
-        'dartpy',
-        'numba',
-        'pyarrow',
-        'rosbags',
-        'sksundae',
-    ),
+    'PIL',
+    'cryptography',
+    'dask',
+    'distributed',
+    'imageio_ffmpeg',
+    'mpl_toolkits',
+    'mpmath',
+    'mujoco',
+    'dartpy',
+    'numba',
+    'pyarrow',
+    'rosbags',
+    'sksundae',
 }
 
 

@@ -21,13 +21,20 @@ from tree_sway.files.wind.wind_file import read_wind, WIND_FORMATS
 
 DATA = Path(__file__).parent / 'data'
 WINDS = [
-    *('sonic.toa5.dat', 'mast.nmea', 'weather.nmea', 'wind.csv', 'wind_components.csv'),
-    *('wind.db3', 'wind.mcap'),
+    'sonic.toa5.dat',
+    'mast.nmea',
+    'weather.nmea',
+    'wind.csv',
+    'wind_components.csv',
+    'wind.db3',
+    'wind.mcap',
 ]
 LARGE = ['tree121.csv', 'canopy.toa5.dat']
 TREES = [
     *sorted(path.name for path in DATA.iterdir() if path.name not in (*WINDS, *LARGE)),
-    *('fork5.mat', 'fork7.mat', 'glade.yaml'),
+    'fork5.mat',
+    'fork7.mat',
+    'glade.yaml',
 ]
 
 SEEDLING = open_tree(DATA / 'seedling.yaml')

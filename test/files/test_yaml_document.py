@@ -101,5 +101,7 @@ def test_errors(text, message):
 def test_a_place_has_its_line():
     document = read_yaml('name: a\nwidth:\n- 1\n- 2\n', 't', SCHEMA)
     assert [document.where(), document.where('width'), document.where('width', 1)] == [
-        *('t:1', 't:3', 't:4')
+        't:1',
+        't:3',
+        't:4',
     ]

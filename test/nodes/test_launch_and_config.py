@@ -11,8 +11,18 @@ from tree_sway_ros.process.topics import TOPICS  # noqa: I100
 
 ROOT = Path(__file__).parents[2]
 ARGUMENTS = (
-    *('tree', 'address', 'file', 'reader_options', 'rate', 'start', 'playback_rate', 'loop'),
-    *('pose', 'frame_id', 'use_sim_time', 'autostart'),
+    'tree',
+    'address',
+    'file',
+    'reader_options',
+    'rate',
+    'start',
+    'playback_rate',
+    'loop',
+    'pose',
+    'frame_id',
+    'use_sim_time',
+    'autostart',
 )
 GIVEN = dict.fromkeys(ARGUMENTS, '')
 

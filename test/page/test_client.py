@@ -251,9 +251,9 @@ def test_the_delay_is_what_the_line_asks_for(
     """Frames of 60 Hz that are late by up to some [s], all of them or one of some."""
     playout, rng, shown = Playout(), np.random.default_rng(3), []
     stamps = np.arange(3600) / 60.0
-    lates = rng.uniform(0.0, np.where(np.arange(3600) % each == 0, late, 0.002))
+    delays = rng.uniform(0.0, np.where(np.arange(3600) % each == 0, late, 0.002))
     # What is late holds up what comes after it, as on TCP.
-    on_the_way = list(zip(np.maximum.accumulate(stamps + lates), stamps, strict=True))
+    on_the_way = list(zip(np.maximum.accumulate(stamps + delays), stamps, strict=True))
     for now in np.arange(1.0, 60.0, 1.0 / 60.0):
         while on_the_way and on_the_way[0][0] <= now:
             arrival, stamp = on_the_way.pop(0)

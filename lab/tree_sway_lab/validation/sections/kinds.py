@@ -27,7 +27,10 @@ MODELS = ('default', 'full')
 
 JUDGED = (
     *(kind for kind in KINDS if kind not in ('crooked', 'straight')),
-    *('crooked 8', 'crooked 18', 'crooked 32', 'straight 1'),
+    'crooked 8',
+    'crooked 18',
+    'crooked 32',
+    'straight 1',
 )
 """Kinds of the page; a full run takes a second seed of each."""
 

@@ -59,8 +59,15 @@ def measure(effort: Effort) -> Section:
         'tree that no other shelters and whose crown has not been cut short by neighbours.'
     )
     titles = [
-        *('species', 'height [m]', 'diameter [m]', 'site', 'measured by', 'frequency [Hz]'),
-        *('ours', 'moment [N m]', 'ours'),
+        'species',
+        'height [m]',
+        'diameter [m]',
+        'site',
+        'measured by',
+        'frequency [Hz]',
+        'ours',
+        'moment [N m]',
+        'ours',
     ]
     title = 'Published trees'
     return Section(title, text, checks, markdown_table(titles, rows))

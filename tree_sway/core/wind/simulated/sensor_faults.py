@@ -21,8 +21,17 @@ from tree_sway.core.checks import one_of, within
 _SPIKE = 20.0
 _NO_READING = 999.99
 _KINDS = (
-    *('dropout', 'spike', 'freeze', 'nan', 'no_reading', 'delay', 'reorder', 'duplicate'),
-    *('zero_stamp', 'future_stamp', 'restart'),
+    'dropout',
+    'spike',
+    'freeze',
+    'nan',
+    'no_reading',
+    'delay',
+    'reorder',
+    'duplicate',
+    'zero_stamp',
+    'future_stamp',
+    'restart',
 )
 FAULTS = ('none', *_KINDS, 'all')
 """Kinds of fault, none, and all in turn."""
