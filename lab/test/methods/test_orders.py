@@ -26,14 +26,11 @@ def test_measured_order_is_the_declared_one(name, swaying):
     'name',
     [
         'multiplier_rk4',
-        'multiplier_implicit_midpoint',
         'generalized_alpha',
-        'multiplier_bdf2',
         'rk4',
         'implicit_midpoint',
         'tr_bdf2',
         'exact_foh',
-        'exponential_rosenbrock',
     ],
 )
 def test_order_on_a_chain(name, swaying_chain):

@@ -4,6 +4,5 @@
 Methods of time integration side by side, in the multiplier form and in the minimal form.
 
 Each declares its order, limit and source.
-Those that eight coefficients per oscillator hold are in ``step_rules`` too.
 
 """

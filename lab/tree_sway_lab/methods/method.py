@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 
 from tree_sway_lab.methods import minimal_form, multiplier_form
 from tree_sway_lab.methods.chain import PlanarChain
-from tree_sway_lab.methods.step_rules import rule_propagator
 
 Array = NDArray[Any]
 
@@ -77,10 +76,6 @@ class Method(ABC):
     @abstractmethod
     def rates(self, state: Array) -> Array:
         """Angular velocities in [rad/s], (n,), a view of the state."""
-
-    def propagator(self, inertia: Array, damping: Array, stiffness: Array, dt: float) -> Array:
-        """Return coefficients of a step (n, 8), by `rule_propagator`."""
-        return rule_propagator(self.name, inertia, damping, stiffness, dt)
 
     def reactions(self, chain: PlanarChain, state: Array, load: Array) -> Array:
         """Force that each joint carries in [N], (n, 2), at a state under a load."""

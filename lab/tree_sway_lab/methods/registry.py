@@ -10,34 +10,28 @@ from tree_sway_lab.methods.minimal.bdf2 import Bdf2
 from tree_sway_lab.methods.minimal.exact_about_equilibrium import ExactAboutEquilibrium
 from tree_sway_lab.methods.minimal.exact_foh import ExactFirstOrderHold
 from tree_sway_lab.methods.minimal.exact_zoh import ExactZeroOrderHold
-from tree_sway_lab.methods.minimal.exponential_rosenbrock import ExponentialRosenbrock
 from tree_sway_lab.methods.minimal.implicit_midpoint import ImplicitMidpoint
 from tree_sway_lab.methods.minimal.rk4 import RungeKutta4
 from tree_sway_lab.methods.minimal.semi_implicit_euler import SemiImplicitEuler
 from tree_sway_lab.methods.minimal.tr_bdf2 import TrBdf2
 from tree_sway_lab.methods.minimal.verlet import Verlet
 from tree_sway_lab.methods.multiplier.baumgarte import Baumgarte
-from tree_sway_lab.methods.multiplier.bdf2 import MultiplierBdf2
 from tree_sway_lab.methods.multiplier.explicit_euler import MultiplierExplicitEuler
 from tree_sway_lab.methods.multiplier.generalized_alpha import GeneralizedAlpha
-from tree_sway_lab.methods.multiplier.hht import Hht
-from tree_sway_lab.methods.multiplier.implicit_midpoint import MultiplierImplicitMidpoint
 from tree_sway_lab.methods.multiplier.linearly_implicit_euler import LinearlyImplicitEuler
 from tree_sway_lab.methods.multiplier.newmark import Newmark
 from tree_sway_lab.methods.multiplier.projection import Projection
 from tree_sway_lab.methods.multiplier.radau_ggl import RadauGgl
 from tree_sway_lab.methods.multiplier.rattle import Rattle
 from tree_sway_lab.methods.multiplier.rk4 import MultiplierRungeKutta4
-from tree_sway_lab.methods.multiplier.semi_implicit_euler import MultiplierSemiImplicitEuler
 
 METHODS: dict[str, type[Method]] = {
     kind.name: kind
     for kind in (
-        MultiplierExplicitEuler, MultiplierSemiImplicitEuler, MultiplierRungeKutta4, Baumgarte,
-        Projection, Rattle, LinearlyImplicitEuler, MultiplierImplicitMidpoint, Newmark, Hht,
-        GeneralizedAlpha, MultiplierBdf2, RadauGgl,
+        MultiplierExplicitEuler, MultiplierRungeKutta4, Baumgarte, Projection, Rattle,
+        LinearlyImplicitEuler, Newmark, GeneralizedAlpha, RadauGgl,
         SemiImplicitEuler, Verlet, RungeKutta4, ImplicitMidpoint, TrBdf2, Bdf2,
-        ExactZeroOrderHold, ExactFirstOrderHold, ExponentialRosenbrock, ExactAboutEquilibrium,
+        ExactZeroOrderHold, ExactFirstOrderHold, ExactAboutEquilibrium,
     )
 }  # fmt: skip
 

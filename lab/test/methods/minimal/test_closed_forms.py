@@ -15,14 +15,18 @@ from tree_sway_lab.methods.chain import (
 )
 from tree_sway_lab.methods.minimal_form import linearised
 from tree_sway_lab.methods.registry import method_named
-from tree_sway_lab.methods.step_rules import REAL_TIME
 from tree_sway_lab.methods.trajectory import integrate
 
-from tree_sway.core.oscillators.propagator import propagator
-
 MINIMAL = (
-    *('semi_implicit_euler', 'verlet', 'rk4', 'implicit_midpoint', 'tr_bdf2', 'bdf2'),
-    *('exact_zoh', 'exact_foh', 'exponential_rosenbrock', 'exact_about_equilibrium'),
+    'semi_implicit_euler',
+    'verlet',
+    'rk4',
+    'implicit_midpoint',
+    'tr_bdf2',
+    'bdf2',
+    'exact_zoh',
+    'exact_foh',
+    'exact_about_equilibrium',
 )
 
 
@@ -90,21 +94,6 @@ def test_symmetric_methods_run_backwards(name, n, slack):
     assert name != 'rk4' or moved > 1e-11, 'of an even order, but not symmetric'
 
 
-@pytest.mark.parametrize('name', REAL_TIME)
-@pytest.mark.parametrize('ratio', [0.0, 0.05, 1.0])
-def test_propagators_agree_with_the_exact_one_as_the_step_shrinks(name, ratio):
-    method, w = method_named(name), 3.0
-    args = np.array([0.7]), np.array([2 * ratio * w * 0.7]), np.array([0.7 * w * w])
-    rest = np.array([0.3, -1.0, 2.0, 2.0])
-    gap = [
-        np.abs((method.propagator(*args, h) - propagator(*args, h)).reshape(2, 4) @ rest).max()
-        for h in (0.02, 0.01)
-    ]
-    assert gap[1] <= gap[0] / 2 ** (method.order + 0.7) + 1e-14, (
-        'one step errs one power above the order'
-    )
-
-
 @pytest.mark.parametrize('name', MINIMAL)
 def test_equilibrium_under_a_steady_load_is_kept(name):
     chain, method = single_segment(1.0, 0.05), method_named(name)
@@ -117,10 +106,9 @@ def test_equilibrium_under_a_steady_load_is_kept(name):
     assert state[:2, 0] == pytest.approx([angle, 0.0], abs=1e-9)
 
 
-@pytest.mark.parametrize('name', ['exponential_rosenbrock', 'exact_about_equilibrium'])
-def test_motion_about_a_bent_state_has_its_own_frequency(name):
+def test_motion_about_a_bent_state_has_its_own_frequency():
     """A load of many times the stiffness pulls straight: the bent branch swings much faster."""
-    chain, method, dt = single_segment(1.0, 0.0), method_named(name), 0.05
+    chain, method, dt = single_segment(1.0, 0.0), method_named('exact_about_equilibrium'), 0.05
     load = np.array([[0.0, 20.0 * chain.table[0, STIFFNESS]]])
     angle = np.zeros(1)
     for _ in range(30):

@@ -19,16 +19,7 @@ CHAIN = uniform_chain(2, 1.0, 0.0)
 MASS = CHAIN.table[:, [0, 0, 1]].ravel()
 THETA, OMEGA = np.array([0.4, 0.9]), np.array([1.0, -3.0])
 LOAD = np.array([[1.0, 2.0], [-0.5, 1.0]])
-CLAMPED = (
-    'projection',
-    'rattle',
-    'radau_ggl',
-    'multiplier_implicit_midpoint',
-    'newmark',
-    'hht',
-    'generalized_alpha',
-    'multiplier_bdf2',
-)
+CLAMPED = ('projection', 'rattle', 'radau_ggl', 'newmark', 'generalized_alpha')
 
 
 def run(method, seconds, dt=0.01):
@@ -46,9 +37,7 @@ def test_positions_stay_on_the_constraint_to_rounding(name):
     assert method.gap(CHAIN, run(method, 5.0)) < 1e-12
 
 
-@pytest.mark.parametrize(
-    'name', ['projection', 'rattle', 'radau_ggl', 'multiplier_implicit_midpoint']
-)
+@pytest.mark.parametrize('name', ['projection', 'rattle', 'radau_ggl'])
 def test_velocities_too_where_the_method_says_so(name):
     assert speed_gap(run(method_named(name), 5.0)) < 1e-11
 
@@ -117,17 +106,7 @@ def test_index_3_solution_satisfies_its_equations():
     assert solve_index3(*args, LOAD * np.nan, accel, lam) == -1
 
 
-@pytest.mark.parametrize(
-    'name',
-    [
-        'newmark',
-        'hht',
-        'generalized_alpha',
-        'multiplier_bdf2',
-        'multiplier_implicit_midpoint',
-        'radau_ggl',
-    ],
-)
+@pytest.mark.parametrize('name', ['newmark', 'generalized_alpha', 'radau_ggl'])
 def test_a_step_that_fails_is_reported_and_leaves_the_state(name):
     method = method_named(name)
     state = method.start(CHAIN, THETA, OMEGA, LOAD, 0.01)

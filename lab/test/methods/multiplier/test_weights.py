@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from tree_sway_lab.methods.chain import single_segment
 from tree_sway_lab.methods.multiplier.generalized_alpha import GeneralizedAlpha
-from tree_sway_lab.methods.multiplier.hht import Hht
 from tree_sway_lab.methods.multiplier.newmark import Newmark
 from tree_sway_lab.methods.multiplier.radau_ggl import NODES, WEIGHTS
 from tree_sway_lab.methods.registry import method_named
@@ -31,7 +30,6 @@ def test_radau_satisfies_the_conditions_of_order_five():
         GeneralizedAlpha(rho=0.0),
         GeneralizedAlpha(rho=0.5),
         GeneralizedAlpha(rho=1.0),
-        Hht(alpha=0.2),
         Newmark(),
     ],
 )
@@ -54,11 +52,6 @@ def amplification(method, ratio):
 def test_the_radius_at_infinity_is_the_one_asked_for(rho):
     assert amplification(GeneralizedAlpha(rho=rho), 1e5) == pytest.approx(rho, abs=5e-3)
     assert amplification(GeneralizedAlpha(rho=rho), 1e-2) == pytest.approx(1.0, abs=1e-6)
-
-
-def test_hht_without_alpha_is_newmark():
-    assert Hht(alpha=0.0).weights() == Newmark().weights()
-    assert Hht(alpha=1 / 3).weights()[3] == pytest.approx(5 / 6)
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from tree_sway_lab.battery.branch_runs import Branch
 from tree_sway_lab.battery.row import fails, holds, Row
 from tree_sway_lab.methods.chain import single_segment
 from tree_sway_lab.methods.registry import method_named
+from tree_sway_lab.methods.stability import free_step
 
 TITLE = 'late and uneven steps'
 STALL = 0.5
@@ -62,6 +63,5 @@ def energy_gain(name: str) -> float:
     state = np.array([0.01, 0.0])
     energy = stiffness * state[0] ** 2
     for dt in uneven_steps(180):
-        row = method.propagator(inertia, np.zeros(1), stiffness, float(dt))[0]
-        state = row[[0, 1, 4, 5]].reshape(2, 2) @ state
+        state = free_step(method, chain, float(dt)) @ state
     return float((inertia * state[1] ** 2 + stiffness * state[0] ** 2) / energy)

@@ -12,9 +12,18 @@ from tree_sway.core.kernel import kernel
 from tree_sway_lab.methods.method import MinimalMethod
 from tree_sway_lab.methods.minimal.newton import solve_stage
 from tree_sway_lab.methods.minimal_form import acceleration
-from tree_sway_lab.methods.step_rules import GAMMA, HALF, MIDDLE, OLD
 
 Array = NDArray[Any]
+
+GAMMA = 2.0 - 2.0**0.5
+"""Where the trapezoidal stage ends, in steps."""
+
+HALF = 0.5 * GAMMA
+"""Step over which both stages are implicit, in steps."""
+
+OLD = (1.0 - GAMMA) ** 2 / (GAMMA * (2.0 - GAMMA))
+MIDDLE = 1.0 / (GAMMA * (2.0 - GAMMA))
+"""Weights of the old state and of the state at gamma."""
 
 
 @kernel
