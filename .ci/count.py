@@ -1,0 +1,325 @@
+#!/usr/bin/env python3
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Count the code: tokens, tokens per line, short names, public names, modules that a step loads.
+
+    python3 .ci/count.py
+    python3 .ci/count.py --names tree_sway/core/motion --modules
+
+Counted are Python's tokens without comments, docstrings, imports and line ends; a line counts if a
+counted token begins on it. A room is a folder with modules; its figures are those of its own
+modules, without those of the folders in it. The modules of a step are found by running a
+simulator of the built-in benjamina in another process, where opening the tree has loaded nothing,
+by the Python of the checkout's `.venv` or by the one that runs this script; without numpy that
+part is left out. A module runs in a step if
+Python calls one of its functions then, or if a kernel in use names one of its kernels.
+
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+import io
+from pathlib import Path
+import subprocess
+import sys
+import tempfile
+import tokenize
+
+ROOT = Path(__file__).resolve().parent.parent
+LIBRARY, NODES = 'tree_sway', 'tree_sway_ros'
+NAMED = 'tree_sway/run'
+"""Folder whose short names are counted by default, if it is there; all folders are listed."""
+
+LAYOUT = {
+    tokenize.COMMENT,
+    tokenize.NL,
+    tokenize.NEWLINE,
+    tokenize.INDENT,
+    tokenize.DEDENT,
+    tokenize.ENCODING,
+    tokenize.ENDMARKER,
+}
+"""Kinds of tokens that are not counted."""
+
+SHORT = 2
+"""Most letters of a short name."""
+
+OPENING = """
+import pickle
+import sys
+import tree_sway
+
+with open(sys.argv[1], 'wb') as file:
+    pickle.dump(tree_sway.open_tree('benjamina').tree, file)
+"""
+"""Program that writes a built-in tree to a file."""
+
+STEPPING = """
+import gc
+import pickle
+import sys
+import types
+import tree_sway
+
+with open(sys.argv[1], 'rb') as file:
+    tree = pickle.load(file)
+simulator = tree_sway.make_simulator(tree, cache=None)
+simulator.step((5.0, 0.0, 0.0), 1 / 60)
+simulator.place()
+modules = {n: m for n, m in sys.modules.items() if n.partition('.')[0] == 'tree_sway'}
+
+ran, kernels = set(), []
+
+
+def is_kernel(value):
+    return getattr(value, 'py_func', None) is not None
+
+
+def keep_named(code, names):
+    kernels.extend(filter(is_kernel, map(names.get, code.co_names)))
+
+
+def note(frame, event, argument):
+    if event == 'call' and frame.f_globals.get('__name__') in modules:
+        ran.add(frame.f_globals['__name__'])
+        keep_named(frame.f_code, frame.f_globals)
+
+
+sys.setprofile(note)
+for _ in range(3):
+    simulator.step((6.0, 1.0, 0.0), 1 / 60)
+    simulator.place()
+sys.setprofile(None)
+
+# Machine code that the simulator keeps to call it, wherever in it.
+passed_by = (type, types.ModuleType, types.FrameType)
+waiting, seen = [simulator], set()
+while waiting:
+    value = waiting.pop()
+    if id(value) in seen or isinstance(value, passed_by):
+        continue
+    seen.add(id(value))
+    if isinstance(value, types.BuiltinFunctionType) and value.__module__ in modules:
+        kernels.append(vars(modules[value.__module__]).get(value.__name__))
+    elif isinstance(value, types.FunctionType):
+        waiting += value.__closure__ or ()
+    elif is_kernel(value):
+        kernels.append(value)
+    else:
+        waiting += gc.get_referents(value)
+
+# Machine code calls without a trace: it may call each kernel that its source names.
+found = set()
+while kernels:
+    function = getattr(kernels[-1], 'py_func', kernels[-1])
+    kernels.pop()
+    if isinstance(function, types.FunctionType) and function not in found:
+        found.add(function)
+        ran.add(function.__module__)
+        keep_named(function.__code__, function.__globals__)
+
+for name, module in sorted(modules.items()):
+    if getattr(module, '__file__', None):
+        print(int(name in ran), module.__file__)
+"""
+"""Program that prints the modules that a simulator of that tree loads; 1 before those that run."""
+
+
+@dataclass
+class Count:
+    """Sums over some modules."""
+
+    modules: int = 0
+    tokens: int = 0
+    lines: int = 0
+    public: int = 0
+    assigned: int = 0
+    short: int = 0
+
+    def __add__(self, other: Count) -> Count:
+        """Add up two counts."""
+        both = zip(vars(self).values(), vars(other).values(), strict=True)
+        return Count(*(one + two for one, two in both))
+
+    @property
+    def per_line(self) -> float:
+        """Tokens per line of code."""
+        return self.tokens / max(self.lines, 1)
+
+    @property
+    def short_share(self) -> float:
+        """Share of short names among all names that are assigned, each time that one is."""
+        return self.short / max(self.assigned, 1)
+
+
+def left_out(module: ast.Module) -> set[int]:
+    """Return the lines of docstrings and imports."""
+    lines: set[int] = set()
+    for node in ast.walk(module):
+        if isinstance(node, ast.Import | ast.ImportFrom) or is_docstring(node):
+            assert isinstance(node, ast.stmt)
+            lines.update(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+    return lines
+
+
+def is_docstring(node: ast.AST) -> bool:
+    """Whether a statement is a string alone: a docstring of a module, function, class or name."""
+    return (
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    )
+
+
+def public_names(module: ast.Module) -> Iterator[str]:
+    """Yield the names that a module defines without an underscore, and those of its classes."""
+    for node in module.body:
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            if node.name.startswith('_'):
+                continue
+            yield node.name
+            for inner in node.body if isinstance(node, ast.ClassDef) else []:
+                is_function = isinstance(inner, ast.FunctionDef | ast.AsyncFunctionDef)
+                if is_function and not inner.name.startswith('_'):
+                    yield f'{node.name}.{inner.name}'
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                for name in ast.walk(target):
+                    if isinstance(name, ast.Name) and not name.id.startswith('_'):
+                        yield name.id
+
+
+def count_of(path: Path) -> Count:
+    """Count one module."""
+    source = path.read_text(encoding='utf-8')
+    module = ast.parse(source)
+    skipped = left_out(module)
+    starts = [
+        token.start[0]
+        for token in tokenize.generate_tokens(io.StringIO(source).readline)
+        if token.type not in LAYOUT and token.start[0] not in skipped
+    ]
+    assigned = [
+        node.id
+        for node in ast.walk(module)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    ]
+    return Count(
+        modules=int(bool(starts)),
+        tokens=len(starts),
+        lines=len(set(starts)),
+        public=len(set(public_names(module))),
+        assigned=len(assigned),
+        short=sum(len(name) <= SHORT for name in assigned),
+    )
+
+
+def total(counts: dict[Path, Count], folder: Path) -> Count:
+    """Sum up all modules below a folder."""
+    return sum((one for path, one in counts.items() if folder in path.parents), Count())
+
+
+def interpreter() -> str:
+    """Return the Python of the checkout's environment; this one if there is none."""
+    own = ROOT / '.venv' / 'bin' / 'python'
+    return str(own) if own.is_file() else sys.executable
+
+
+def modules_of_a_step() -> dict[Path, bool] | None:
+    """Return modules that a simulator loads, and whether each runs in a step; None on failure."""
+    with tempfile.TemporaryDirectory() as folder:
+        for program in (OPENING, STEPPING):
+            command = [interpreter(), '-c', program, str(Path(folder) / 'tree')]
+            done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+            if done.returncode:
+                reason = done.stderr.strip().splitlines() or ['no reason given']
+                print(reason[-1], file=sys.stderr)
+                return None
+    lines = (line.split(' ', 1) for line in done.stdout.splitlines())
+    return {Path(path).resolve(): runs == '1' for runs, path in lines}
+
+
+def offered() -> int:
+    """Return how many names `import tree_sway` offers: `__all__`, or its table of names."""
+    program = f'import {LIBRARY}; print(len({LIBRARY}.__all__))'
+    done = subprocess.run(
+        [sys.executable, '-c', program], cwd=ROOT, capture_output=True, text=True
+    )
+    return int(done.stdout or 0)
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=(__doc__ or '').strip().splitlines()[0])
+    parser.add_argument('--names', metavar='FOLDER', default=NAMED, help=NAMED)
+    parser.add_argument('--modules', action='store_true', help='list the modules of a step')
+    arguments = parser.parse_args()
+    counts = {
+        path: count_of(path)
+        for package in (LIBRARY, NODES)
+        for path in sorted((ROOT / package).rglob('*.py'))
+    }
+    library, nodes = (total(counts, ROOT / package) for package in (LIBRARY, NODES))
+    core = total(counts, ROOT / LIBRARY / 'core')
+    rooms: dict[str, Count] = {}
+    for path, one in counts.items():
+        room = path.parent.relative_to(ROOT).as_posix()
+        rooms[room] = rooms.get(room, Count()) + one
+    largest = max(
+        (room for room in rooms if not room.startswith(NODES)), key=lambda r: rooms[r].tokens
+    )
+    densest = max(
+        (room for room in rooms if rooms[room].lines >= 100), key=lambda r: rooms[r].per_line
+    )
+
+    def row(name: str, value: str) -> None:
+        print(f'{name:<58} {value:>12}')
+
+    row('tokens of library and nodes', f'{library.tokens + nodes.tokens:,}')
+    row('  of the library', f'{library.tokens:,}')
+    row('  of the nodes', f'{nodes.tokens:,}')
+    row('lines of library and nodes', f'{library.lines + nodes.lines:,}')
+    row('tokens per line, library and nodes', f'{(library + nodes).per_line:.1f}')
+    row('tokens per line, core', f'{core.per_line:.1f}')
+    row(f'tokens per line, densest room of 100 lines: {densest}', f'{rooms[densest].per_line:.1f}')
+    share = rooms[largest].tokens / library.tokens
+    row(f'share of the largest room in the library: {largest}', f'{share:.1%}')
+    row('names that `import tree_sway` offers', f'{offered()}')
+    row('public names that library and nodes define', f'{library.public + nodes.public:,}')
+    folder = ROOT / arguments.names
+    if folder.is_dir():
+        row(
+            f'names of 1 or 2 letters, {arguments.names}',
+            f'{total(counts, folder).short_share:.0%}',
+        )
+    stepping = modules_of_a_step()
+    if stepping is None:
+        row('modules of a stepping simulator', 'not counted')
+    else:
+        loaded = {path for path in stepping if counts.get(path, Count()).modules}
+        ran = {path for path in loaded if stepping[path]}
+        for words, paths in (
+            ('loaded by a simulator, its set-up included', loaded),
+            ('that run in a step', ran),
+        ):
+            row(f'modules {words}', f'{len(paths)}')
+            row('  their tokens', f'{sum(counts[path].tokens for path in paths):,}')
+        if arguments.modules:
+            for path in sorted(loaded):
+                mark = 'runs' if path in ran else 'loaded'
+                print(f'  {mark:<7} {path.relative_to(ROOT)} {counts[path].tokens}')
+
+    print(f'\n{"room":<36} {"modules":>7} {"tokens":>8} {"lines":>6} {"a line":>6} {"short":>6}')
+    for room, one in sorted(rooms.items()):
+        if one.tokens:
+            figures = f'{one.modules:>7} {one.tokens:>8,} {one.lines:>6,} {one.per_line:>6.1f}'
+            print(f'{room:<36} {figures} {one.short_share:>6.0%}')
+
+
+if __name__ == '__main__':
+    main()
