@@ -4,9 +4,7 @@
 
 import contextlib
 import faulthandler
-import functools
 import gc
-import hashlib
 import os
 from pathlib import Path
 import random
@@ -26,10 +24,10 @@ import numpy as np  # noqa: E402
 import pytest  # noqa: E402
 
 from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
-from tree_sway.core.simulator.simulator import SwaySimulator  # noqa: E402
+from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
 from tree_sway.errors import MissingDependencyError  # noqa: E402
-from tree_sway.set_up_files import SET_UPS, SetUpFiles  # noqa: E402
+from tree_sway.set_up_files import SET_UPS  # noqa: E402
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)
@@ -39,10 +37,6 @@ settings.load_profile(os.environ.get('HYPOTHESIS_PROFILE', 'repeatable'))
 
 LAST_DOMAIN = 101
 """Of those whose ports are not handed out by the system."""
-
-
-OF_CORE = Path(__file__).parent / 'test' / 'core'
-"""Tests that alone measure the coverage of the core."""
 
 
 LONGEST, LONGEST_LONG = 300.0, 1500.0
@@ -81,41 +75,20 @@ def pytest_runtest_protocol(item):
     """
     longest = LONGEST_LONG if item.get_closest_marker('long') else LONGEST
     faulthandler.dump_traceback_later(longest, exit=True, file=_errors)
-    with contextlib.nullcontext() if item.path.is_relative_to(OF_CORE) else unmeasured():
-        yield
+    yield
     faulthandler.cancel_dump_traceback_later()
-
-
-@contextlib.contextmanager
-def unmeasured():
-    """Stop to measure coverage, in all threads: it makes all Python slower by a half."""
-    module = sys.modules.get('coverage')
-    measured = module and module.Coverage.current()
-    if measured:
-        measured.stop()
-    try:
-        yield
-    finally:
-        if measured:
-            measured.start()
 
 
 @pytest.fixture
 def memory_alone():
     """Measure no coverage in a test that counts memory: lines that are seen take some."""
-    with unmeasured():
-        yield
-
-
-@contextlib.contextmanager
-def untraced():
-    """Leave out the tracer of coverage in this thread."""
-    tracer = sys.gettrace()
-    sys.settrace(None)
-    try:
-        yield
-    finally:
-        sys.settrace(tracer)
+    module = sys.modules.get('coverage')
+    measured = module and module.Coverage.current()
+    if measured:
+        measured.stop()
+    yield
+    if measured:
+        measured.start()
 
 
 @contextlib.contextmanager
@@ -144,86 +117,50 @@ def _claimed_domain():
     pytest.fail('all ROS domains are taken by other tests on this machine')
 
 
-class _SetUpsOfTests:
-    """More set-ups than the few that one folder holds."""
-
-    def __init__(self, folder):
-        self._folder = folder
-
-    def _files(self, digest):
-        place = self._folder / digest[:2]
-        place.mkdir(parents=True, exist_ok=True)
-        return SetUpFiles(place)
-
-    def read(self, digest):
-        return self._files(digest).read(digest)
-
-    def write(self, digest, arrays):
-        self._files(digest).write(digest, arrays)
-
-
-@pytest.fixture(scope='session', autouse=True)
-def set_ups_are_made_once(tmp_path_factory):
-    """Keep the set-ups of trees for the tests that make the same ones, of all workers of a run."""
+@pytest.fixture(scope='session')
+def shared_folder(tmp_path_factory):
+    """Return a folder of this run, the same for all workers."""
     base = tmp_path_factory.getbasetemp()
-    folder = (base.parent if 'PYTEST_XDIST_WORKER' in os.environ else base) / 'set_ups'
-    make, cache = SwaySimulator.__init__, _SetUpsOfTests(folder)
-
-    @functools.wraps(make)
-    def make_from_cache(self, *arguments, **options):
-        if options.get('cache', SET_UPS) is SET_UPS:
-            options['cache'] = cache
-        make(self, *arguments, **options)
-
-    SwaySimulator.__init__ = make_from_cache
-    yield
-    SwaySimulator.__init__ = make
+    return base.parent if 'PYTEST_XDIST_WORKER' in os.environ else base
 
 
 @pytest.fixture(scope='session', autouse=True)
-def kernels_are_compiled_once(tmp_path_factory):
-    """
-    Compile what no other worker of the run compiles at this time, and untraced.
+def set_ups_are_made_once(shared_folder):
+    """Keep all set-ups of trees in a folder of the run: many tests simulate the same ones."""
+    kept = SET_UPS.folder, SET_UPS.most
+    SET_UPS.folder, SET_UPS.most = shared_folder / 'set_ups', 10_000
+    SET_UPS.folder.mkdir(exist_ok=True)
+    yield
+    SET_UPS.folder, SET_UPS.most = kept
 
-    Coverage sees no kernel, and its tracer makes the compiler slower by two fifths.
+
+MODELS = ('60', 'full', 'branch')
+"""Models whose kernels most tests run."""
+
+
+@pytest.fixture(scope='session', autouse=True)
+def kernels_are_compiled_once(shared_folder):
     """
-    if WHY_PLAIN:
-        yield
+    Compile the kernels of each model in one worker of a run, where they are not on disk yet.
+
+    All workers need them at once, and each would compile them by itself. A worker begins with the
+    model of its own number, and waits for those that another is compiling.
+    """
+    worker = os.environ.get('PYTEST_XDIST_WORKER', '')
+    if WHY_PLAIN or not worker or not sys.platform.startswith('linux'):
         return
-    from numba.core.compiler_lock import global_compiler_lock
-    from numba.core.dispatcher import Dispatcher
+    import fcntl
 
-    base = tmp_path_factory.getbasetemp()
-    folder = (base.parent if 'PYTEST_XDIST_WORKER' in os.environ else base) / 'compiling'
-    folder.mkdir(exist_ok=True)
-    compile_kernel, mine = Dispatcher.compile, set()
-
-    @contextlib.contextmanager
-    def alone(kernel, signature):
-        key = getattr(kernel._cache, '_key', None)
-        place = key and folder / hashlib.sha256(f'{key}{signature}'.encode()).hexdigest()
-        if not place or place in mine or not sys.platform.startswith('linux'):
-            yield
-            return
-        import fcntl
-
-        # A kernel waits for those that it calls, and they for none that call it.
-        with place.open('w') as claimed:
-            fcntl.flock(claimed, fcntl.LOCK_EX)
-            mine.add(place)
-            try:
-                yield
-            finally:
-                mine.discard(place)
-
-    @functools.wraps(compile_kernel)
-    def compile_alone(self, signature):
-        with untraced(), global_compiler_lock, alone(self, signature):
-            return compile_kernel(self, signature)
-
-    Dispatcher.compile = compile_alone
-    yield
-    Dispatcher.compile = compile_kernel
+    first = int(worker.removeprefix('gw')) % len(MODELS)
+    for model in MODELS[first:] + MODELS[:first]:
+        with (shared_folder / f'kernels_of_{model}').open('a+') as marker:
+            fcntl.flock(marker, fcntl.LOCK_EX)
+            if marker.tell():
+                continue  # compiled
+            simulator = make_simulator(_stem(), model=model, cache=None)
+            simulator.step((5.0, 0.0, 0.0), 1.0 / 60.0)
+            simulator.place()
+            marker.write('compiled')
 
 
 @pytest.fixture(scope='session')

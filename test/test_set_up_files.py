@@ -140,9 +140,12 @@ def test_what_is_too_large_is_not_written(fork, kept, files, monkeypatch):
     assert len(files()) == 1
 
 
-@pytest.mark.parametrize(('bound', 'value'), [('MOST', 2), ('MOST_BYTES', 1300)])
-def test_the_oldest_go_first(kept, files, monkeypatch, bound, value):
-    monkeypatch.setattr(set_up_files, bound, value)
+@pytest.mark.parametrize('bound', ['files', 'bytes'])
+def test_the_oldest_go_first(kept, files, monkeypatch, bound):
+    if bound == 'files':
+        kept.most = 2
+    else:
+        monkeypatch.setattr(set_up_files, 'MOST_BYTES', 1300)
     for age, digest in enumerate(('one', 'two', 'three')):
         kept.write(digest, {'number': np.array(age)})
         for path in files():

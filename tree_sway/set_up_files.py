@@ -38,14 +38,25 @@ _SUFFIX = '.set_up.npz'
 
 
 class SetUpFiles:
-    """Set-ups as the ``cache`` of simulators; in the folder of the kernels if None."""
+    """
+    Set-ups as the ``cache`` of simulators.
 
-    def __init__(self, folder: Path | None = None) -> None:
-        self._folder = folder
+    Parameters
+    ----------
+    folder
+        Folder of the files; that of the kernels if None.
+    most
+        Largest number of set-ups in it.
+
+    """
+
+    def __init__(self, folder: Path | None = None, most: int = MOST) -> None:
+        self.folder = folder
+        self.most = most
 
     def read(self, digest: str) -> dict[str, Any] | None:
         """Return the arrays by name that were written under a digest; None if there are none."""
-        if (folder := self._folder or kernel_folder()) is None:
+        if (folder := self.folder or kernel_folder()) is None:
             return None
         key = _key(digest)
         try:
@@ -58,7 +69,7 @@ class SetUpFiles:
     def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
         """Write arrays atomically, and remove the oldest set-ups."""
         size = sum(each.nbytes for each in arrays.values())
-        if (folder := self._folder or kernel_folder()) is None or size > LARGEST:
+        if (folder := self.folder or kernel_folder()) is None or size > LARGEST:
             return
         key, content = _key(digest), io.BytesIO()
         np.savez(content, key=np.array(key), **arrays)
@@ -68,7 +79,7 @@ class SetUpFiles:
             found.sort(key=lambda one: -one[1].st_mtime)
             sizes = np.cumsum([state.st_size for _, state in found])
             for number, (path, _) in enumerate(found):
-                if number >= MOST or sizes[number] > MOST_BYTES:
+                if number >= self.most or sizes[number] > MOST_BYTES:
                     path.unlink()
 
 
