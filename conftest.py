@@ -56,6 +56,14 @@ def pytest_configure(config):
     _errors = os.dup(2)
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Mark what opens a page in Chromium, before marks are selected by."""
+    for item in items:
+        if 'one_chromium' in getattr(item, 'fixturenames', ()):
+            item.add_marker('browser')
+
+
 @pytest.hookimpl(hookwrapper=True)
 def pytest_collection():
     """Search no garbage among what lasts: thousands of tests and the modules that they load."""

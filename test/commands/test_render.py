@@ -34,6 +34,7 @@ def frame(path: Path, number: int = 0) -> np.ndarray:
     return np.asarray(image.convert('RGB')).astype(float)
 
 
+@pytest.mark.browser
 @pytest.mark.skipif(browser() is None, reason='chromium is not installed here')
 def test_a_film_is_the_picture_of_the_page(tmp_path: Path) -> None:
     path = tmp_path / 'sway.gif'

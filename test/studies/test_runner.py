@@ -197,7 +197,10 @@ sys.exit(main(sys.argv[1:]))
 
 @pytest.mark.skipif(not Path('/proc').is_dir(), reason='needs /proc to find the workers')
 @pytest.mark.usefixtures('ctrl_c')
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize(
+    'number',
+    [signal.SIGINT, signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.long)],
+)
 def test_whatever_ends_a_study_ends_its_workers(tmp_path, number):
     study = tmp_path / 'study.yaml'
     study.write_text('trees: [benjamina]\nwinds: [{speed: 4, seeds: 9}]\nseconds: 3600\n')

@@ -20,6 +20,7 @@ def read(path):
         return list(csv.DictReader(file))
 
 
+@pytest.mark.long
 def test_fidelity_grows_with_the_dial_and_is_written(tmp_path):
     points = chart_fidelity(
         tmp_path, kinds=['limbs8'], models=('3', 'full', 'branch'), engines=(), fineness=QUICK

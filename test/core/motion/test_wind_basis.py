@@ -90,13 +90,12 @@ TREES = {
 }
 
 
-def marked(names):
-    """Return the names of trees, those of hundreds of branches as long to compute."""
-    whole = ('benjamina', 'goldcrest')
-    return [pytest.param(n, marks=[pytest.mark.long] if n in whole else []) for n in names]
+def marked(trees, *first):
+    """Return names or seeds of trees, those beside the first as long to compute."""
+    return [pytest.param(n, marks=[] if n in first else [pytest.mark.long]) for n in trees]
 
 
-@pytest.mark.parametrize('name', marked(TREES))
+@pytest.mark.parametrize('name', marked(TREES, 'goldcrest without twigs', 'crooked 4'))
 def test_it_sways_as_all_coordinates_do(name):
     tree = TREES[name]()
     for speed, most in ((5.0, 0.02), (12.0, 0.04)):
@@ -115,7 +114,12 @@ def test_a_steep_wind_is_in_the_table(wind):
 
 
 @pytest.mark.parametrize(
-    'name', marked(['benjamina', 'benjamina without twigs', 'crooked 1', 'crooked 2'])
+    'name',
+    marked(
+        ['benjamina', 'benjamina without twigs', 'crooked 1', 'crooked 2'],
+        'benjamina without twigs',
+        'crooked 1',
+    ),
 )
 def test_a_step_of_the_wind_moves_no_tip_at_once(name):
     one, other = (SwaySimulator(TREES[name](), model=m) for m in (60, 'full'))
@@ -152,7 +156,15 @@ def moves(sim, winds):
 
 
 @pytest.mark.compiled  # without the compiler there is no table
-@pytest.mark.parametrize(('seed', 'most'), [(1, 0.75), (4, 2.6), (5, 2.3), (8, 0.7)])
+@pytest.mark.parametrize(
+    ('seed', 'most'),
+    [
+        (1, 0.75),
+        (4, 2.6),
+        pytest.param(5, 2.3, marks=pytest.mark.long),
+        pytest.param(8, 0.7, marks=pytest.mark.long),
+    ],
+)
 def test_a_storm_beyond_the_table_is_clamped_and_flings_no_tip(seed, most):
     """
     In a frame a tip moves by at most ``most`` [m].
@@ -176,14 +188,14 @@ def test_a_storm_moves_no_segment_further_than_all_coordinates_do():
 
 
 @pytest.mark.compiled  # without the compiler there is no table
-@pytest.mark.parametrize('seed', [7, 11, 41, 42, 43, 44])
+@pytest.mark.parametrize('seed', marked([7, 11, 41, 42, 43, 44], 7, 44))
 def test_a_gale_moves_a_tree_as_all_coordinates_do(seed):
     one, other = (SwaySimulator(crooked(seed), model=m) for m in (60, 'full'))
     assert moves(one, gusty(16.0)) < 1.3 * moves(other, gusty(16.0))
 
 
 @pytest.mark.compiled  # without the compiler there is no table
-@pytest.mark.parametrize('seed', [1, 2, 4, 7, 11])
+@pytest.mark.parametrize('seed', marked([1, 2, 4, 7, 11], 1, 4))
 def test_steady_storms_find_a_tree_at_rest_from_every_azimuth(seed):
     """Where a branch flips over, too: the pose beside it is no rest, and its slopes fling it."""
     bank = SwaySimulator(crooked(seed), model=60).bank.oscillators
@@ -220,7 +232,7 @@ def test_the_base_moment_is_that_of_all_coordinates():
 @pytest.mark.compiled  # without the compiler there is no table
 def test_a_step_works_on_as_much_whatever_the_size():
     sizes = set()
-    for tree in (crooked(1, n_branches=20), builtin_tree('broadleaf')):
+    for tree in (crooked(1, n_branches=20), crooked(1)):
         bank = SwaySimulator(tree, model=60).bank.oscillators
         sizes.add((bank.record.nbytes, bank.time_step.nbytes, bank.instance.nbytes))
     assert len(sizes) == 1

@@ -55,6 +55,7 @@ def test_no_step_asks_for_memory(fork, model, allocations):
     assert sys.getallocatedblocks() - blocks < 50
 
 
+@pytest.mark.long
 def test_a_million_steps_take_no_memory(fork):
     simulator = SwaySimulator(fork(), model=20)
     out = np.zeros((simulator.tree.n_segments, 7))

@@ -132,7 +132,7 @@ _too_heavy = pytest.mark.xfail(
 @pytest.mark.parametrize(
     ('name', 'shares'),
     [
-        ('pine', (0.15, 0.60)),
+        pytest.param('pine', (0.15, 0.60), marks=_long),
         ('benjamina', (0.15, 0.44)),
         pytest.param('spruce', (0.20, 0.60), marks=_long),
         pytest.param('spruce', (0.15, 0.60), marks=_long),
@@ -159,7 +159,7 @@ def test_leaves_lower_the_first_frequency(name, shares):
 @pytest.mark.parametrize(
     'name',
     [
-        pytest.param(key, marks=[] if key in ('oak', 'birch') else [_long])
+        pytest.param(key, marks=[] if key == 'oak' else [_long])
         for key in species_keys()
         if species_named(key).habit == 'broadleaf'
     ],

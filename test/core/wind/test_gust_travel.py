@@ -163,7 +163,7 @@ def test_days_of_wind_cost_no_precision():
     assert np.abs(history._run).max() < 128 * 8.1
 
 
-@pytest.mark.parametrize('rate', [20, 69, 200, 500, 1000, 4000])
+@pytest.mark.parametrize('rate', [20, 69, 500, pytest.param(4000, marks=pytest.mark.long)])
 def test_the_history_is_a_minute_long_at_any_rate(rate):
     """The gust reaches a tree 50 s downwind in time, at any rate of the steps."""
     dt = 1.0 / rate

@@ -237,6 +237,7 @@ class TestScansByOthers:
         assert tree.n_segments + merged == len(fine)
         assert tree.base_diameter[0] == pytest.approx(0.270)
 
+    @pytest.mark.long
     def test_the_walnut_sways_as_walnuts_do(self):
         """f1 within 1.2 to 1.9 Hz, 20 modes or more below 2.9 Hz, with the table's walnut."""
         tree_file = read_tree(TREES / 'walnut.mtg', species='walnut')

@@ -27,7 +27,7 @@ def maker():
     ('tree_name', 'model'),
     [
         *((name, model) for name in ('goldcrest', 'broadleaf') for model in ('branch', 12)),
-        ('goldcrest', 'full'),
+        pytest.param('goldcrest', 'full', marks=pytest.mark.long),
         pytest.param('broadleaf', 'full', marks=pytest.mark.long),
     ],
 )

@@ -101,7 +101,14 @@ def test_a_second_process_receives_every_pose_of_a_recorded_wind(
     assert number(r'tip +([\d.]+) mm from rest on average', said) > 0.5
 
 
-@pytest.mark.parametrize('signals', [[signal.SIGINT], [signal.SIGINT] * 5, [signal.SIGTERM]])
+@pytest.mark.parametrize(
+    'signals',
+    [
+        pytest.param([signal.SIGINT], marks=pytest.mark.long),
+        [signal.SIGINT] * 5,
+        pytest.param([signal.SIGTERM], marks=pytest.mark.long),
+    ],
+)
 def test_ctrl_c_ends_it_with_a_summary(
     environment: dict[str, str], signals: list[signal.Signals]
 ) -> None:

@@ -45,8 +45,10 @@ def pair(tree, model, **changes):
 @pytest.mark.parametrize(
     ('name', 'model'),
     [
-        *(('wild', 'branch'), ('wild', 'full')),
-        *(('bench', 'branch'), ('bench', 'full')),
+        ('wild', 'branch'),
+        pytest.param('wild', 'full', marks=pytest.mark.long),
+        pytest.param('bench', 'branch', marks=pytest.mark.long),
+        ('bench', 'full'),
     ],
 )
 def test_two_hundred_random_steps_agree(tree, name, model):
