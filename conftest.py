@@ -39,6 +39,10 @@ LAST_DOMAIN = 101
 """Of those whose ports are not handed out by the system."""
 
 
+LONG_FOLDERS = [Path(__file__).parent / 'lab' / 'test' / name for name in ('battery', 'methods')]
+"""Tests of integrators that no product runs; each compiles kernels of its own."""
+
+
 LONGEST, LONGEST_LONG = 300.0, 1500.0
 """Time that a test may take with its fixtures, and one that is marked `long` [s]."""
 
@@ -58,10 +62,12 @@ def pytest_configure(config):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Mark what opens a page in Chromium, before marks are selected by."""
+    """Mark what opens a page in Chromium and what is long by its folder, before any is chosen."""
     for item in items:
         if 'one_chromium' in getattr(item, 'fixturenames', ()):
             item.add_marker('browser')
+        if any(item.path.is_relative_to(folder) for folder in LONG_FOLDERS):
+            item.add_marker('long')
 
 
 @pytest.hookimpl(hookwrapper=True)

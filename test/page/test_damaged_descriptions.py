@@ -146,18 +146,22 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return dict(zip([*DAMAGES, *SOUND], json.loads(done.stdout), strict=True))
 
 
-@pytest.mark.parametrize('damage', DAMAGES)
-def test_a_damaged_description_is_refused(damage: str) -> None:
-    with pytest.raises(FormatError):
-        decode_description(DAMAGES[damage])
+def is_read(data: bytes) -> bool:
+    """Whether a description is read, and not refused."""
+    try:
+        decode_description(data)
+    except FormatError:
+        return False
+    return True
 
 
-@pytest.mark.parametrize('damage', DAMAGES)
-def test_a_damaged_description_is_refused_in_javascript(
-    damage: str, answers: dict[str, str]
-) -> None:
-    assert answers[damage]
-    assert not answers[damage].startswith('raw')
+def test_a_damaged_description_is_refused() -> None:
+    assert [damage for damage, data in DAMAGES.items() if is_read(data)] == []
+
+
+def test_a_damaged_description_is_refused_in_javascript(answers: dict[str, str]) -> None:
+    said = {damage: answers[damage] for damage in DAMAGES}
+    assert {damage: why for damage, why in said.items() if not why or why.startswith('raw')} == {}
 
 
 @pytest.mark.parametrize('name', SOUND)
