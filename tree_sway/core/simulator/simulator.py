@@ -245,7 +245,13 @@ class SwaySimulator:
         """
         counts = self.counts
         x, y, z = three_numbers('wind', wind_mean)
-        if dt != self._dt or (self._tuning is not None and self.glide(dt)):
+        is_changed = dt != self._dt
+        if is_changed:
+            refuse_time_step(dt)
+        # A transition advances with every step, also where the length of the step varies.
+        if self._tuning is not None and self.glide(dt):
+            is_changed = True
+        if is_changed:
             self._set_step(dt)
         counts.steps += 1
         call = self._in_one_call
@@ -433,7 +439,6 @@ class SwaySimulator:
         self._wind[:] = 0.0
 
     def _set_step(self, dt: float) -> None:
-        refuse_time_step(dt)
         self.bank.oscillators.set_step(dt)
         self._dt = dt
         if self._in_one_call is None and self._gusts is None:
