@@ -134,6 +134,13 @@ class SceneSimulator:
         self.wind, self._dt = np.zeros(3), math.nan
         """Wind at the anemometer in the last step in [m/s], (3,)."""
 
+    def __repr__(self) -> str:
+        """Return the scene, the number of trees, the models and the steps on one line."""
+        return (
+            f'SceneSimulator of {self.scene.name}, {len(self.names)} trees, model {self.model}: '
+            f'{self._counts.steps} steps'
+        )
+
     @property
     def model(self) -> str:
         """Models in use."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 import itertools
+import operator
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -187,7 +188,12 @@ def _steps(
         count, what = int(duration * rate + 1e-6), f'a wind record of {duration:g} s'
         steps = _through_record(simulator, wind, rate, measure)
     else:
-        means = np.asarray(wind, dtype=np.float64)
+        try:
+            means = np.asarray(wind, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            text = ' '.join(repr(wind).split())[:80]
+            cure = 'open a file by read_wind, or give the mean of each step, (t, 3)'
+            raise ParameterError(f'{text} is no wind', where='wind', cure=cure) from None
         is_long = means.ndim == 2 and means.shape[1] == 3
         count, what = len(means) if is_long else 0, f'wind of shape {means.shape}'
         if not np.isfinite(means).all():
@@ -225,7 +231,14 @@ def _chosen(tree: Tree, branches: Sequence[int] | None) -> Ints:
     """Branches whose tips are recorded, (k,)."""
     if branches is None:
         return np.array([tree.branch_of_segment[int(np.argmax(tree.end[:, 2]))]])
-    chosen = np.asarray(branches, dtype=np.int64)
+    try:
+        chosen = np.array([operator.index(branch) for branch in branches], dtype=np.int64)
+    except (TypeError, OverflowError):
+        raise ParameterError(
+            f'{branches!r:.80} are not numbers of branches',
+            where='branches',
+            cure=f'give a list of whole numbers from 0 to {tree.n_branches - 1}',
+        ) from None
     wrong = chosen[(chosen < 0) | (chosen >= tree.n_branches)]
     if len(wrong):
         raise ParameterError(

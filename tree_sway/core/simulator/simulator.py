@@ -13,7 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
+from tree_sway.core.checks import (
+    array_to_fill,
+    array_to_read,
+    refuse_time_step,
+    three_numbers,
+    within,
+)
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.bank import Bank
@@ -136,6 +142,11 @@ class SwaySimulator:
         self._origin = tree.start[0].copy()
         self._highest = int(np.argmax(tree.end[:, 2]))
 
+    def __repr__(self) -> str:
+        """Return tree, model and number of steps on one line."""
+        kind = type(self).__name__
+        return f'{kind} of {self.tree.name}, model {self.model}: {self.counts.steps} steps'
+
     @property
     def model(self) -> str:
         """Model in use: its name, or its number of coordinates."""
@@ -155,8 +166,10 @@ class SwaySimulator:
         """
         Lowest natural frequencies of the tree in [Hz], without air, (count,) or fewer.
 
-        On the model ``branch`` they are those of the isolated branches.
+        On the model ``branch`` they are those of the isolated branches. A `ParameterError` refuses
+        a count below 1.
         """
+        count = int(within('count', count, 1, 1e9))
         if self.settings.model == 'branch':
             tunable = self.bank.oscillators.tunable
             circular = np.sort(np.sqrt(tunable.stiffness / tunable.inertia))[:count]
