@@ -148,9 +148,8 @@ class GustHistory:
         """
         while True:
             before = self._n_changes
-            at, run, mean, delay = (
-                array.copy() for array in (self._at, self._run, self._mean, self.delay)
-            )
+            at, run = self._at.copy(), self._run.copy()
+            mean, delay = self._mean.copy(), self.delay.copy()
             if self._n_changes == before and before % 2 == 0:
                 break
         rows = run[np.arange(at[0] - max(at[1], 1) + 1, at[0] + 1) % len(run)]
