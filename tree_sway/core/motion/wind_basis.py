@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property, partial
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -91,7 +92,7 @@ class WindBasisBank:
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         self.modal.set_step(dt)
-        fill_time_step(self.time_step[0], self.modal.whole, self.modal.half)
+        fill_time_step(self.time_step[0], propagators_of(self.modal), dt)
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `ModalBank.advance`."""
@@ -170,13 +171,49 @@ class WindBasisBank:
         self.modal.reset()
 
 
-def fill_time_step(time_step: np.void, whole: Floats, half: Floats) -> None:
-    """Write coefficients of a step and of half a step, (m, 8), into a `time_step_layout`."""
-    m = len(whole)
+class Propagators(NamedTuple):
+    """
+    Damping [1/s] and stiffness [1/s^2] of coordinates, (m,), and their propagators.
+
+    ``whole`` is over a step, ``half`` over half of it, (m, 8).
+    """
+
+    damping: Floats
+    stiffness: Floats
+    whole: Floats
+    half: Floats
+
+
+def propagators_of(modal: ModalBank) -> Propagators:
+    """Return the propagators of a bank over its time step."""
+    return Propagators(modal.damping, modal.stiffness, modal.whole, modal.half)
+
+
+def fill_time_step(time_step: np.void, law: Propagators, dt: float) -> None:
+    """
+    Write the coefficients of a step of dt [s] and of half a step into a `time_step_layout`.
+
+    A step moves each coordinate exactly. The load is taken from the middle of the step, where the rate of a
+    coordinate that swings more than once a step may be opposite to its force. Strong drag, whose
+    implicit part needs a rate that follows the force, would then feed the motion. The middle state
+    of such coordinates is that of an implicit Euler step, whose rate always follows the force.
+    """
+    m = len(law.stiffness)
+    half = law.half.T[[0, 1, 2, 4, 5, 6]]
+    half[[2, 5]] += law.half.T[[3, 7]]
+    euler = _implicit_euler(law.damping, law.stiffness, 0.5 * dt)
     time_step['whole'], time_step['half'] = 0.0, 0.0
-    time_step['whole'][:, :m] = whole.T
-    time_step['half'][:, :m] = half.T[[0, 1, 2, 4, 5, 6]]
-    time_step['half'][[2, 5], :m] += half.T[[3, 7]]
+    time_step['whole'][:, :m] = law.whole.T
+    time_step['half'][:, :m] = np.where(half[5] < euler[5], euler, half)
+
+
+def _implicit_euler(damping: Floats, stiffness: Floats, h: float) -> Floats:
+    """Displacement, then rate, after a step h [s] by displacement, rate and force, (6, m)."""
+    share = 1.0 / (1.0 + h * damping + h * h * stiffness)
+    rate = np.stack([-h * stiffness * share, share, h * share])
+    displacement = h * rate
+    displacement[0] += 1.0
+    return np.concatenate([displacement, rate])
 
 
 def step_branches(instance: np.void, modal: ModalBank) -> int:

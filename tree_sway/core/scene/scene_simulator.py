@@ -27,7 +27,7 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.placing import GIVEN, place
 from tree_sway.core.motion.records import instance_layout, time_step_layout, zeros_in_lines
 from tree_sway.core.motion.stand import place_stand, PLACEMENT, step_stand
-from tree_sway.core.motion.wind_basis import fill_time_step, WindBasisBank
+from tree_sway.core.motion.wind_basis import fill_time_step, propagators_of, WindBasisBank
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.placement_records import own_steps, placement_records
@@ -410,7 +410,7 @@ class SceneSimulator:
         for time_step, (kind, own_dt) in zip(self._time_steps, found, strict=True):
             modal = self._banks[kind].modal
             modal.set_time_step(own_dt)
-            fill_time_step(time_step, modal.whole, modal.half)
+            fill_time_step(time_step, propagators_of(modal), own_dt)
         self._placed['time_step'][rows] = number
         self._dt = dt
 
