@@ -1,12 +1,13 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A sapling whose light leaves have more drag than inertia: stiff coordinates in a table of winds."""
+"""A sapling whose light leaves have more drag than inertia: stiff coordinates in a table."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from tree_sway.core.motion import wind_basis
 from tree_sway.core.motion.wind_basis import fill_time_step, propagators_of
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
@@ -94,3 +95,23 @@ def test_a_coordinate_that_is_resolved_gets_to_the_middle_exactly(sapling):
     half = bank.time_step['half'][0, :, :m]
     assert (half[[0, 1, 3, 4]] == exact[[0, 1, 4, 5]]).all()
     assert (half[[2, 5]] == exact[[2, 6]] + exact[[3, 7]]).all()
+
+
+def test_where_the_table_fails_in_a_gale_it_shows_fewer_coordinates(sapling, monkeypatch):
+    def without_care(time_step, law, dt):
+        fill_time_step(time_step, law, dt)
+        m = len(law.stiffness)
+        time_step['half'][:, :m] = law.half.T[[0, 1, 2, 4, 5, 6]]
+        time_step['half'][[2, 5], :m] += law.half.T[[3, 7]]
+
+    right = sway(simulator(sapling, 'full'), 12.0)
+    monkeypatch.setattr(wind_basis, 'fill_time_step', without_care)
+    usual = simulator(sapling, 60)
+    shown = sway(usual, 12.0)
+    assert usual.counts.reduced > 0
+    assert usual.counts.clamped < 0.3 * usual.counts.steps
+    late = len(right) // 2  # it no longer stands still, though fewer coordinates bend it less
+    error = np.linalg.norm(shown[late:] - right[late:]) / np.linalg.norm(right[late:])
+    assert error < 0.5
+    swing, right_swing = (np.linalg.norm(each[late:].std(axis=0)) for each in (shown, right))
+    assert swing > 0.5 * right_swing

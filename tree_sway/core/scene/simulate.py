@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 import itertools
 import operator
 from typing import Any, Protocol, runtime_checkable
@@ -20,7 +21,7 @@ from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.simulator.simulator import Counts, SwaySimulator
 from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
 from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.tree import tips_of_poses, Tree
@@ -113,6 +114,7 @@ class Rig:
         """Sway the tree in a wind from rest, as `simulate`."""
         tree, simulator, chosen = self.tree, self.simulator, _chosen(self.tree, branches)
         simulator.reset()
+        before = replace(simulator.counts)
         gauge, per_rotation = StrengthGauge(self.reductions), moment_per_rotation(self.reductions)
         poses, rows = np.empty((tree.n_segments, 7)), list[tuple[Floats, ...]]()
         rest = tips_of_poses(tree, simulator.place(), chosen)
@@ -136,6 +138,7 @@ class Rig:
             tree.name, simulator.model, np.arange(1, count + 1) / rate, means, chosen,
             tuple(tree.branch_names[branch] for branch in chosen), tips, moment,
             per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1), strain, gauge.use(),
+            _doubts(simulator, before),
         )  # fmt: skip
 
     def strength_curve(
@@ -160,6 +163,26 @@ class Rig:
             wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=same)
             used.append(self.run(wind).strength)
         return used
+
+
+def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
+    """Report what makes the motion since some counts doubtful, one sentence each."""
+    now, found = simulator.counts, list[str]()
+    if now.reduced > before.reduced:
+        found.append(
+            'steps stayed clamped to the limit of the model, and coordinates were left out: '
+            f"{simulator.n_shown} moved at the end; compare with model 'full'"
+        )
+    elif now.clamped > before.clamped:
+        n_steps = now.steps - before.steps
+        found.append(
+            f'{now.clamped - before.clamped} loads in {n_steps} steps were clamped to the limit '
+            'of the model'
+        )
+    if now.restarted > before.restarted:
+        n_restarts = now.restarted - before.restarted
+        found.append(f'the motion was not finite and continued from rest, {n_restarts} times')
+    return tuple(found)
 
 
 def moment_per_rotation(reductions: TreeReductions) -> Floats:
