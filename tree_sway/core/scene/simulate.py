@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from copy import deepcopy
 from dataclasses import replace
 import itertools
 import operator
@@ -152,15 +153,15 @@ class Rig:
         speeds
             Mean speeds in [m/s], (n,).
         rng
-            Random numbers of the turbulence; all speeds have the same gusts, faster.
+            Random numbers of the turbulence; all speeds have the same gusts, faster. A copy is
+            used: the gusts are those that `simulate_turbulence` makes from it.
         seconds
             Length of each wind in [s].
 
         """
-        seed, used = int(rng.integers(2**32)), []
+        used = []
         for speed in np.asarray(speeds, dtype=np.float64).tolist():
-            same = np.random.default_rng(seed)
-            wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=same)
+            wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=deepcopy(rng))
             used.append(self.run(wind).strength)
         return used
 
