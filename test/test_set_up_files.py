@@ -152,3 +152,17 @@ def test_the_oldest_go_first(kept, files, monkeypatch, bound):
             os.utime(path, ns=(0, path.stat().st_mtime_ns - 10**9))
     assert kept.read('one') is None
     assert [int(kept.read(each)['number']) for each in ('two', 'three')] == [1, 2]
+
+
+def test_what_is_used_stays(kept, files, monkeypatch):
+    monkeypatch.setattr(set_up_files, 'MOST', 2)
+
+    def write(digest):
+        for path in files():  # everything there is a second older than what comes
+            os.utime(path, ns=(0, path.stat().st_mtime_ns - 10**9))
+        kept.write(digest, {'number': np.zeros(1)})
+
+    write('daily')
+    for other in ('one', 'two', 'three'):
+        write(other)
+        assert kept.read('daily') is not None

@@ -3,9 +3,8 @@
 """
 Types of errors: each has what is wrong, where, and the cure.
 
-The command line and the nodes turn a `TreeSwayError` into one line and exit code 2. An error
-carries the offending values as attributes, so that a program can act on them without reading the
-text.
+The command line and the nodes turn a `TreeSwayError` into one line and exit code 2. Its parts are
+the attributes ``what``, ``where`` and ``cure``; the offending value is in the text of ``what``.
 """
 
 from __future__ import annotations

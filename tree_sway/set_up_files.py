@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 import hashlib
 import io
+import os
 from pathlib import Path
 import platform
 from typing import Any
@@ -26,7 +27,7 @@ from tree_sway.kernel_cache import ROOT, source_digest
 from tree_sway.kernel_folder import kernel_folder, write_own
 
 MOST = 32
-"""Largest number of set-ups on disk; the oldest are removed first."""
+"""Largest number of set-ups on disk; those not read for longest are removed first."""
 
 MOST_BYTES = 1 << 29
 """Largest size of all set-ups on disk [bytes], some forty large trees."""
@@ -60,14 +61,19 @@ class SetUpFiles:
             return None
         key = _key(digest)
         try:
-            with np.load(folder / f'{key}{_SUFFIX}') as file:
+            path = folder / f'{key}{_SUFFIX}'
+            with np.load(path) as file:
                 arrays = dict(file)
-            return arrays if str(arrays.pop('key')) == key else None
+            if str(arrays.pop('key')) != key:
+                return None
         except Exception:  # any error of numpy for a damaged file
             return None
+        with suppress(OSError):
+            os.utime(path)  # it is in use
+        return arrays
 
     def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
-        """Write arrays atomically, and remove the oldest set-ups."""
+        """Write arrays atomically, and remove those not read for longest."""
         size = sum(each.nbytes for each in arrays.values())
         if (folder := self.folder or kernel_folder()) is None or size > LARGEST:
             return

@@ -54,3 +54,47 @@ def test_info_says_the_share_and_where_if_a_speed_is_given(capsys):
     assert 'in gusts of a mean wind of 12 m/s, strength used: wood' in facts['notes'][-1]
     assert 'not included' in facts['notes'][-1]
     assert main([*tree, '--speed', '-3']) == 2
+
+
+def figures(capsys, *command):
+    """Return the printed figures of wood, with their seasons."""
+    assert main([str(word) for word in command]) == 0
+    return re.findall(r'wood ([\d.e+-]+) %.*?; (in leaf|bare)', capsys.readouterr().out)
+
+
+def test_one_tree_in_one_season_has_one_figure_in_all_commands(tmp_path, capsys):
+    tree = ['test/files/data/fork.simpleforest.csv', '--species', 'oak']
+    info = figures(capsys, 'info', *tree, '--speed', '12')
+    curve = figures(capsys, 'plot', *tree, '--strength', '--speed', '12', '-o', tmp_path / 'a.png')
+    table = tmp_path / 'sway.csv'
+    record = figures(capsys, 'simulate', *tree, '--speed', '12', '--seconds', '60', '-o', table)
+    assert info == record == [curve[-1]]
+    assert info[0][1] == 'bare'
+    picture = tmp_path / 'b.png'
+    leafy = ['--leaves', 'on', '--speed', '12']
+    curve = figures(capsys, 'plot', *tree, '--strength', *leafy, '-o', picture)
+    assert figures(capsys, 'info', *tree, *leafy) == [curve[-1]]
+    assert curve[-1][1] == 'in leaf'
+    assert curve[-1] != info[0]
+
+
+STAND = """\
+name,x,y,species,height,dbh
+low,0,0,oak,8,20
+high,9,0,oak,9,24
+"""
+
+
+def test_each_tree_of_an_inventory_is_grown_by_itself_if_asked(tmp_path, capsys):
+    stand = tmp_path / 'stand.csv'
+    stand.write_text(STAND)
+    command = ['info', stand, '--count', '1', '--json']
+    assert main([str(word) for word in command]) == 0
+    assert len(json.loads(capsys.readouterr().out)['kinds']) == 1
+    assert main([*map(str, command), '--exact']) == 0
+    found = json.loads(capsys.readouterr().out)
+    heights = [kind['height'] for kind in found['kinds']]
+    stems = [kind['breast_height_diameter'] for kind in found['kinds']]
+    assert heights == pytest.approx([8.0, 9.0], rel=1e-6)
+    assert stems == pytest.approx([0.20, 0.24], rel=1e-3)
+    assert found['trees'][1]['height'] == pytest.approx(9.0, rel=1e-6)

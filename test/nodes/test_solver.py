@@ -218,6 +218,33 @@ def test_the_tree_is_tuned_while_it_sways(compose, observer, tree_file):
     assert solver.simulator.check_tuning().stiffness_factor == 8.0
 
 
+POLE = """\
+segment,parent,branch,x0,y0,z0,x1,y1,z1,d0,d1
+0,-1,0,0,0,0,0,0,3,.012,.012
+"""
+
+
+def test_changes_that_buckle_the_tree_together_are_refused_before_the_first_is_applied(
+    compose, tmp_path, monkeypatch
+):
+    pole = tmp_path / 'pole.csv'
+    pole.write_text(POLE)
+    solver = compose(solver={'tree': str(pole), 'model': 2})['solver']
+    waiting = []
+    monkeypatch.setattr(solver._run, 'request', waiting.append)
+    softer, heavier = (
+        solver.set_parameters([Parameter(name, value=value)])[0]
+        for name, value in (('stiffness_factor', 0.5), ('gravity', 19.6))
+    )
+    assert softer.successful
+    assert not heavier.successful
+    assert 'buckles' in heavier.reason
+    assert len(waiting) == 1
+    for action in waiting:
+        action()
+    assert solver.simulator.check_tuning().gravity == pytest.approx(9.81, abs=0.01)
+
+
 def test_pause_holds_the_pose_and_reset_goes_to_rest(compose, observer, tree_file):
     compose(solver={'tree': tree_file})
     frames = observer.listen(SEGMENT_POSES)

@@ -162,6 +162,10 @@ def test_what_is_cut_is_reported() -> None:
     assert steps.tolist() == [16384, -32767]
     storm = Frame(0, 0, 0, 0, np.array([400.0, 0.0, 0.0]), steps)
     assert decode_frame(encode_frame(storm)).flags == BEYOND_SCALE
+    turned = storm._replace(wind=np.zeros(3), beyond=np.array([3.0, 1e39, 4.0, -np.inf]))
+    frame = decode_frame(encode_frame(turned))
+    assert frame.flags == BEYOND_SCALE
+    assert frame.beyond[1] == -frame.beyond[3] == pytest.approx(3.4e38, rel=0.01)
     assert not quantised([0.1, -0.99 / MARGIN], [1.0, 1.0])[1]
     assert quantised([0.1, -1.01 / MARGIN], [1.0, 1.0])[1]
 

@@ -17,6 +17,9 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytest.importorskip('numba', reason='numba is not installed')
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES  # noqa: E402
+from tree_sway.core.motion.records import time_step_layout  # noqa: E402
+from tree_sway.core.motion.wind_basis import fill_time_step, Propagators  # noqa: E402
+from tree_sway.core.oscillators.propagator import propagator  # noqa: E402
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.scene.scene_simulator import Simulator  # noqa: E402
@@ -110,6 +113,34 @@ def test_a_stand_sways_as_in_python(tmp_path: Path) -> None:
     ]  # fmt: skip
     found = compared(Scene(trees, 'row').simulator(Settings(), model=20), tmp_path)
     assert found['wrong'] <= 1e-12 * max(1.0, found['greatest'])
+
+
+def test_a_stiff_coordinate_gets_to_the_middle_of_a_step_as_in_python() -> None:
+    node = shutil.which('node')
+    if node is None:
+        pytest.skip('node is not installed here')
+    circular = 2.0 * np.pi * np.geomspace(0.2, 2000.0, 60)
+    stiffness, damping = circular**2, 0.2 * circular
+    whole, half = (propagator(1.0, damping, stiffness, span) for span in (DT, 0.5 * DT))
+    expected = np.zeros(1, dtype=time_step_layout(len(stiffness)))[0]
+    fill_time_step(expected, Propagators(damping, stiffness, whole, half), DT)
+    sway = (HERE.parents[1] / 'tree_sway' / 'page' / 'static' / 'sway.js').as_uri()
+    program = f"""
+      import {{ toMiddle }} from "{sway}";
+      const [stiffness, damping, time] = {json.dumps([[*stiffness], [*damping], 0.5 * DT])};
+      const found = toMiddle(Float64Array.from(stiffness), Float64Array.from(damping), time);
+      console.log(JSON.stringify([...found]));
+    """
+    done = subprocess.run(
+        [node, '--input-type=module', '-e', program],
+        capture_output=True, text=True, check=True, timeout=60,
+    )  # fmt: skip
+    found = np.array(json.loads(done.stdout)).reshape(-1, 6).T
+    middle = expected['half'][:, : len(stiffness)]
+    assert (middle[5] > 0.0).all()
+    size = np.abs(middle).max(axis=1, keepdims=True)
+    assert np.abs(found - middle).max() <= 1e-11 * size.max()
+    assert found[5] == pytest.approx(middle[5], rel=1e-9)
 
 
 def test_a_scan_sways_as_in_python(tmp_path: Path) -> None:

@@ -79,7 +79,12 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
     Errors are those of `opened_tree`, and values of one tree for several.
     """
     with waiting(f'opening {arguments.tree}'):
-        scene = open_scene(arguments.tree, arguments.seed, **_options(arguments))
+        scene = open_scene(
+            arguments.tree,
+            arguments.seed,
+            exact=getattr(arguments, 'exact', False),
+            **_options(arguments),
+        )
     wood = _wood(arguments)
     if wood and not scene.is_one_tree:
         raise ParameterError(
@@ -112,8 +117,19 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
         raise error.at('--option') from None
 
 
-def add_leaves_argument(parser: argparse.ArgumentParser, default: str = 'auto') -> None:
-    """Add the choice of leaves; ``--leaves`` without a value is on."""
+def add_exact_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the choice to grow each tree of an inventory."""
+    what = 'grow each tree of an inventory by itself, instead of scaling few'
+    parser.add_argument('--exact', action='store_true', help=what)
+
+
+def add_leaves_argument(parser: argparse.ArgumentParser, default: str | None = 'auto') -> None:
+    """
+    Add the choice of leaves; ``--leaves`` without a value is on.
+
+    A default of None is for a command that chooses between on and, for strength, auto.
+    """
+    shown = default or 'on; auto with --strength'
     parser.add_argument(
         '--leaves',
         nargs='?',
@@ -121,7 +137,7 @@ def add_leaves_argument(parser: argparse.ArgumentParser, default: str = 'auto') 
         const='on',
         default=default,
         help='in leaf; auto is in leaf where the species is evergreen; in a forest, those trees '
-        'whose leaves its file does not determine (%(default)s)',
+        f'whose leaves its file does not determine ({shown})',
     )
 
 
@@ -167,12 +183,14 @@ def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
     return SimulatedWind(SWAY['mean_speed'].checked(arguments.speed))
 
 
-def add_sway_arguments(parser: argparse.ArgumentParser, record: str = '') -> None:
+def add_sway_arguments(
+    parser: argparse.ArgumentParser, record: str = '', leaves: str | None = 'on'
+) -> None:
     """Add a scene, a wind, a model and leaves, which are drawn by default."""
     add_tree_arguments(parser, forests=True, default='benjamina')
     add_wind_arguments(parser, record)
     add_model_argument(parser)
-    add_leaves_argument(parser, 'on')
+    add_leaves_argument(parser, leaves)
 
 
 def add_model_argument(parser: argparse.ArgumentParser) -> None:

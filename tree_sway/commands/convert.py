@@ -10,6 +10,7 @@ from pathlib import Path
 import sys
 
 from tree_sway.commands.arguments import (
+    add_exact_argument,
     add_leaves_argument,
     add_model_argument,
     add_output_arguments,
@@ -37,6 +38,7 @@ from tree_sway.files.whole_file import write_text_whole
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser, forests=True)
+    add_exact_argument(parser)
     add_leaves_argument(parser)
     add_model_argument(parser)
     add_output_arguments(parser, f'{OUTPUT_HELP}, .html, .usda, .xml (MJCF), .sdf')

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.commands.arguments import (
+    add_exact_argument,
     add_leaves_argument,
     add_tree_arguments,
     chosen_leaves,
@@ -20,10 +21,10 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.commands.mode_table import mode_table
 from tree_sway.commands.progress import bar
+from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.core.checks import within
-from tree_sway.core.scene.placed_tree import Kind
+from tree_sway.core.scene.placed_tree import Kind, PlacedTree
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.simulator.season import in_season
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
@@ -42,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add_tree_arguments(parser, forests=True)
+    add_exact_argument(parser)
     add_leaves_argument(parser)
     add('--gravity', choices=('on', 'off'), default='on', help='weight of the tree (%(default)s)')
     add('--count', type=int, default=10, metavar='N', help='number of frequencies (%(default)s)')
@@ -59,7 +61,11 @@ def run(arguments: argparse.Namespace) -> int:
     kinds = scene.kinds
     if scene.is_one_tree:
         kinds = [kinds[0]._replace(tree=scene.tree)]
-    found = [_kind_facts(kind, arguments) for kind in bar(kinds, 'computing the modes')]
+    tallest = tallest_of_kinds(scene)
+    found = [
+        _kind_facts(kind, tallest[number], arguments)
+        for number, kind in enumerate(bar(kinds, 'computing the modes'))
+    ]
     facts = {'name': scene.name, 'source': scene.source} | (
         found[0] if scene.is_one_tree else _sums(scene, found)
     )
@@ -68,8 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
-    """Collect the facts on a kind of trees, in SI units, for JSON."""
+def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) -> dict[str, Any]:
+    """Collect the facts on a kind of trees, in SI units, for JSON; strength is of its tallest."""
     tree, species, count = kind.tree, kind.species, arguments.count
     settings = Settings(
         gravity=_GRAVITY if arguments.gravity == 'on' else 0.0,
@@ -89,9 +95,13 @@ def _kind_facts(kind: Kind, arguments: argparse.Namespace) -> dict[str, Any]:
     used = None
     if arguments.speed is not None:
         rng = np.random.default_rng(0)
-        (used,) = Rig(kind, settings).strength_curve([arguments.speed], rng=rng)
+        chosen = Settings(gravity=settings.gravity, in_leaf=settings.in_leaf)
+        (used,) = strength_rig(tallest, chosen).strength_curve([arguments.speed], rng=rng)
         left_out = 'rot, wet soil and sheltering are not included'
-        notes.append(f'in gusts of a mean wind of {arguments.speed:g} m/s, {used}; {left_out}')
+        notes.append(
+            f'{tallest.name} in gusts of a mean wind of {arguments.speed:g} m/s, {used}; '
+            f'{left_out}'
+        )
     frequencies = [mode['frequency'] for mode in modes]
     slow = sway_oddity(tree, species, min(frequencies)) if modes else None
     return {

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.commands.arguments import (
+    add_exact_argument,
     add_output_arguments,
     add_sway_arguments,
     chosen_leaves,
@@ -21,12 +22,12 @@ from tree_sway.commands.arguments import (
     output_path,
 )
 from tree_sway.commands.progress import bar, waiting
+from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
-from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.scene.simulate import Rig
+from tree_sway.core.simulator.settings import Settings
 from tree_sway.errors import FormatError, ParameterError, TreeError
 from tree_sway.page.wind_source import RecordedWind
 from tree_sway.parameters.sway_parameters import SWAY
@@ -41,7 +42,8 @@ _LEAVES = 3000
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_sway_arguments(parser)
+    add_sway_arguments(parser, leaves=None)
+    add_exact_argument(parser)
     parser.add_argument(
         '--portrait',
         action='store_true',
@@ -59,6 +61,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Draw, and print the name of the picture."""
     within('--seconds', arguments.seconds, 0.0, 3600.0, 's', above=True)
+    if arguments.leaves is None:  # as `info` and `simulate`, so that figures of strength agree
+        arguments.leaves = 'auto' if arguments.strength else 'on'
     if arguments.speed is None:
         arguments.speed = 30.0 if arguments.strength else 10.0 if arguments.portrait else 6.0
     output = output_path(arguments)
@@ -118,16 +122,14 @@ def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
 
 def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     """Draw the strength that the tallest tree of each kind uses over wind speed; print it."""
-    by_height = sorted(range(len(scene.trees)), key=lambda row: scene.trees[row].scale)
-    tallest = {int(scene.kind_numbers[row]): scene.trees[row] for row in by_height}
+    tallest = tallest_of_kinds(scene)
+    settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
     speeds, used = np.linspace(0.0, SWAY['mean_speed'].checked(arguments.speed), 7)[1:], {}
     for each in bar(tallest.values(), 'loading trees'):
-        leaf_on = chosen_leaves(arguments) if each.leaf_on is None else each.leaf_on
-        tree = PlacedTree(each.name, each.placed(), species=each.species)
-        rig = Rig(tree, model=arguments.model, in_leaf=leaf_on)
+        rig = strength_rig(each, settings)
         used[each.name] = rig.strength_curve(speeds, rng=np.random.default_rng(0))
         for speed, use in zip(speeds, used[each.name], strict=True):
-            print(f'{each.name} in {speed:.3g} m/s: {use}')
+            print(f'{each.name} in gusts of a mean wind of {speed:.3g} m/s, {use}')
     plot_strength(speeds, used, output)
 
 

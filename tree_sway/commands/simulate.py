@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+import sys
 
 import numpy as np
 
@@ -58,6 +59,8 @@ def run(arguments: argparse.Namespace) -> int:
             model=arguments.model, in_leaf=chosen_leaves(arguments),
         )  # fmt: skip
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
+    for note in record.notes:
+        print(f'note: {note}', file=sys.stderr)
     print(f'{output}: {record}')
     print(record.strength)
     return 0

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 import gc
+import threading
 from typing import Any, cast, TypeVar
 
 from tree_sway.kernel_cache import KernelCache, why_no_compiler
@@ -21,6 +22,9 @@ WHY_PLAIN = why_no_compiler()
 """Why nothing is compiled, in a few words; empty where kernels are."""
 
 _LOOSE = {'contract', 'reassoc', 'nsz'}
+
+_COMPILER = threading.Lock()
+"""Held while the collector is off. numba itself compiles for one thread at a time."""
 
 
 def kernel(function: _F) -> _F:
@@ -87,10 +91,11 @@ def entry_of(function: Callable[..., Any], *arguments: Any) -> Callable[..., Any
 
     types = tuple(typeof(argument) for argument in arguments)
     # The compiler makes little garbage; to look for it takes a tenth of the first start.
-    before = gc.get_threshold()
-    gc.set_threshold(0)
-    try:
-        function.compile(types)  # type: ignore[attr-defined]
-    finally:
-        gc.set_threshold(*before)
+    with _COMPILER:
+        before = gc.get_threshold()
+        gc.set_threshold(0)
+        try:
+            function.compile(types)  # type: ignore[attr-defined]
+        finally:
+            gc.set_threshold(*before)
     return cast(Callable[..., Any], find(types))

@@ -46,6 +46,7 @@ _NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
 _PREFIX = struct.Struct('<4sII')
 _FRAME = struct.Struct('<BBBxIIq3hH')
 _ALIGNMENT = 8
+_LARGEST_SINGLE = float(np.finfo(np.float32).max)
 
 FRAME_SIZE = _FRAME.size
 """Size of a frame of the wind only in [bytes]."""
@@ -294,10 +295,12 @@ def _unpacked(data: bytes, magic: bytes) -> tuple[dict[str, Any], dict[str, Arra
 
 
 def encode_frame(frame: Frame) -> bytes:
-    """Write a frame; a wind beyond the range of its int16 is clamped and flagged."""
+    """Write a frame; a wind or a turn beyond the range of its type is clamped and flagged."""
     wind = np.rint(np.asarray(frame.wind) / WIND_UNIT)
     cut = np.clip(wind, -FULL_SCALE, FULL_SCALE)
-    flags = frame.flags | (BEYOND_SCALE if (cut != wind).any() else 0)
+    beyond = np.clip(frame.beyond, -_LARGEST_SINGLE, _LARGEST_SINGLE)
+    is_cut = bool((cut != wind).any() or (np.abs(frame.beyond) > _LARGEST_SINGLE).any())
+    flags = frame.flags | (BEYOND_SCALE if is_cut else 0)
     x, y, z = cut.astype(int).tolist()
     coordinates = np.asarray(frame.coordinates, dtype='<i2')
     return (
@@ -305,7 +308,7 @@ def encode_frame(frame: Frame) -> bytes:
             FRAME_KIND, FRAME_VERSION, flags, frame.identity, frame.sequence & 0xFFFFFFFF,
             frame.stamp, x, y, z, len(coordinates),
         )
-        + coordinates.tobytes() + np.asarray(frame.beyond, dtype='<f4').tobytes()
+        + coordinates.tobytes() + beyond.astype('<f4').tobytes()
     )  # fmt: skip
 
 

@@ -94,6 +94,7 @@ class SolverNode(TreeSwayNode):
             self.simulator.tune(**self.values('stiffness_factor'))
         self._camera: Any = None
         self._refused: dict[str, tuple[int, str]] = {}
+        self._tuned: dict[str, float] = {}
         self.pacer = self.pacer_of(self._tick)
         self._run = Run(
             self.simulator,
@@ -180,12 +181,14 @@ class SolverNode(TreeSwayNode):
                 cure='give the ratio itself; 0 is for the start',
             )
         if changes:
-            self.simulator.check_tuning(**changes)
+            # Beside those accepted before, which may still wait for the next step.
+            self.simulator.check_tuning(**self._tuned | changes)
 
     def on_change(self, values: dict[str, Any]) -> None:
         """Apply new values before the next step."""
         changes = {name: values[name] for name in LIVE if name in values}
         if changes and self.is_active:
+            self._tuned |= changes
             self._run.request(lambda: self.simulator.tune(**changes))
         if self.values['model'] == 'auto':
             self._run.request(self._set_demand)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 import time
 
 from tree_sway.core.scene.demand import adaptive_among
@@ -36,7 +37,8 @@ class SwayReport:
     def statuses(self, run: Run, pacer: Pacer, frames: int) -> list[Status]:
         """Report on the wind, the output and the model, after a number of pose arrays."""
         output = self._output(pacer.timing(), 1e9 / pacer.period, frames, pacer.is_simulated)
-        return [_wind(run.wind_state, run.counts), output, _model(run.simulator)]
+        model = _with_reductions(_model(run.simulator), run.simulator)
+        return [_wind(run.wind_state, run.counts), output, model]
 
     def _output(self, timing: Timing, rate: float, frames: int, is_simulated: bool) -> Status:
         now = time.monotonic()
@@ -57,6 +59,15 @@ def _wind(state: str, counts: GateCounts) -> Status:
     level, sentence = _WIND[state]
     values = {'state': state, 'refused': counts.refused, **vars(counts)}
     return Status('wind', level, sentence, values)
+
+
+def _with_reductions(status: Status, simulator: Simulator) -> Status:
+    """Warn of trees that show fewer coordinates, as their steps stayed clamped."""
+    count = simulator.counts.reduced
+    if not count:
+        return status
+    text = f'{status.message}; steps stayed clamped: coordinates were left out {count} times'
+    return replace(status, level=WARN, message=f'{text}; a reset brings them back')
 
 
 def _model(simulator: Simulator) -> Status:

@@ -6,7 +6,10 @@ from __future__ import annotations
 
 import threading
 
+from tree_sway.errors import TransportError
+
 _PATIENCE = 6.0
+"""Longest wait for the work under way in [s]."""
 
 
 class Worker:
@@ -17,7 +20,12 @@ class Worker:
         self._thread = threading.Thread(name=name)
 
     def start(self) -> None:
-        """Start the thread."""
+        """Start the thread; a `TransportError` if the one of before has not ended."""
+        if self._thread.is_alive():
+            raise TransportError(
+                f"the work of thread '{self._thread.name}' has not ended since it was stopped",
+                cure='activate again when it has, or start the node again',
+            )
         self._stopping.clear()
         self._thread = threading.Thread(target=self._run, name=self._thread.name, daemon=True)
         self._thread.start()

@@ -4,17 +4,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.simulate import simulate
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import RESTARTED, SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import species_named
-from tree_sway.errors import ParameterError
+from tree_sway.errors import ParameterError, TreeError
 
 DT = 1.0 / 60.0
 KINDS = (0, 4, 'branch', 'full', 'auto', 'forest')
@@ -144,3 +148,46 @@ def test_an_absurd_twig_leaves_no_pose_that_is_not_finite(model):
 def test_a_wind_that_is_not_three_numbers_is_one_clear_error(sim, wind):
     with pytest.raises(ParameterError, match=r'wind: .*is not three numbers; give x, y and z'):
         sim.step(wind, DT)
+
+
+@pytest.mark.parametrize('wind', ['wind.csv', 'canopy', [['a', 'b', 'c']], [[1.0], [2.0, 3.0]]])
+def test_what_is_no_wind_is_refused_with_a_cure(fork, wind):
+    with pytest.raises(ParameterError, match=r'no wind; open a file by read_wind'):
+        simulate(fork(), wind, model=2)
+
+
+@pytest.mark.parametrize('branches', ['stem', ['b1'], [0.5], 3])
+def test_branches_that_are_no_numbers_are_refused(fork, branches):
+    with pytest.raises(ParameterError, match='not numbers of branches'):
+        simulate(fork(), np.zeros((3, 3)), model=2, branches=branches)
+
+
+@pytest.mark.parametrize('count', [0, -1, np.nan, 'all'])
+def test_a_count_of_frequencies_is_one_at_least(fork, count):
+    for model in (2, 'branch'):
+        with pytest.raises(ParameterError, match='count'):
+            simulator(fork(), model).frequencies(count)
+
+
+@pytest.mark.parametrize('wrong', ['start', 'end', 'diameter'])
+@pytest.mark.parametrize('value', ['wind', [['a', 'b', 'c']], [[0.0, 0.0], [1.0]], {'x': 1}])
+def test_segments_that_are_no_numbers_are_one_clear_error(wrong, value):
+    given = {'start': [[0.0, 0.0, 0.0]], 'end': [[0.0, 0.0, 1.0]], 'diameter': [0.1]}
+    with pytest.raises(TreeError, match=f'{wrong}: not an array of numbers'):
+        tree_from_segments(**(given | {wrong: value}))
+
+
+@pytest.mark.parametrize('value', [3.0, None])
+def test_a_number_in_place_of_segments_is_one_clear_error(value):
+    with pytest.raises(TreeError):
+        tree_from_segments(value, [[0.0, 0.0, 1.0]], [0.1])
+
+
+@pytest.mark.parametrize('model', [4, 'full', 'branch', 'auto'])
+def test_a_tree_without_any_drag_stays_at_rest(fork, model):
+    wood = replace(species_named('broadleaf'), bare_drag_coefficient=0.0)
+    sim = make_simulator(fork(), wood, Settings(model=model, gravity=0.0))
+    rest = sim.place().copy()
+    for _ in range(60):
+        assert sim.step((9.0, 4.0, 1.0), DT) == 0
+    assert sim.place() == pytest.approx(rest, abs=1e-12)

@@ -58,6 +58,40 @@ def test_a_stiffer_tree_sways_as_one_made_so(tree, model):
     assert abs(wanted / before - 1.0) > 0.3
 
 
+def sway_after_tuning(sim, steps):
+    sim.tune(stiffness_factor=2.0, damping_ratio=0.3)
+    for dt in steps:
+        sim.step(BREEZE, dt)
+    return sim.tip_displacement
+
+
+@pytest.mark.parametrize('is_scene', [False, True])
+def test_steps_of_varying_length_take_a_change_as_equal_ones_do(tree, is_scene):
+    def made():
+        if is_scene:
+            one = PlacedTree('t', tree, species=WOOD)
+            return Scene([one], convection_ratio=np.inf).simulator(model=12)
+        return make_simulator(tree, WOOD, model=12)
+
+    equal = sway_after_tuning(made(), np.full(240, DT))
+    varying = sway_after_tuning(made(), DT * np.tile([1.001, 0.999], 120))
+    untuned = made()
+    for _ in range(240):
+        untuned.step(BREEZE, DT)
+    assert np.linalg.norm(varying - equal) < 0.01 * np.linalg.norm(equal)
+    assert np.linalg.norm(untuned.tip_displacement - equal) > 0.3 * np.linalg.norm(equal)
+
+
+@pytest.mark.parametrize('bad', [0.0, -0.01, np.nan, np.inf])
+def test_a_refused_step_does_not_advance_a_change(tree, bad):
+    sim = make_simulator(tree, WOOD, model=12)
+    sim.tune(stiffness_factor=2.0)
+    before = sim.bank.oscillators.tunable.stiffness.copy()
+    with pytest.raises(ParameterError, match='time step'):
+        sim.step(BREEZE, bad)
+    assert (sim.bank.oscillators.tunable.stiffness == before).all()
+
+
 @pytest.mark.parametrize('model', ['branch', 12])
 def test_more_damping_ends_the_sway_as_in_a_tree_made_so(tree, model):
     tuned = make_simulator(tree, WOOD, model=model)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import threading
 
 import pytest
 
@@ -62,3 +63,33 @@ def test_what_is_within_runs_on_one_thread_and_the_number_comes_back():
     with pytest.raises(ZeroDivisionError), one_thread():
         raise ZeroDivisionError
     assert [get() for _, get in _switches()] == before
+
+
+def test_blocks_that_overlap_all_run_on_one_thread_and_the_number_comes_back():
+    if not _switches():
+        pytest.skip('numpy and scipy are linked with another BLAS')
+    given = [get() for _, get in _switches()]
+    for put, _ in _switches():
+        put(2)
+    seen, is_open, may_end = [], threading.Event(), threading.Event()
+
+    def first():
+        with one_thread():
+            is_open.set()
+            may_end.wait(10.0)
+
+    thread = threading.Thread(target=first)
+    thread.start()
+    try:
+        assert is_open.wait(10.0)
+        with one_thread():
+            may_end.set()
+            thread.join(10.0)
+            assert not thread.is_alive()
+            seen = [get() for _, get in _switches()]
+        after = [get() for _, get in _switches()]
+    finally:
+        for (put, _), count in zip(_switches(), given, strict=True):
+            put(count)
+    assert seen == [1] * len(given)
+    assert after == [2] * len(given)

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.simulator.settings import MODELS
+from tree_sway.core.simulator.settings import MODELS, Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.state.tree_state import digest_of
 from tree_sway.core.tree.species import species_named
+from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.errors import StateError
 
 DT = 1.0 / 60.0
@@ -87,6 +88,36 @@ def test_the_digest_differs_between_trees_and_settings(fork, stem):
     leaves = np.ones(tree.n_branches)
     in_leaf = replace(sim.settings, in_leaf=True)
     assert digest_of(tree, in_leaf) != digest_of(tree, replace(in_leaf, leaf_mass=leaves))
+
+
+@pytest.mark.parametrize(
+    ('name', 'values'),
+    [
+        ('gravity', [10, 10.0, np.float64(10.0), np.float32(10.0)]),
+        ('crown_coherence', [1, 1.0, np.int64(1)]),
+        ('in_leaf', [True, np.bool_(True)]),
+        ('leaf_mass', [np.ones(3), np.ones(3, dtype=int), np.ones(3, dtype=np.float32)]),
+        ('profile', [WindProfile('power', 10), WindProfile('power', np.float64(10.0))]),
+    ],
+)
+def test_equal_values_have_one_digest_whatever_their_type(name, values):
+    assert len({digest_of(Settings(**{name: value})) for value in values}) == 1
+    assert len({Settings(**{name: value}) for value in values}) == 1
+
+
+def test_values_that_differ_have_different_digests():
+    given = [
+        Settings(),
+        Settings(gravity=9.8),
+        Settings(in_leaf=False),
+        Settings(in_leaf=True),
+        Settings(leaf_mass=np.ones(3)),
+        Settings(leaf_mass=np.ones(4)),
+        Settings(leaf_area=np.ones(3)),
+        Settings(model='full'),
+        Settings(profile=WindProfile('log')),
+    ]
+    assert len({digest_of(each) for each in given}) == len(given)
 
 
 @pytest.mark.parametrize('model', ['branch', 12, 'full', 'auto'])

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import threading
 import tracemalloc
 
 from hypothesis import given, settings
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
+from tree_sway.core.wind import gust_travel
 from tree_sway.core.wind.gust_travel import GustHistory, LARGEST_STRETCH, SLOWEST_GUST
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 from tree_sway.errors import ParameterError
@@ -207,6 +209,38 @@ def test_a_step_allocates_nothing():
     assert (
         sum(each.size_diff for each in grown if 'gust_travel' in each.traceback[0].filename) < 1000
     )
+
+
+def test_a_copy_is_never_taken_in_the_middle_of_a_step(monkeypatch):
+    history, copies = GustHistory([[40.0, 0.0, 0.0]], np.zeros(3)), []
+    delayed(history, np.tile([8.0, 0.0, 0.0], (600, 1)))
+    reader = threading.Thread(target=lambda: copies.append(history.recent(history.time)))
+    remembered = gust_travel.remember
+
+    def slowly(run, at, *more):
+        run[int(at[0]), 1] += 100.0  # half a step, which changes no index
+        reader.start()
+        reader.join(0.2)
+        assert not copies
+        run[int(at[0]), 1] -= 100.0
+        remembered(run, at, *more)
+
+    monkeypatch.setattr(gust_travel, 'remember', slowly)
+    history.push((8.0, 0.0, 0.0), DT)
+    reader.join(10.0)
+    assert np.reshape(copies[0]['wind'], (-1, 3)) == pytest.approx(np.tile([8.0, 0, 0], (200, 1)))
+
+
+@pytest.mark.parametrize(
+    'change', [{'mean': [1.0]}, {'delay': [1.0, 2.0]}, {'wind': [1.0] * 4}, {'wind': ['x'] * 3}]
+)
+def test_a_received_history_of_a_wrong_form_is_refused(change):
+    history = GustHistory([[40.0, 0.0, 0.0]], np.zeros(3))
+    given = {'mean': [8.0, 0.0, 1.0], 'delay': [5.0], 'wind': [8.0, 0.0, 0.0]} | change
+    with pytest.raises(ParameterError):
+        history.go_on(**given)
+    history.go_on([8.0, 0.0, 1.0], [5.0], [8.0, 0.0, 0.0])
+    assert history.recent(history.time)['delay'] == [5.0]
 
 
 def test_reset_forgets():

@@ -156,3 +156,19 @@ def test_a_report_each_second_takes_no_memory():
     for _ in range(500):
         report.status(TIMEOUT, gate)
     assert sys.getallocatedblocks() - before < 100
+
+
+def test_a_tree_that_lost_coordinates_is_a_warning(fork):
+    from tree_sway.core.scene.make import make_simulator
+    from tree_sway_ros.reports import sway_report
+
+    sim = make_simulator(fork(), model=4)
+
+    def report():
+        return sway_report._with_reductions(sway_report._model(sim), sim)
+
+    assert (report().level, report().message) == (OK, '4')
+    sim.counts.reduced = 2
+    assert report().level == WARN
+    assert 'left out 2 times' in report().message
+    assert report().values['reduced'] == 2

@@ -114,6 +114,8 @@ class AdaptiveSimulator(SwaySimulator):
             8.0, rate=20.0, duration=60.0, rng=np.random.default_rng(0), intensity=0.2
         )
         self._expected_wind = WindClimate.of_samples(breeze, 20.0)
+        self._most = self.bank.oscillators.shapes.shape[1]
+        """Largest number of coordinates on which steps of this tree did not stay clamped."""
         self._shares, self._begun = np.zeros((2, self.bank.oscillators.shapes.shape[1]))
         self._left = np.zeros(1)
         self._expect()
@@ -187,7 +189,17 @@ class AdaptiveSimulator(SwaySimulator):
     def reset(self) -> None:
         """Return to rest, with the number of coordinates for the expected wind."""
         super().reset()
+        self._most = self.bank.oscillators.shapes.shape[1]
         self._expect()
+        self._show()
+
+    def show_at_most(self, count: int) -> None:
+        """Choose among the numbers up to a count from now on, until `reset`."""
+        self._most = count
+        self.review()
+        self._shares[count:], self._begun[:] = 0.0, 0.0
+        dialled(self.bank).keep_only(count)
+        self._show()
 
     def _expect(self) -> None:
         """Choose for the expected wind."""
@@ -235,8 +247,9 @@ class AdaptiveSimulator(SwaySimulator):
 
     def _affordable(self, estimates: list[Estimate]) -> list[Estimate]:
         """Find the numbers within the budget, or the cheapest one."""
-        within = [e for e in estimates if self.cost_scale * e.cost <= self.budget]
-        return (within or estimates[:1]) if self.budget > 0.0 else estimates
+        sound = [e for e in estimates if e.n_coordinates <= self._most]
+        within = [e for e in sound if self.cost_scale * e.cost <= self.budget]
+        return (within or sound[:1]) if self.budget > 0.0 else sound
 
     def _choose(
         self, estimates: list[Estimate], current: Estimate | None = None, *, at_best: bool = False

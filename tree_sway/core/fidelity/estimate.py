@@ -113,6 +113,9 @@ class Dialled(Oscillators, Protocol):
     def show(self, hidden: Floats, count: int) -> None:
         """Show and load the first coordinates only, without a hidden part of each, (m,)."""
 
+    def keep_only(self, count: int) -> None:
+        """Solve the first coordinates only, from rest on, until `reset`."""
+
 
 class ErrorEstimator:
     """

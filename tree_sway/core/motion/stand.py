@@ -65,8 +65,8 @@ def step_stand(
     Returns
     -------
     tuple
-        Trees whose wind was clamped to the limit of their table, and trees whose motion was not
-        finite and that continue from rest.
+        Trees whose wind or lean was clamped to the limit of their table, and trees whose motion
+        was not finite and that continue from rest.
 
     """
     clamped, restarted = 0, 0
@@ -89,8 +89,8 @@ def step_stand(
             share = math.sqrt(table.most_pressure / load) / speed
             x, y, z = share * x, share * y, share * z
         here.is_clamped = is_clamped
-        clamped += is_clamped
-        step_instance(table, time_steps[here.time_step], instance, True, x, y, z, load)
+        outside = step_instance(table, time_steps[here.time_step], instance, True, x, y, z, load)
+        clamped += 1 if is_clamped else outside
         total = 0.0
         for i in range(len(instance.eta)):
             total += 0.0 * instance.eta[i] + 0.0 * instance.rate[i]

@@ -110,7 +110,8 @@ def static_responses(
         scaled = np.tile(scale, len(directions))[:, None] * loads
         x += (solve(scaled.T).T.reshape(x.shape) - x) / (turn + 2.0) ** 0.5
         x *= np.minimum(1.0, _FARTHEST / np.maximum(np.abs(x).max(axis=2), 1e-12))[..., None]
-    found.extend((x / scale[:, None]).reshape(-1, moments.n))
+    # Where air has no pressure, none of these winds bends the tree.
+    found.extend((x / np.maximum(scale, 1e-300)[:, None]).reshape(-1, moments.n))
     for rise in (-np.pi / 2.0, -np.pi / 4.0, np.pi / 4.0, np.pi / 2.0):
         for azimuth in _AZIMUTHS[::2] if abs(rise) < 1.5 else _AZIMUTHS[:1]:
             level = np.cos(rise)

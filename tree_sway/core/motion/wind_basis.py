@@ -15,8 +15,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property, partial
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.kernel import entry_of, fused, part
@@ -39,7 +41,7 @@ from tree_sway.core.motion.simd import shapes_together, TOGETHER
 from tree_sway.core.motion.wind_basis_force import wind_force
 from tree_sway.core.motion.wind_basis_table import WindBasisTable
 
-STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside')
+STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside', 'left_out')
 """Fields of an instance that are its state."""
 
 
@@ -63,6 +65,7 @@ class WindBasisBank:
         self.lay_out(modal.shapes.shape[1])
         self._filled_x = self.room_for_rotations()
         self._x = self._filled_x[: len(modal.shapes)]
+        self._n_dropped = np.zeros(1, dtype=np.int64)
         self.n_outside = 0
         """Steps whose wind was clamped to the limit of the table."""
 
@@ -84,6 +87,23 @@ class WindBasisBank:
         self.instance['hidden'][0, : len(hidden)] = hidden
         self.instance['left_out'] = len(hidden) - count
 
+    @property
+    def n_shown(self) -> int:
+        """Return the number of coordinates that are shown."""
+        return self.shapes.shape[1] - int(self.instance['left_out'][0])
+
+    def keep_only(self, count: int) -> None:
+        """Solve the first coordinates only, from rest on, until `reset`."""
+        come_to_rest(self.instance)
+        self._n_dropped[0] = self.shapes.shape[1] - count
+        self.instance['left_out'] = self._n_dropped[0]
+        drop(self.time_step[0], count)
+
+    @property
+    def is_bent_too_far(self) -> bool:
+        """Whether the last step clamped the tree in a wind that cannot bend it so far."""
+        return bool(bent_too_far(self.instance, self.record['most_pressure'])[0])
+
     def room_for_rotations(self) -> Floats:
         """Return zeros for `expand` to write key rotations to, (N,) and some more."""
         return room_for(len(self.laid_shapes) * TOGETHER)
@@ -91,7 +111,9 @@ class WindBasisBank:
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         self.modal.set_step(dt)
-        fill_time_step(self.time_step[0], self.modal.whole, self.modal.half)
+        fill_time_step(self.time_step[0], propagators_of(self.modal), dt)
+        if self._n_dropped[0]:
+            drop(self.time_step[0], self.shapes.shape[1] - int(self._n_dropped[0]))
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `ModalBank.advance`."""
@@ -139,7 +161,7 @@ class WindBasisBank:
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of the state."""
-        return tuple(self.instance[name] for name in STATE_FIELDS)
+        return *(self.instance[name] for name in STATE_FIELDS), self._n_dropped
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -170,13 +192,74 @@ class WindBasisBank:
         self.modal.reset()
 
 
-def fill_time_step(time_step: np.void, whole: Floats, half: Floats) -> None:
-    """Write coefficients of a step and of half a step, (m, 8), into a `time_step_layout`."""
-    m = len(whole)
+def bent_too_far(instances: Records, most_pressure: Floats) -> NDArray[np.bool_]:
+    """
+    Whether the last step clamped each instance in a wind that cannot bend it so far, (t,).
+
+    A table allows more energy than that of any of its winds: in half of their largest dynamic
+    pressure [kg/m/s^2], (t,), a tree does not reach it but by growing motion, or by a pull.
+    """
+    wind = instances['wind']
+    dynamic_pressure = instances['pressure'] * np.einsum('ti,ti->t', wind, wind)
+    return (instances['outside'] == 1) & (dynamic_pressure < 0.5 * most_pressure)
+
+
+def come_to_rest(instances: Records) -> None:
+    """Bring instances to rest: the motion and the force of a tree that is stuck are no state."""
+    for name in ('eta', 'rate', 'force'):
+        instances[name] = 0.0
+
+
+def drop(time_step: np.void, count: int) -> None:
+    """Write a step into a `time_step_layout` that puts all coordinates beyond a count to rest."""
+    for name in ('whole', 'half'):
+        time_step[name][:, count:] = 0.0
+
+
+class Propagators(NamedTuple):
+    """
+    Damping [1/s] and stiffness [1/s^2] of coordinates, (m,), and their propagators.
+
+    ``whole`` is over a step, ``half`` over half of it, (m, 8).
+    """
+
+    damping: Floats
+    stiffness: Floats
+    whole: Floats
+    half: Floats
+
+
+def propagators_of(modal: ModalBank) -> Propagators:
+    """Return the propagators of a bank over its time step."""
+    return Propagators(modal.damping, modal.stiffness, modal.whole, modal.half)
+
+
+def fill_time_step(time_step: np.void, law: Propagators, dt: float) -> None:
+    """
+    Write the coefficients of a step of dt [s] and of half a step into a `time_step_layout`.
+
+    A step moves each coordinate exactly. The load is taken from the middle of the step, where the
+    rate of a coordinate that swings nearly once a step or more may be opposite to its force.
+    Strong drag, whose implicit part needs a rate that follows the force, would then feed the
+    motion. The middle state of such coordinates is that of an implicit Euler step, whose rate
+    always follows the force.
+    """
+    m = len(law.stiffness)
+    half = law.half.T[[0, 1, 2, 4, 5, 6]]
+    half[[2, 5]] += law.half.T[[3, 7]]
+    euler = _implicit_euler(law.damping, law.stiffness, 0.5 * dt)
     time_step['whole'], time_step['half'] = 0.0, 0.0
-    time_step['whole'][:, :m] = whole.T
-    time_step['half'][:, :m] = half.T[[0, 1, 2, 4, 5, 6]]
-    time_step['half'][[2, 5], :m] += half.T[[3, 7]]
+    time_step['whole'][:, :m] = law.whole.T
+    time_step['half'][:, :m] = np.where(half[5] < euler[5], euler, half)
+
+
+def _implicit_euler(damping: Floats, stiffness: Floats, h: float) -> Floats:
+    """Displacement, then rate, after a step h [s] by displacement, rate and force, (6, m)."""
+    share = 1.0 / (1.0 + h * damping + h * h * stiffness)
+    rate = np.stack([-h * stiffness * share, share, h * share])
+    displacement = h * rate
+    displacement[0] += 1.0
+    return np.concatenate([displacement, rate])
 
 
 def step_branches(instance: np.void, modal: ModalBank) -> int:
@@ -210,7 +293,8 @@ def step_instance(
     Returns
     -------
     int
-        1 where the wind or the lean was clamped to the limit of the table, 0 elsewhere.
+        1 where the wind or the lean was clamped to the limit of the table, 0 elsewhere; a wind
+        that was clamped before does not count.
 
     """
     speed = math.sqrt(wx * wx + wy * wy + wz * wz)
@@ -252,7 +336,7 @@ def step_instance(
         share = math.sqrt(most / energy)
         for i in range(len(eta)):
             eta[i], rate[i] = share * eta[i], share * rate[i]
-        instance.outside = 0 if is_clamped else 1
+        instance.outside = 1
     return int(instance.outside)
 
 

@@ -88,9 +88,7 @@ class WindBasisTable:
         made.record = stored['table']
         return made
 
-    def __init__(
-        self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw
-    ) -> None:
+    def __init__(self, bank: ModalBank, wind_moments: WindMoments, drag_law: DragLaw) -> None:
         """Find the loads of the tree in all winds."""
         self._shapes, self._moments = bank.shapes, wind_moments
         self._inertia_slopes = bank.inertia_slopes
@@ -143,7 +141,7 @@ class WindBasisTable:
                 if SPEEDS[j] > _BREEZE:
                     air = self._damping - s / SPEEDS[j] * np.diag(damping[k, j])
                     most = _FLUTTER[SPEEDS[j] > _STORM]
-                    turning[k, j] -= self._feeding(s * turning[k, j], air, most) / s
+                    turning[k, j] -= self._feeding(s * turning[k, j], air, most) / max(s, 1e-300)
         calm = int(np.searchsorted(SPEEDS, _STORM))
         for k, poses in enumerate(equilibrium):
             for j in range(1, calm):
@@ -162,7 +160,9 @@ class WindBasisTable:
         table['cross_damping'] = np.abs(table['damping']).sum(axis=2)
         table['cross_damping'] -= np.abs(np.einsum('ajii->aji', table['damping']))
         levels = np.einsum('ajm,am->aj', table['equilibrium'], table['amount'])
-        least = 1e-6 * np.abs(levels).max() * np.arange(N_LEVELS)
+        # Levels rise, also those of a tree without any load.
+        largest = float(np.abs(levels).max()) or 1.0
+        least = 1e-6 * largest * np.arange(N_LEVELS)
         table['levels'] = np.maximum.accumulate(levels, axis=1) + least
 
     def _turn_inertia(self, at: Floats, s: float, turning: Floats, damping: Floats) -> None:
@@ -178,7 +178,7 @@ class WindBasisTable:
         stiffness = np.square(self._root[:q, None])
         for slopes in (turning, damping):
             slopes[:, :q] = slopes[:, :q] @ inverse
-        turning[:q, :q] += stiffness * (np.eye(q) - inverse) / s
+        turning[:q, :q] += stiffness * (np.eye(q) - inverse) / max(s, 1e-300)
 
     def _feeding(self, slopes: Floats, damping: Floats, most: float) -> Floats:
         """

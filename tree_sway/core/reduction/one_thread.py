@@ -13,23 +13,56 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 import ctypes
 from functools import cache
+import threading
 
 from numpy.linalg import _umath_linalg
 
 _NAMES = ('scipy_openblas_{}64_', 'scipy_openblas_{}', 'openblas_{}64_', 'openblas_{}')
 
 
+class _Users:
+    """
+    Blocks that need one thread of each OpenBLAS at present.
+
+    The number of threads is a setting of the process, and blocks of several threads of the program
+    overlap: the first one sets it, and the last one sets it back.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._n_blocks = 0
+        self._before: list[int] = []
+
+    def enter(self) -> None:
+        """Set one thread for the first block."""
+        switches = _switches()
+        with self._lock:
+            if self._n_blocks == 0:
+                self._before = [get() for _, get in switches]
+                for put, _ in switches:
+                    put(1)
+            self._n_blocks += 1
+
+    def leave(self) -> None:
+        """Set the number of threads back after the last block."""
+        with self._lock:
+            self._n_blocks -= 1
+            if self._n_blocks == 0:
+                for (put, _), count in zip(_switches(), self._before, strict=True):
+                    put(count)
+
+
+_USERS = _Users()
+
+
 @contextmanager
 def one_thread() -> Iterator[None]:
     """Run a block with one thread of each OpenBLAS, in other threads of the program too."""
-    before = [(put, get()) for put, get in _switches()]
+    _USERS.enter()
     try:
-        for put, _ in before:
-            put(1)
         yield
     finally:
-        for put, count in before:
-            put(count)
+        _USERS.leave()
 
 
 @cache

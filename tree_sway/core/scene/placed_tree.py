@@ -85,6 +85,13 @@ class PlacedTree:
             with inside(self.name):
                 object.__setattr__(self, 'model', model_of(self.model))
 
+    def __repr__(self) -> str:
+        """Return name, tree and place on one line."""
+        return (
+            f'PlacedTree {self.name!r} at ({self.x:.4g}, {self.y:.4g}, {self.z:.4g}) m, '
+            f'scale {self.scale:.3g}: {self.tree!r}'
+        )
+
     @property
     def kind(self) -> Kind:
         """Objects that it shares with the trees of its kind."""

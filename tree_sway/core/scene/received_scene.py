@@ -20,7 +20,7 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.motion.exported_table import table_of
 from tree_sway.core.motion.records import instance_layout, time_step_layout
 from tree_sway.core.motion.stand import step_stand
-from tree_sway.core.motion.wind_basis import fill_time_step
+from tree_sway.core.motion.wind_basis import fill_time_step, Propagators
 from tree_sway.core.oscillators.propagator import propagator
 from tree_sway.core.scene.placement_records import own_steps, placement_records
 from tree_sway.core.wind.gust_travel import GustHistory
@@ -74,8 +74,11 @@ class ReceivedScene:
         self._time_steps = np.zeros(len(found), dtype=time_step_layout(m))
         for own, (number, own_dt) in zip(self._time_steps, found, strict=True):
             arrays = kinds[number].arrays
-            law = 1.0, arrays['own_damping'], arrays['stiffness']
-            fill_time_step(own, propagator(*law, own_dt), propagator(*law, 0.5 * own_dt))
+            damping, stiffness = arrays['own_damping'], arrays['stiffness']
+            whole, half = (
+                propagator(1.0, damping, stiffness, span) for span in (own_dt, 0.5 * own_dt)
+            )
+            fill_time_step(own, Propagators(damping, stiffness, whole, half), own_dt)
         self._placed = placement_records(self._kind_of, places, speeds)
         self._placed['time_step'] = step
         self.gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)

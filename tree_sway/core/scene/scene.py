@@ -61,6 +61,14 @@ class Scene(PlacedTrees):
 
     """
 
+    def __repr__(self) -> str:
+        """Return name, number of trees and of kinds, or the only tree, on one line."""
+        if self.is_one_tree:
+            return f'Scene {self.name!r}: {self.trees[0]!r}'
+        n_kinds = len(self.kinds)
+        kinds = '1 kind' if n_kinds == 1 else f'{n_kinds} kinds'
+        return f'Scene {self.name!r}: {len(self.trees)} trees of {kinds}'
+
     @property
     def species(self) -> Species | None:
         """Species of all trees; None where they differ."""

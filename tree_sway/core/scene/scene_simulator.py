@@ -27,10 +27,18 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.placing import GIVEN, place
 from tree_sway.core.motion.records import instance_layout, time_step_layout, zeros_in_lines
 from tree_sway.core.motion.stand import place_stand, PLACEMENT, step_stand
-from tree_sway.core.motion.wind_basis import fill_time_step, WindBasisBank
+from tree_sway.core.motion.wind_basis import (
+    bent_too_far,
+    come_to_rest,
+    drop,
+    fill_time_step,
+    propagators_of,
+    WindBasisBank,
+)
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.placement_records import own_steps, placement_records
+from tree_sway.core.simulator.clamp_watch import ClampWatch, fewer
 from tree_sway.core.simulator.live_tuning import Tuning
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import (
@@ -110,7 +118,10 @@ class SceneSimulator:
         """Wind of each tree over that of its kind, (t,)."""
         self._placed['is_still'] = is_own | (counts == 0)
         self._make_tables()
-        self._numbers, self._is_shared = counts, ~is_own
+        self._asked, self._is_shared = counts, ~is_own
+        self._numbers = self._asked.copy()
+        """Numbers of coordinates that the trees show, (t,); -1 on their own models."""
+        self._watches: dict[int, ClampWatch] = {}
         self._show()
         self.own: dict[int, SwaySimulator] = {}
         """Simulators of the trees that share no table, by their numbers."""
@@ -134,6 +145,13 @@ class SceneSimulator:
         self.wind, self._dt = np.zeros(3), math.nan
         """Wind at the anemometer in the last step in [m/s], (3,)."""
 
+    def __repr__(self) -> str:
+        """Return the scene, the number of trees, the models and the steps on one line."""
+        return (
+            f'SceneSimulator of {self.scene.name}, {len(self.names)} trees, model {self.model}: '
+            f'{self._counts.steps} steps'
+        )
+
     @property
     def model(self) -> str:
         """Models in use."""
@@ -147,6 +165,7 @@ class SceneSimulator:
         return replace(
             counts,
             clamped=counts.clamped + sum(each.clamped for each in own),
+            reduced=counts.reduced + sum(each.reduced for each in own),
             restarted=counts.restarted + sum(each.restarted for each in own),
         )
 
@@ -213,9 +232,28 @@ class SceneSimulator:
             if one.touch is None:
                 del self.pushed[number]
         self._counts.steps += 1
+        if clamped:
+            self._watch_clamped(dt)
         self._counts.clamped += clamped
         self._counts.restarted += restarted
         return status | (LOAD_CLAMPED if clamped else OK) | (RESTARTED if restarted else OK)
+
+    def _watch_clamped(self, dt: float) -> None:
+        """Show fewer coordinates of trees whose steps stay clamped, and which no push bends."""
+        most = self._tables['most_pressure'][self._placed['kind']]
+        for number in np.flatnonzero(bent_too_far(self._instances, most)).tolist():
+            watch = self._watches.setdefault(number, ClampWatch())
+            if number in self.pushed or not watch.is_stuck(self._counts.steps, dt):
+                continue
+            bank = self._banks[self._placed['kind'][number]]
+            before = min(int(self._numbers[number]), bank.shapes.shape[1])
+            count = fewer(before)
+            if count < before:
+                self._numbers[number] = count
+                self._counts.reduced += 1
+                come_to_rest(self._instances[number : number + 1])
+                self._show()
+                self._dt = math.nan  # it has a step of its own from now on
 
     def push(
         self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
@@ -377,6 +415,9 @@ class SceneSimulator:
     def reset(self) -> None:
         """Bring every tree to rest and forget the wind; the counts stay."""
         self._instances[:] = np.zeros((), dtype=self._instances.dtype)
+        self._numbers[:] = self._asked
+        self._watches.clear()
+        self._dt = math.nan
         self._show()
         for simulator in self.own.values():
             simulator.reset()
@@ -399,12 +440,17 @@ class SceneSimulator:
         """Fill the coefficients of every kind and scale, rounded to a hundredth."""
         rows = np.flatnonzero(self._is_shared)
         found, number = own_steps(self._placed['kind'][rows], self._placed['scale'][rows], dt)
-        self._time_steps = np.zeros(len(found), dtype=self._time_steps.dtype)
-        for time_step, (kind, own_dt) in zip(self._time_steps, found, strict=True):
+        reduced = np.flatnonzero(self._numbers < self._asked)
+        self._time_steps = np.zeros(len(found) + len(reduced), dtype=self._time_steps.dtype)
+        for time_step, (kind, own_dt) in zip(self._time_steps[: len(found)], found, strict=True):
             modal = self._banks[kind].modal
             modal.set_time_step(own_dt)
-            fill_time_step(time_step, modal.whole, modal.half)
+            fill_time_step(time_step, propagators_of(modal), own_dt)
         self._placed['time_step'][rows] = number
+        for own, tree in enumerate(reduced.tolist(), start=len(found)):
+            self._time_steps[own] = self._time_steps[self._placed['time_step'][tree]]
+            drop(self._time_steps[own], int(self._numbers[tree]))
+            self._placed['time_step'][tree] = own
         self._dt = dt
 
 

@@ -6,7 +6,10 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from copy import deepcopy
+from dataclasses import replace
 import itertools
+import operator
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -19,7 +22,7 @@ from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.simulator.simulator import Counts, SwaySimulator
 from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
 from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.tree import tips_of_poses, Tree
@@ -112,6 +115,7 @@ class Rig:
         """Sway the tree in a wind from rest, as `simulate`."""
         tree, simulator, chosen = self.tree, self.simulator, _chosen(self.tree, branches)
         simulator.reset()
+        before = replace(simulator.counts)
         gauge, per_rotation = StrengthGauge(self.reductions), moment_per_rotation(self.reductions)
         poses, rows = np.empty((tree.n_segments, 7)), list[tuple[Floats, ...]]()
         rest = tips_of_poses(tree, simulator.place(), chosen)
@@ -135,6 +139,7 @@ class Rig:
             tree.name, simulator.model, np.arange(1, count + 1) / rate, means, chosen,
             tuple(tree.branch_names[branch] for branch in chosen), tips, moment,
             per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1), strain, gauge.use(),
+            _doubts(simulator, before),
         )  # fmt: skip
 
     def strength_curve(
@@ -148,17 +153,37 @@ class Rig:
         speeds
             Mean speeds in [m/s], (n,).
         rng
-            Random numbers of the turbulence; all speeds have the same gusts, faster.
+            Random numbers of the turbulence; all speeds have the same gusts, faster. A copy is
+            used: the gusts are those that `simulate_turbulence` makes from it.
         seconds
             Length of each wind in [s].
 
         """
-        seed, used = int(rng.integers(2**32)), []
+        used = []
         for speed in np.asarray(speeds, dtype=np.float64).tolist():
-            same = np.random.default_rng(seed)
-            wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=same)
+            wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=deepcopy(rng))
             used.append(self.run(wind).strength)
         return used
+
+
+def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
+    """Report what makes the motion since some counts doubtful, one sentence each."""
+    now, found = simulator.counts, list[str]()
+    if now.reduced > before.reduced:
+        found.append(
+            'steps stayed clamped to the limit of the model, and coordinates were left out: '
+            f"{simulator.n_shown} moved at the end; compare with model 'full'"
+        )
+    elif now.clamped > before.clamped:
+        n_steps = now.steps - before.steps
+        found.append(
+            f'{now.clamped - before.clamped} loads in {n_steps} steps were clamped to the limit '
+            'of the model'
+        )
+    if now.restarted > before.restarted:
+        n_restarts = now.restarted - before.restarted
+        found.append(f'the motion was not finite and continued from rest, {n_restarts} times')
+    return tuple(found)
 
 
 def moment_per_rotation(reductions: TreeReductions) -> Floats:
@@ -187,7 +212,12 @@ def _steps(
         count, what = int(duration * rate + 1e-6), f'a wind record of {duration:g} s'
         steps = _through_record(simulator, wind, rate, measure)
     else:
-        means = np.asarray(wind, dtype=np.float64)
+        try:
+            means = np.asarray(wind, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            text = ' '.join(repr(wind).split())[:80]
+            cure = 'open a file by read_wind, or give the mean of each step, (t, 3)'
+            raise ParameterError(f'{text} is no wind', where='wind', cure=cure) from None
         is_long = means.ndim == 2 and means.shape[1] == 3
         count, what = len(means) if is_long else 0, f'wind of shape {means.shape}'
         if not np.isfinite(means).all():
@@ -225,7 +255,14 @@ def _chosen(tree: Tree, branches: Sequence[int] | None) -> Ints:
     """Branches whose tips are recorded, (k,)."""
     if branches is None:
         return np.array([tree.branch_of_segment[int(np.argmax(tree.end[:, 2]))]])
-    chosen = np.asarray(branches, dtype=np.int64)
+    try:
+        chosen = np.array([operator.index(branch) for branch in branches], dtype=np.int64)
+    except (TypeError, OverflowError):
+        raise ParameterError(
+            f'{branches!r:.80} are not numbers of branches',
+            where='branches',
+            cure=f'give a list of whole numbers from 0 to {tree.n_branches - 1}',
+        ) from None
     wrong = chosen[(chosen < 0) | (chosen >= tree.n_branches)]
     if len(wrong):
         raise ParameterError(

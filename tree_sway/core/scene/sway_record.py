@@ -47,6 +47,9 @@ class SwayRecord:
         Largest strain of a fibre along each of these branches, beyond that at rest [-], (t, k).
     strength
         Largest used share of the strength of the tree.
+    notes
+        Doubts about the motion, one sentence each: steps that were clamped, coordinates that were
+        left out, restarts.
 
     """
 
@@ -61,6 +64,7 @@ class SwayRecord:
     base_strain: Floats
     strain: Floats
     strength: StrengthUse
+    notes: tuple[str, ...] = ()
 
     def columns(self) -> dict[str, Floats]:
         """Return every column, (t,), under its name with its unit, such as ``time [s]``."""

@@ -5,9 +5,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 import math
 from typing import Any
+
+import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
@@ -115,6 +117,18 @@ class Settings:
             raise ParameterError(
                 'leaves on a bare tree', where='in_leaf', cure='leave in_leaf out, or the leaves'
             )
+
+    def __repr__(self) -> str:
+        """Return the model and the fields that are not the default on one line."""
+        shown = []
+        for each in fields(self):
+            value = getattr(self, each.name)
+            default = WindProfile() if each.name == 'profile' else each.default
+            if isinstance(value, np.ndarray):
+                shown.append(f'{each.name}=<{value.size} numbers>')
+            elif each.name == 'model' or value != default:
+                shown.append(f'{each.name}={value!r:.80}')
+        return f'Settings({", ".join(shown)})'
 
     def __eq__(self, other: object) -> bool:
         """Compare every field, arrays by their numbers."""

@@ -13,7 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
+from tree_sway.core.checks import (
+    array_to_fill,
+    array_to_read,
+    refuse_time_step,
+    three_numbers,
+    within,
+)
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.bank import Bank
@@ -29,6 +35,7 @@ from tree_sway.errors import ParameterError, StateError
 from tree_sway.set_up_files import SET_UPS, SetUpFiles
 
 if TYPE_CHECKING:
+    from tree_sway.core.simulator.clamp_watch import ClampWatch
     from tree_sway.core.simulator.crown_gusts import CrownGusts
     from tree_sway.core.simulator.live_tuning import LiveTuning, Tuning
     from tree_sway.core.simulator.touch import Spring, Touch
@@ -45,7 +52,9 @@ class Counts:
 
     ``refused``: the wind was not finite or faster than the limit, and the last one was used;
     ``clamped``: loads at the limit of the model; ``restarted``: the motion was not finite, and the
-    tree continued from rest; ``refused_pushes``: calls of `SwaySimulator.push` that were refused.
+    tree continued from rest; ``refused_pushes``: calls of `SwaySimulator.push` that were refused;
+    ``reduced``: times that a tree whose steps stayed clamped continued from rest on fewer
+    coordinates (`clamp_watch`).
     """
 
     steps: int = 0
@@ -53,6 +62,7 @@ class Counts:
     clamped: int = 0
     restarted: int = 0
     refused_pushes: int = 0
+    reduced: int = 0
 
 
 class SwaySimulator:
@@ -129,12 +139,18 @@ class SwaySimulator:
         self.touch: Touch | None = None
         """Pushes, until their effect is gone."""
         self._dt = math.nan
+        self._watch: ClampWatch | None = None
         self._wind = np.zeros(3)
         self._expected = (int(self.bank.branches['n_coordinates'].sum()),)
         self._poses = np.zeros((tree.n_segments, 7))
         self._filled = self._poses
         self._origin = tree.start[0].copy()
         self._highest = int(np.argmax(tree.end[:, 2]))
+
+    def __repr__(self) -> str:
+        """Return tree, model and number of steps on one line."""
+        kind = type(self).__name__
+        return f'{kind} of {self.tree.name}, model {self.model}: {self.counts.steps} steps'
 
     @property
     def model(self) -> str:
@@ -155,8 +171,10 @@ class SwaySimulator:
         """
         Lowest natural frequencies of the tree in [Hz], without air, (count,) or fewer.
 
-        On the model ``branch`` they are those of the isolated branches.
+        On the model ``branch`` they are those of the isolated branches. A `ParameterError` refuses
+        a count below 1.
         """
+        count = int(within('count', count, 1, 1e9))
         if self.settings.model == 'branch':
             tunable = self.bank.oscillators.tunable
             circular = np.sort(np.sqrt(tunable.stiffness / tunable.inertia))[:count]
@@ -205,6 +223,7 @@ class SwaySimulator:
         for array in arrays:
             array[...] = state.values[first : first + array.size].reshape(array.shape)
             first += array.size
+        self._dt = math.nan  # the state determines which coordinates the step solves
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,), in the order of `joints`; valid until the next step."""
@@ -245,7 +264,13 @@ class SwaySimulator:
         """
         counts = self.counts
         x, y, z = three_numbers('wind', wind_mean)
-        if dt != self._dt or (self._tuning is not None and self.glide(dt)):
+        is_changed = dt != self._dt
+        if is_changed:
+            refuse_time_step(dt)
+        # A transition advances with every step, also where the length of the step varies.
+        if self._tuning is not None and self.glide(dt):
+            is_changed = True
+        if is_changed:
             self._set_step(dt)
         counts.steps += 1
         call = self._in_one_call
@@ -255,6 +280,8 @@ class SwaySimulator:
                 return OK
             counts.refused += outcome & 1
             clamped = self.bank.oscillators.step_outside() if outcome & 2 else 0
+            if clamped > 0:
+                self._watch_clamped(dt)
             return (WIND_REFUSED if outcome & 1 else OK) | self._count(clamped) | self.touched(dt)
         status = OK
         if is_wind(x, y, z, self._max_wind):
@@ -268,6 +295,8 @@ class SwaySimulator:
             outcome = self._advance(wx, wy, wz, load)
         else:
             outcome = self._gusts.advance(wx, wy, wz, load, dt)
+        if outcome > 0:
+            self._watch_clamped(dt)
         return status | self._count(outcome) | self.touched(dt)
 
     def push(
@@ -335,6 +364,33 @@ class SwaySimulator:
             self.counts.restarted += 1
             return RESTARTED
         return OK
+
+    def _watch_clamped(self, dt: float) -> None:
+        """Show fewer coordinates if the steps of the tree stay clamped, and no push bends it."""
+        oscillators = self.bank.oscillators
+        if self.touch is not None or not getattr(oscillators, 'is_bent_too_far', False):
+            return
+        from tree_sway.core.simulator.clamp_watch import ClampWatch, fewer
+
+        if self._watch is None:
+            self._watch = ClampWatch()
+        if self._watch.is_stuck(self.counts.steps, dt):
+            count = fewer(self.n_shown)
+            if count < self.n_shown:
+                self.show_at_most(count)
+                self.counts.reduced += 1
+
+    @property
+    def n_shown(self) -> int:
+        """Number of coordinates that move; on the models ``branch`` and ``full`` all."""
+        oscillators: Any = self.bank.oscillators
+        return int(getattr(oscillators, 'n_shown', oscillators.shapes.shape[1]))
+
+    def show_at_most(self, count: int) -> None:
+        """Go on from rest without the coordinates of a table beyond a count, until `reset`."""
+        keep_only = getattr(self.bank.oscillators, 'keep_only', None)
+        if keep_only is not None and count < self.n_shown:
+            keep_only(count)
 
     def place(self, out: Floats | None = None) -> Floats:
         """
@@ -429,11 +485,11 @@ class SwaySimulator:
         self.bank.oscillators.reset()
         if self._gusts is not None:
             self._gusts.wind.reset()
-        self.touch = None
+        self.touch = self._watch = None
+        self._dt = math.nan
         self._wind[:] = 0.0
 
     def _set_step(self, dt: float) -> None:
-        refuse_time_step(dt)
         self.bank.oscillators.set_step(dt)
         self._dt = dt
         if self._in_one_call is None and self._gusts is None:

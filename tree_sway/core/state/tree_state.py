@@ -9,8 +9,10 @@ digest of its tree, settings and model, and others refuse it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, is_dataclass
 import hashlib
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -31,16 +33,40 @@ class TreeState:
     model: str
     values: Floats
 
+    def __repr__(self) -> str:
+        """Return tree, model and digest on one line."""
+        return f'TreeState of {self.tree}, model {self.model}, digest {self.digest}'
+
 
 def digest_of(*header: Any) -> str:
-    """Digest of trees and of frozen dataclasses such as settings, 16 hexadecimal digits."""
+    """
+    Digest of trees and of frozen dataclasses such as settings, 16 hexadecimal digits.
+
+    Equal values have equal digests, whatever type of number they have.
+    """
     digest = hashlib.sha256()
     for each in header:
-        for field in fields(each):
-            value = getattr(each, field.name)
-            if field.name in ('name', 'source_index'):
-                continue
-            digest.update(field.name.encode())
-            is_array = isinstance(value, np.ndarray)
-            digest.update(value.tobytes() if is_array else repr(value).encode())
+        for part in _parts(each):
+            digest.update(part)
     return digest.hexdigest()[:16]
+
+
+def _parts(value: Any) -> Iterator[bytes]:
+    """Yield bytes that are equal for equal values."""
+    if is_dataclass(value):
+        for field in fields(value):
+            if field.name not in ('name', 'source_index'):
+                yield field.name.encode()
+                yield from _parts(getattr(value, field.name))
+    elif isinstance(value, np.ndarray):
+        numbers = np.asarray(value, dtype=np.float64)
+        yield str(numbers.shape).encode()
+        yield numbers.tobytes()
+    elif isinstance(value, Real | np.bool_):
+        yield (float(value) + 0.0).hex().encode()  # without the sign of zero
+    elif isinstance(value, tuple | list):
+        yield f'{len(value)}:'.encode()
+        for each in value:
+            yield from _parts(each)
+    else:
+        yield repr(value).encode()

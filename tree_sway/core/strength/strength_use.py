@@ -46,6 +46,8 @@ class StrengthUse:
     roots
         Largest share of the strength of the roots [-], with its lower and upper bound, (3,); nan
         in a pot.
+    in_leaf
+        Whether the tree bore leaves.
 
     """
 
@@ -53,6 +55,7 @@ class StrengthUse:
     branch: str
     height: float
     roots: Floats
+    in_leaf: bool = False
 
     def plain(self) -> dict[str, Any]:
         """Return the fields as plain numbers, for JSON; ``roots`` is None in a pot."""
@@ -60,14 +63,15 @@ class StrengthUse:
         return {**vars(self), 'wood': self.wood.tolist(), 'roots': roots}
 
     def __str__(self) -> str:
-        """Return both with their bands as one line."""
+        """Return both with their bands as one line, and whether the tree is in leaf."""
         wood, roots = (
             '{:.3g} % ({:.3g} to {:.3g} %)'.format(*100.0 * share)
             for share in (self.wood, self.roots)
         )
         roots = roots if np.isfinite(self.roots).all() else 'unknown in a pot'
         place = f'{self.branch}, {self.height:.2g} m up'
-        return f'strength used: wood {wood} in {place}; roots {roots}'
+        season = 'in leaf' if self.in_leaf else 'bare'
+        return f'strength used: wood {wood} in {place}; roots {roots}; {season}'
 
 
 class StrengthGauge:
@@ -117,4 +121,5 @@ class StrengthGauge:
             tree.branch_names[int(self._strain.branch[at])],
             float(self._strain.height[at]),
             roots * np.array([1.0, ROOT_MOMENT / ROOT_BAND[1], ROOT_MOMENT / ROOT_BAND[0]]),
+            bool(self._reductions.settings.in_leaf),
         )

@@ -62,7 +62,10 @@ def tree_from_segments(
         that does not exist, a cycle, more than one root, a branch that is not a chain.
 
     """
-    starts, ends, diameters = (np.array(each, dtype=np.float64) for each in (start, end, diameter))
+    starts, ends, diameters = (
+        _numbers(name, each)
+        for name, each in (('start', start), ('end', end), ('diameter', diameter))
+    )
     if diameters.ndim == 1:
         diameters = np.stack([diameters, diameters], axis=1)
     n = len(starts)
@@ -110,6 +113,15 @@ def tree_from_segments(
         subtree_end=_subtree_end(branch_parent), source_index=order.astype(np.int64),
         branch_names=tuple(names), name=name, species=species,
     )  # fmt: skip
+
+
+def _numbers(name: str, values: ArrayLike) -> Floats:
+    try:
+        return np.array(values, dtype=np.float64, ndmin=1)
+    except (TypeError, ValueError, OverflowError):
+        raise TreeError(
+            'not an array of numbers', where=name, cure='give (n, 3), (n, 3) and (n,) or (n, 2)'
+        ) from None
 
 
 def _check_geometry(

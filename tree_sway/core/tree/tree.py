@@ -73,6 +73,13 @@ class Tree:
             if isinstance(value, np.ndarray) and value.flags.writeable:
                 object.__setattr__(self, name, _read_only(value.copy()))
 
+    def __repr__(self) -> str:
+        """Return name, species, size and height on one line."""
+        return (
+            f'Tree {self.name!r}, {self.species}: {self.n_segments} segments, '
+            f'{self.n_branches} branches, {self.height:.3g} m high'
+        )
+
     @property
     def n_segments(self) -> int:
         """Return the number of segments."""

@@ -33,9 +33,9 @@ class Species:
         Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, 0.82 to
         1.2.
     shear_ratio
-        Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood
-        is nearer to 1/14 (Forest Products Laboratory, Wood Handbook, 2010), which makes only the
-        twist of stems softer.
+        Shear modulus over Young's modulus along the grain in [-]: some 1/14 for wood (Forest
+        Products Laboratory, Wood Handbook, 2010), where an isotropic rod has 0.38. It changes only
+        the twist of stems.
     root_stiffness
         Stiffness of the roots against tilting of the stem in [N m/rad]; infinite for rigid roots.
         It is that of one tree; `typical_root_stiffness` gives that of a size.
@@ -71,6 +71,13 @@ class Species:
     bark: tuple[float, float, float] = (0.36, 0.28, 0.22)
     habit: str = 'broadleaf'
     is_estimate: bool = False
+
+    def __repr__(self) -> str:
+        """Return key, title, modulus and density on one line."""
+        return (
+            f'Species {self.key!r}, {self.title}: modulus {1e-9 * self.modulus:.3g} GPa, '
+            f'density {self.density:.4g} kg/m^3'
+        )
 
     def damping(self, in_leaf: bool) -> float:
         """Return the damping ratio with or without leaves in [-]."""

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.checks import refuse_time_step, three_numbers, within
+from tree_sway.core.checks import array_to_read, refuse_time_step, three_numbers, within
 from tree_sway.core.kernel import kernel
 from tree_sway.errors import ParameterError
 
@@ -95,6 +95,8 @@ class GustHistory:
         # memory and the steps at its ends.
         self._finest = 2.0 * self._memory / (len(self._run) - 4)
         self._at = np.zeros(2, dtype=np.int64)
+        self._n_changes = 0
+        """Odd while the history is written."""
         self._mean = np.zeros(3)
         self._wanted = np.zeros(len(points))
         self.delay = np.zeros(len(points))
@@ -112,6 +114,13 @@ class GustHistory:
         refuse_time_step(dt)
         if not math.isfinite(x + y + z):
             raise ParameterError(f'wind ({x}, {y}, {z}) m/s', cure='give finite numbers')
+        self._n_changes += 1
+        try:
+            return self._pushed(x, y, z, dt)
+        finally:
+            self._n_changes += 1
+
+    def _pushed(self, x: float, y: float, z: float, dt: float) -> Floats:
         remember(self._run, self._at, self._finest, x, y, z, dt)
         follow_mean(self._mean, x, y, dt, self._averaging)
         east, north, _ = self._mean.tolist()
@@ -138,32 +147,39 @@ class GustHistory:
         over each `SPACING` of the last minute, x, y, z of one after the other.
         """
         while True:
+            before = self._n_changes
             at, run = self._at.copy(), self._run.copy()
-            if (at == self._at).all():
+            mean, delay = self._mean.copy(), self.delay.copy()
+            if self._n_changes == before and before % 2 == 0:
                 break
         rows = run[np.arange(at[0] - max(at[1], 1) + 1, at[0] + 1) % len(run)]
         count = min(self._memory, until - float(rows[0, 0])) // SPACING
         times = until + SPACING * np.arange(-count, 1.0)
         runs = [np.interp(times, rows[:, 0], rows[:, k]) for k in (1, 2, 3)]
         wind = np.diff(runs).T.ravel() / SPACING
-        found = {'mean': self._mean, 'delay': self.delay, 'wind': wind}
+        found = {'mean': mean, 'delay': delay, 'wind': wind}
         return {name: each.round(4).tolist() for name, each in found.items()}
 
     def go_on(self, mean: ArrayLike, delay: ArrayLike, wind: ArrayLike) -> None:
         """Continue from the `recent` of a history of the same places."""
-        rows = np.array(wind, dtype=np.float64).reshape(-1, 3)
-        means, delays = np.array(mean, dtype=np.float64), np.array(delay, dtype=np.float64)
+        rows = array_to_read('gusts', wind, (np.size(wind) // 3 * 3,)).reshape(-1, 3)
+        means = array_to_read('gusts', mean, self._mean.shape)
+        delays = array_to_read('gusts', delay, self.delay.shape)
         if not all(np.isfinite(each).all() for each in (rows, means, delays)):
             raise ParameterError('history is not finite', where='gusts')
         self.reset()
+        self._n_changes += 1
         for x, y, z in rows.tolist():
             remember(self._run, self._at, self._finest, x, y, z, SPACING)
         self._mean[:], self.delay[:] = means, delays
+        self._n_changes += 1
 
     def reset(self) -> None:
         """Forget the wind."""
+        self._n_changes += 1
         for array in (self._at, self._mean, self._wanted, self.delay, self._winds):
             array[:] = 0
+        self._n_changes += 1
 
 
 @kernel

@@ -40,9 +40,11 @@ OpenTree = Callable[[str | Path, int], TreeFile]
 _PLACE = ('x', 'y', 'z', 'yaw', 'leaf_on')
 
 
-def read_scene_yaml(path: Path, open_tree: OpenTree) -> Scene:
+def read_scene_yaml(path: Path, open_tree: OpenTree, *, exact: bool = False) -> Scene:
     """
     Read a scene from a YAML file, its trees opened by their names or paths, with a seed.
+
+    ``exact`` is that of `read_stand_table`.
 
     Raises
     ------
@@ -53,10 +55,10 @@ def read_scene_yaml(path: Path, open_tree: OpenTree) -> Scene:
         A tree that cannot be opened; with line, tree and fault.
 
     """
-    return parse_scene(read_text(path), open_tree, path)
+    return parse_scene(read_text(path), open_tree, path, exact=exact)
 
 
-def parse_scene(text: str, open_tree: OpenTree, path: Path) -> Scene:
+def parse_scene(text: str, open_tree: OpenTree, path: Path, *, exact: bool = False) -> Scene:
     """Read a scene from the YAML text of a file; see `read_scene_yaml`."""
     document = read_yaml(text, str(path), packaged_schema('scene_schema.json'))
     values = document.values
@@ -80,7 +82,7 @@ def parse_scene(text: str, open_tree: OpenTree, path: Path) -> Scene:
         except TreeSwayError as error:
             raise error.at(document.where('kinds', number)) from error
     table = path.parent / path_of(values['stand'])
-    return read_stand_table(table, kinds, seed=values.get('seed', 0), **common)
+    return read_stand_table(table, kinds, seed=values.get('seed', 0), exact=exact, **common)
 
 
 def _trees(

@@ -52,13 +52,19 @@ def is_stand_table(head: str) -> bool:
 
 
 def read_stand_table(
-    path: Path, kinds: Mapping[str, GrownTree] | None = None, *, seed: int = 0, **fields: Any
+    path: Path,
+    kinds: Mapping[str, GrownTree] | None = None,
+    *,
+    seed: int = 0,
+    exact: bool = False,
+    **fields: Any,
 ) -> Scene:
     """
     Read a stand from a table; trees of species without a tree in ``kinds`` are grown.
 
     The seed is for grown trees and for yaws; further arguments are those of `Scene`. An unknown
-    species is replaced as by `species_like`.
+    species is replaced as by `species_like`. With ``exact`` each tree is grown by itself, to its
+    own height and diameter.
 
     Raises
     ------
@@ -80,7 +86,7 @@ def read_stand_table(
     stand.note(*(note for _, note in wood.values() if note))
     keys = [wood[each][0].key if each in wood else each for each in stand.species]
     stand.find_heights(keys)
-    sizes, slender = stand.classes(keys)
+    sizes, slender = stand.sizes() if exact else stand.classes(keys)
     trees = []
     for row, key in enumerate(keys):
         try:
@@ -195,6 +201,13 @@ class _Inventory:
         found = [height_of_stem(key, d) for key, d in zip(keys, self.diameter, strict=True)]
         self.height = np.array(found)
         self.note('heights are those of grown trees of these stems, as the table has no heights')
+
+    def sizes(self) -> tuple[Floats, Floats]:
+        """Height of each tree, and its height over diameter, 0 if unknown."""
+        if self.diameter is None:
+            return self.height, np.zeros(len(self.height))
+        known = (self.height > 0.0) & (self.diameter > 0.0)
+        return self.height, np.where(known, self.height / np.where(known, self.diameter, 1.0), 0.0)
 
     def classes(self, keys: list[str]) -> tuple[Floats, Floats]:
         """Height of the grown tree of each tree, and its height over diameter, 0 if unknown."""

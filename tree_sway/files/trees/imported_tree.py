@@ -39,6 +39,10 @@ class TreeFile:
     notes: tuple[str, ...] = ()
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
+    def __repr__(self) -> str:
+        """Return the tree and its source on one line."""
+        return f'TreeFile {self.source!r}: {self.tree!r}'
+
     @property
     def warnings(self) -> tuple[str, ...]:
         """Report unusual values of the tree, one sentence each, as `oddities`."""

@@ -68,7 +68,9 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     return read_tree(path, head=head, **options).checked()
 
 
-def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> Scene:
+def open_scene(
+    name_or_path: str | Path, seed: int = 0, *, exact: bool = False, **options: Any
+) -> Scene:
     """
     Open a built-in tree, a tree file, a forest or a stand.
 
@@ -77,6 +79,8 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> Scene
     name_or_path
         Name or path as in `open_tree`, or a YAML file with a list of trees, or a file with several
         trees, or a stand: a table with x, y, species and height, or a YAML file that names one.
+    exact
+        Whether each tree of a stand is grown by itself, as in `read_stand_table`.
     seed, **options
         Arguments of `open_tree`; not for a forest.
 
@@ -93,9 +97,9 @@ def open_scene(name_or_path: str | Path, seed: int = 0, **options: Any) -> Scene
         return scene_of_files([open_tree(name_or_path, seed, **options)])
     head, read = read_head(path), None
     if any(begins_with_key(path, head, key) for key in ('trees', 'stand')):
-        read = partial(read_scene_yaml, path, open_tree)
+        read = partial(read_scene_yaml, path, open_tree, exact=exact)
     elif is_stand_table(head):
-        read = partial(read_stand_table, path, seed=seed)
+        read = partial(read_stand_table, path, seed=seed, exact=exact)
     if read is None:
         files = [each.checked() for each in read_trees(path, head=head, **options)]
         return scene_of_files(files, path.stem)

@@ -58,6 +58,15 @@ class WindRecord:
     notes: tuple[str, ...] = ()
     gust: Floats | None = None
 
+    def __repr__(self) -> str:
+        """Return source, length and mean speed on one line."""
+        seconds = float(self.time[-1]) if len(self.time) else 0.0
+        speed = float(np.linalg.norm(self.velocity, axis=1).mean()) if len(self.time) else 0.0
+        return (
+            f'WindRecord {self.source!r}: {len(self.time)} samples, {seconds:.4g} s, '
+            f'mean speed {speed:.3g} m/s'
+        )
+
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         self.time.setflags(write=False)

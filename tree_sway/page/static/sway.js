@@ -137,6 +137,20 @@ export function propagator(stiffness, damping, time) {
   return out;
 }
 
+/** How oscillators get to the middle of a step, where the load is taken: exactly, but by an implicit Euler
+ * step where one swings so fast that its rate there would not follow its force.
+ * @param {Float64Array} stiffness @param {Float64Array} damping @param {number} time half of the step [s] */
+export function toMiddle(stiffness, damping, time) {
+  const out = propagator(stiffness, damping, time);
+  stiffness.forEach((k, i) => {
+    const share = 1 / (1 + time * damping[i] + time * time * k);
+    if (out[6 * i + 5] >= time * share) return;
+    const rate = [-time * k * share, share, time * share];
+    out.set([1 + time * rate[0], time * rate[1], time * rate[2], ...rate], 6 * i);
+  });
+  return out;
+}
+
 /** A tree on a table: its modal coordinates, their rates and the forces on them. */
 export class TreeState {
   /** @param {Table} table */
@@ -147,7 +161,7 @@ export class TreeState {
     this.force = new Float64Array(table.m);
   }
 
-  /** Go on a step. @param {Float64Array} half `propagator` of half a step @param {Float64Array} whole
+  /** Go on a step. @param {Float64Array} half `toMiddle` of half a step @param {Float64Array} whole
    * @param {number} wx mean wind in the frame of the kind [m/s] @param {number} wy @param {number} wz
    * @returns {boolean} whether the load was that of the table's edge */
   step(half, whole, wx, wy, wz) {
@@ -378,7 +392,7 @@ export class Stand {
     this.gusts = this._newGusts();
     /** Trees whose load was at the edge of their table in the last step. */
     this.outside = 0;
-    const propagators = /** @type {Map<string, Float64Array>} */ (new Map());
+    const found = /** @type {Map<string, Float64Array[]>} */ (new Map());
     /** Pushes by the numbers of trees. */
     this._touches = /** @type {Map<number, Touch>} */ (new Map());
     this.trees = trees.map(({ kind, place, firstCoordinate }, number) => {
@@ -387,12 +401,10 @@ export class Stand {
       const step = Math.round(Math.log(place[4]) / FINEST_SCALE);
       // A tree of k times the size swings k times slower: it goes on by 1 / k of the time.
       const own = dt / Math.exp(step * FINEST_SCALE);
-      const [half, whole] = [own / 2, own].map((time) => {
-        const key = `${kind} ${time}`;
-        const found = propagators.get(key) ?? propagator(stiffness, damping, time);
-        propagators.set(key, found);
-        return found;
-      });
+      const key = `${kind} ${own}`;
+      const [half, whole] =
+        found.get(key) ?? [toMiddle(stiffness, damping, own / 2), propagator(stiffness, damping, own)];
+      found.set(key, [half, whole]);
       const speed = tables.speeds[number];
       const turn = [speed * Math.cos(place[3]), speed * Math.sin(place[3])];
       return { state: new TreeState(table), half, whole, speed, turn, firstCoordinate };

@@ -146,7 +146,9 @@ class NumpyModalBank(ModalBank):
                 share = left @ other
                 left, change = left - share * other, change - share * by
             change = change + left
-            change *= min(1.0, MOST_TURN / float(np.abs(change).max()))
+            most = float(np.abs(change).max())
+            if most > MOST_TURN:
+                change *= MOST_TURN / most
             trials.append((residual, change))
             moment[:] = np.clip(moment + change * self.limit / LOAD_MAX, -self.limit, self.limit)
             force[:] = np.einsum('mi,i->m', self._shapes, moment)

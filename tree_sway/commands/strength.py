@@ -1,0 +1,25 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Trees of a scene whose used strength commands report: the tallest of each kind."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.simulate import Rig
+from tree_sway.core.simulator.settings import Settings
+
+
+def tallest_of_kinds(scene: Scene) -> dict[int, PlacedTree]:
+    """Return the tallest tree of each kind by the number of the kind."""
+    by_height = sorted(range(len(scene.trees)), key=lambda row: scene.trees[row].scale)
+    return {int(scene.kind_numbers[row]): scene.trees[row] for row in by_height}
+
+
+def strength_rig(tree: PlacedTree, settings: Settings) -> Rig:
+    """Set up a tree where it stands, in its own size, for its used strength."""
+    at_place = PlacedTree(tree.name, tree.placed(), species=tree.species)
+    in_leaf = settings.in_leaf if tree.leaf_on is None else tree.leaf_on
+    return Rig(at_place, replace(settings, in_leaf=in_leaf))
