@@ -113,7 +113,16 @@ def test_a_drag_on_the_page_pulls_the_tree(compose, observer, statuses, tree_fil
                 assert time.monotonic() < end
                 await ws.send_json({'pull': pull})
                 await asyncio.sleep(0.05)
-            await ws.send_json({'pull': {**pull, 'stiffness': 0.0}})
+            reset, foot = threading.Event(), {**pull, 'segment': 0}
+            solver.simulator.reset = reset.set
+            while 0 not in solver.simulator.touch.pushes:
+                assert time.monotonic() < end
+                await ws.send_json({'pull': foot})
+                await ws.send_json({'pull': pull})
+                await asyncio.sleep(0.05)
+            assert not reset.is_set()  # the tree goes on
+            for held in (foot, pull):
+                await ws.send_json({'pull': {**held, 'stiffness': 0.0}})
             while is_pulled():
                 await asyncio.sleep(0.01)
             assert time.monotonic() < end

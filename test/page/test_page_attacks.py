@@ -15,6 +15,7 @@ import shutil
 import socket
 import ssl
 import subprocess
+import threading
 import time
 from typing import Any
 
@@ -171,6 +172,32 @@ def test_a_value_of_400_digits_is_refused_in_words(name: str, server: PageServer
                 return
 
     run(server, script)
+
+
+def test_a_pull_that_is_refused_later_is_reported_to_its_sender_alone() -> None:
+    def pull(_segment: int, _to: Any, _stiffness: float, refused: Callable[[str], None]) -> None:
+        refuser = threading.Thread(target=lambda: refused('no segment 7'))
+        refuser.start()
+        refuser.join()
+
+    async def whole(url: str) -> list[list[Any]]:
+        heard: list[list[Any]] = [[], []]
+        async with (
+            aiohttp.ClientSession() as session,
+            session.ws_connect(f'{url}stream') as one,
+            session.ws_connect(f'{url}stream') as other,
+        ):
+            await one.send_str('{"pull":{"segment":7,"to":[1,0,1],"stiffness":5}}')
+            for number, ws in enumerate((one, other)):
+                await ws.send_str('{"ping":1}')
+                while 'status' not in (message := await ws.receive_json(timeout=DEADLINE)):
+                    heard[number] += [message['refused']] if 'refused' in message else []
+        return heard
+
+    with PageServer(PageSettings(port=0), ControlPanel(pull=pull)) as server:
+        heard = asyncio.run(whole(server.url))
+        assert heard == [[{'name': 'pull', 'reason': 'no segment 7'}], []]
+        assert server.n_refused == 1
 
 
 def test_a_slow_client_has_one_timer(server: PageServer) -> None:

@@ -18,6 +18,7 @@ from tree_sway.core.scene.run import Run  # noqa: E402
 from tree_sway.core.simulator.settings import Settings  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
+from tree_sway.page.controls import ControlPanel  # noqa: E402
 from tree_sway.page.protocol import decode_description, decode_frame, PAUSED  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
 from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind  # noqa: E402
@@ -165,6 +166,37 @@ def test_what_is_shown_is_written_as_a_file(live: tuple[Session, Sink]) -> None:
     session, _ = live
     assert session.written('glb')[:4] == b'glTF'
     assert b'id="scene"' in session.written('html')
+
+
+@pytest.mark.parametrize(
+    'pull',
+    [
+        {'segment': True, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': 0.0, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': 0, 'to': [True, 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': 0, 'to': ['1', 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': 0, 'to': [1.0, 0.0, 1.0], 'stiffness': '5'},
+        {'segment': 0, 'to': [1.0, 0.0, 1.0], 'stiffness': None},
+        {'segment': 0, 'to': [1.0, 0.0, 1e6], 'stiffness': 5.0},
+        {'segment': 10**30, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': 0, 'to': [1.0, 0.0, 1.0], 'stiffness': 1e-300},
+        {'segment': 0, 'to': [1e5, 1e5, 1e5], 'stiffness': 1e7},
+        {'segment': 0, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': -1, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0},
+    ],
+)
+def test_no_pull_ends_the_session(pull: Any, live: tuple[Session, Sink]) -> None:
+    session, sink = live
+    reasons: list[str] = []
+    refused = ControlPanel(pull=session.pull).pull(pull, reasons.append)
+    n = len(sink.frames)
+    until(lambda: len(sink.frames) > n + 10 or session.failure)
+    assert session.failure is None
+    assert not sink.messages  # others hear nothing of it
+    is_possible = pull['segment'] == 0 and all(type(x) is float for x in pull['to'])
+    is_possible &= type(pull['segment']) is int and type(pull['stiffness']) is float
+    is_possible &= max(abs(float(x)) for x in pull['to']) <= 1e5
+    assert (refused is None and not reasons) == is_possible
 
 
 def test_a_record_that_breaks_off_is_held_and_fades_on_the_page_too() -> None:

@@ -458,9 +458,19 @@ class PageServer:
         client.wants_nothing_else |= message.get('wind') == 'only'
         if 'set' in message:
             self._change(client, message['set'])
-        if 'pull' in message and (why := self._panel.pull(message['pull'])) is not None:
-            self._refuse(client, 'pull', why)
+        if 'pull' in message:
+            self._pull(client, message['pull'])
         client.wake.set()
+
+    def _pull(self, client: _Client, pull: object) -> None:
+        """Pull for a client, which alone hears of a refusal, now or later."""
+
+        def refused(why: str) -> None:
+            self._call(lambda: self._refuse(client, 'pull', why))
+
+        why = self._panel.pull(pull, refused)
+        if why is not None:
+            self._refuse(client, 'pull', why)
 
     def _change(self, client: _Client, change: object) -> None:
         change = change if isinstance(change, dict) else {}

@@ -24,7 +24,7 @@ from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.files.export.gltf_tree import morphing_tree
-from tree_sway.page.controls import Value
+from tree_sway.page.controls import Refused, Value
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.scene_state import SceneState
 from tree_sway.page.server import PageServer
@@ -164,14 +164,11 @@ class Session:
         else:
             raise ParameterError(f"'{name}' cannot be changed", where='page')
 
-    def pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
-        """Pull at a segment by a spring to a place, as `Run.pull`; a refusal goes to all pages."""
-        self._runtime.pull(segment, to, stiffness, self._refuse_pull)
-
-    def _refuse_pull(self, why: str) -> None:
-        if self._server is not None:
-            self._server.n_refused += 1
-            self._server.announce({'refused': {'name': 'pull', 'reason': why}})
+    def pull(
+        self, segment: int, to: tuple[float, ...], stiffness: float, refused: Refused
+    ) -> None:
+        """Pull at a segment by a spring to a place, as `Run.pull`."""
+        self._runtime.pull(segment, to, stiffness, refused)
 
     def status(self) -> dict[str, object]:
         """Return the status on the page."""

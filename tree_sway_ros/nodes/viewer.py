@@ -14,7 +14,7 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET
+from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET, Refused
 from tree_sway.page.protocol import decode_description, Description, encode_state
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.parameters.sway_parameters import SWAY
@@ -119,8 +119,10 @@ class ViewerNode(TreeSwayNode):
             request = SetParameters.Request(parameters=[ParameterMessage(name=name, value=number)])
             self._ask(self._setters[_LIVE[name][0]], request)
 
-    def _pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
-        """Forward a viewer's pull to the solver."""
+    def _pull(
+        self, segment: int, to: tuple[float, ...], stiffness: float, _refused: Refused
+    ) -> None:
+        """Forward a viewer's pull to the solver, which reports refusals in its diagnostics."""
         kinds = self._description.header['kinds'] if self._description else ()
         if any(kind['model'] == 'branch' for kind in kinds):
             raise ParameterError("model 'branch' cannot be pulled", where='pull')
