@@ -283,7 +283,7 @@ def test_a_scene_is_not_made_of_arrays_that_do_not_fit(
         ReceivedKind(entry, arrays, entry['drag_law'])
         for entry, arrays in zip(entries, parts, strict=True)
     ]
-    kind_of, places = np.array([0, 0, 1]), np.ones((3, 5))
+    places = np.ones((3, 5))
     given = {
         'kinds': kinds,
         'kind_of': np.array([0, 0, 1]),

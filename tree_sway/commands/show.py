@@ -18,7 +18,7 @@ from tree_sway.commands.arguments import (
     opened_scene,
     opened_wind,
 )
-from tree_sway.commands.page_arguments import add_page_arguments, page_settings
+from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
@@ -75,7 +75,8 @@ def run(arguments: argparse.Namespace) -> int:
         panel = ControlPanel(controls, session.apply, session.pull)
     with PageServer(settings, panel, session.status, session.written) as server:
         session.serve(server)
-        print(f'open {server.url} (Ctrl-C ends)', flush=True)
+        print_address(server, 'open')
+        print('Ctrl-C ends', flush=True)
         if arguments.open:
             webbrowser.open(server.url)
         try:

@@ -33,7 +33,15 @@ const traces = {
   tip: new Trace(element("tip-trace"), "motion"),
 };
 const { settings, view } = readLink(location.hash);
-const query = new URLSearchParams(location.search);
+/** Address of this page, with the token for the stream; the bar of the browser does not keep it, as people
+ * pass on what is there. A cookie has it when the page is loaded again. */
+const address = new URL(location.href);
+const query = address.searchParams;
+const barAddress = new URL(address);
+barAddress.searchParams.delete("token");
+history.replaceState(null, "", barAddress);
+/** Token of links to this page: those who have it can look, not change anything. */
+let viewersToken = "";
 let line = /** @type {"connecting" | "open" | "lost"} */ ("connecting");
 let retryAt = 0;
 let lastFrameAt = 0;
@@ -53,7 +61,7 @@ const kept = await keptScene().catch((error) => giveUp(word("damaged"), word("wr
 // Nothing is left out in full quality, however slow that is.
 const scene = await (async () => new Scene(canvas, query.get("quality") === "full"))()
   .catch((error) => giveUp(word("blind"), word("cure", error.message)));
-const stream = new TreeStream(location.href, {
+const stream = new TreeStream(address.href, {
   onState(state, retryIn) {
     line = state;
     retryAt = performance.now() + retryIn;
@@ -85,6 +93,7 @@ const stream = new TreeStream(location.href, {
       panel.build(controls);
       element("panel").hidden = controls.length === 0;
       element("pull").hidden = hello.can_pull !== true;
+      viewersToken = hello.viewers_token ?? "";
     }
     if (refused || unreadable) toast(unreadable ?? refused.reason);
     if (values) {
@@ -234,8 +243,10 @@ async function copyLink() {
   const { leavesShown: leaves, isAutumn: autumn, picked: branch } = scene;
   const all = { day, lang: language(), leaves, autumn, shown: shown.value, ...(branch >= 0 && { branch }) };
   history.replaceState(null, "", viewLink(scene, all));
-  await navigator.clipboard?.writeText(location.href).catch(() => undefined);
-  toast(`${word("copied")}: ${location.href}`);
+  const link = new URL(location.href);
+  if (viewersToken) link.searchParams.set("token", viewersToken);
+  await navigator.clipboard?.writeText(link.href).catch(() => undefined);
+  toast(`${word(viewersToken ? "copied_to_look" : "copied")}: ${link.href}`);
 }
 
 /** @param {string} chosen language */
@@ -260,8 +271,8 @@ const actions = {
     endClip?.();
     endClip = endClip ? null : recordClip(canvas, treeName());
   },
-  glb: () => saveTree("glb", treeName()),
-  html: () => saveTree("html", treeName()),
+  glb: () => saveTree("glb", treeName(), query.get("token")),
+  html: () => saveTree("html", treeName(), query.get("token")),
   link: copyLink,
   full: () => (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.()),
   help: () => help.showModal(),

@@ -156,7 +156,7 @@ export function checkMessage(message) {
   need(isObject(values), "values");
   need(refused === undefined || typeof refused?.reason === "string", "refused");
   const controls = hello === undefined ? [] : hello?.controls;
-  need(Array.isArray(controls), "hello");
+  need(Array.isArray(controls) && typeof (hello?.viewers_token ?? "") === "string", "hello");
   need(controls.every((/** @type {any} */ each) => isObject(each) && typeof each.name === "string"), "hello");
   return message;
 }

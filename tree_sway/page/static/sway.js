@@ -366,7 +366,8 @@ export class Stand {
     need(tables.kinds.length === kinds.length, "kinds");
     tables.kinds.forEach(({ n, nKeys, arrays }, k) => {
       const { nCoordinates, nKeys: rows, arrays: { branch_keys: keys } } = kinds[k];
-      const most = keys.reduce((a, b) => Math.max(a, b), 0);
+      let most = 0;
+      for (const each of keys) most = Math.max(most, each);
       need(n === nCoordinates, "state");
       need(nKeys === rows && arrays.branch_compliance.length >= rows * most, "branch_compliance");
     });
