@@ -30,7 +30,7 @@ def add_page_arguments(parser: argparse.ArgumentParser) -> None:
         '--token-file',
         default='',
         metavar='FILE',
-        help='file with the token of the page, which only its owner may read; made if it is missing',
+        help='file with the token, which only its owner may read; made if it is missing',
     )
     add('--certificate', default='', metavar='PEM', help='for https')
     add(

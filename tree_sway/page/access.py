@@ -18,8 +18,8 @@ import base64
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from enum import Enum
-from http.cookies import CookieError, SimpleCookie
 import hmac
+from http.cookies import CookieError, SimpleCookie
 import ipaddress
 import os
 from pathlib import Path

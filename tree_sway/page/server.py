@@ -72,6 +72,7 @@ _LONGEST_PATH = 100
 _LOGGER = logging.getLogger('tree_sway.page')
 _START_TIMEOUT = 10.0
 _SEND_TIMEOUT = 5.0
+_MOST_TEXTS = 16
 _MOST_WAITING = 3
 """Requests for the tree as a file that wait for the one that is written."""
 
@@ -126,7 +127,8 @@ class _Client:
         self.next_due = 0.0
         self.sent = -1
         self.wake = asyncio.Event()
-        self.texts: deque[str] = deque(maxlen=16)
+        self.hello = ''
+        self.texts: deque[str] = deque(maxlen=_MOST_TEXTS)
         self.description = b''
         self.may_control = False
         self.wants_wind = self.is_solving = self.wants_nothing_else = False
@@ -151,7 +153,7 @@ class _Client:
         return part
 
     def say(self, content: Mapping[str, object]) -> None:
-        """Queue a text."""
+        """Queue a text; a client that does not read loses the oldest, but not its hello."""
         self.texts.append(json.dumps(content))
         self.wake.set()
 
@@ -223,11 +225,16 @@ class PageServer:
         Raises
         ------
         TransportError
-            The address cannot be bound, or the TLS files cannot be used.
+            The address cannot be bound, the TLS files cannot be used, or the server does not start
+            in time.
 
         """
         self._thread.start()
-        self._started.wait(_START_TIMEOUT)
+        if not self._started.wait(_START_TIMEOUT):
+            self._loop.call_soon_threadsafe(self._ending.set)
+            what = f'the page is not served after {_START_TIMEOUT:g} s'
+            cure = 'try again when this machine has less to do'
+            raise TransportError(what, where=self.settings.address, cure=cure)
         if self._failure is not None:
             self._thread.join()
             where = f'{self.settings.address}:{self.settings.port}'
@@ -240,6 +247,8 @@ class PageServer:
         if self._thread.is_alive():
             self._loop.call_soon_threadsafe(self._ending.set)
             self._thread.join(timeout=10.0)
+        elif self._thread.ident is None:  # never started
+            self._loop.close()
 
     def __enter__(self) -> PageServer:
         self.start()
@@ -481,7 +490,8 @@ class PageServer:
         await socket.prepare(request)
         client = _Client(socket, request.transport)
         client.may_control = self._may_control(request)
-        client.say({'hello': self._hello(client)})
+        client.hello = json.dumps({'hello': self._hello(client)})
+        client.wake.set()
         self._clients.add(client)
         sender = self._loop.create_task(self._send(client))
         try:
@@ -579,6 +589,9 @@ class PageServer:
             client.sending_since = math.inf
 
     async def _send_due(self, client: _Client) -> None:
+        if client.hello:
+            hello, client.hello = client.hello, ''
+            await client.socket.send_str(hello)
         while client.texts:
             await client.socket.send_str(client.texts.popleft())
         if client.description is not self._description:

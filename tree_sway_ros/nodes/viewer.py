@@ -62,7 +62,8 @@ class ViewerNode(TreeSwayNode):
         self.report_with('page', self._statuses)
 
     def activate(self) -> None:
-        """Serve the page."""
+        """Serve the page, by a new server, as one that was closed cannot start again."""
+        self.server.close()
         self.server = self._make_server()
         self.server.start()
         self.on_close(self.server.close)
