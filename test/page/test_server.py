@@ -20,7 +20,7 @@ aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.errors import ParameterError, TransportError  # noqa: E402
 from tree_sway.page import doorkeeper  # noqa: E402
-from tree_sway.page import server as server_module
+from tree_sway.page import server as server_module  # noqa: E402
 from tree_sway.page.access import is_loopback, refusal, require_token  # noqa: E402
 from tree_sway.page.controls import Control, ControlPanel  # noqa: E402
 from tree_sway.page.server import PageServer, PageSettings  # noqa: E402

@@ -219,6 +219,22 @@ def test_a_record_goes_on_from_any_of_its_times(live: tuple[Session, Sink]) -> N
     assert session.status()['record_time'] == pytest.approx(7.0, abs=0.2)
 
 
+def test_damping_and_wind_are_those_in_use(live: tuple[Session, Sink]) -> None:
+    session, sink = live
+    own = session.values()['damping_ratio']
+    assert own == session._scene.kinds[0].simulator.reductions.damping_ratio > 0.0
+    assert session.choices.damping_ratio == 0.0
+    session.apply('damping_ratio', 0.25)
+    until(lambda: len(sink.descriptions) == 2)
+    assert session.values()['damping_ratio'] == 0.25
+    session.apply('damping_ratio', 0.0)  # back to that of the species
+    until(lambda: len(sink.descriptions) == 3)
+    assert session.values()['damping_ratio'] == own
+    assert session.status()['wind'] == {'kind': 'simulated'}
+    session.wind = RecordedWind(np.array([0.0, 1.0]), np.ones((2, 3)), 'canopy')
+    assert session.status()['wind'] == {'kind': 'recorded', 'name': 'canopy'}
+
+
 def test_what_is_shown_is_written_as_a_file(live: tuple[Session, Sink]) -> None:
     session, _ = live
     assert session.written('glb')[:4] == b'glTF'

@@ -73,6 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
         is_one_tree = session.status()['trees'] == arguments.stand
         controls = _controls(choices, wind, is_one_tree=is_one_tree)
         panel = ControlPanel(controls, session.apply, session.pull)
+        panel.update(session.values())
     with PageServer(settings, panel, session.status, session.written) as server:
         session.serve(server)
         print_address(server, 'open')
@@ -147,6 +148,6 @@ def _controls(
     controls.append(Control('tree', 'Tree', choices.tree, 'Tree on the page.', choices=trees))
     if is_one_tree:
         # Models and number of the trees of a stand are those of its file.
-        how_many = Control('count', 'Stand of', choices.count, 'Number of trees.', choices=counts)
+        how_many = Control('count', 'Number of trees', choices.count, choices=counts)
         controls.append(how_many)
     return (*controls, *PAUSE_AND_RESET)

@@ -171,6 +171,11 @@ class Session:
         """Pull at a segment by a spring to a place, as `Run.pull`."""
         self._runtime.pull(segment, to, stiffness, refused)
 
+    def values(self) -> dict[str, Value]:
+        """Return the choices as they are shown: the damping ratio in use, not 0 for the usual."""
+        damping = self._scene.kinds[0].simulator.reductions.damping_ratio
+        return {**vars(self.choices), 'damping_ratio': damping}
+
     def status(self) -> dict[str, object]:
         """Return the status on the page."""
         simulator = self._scene.simulator
@@ -179,6 +184,7 @@ class Session:
             'rate': round(1.0 / max(self._spacing, 1e-6), 1),
             'work_us': round(1e6 * self._work, 1),
             'trees': len(self._scene.names),
+            'wind': self.wind.source,
             'building': self._builder.wanted is not None,
         }
         if isinstance(self.wind, RecordedWind):
@@ -228,7 +234,7 @@ class Session:
             reason = f'{wanted.tree} cannot be built ({type(error).__name__}: {error})'
             refused = {'name': '', 'reason': reason[:400]}
         if self._server is not None:
-            self._server.announce({'refused': refused}, vars(self.choices))
+            self._server.announce({'refused': refused}, self.values())
 
     def _run(self) -> None:
         try:
@@ -248,6 +254,7 @@ class Session:
         if self._next is not None:
             (self._scene, self._runtime), self._next = self._next, None
             self._server.describe(self._scene.description, self._scene.tables, self._scene.gusts)
+            self._server.announce({}, self.values())
         if has_restarted:
             self._scene.simulator.reset()
         if not self._is_paused:

@@ -21,6 +21,10 @@ Sample = tuple[float, tuple[float, float, float]]
 class WindSource(Protocol):
     """Samples of wind by their times."""
 
+    @property
+    def source(self) -> Mapping[str, str]:
+        """What the wind is, for viewers: its ``kind``, simulated or recorded, and a ``name``."""
+
     def between(self, since: float, until: float) -> Iterator[Sample]:
         """Return the samples after a time up to a later one, both in [s]."""
 
@@ -66,6 +70,7 @@ class SimulatedWind:
         seed: int = 0,
     ) -> None:
         self.values = {'mean_speed': speed, 'intensity': intensity, 'bearing_to': bearing_to}
+        self.source = {'kind': 'simulated'}
         self._seed = seed
         self._maker = Newest(self._make, 'wind')
         self._make(self.values)
@@ -108,10 +113,13 @@ class RecordedWind:
         Time of each sample in [s], increasing, (n,).
     velocity
         Wind, blowing to, in [m/s], (n, 3).
+    name
+        Name of the record for viewers.
 
     """
 
-    def __init__(self, time: Floats, velocity: Floats) -> None:
+    def __init__(self, time: Floats, velocity: Floats, name: str = '') -> None:
+        self.source = {'kind': 'recorded', 'name': name}
         self._time, self._velocity = time - time[0], velocity
         last = float(self._time[-1])
         self.length = last + max(last / max(len(time) - 1, 1), 1e-3)

@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 import json
+import time
 from typing import Any
 
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -19,7 +21,14 @@ from tree_sway.page.protocol import decode_description, Description, encode_stat
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import PULL, qos_profile, TREE_DESCRIPTION, TREE_STATE
+from tree_sway_ros.process.topics import (
+    PULL,
+    qos_profile,
+    TREE_DESCRIPTION,
+    TREE_STATE,
+    WIND,
+    WIND_FILTERED,
+)
 from tree_sway_ros.reports.diagnostics import OK, Status
 from tree_sway_ros.wire.tree_state import read_state, read_state_entry
 from tree_sway_ros.wire.wind_messages import stamp_to_ns
@@ -31,6 +40,11 @@ _LIVE = {
     'bearing_to': ('anemometer', 'Blows to'),
     'tolerance': ('solver', 'Tolerance'),
 }
+_SIMULATORS, _PLAYERS = ('anemometer',), ('player', 'rosbag2_player')
+"""Names of nodes whose wind is simulated, or recorded; that of others is measured now."""
+
+_LOOKS = 8
+"""Number of looks, a period apart, over which the rate of the wind is counted."""
 
 
 class ViewerNode(TreeSwayNode):
@@ -50,6 +64,9 @@ class ViewerNode(TreeSwayNode):
         self._described = ''
         self._sequence = 0
         self._subscription: Any = None
+        self._n_samples = 0
+        self._counted: deque[tuple[float, int]] = deque(maxlen=_LOOKS)
+        self._wind: dict[str, object] = {'kind': 'none'}
         self._setters = {
             node: self.create_client(SetParameters, f'{node}/set_parameters')
             for node in ('anemometer', 'solver')
@@ -74,6 +91,26 @@ class ViewerNode(TreeSwayNode):
         """Subscribe to the state once a page is connected: until then it need not be computed."""
         if self._subscription is None and self.server.n_clients > 0:
             self._subscription = self.subscription(TREE_STATE, self._receive)
+            self.subscription(WIND_FILTERED, self._count)
+        self._counted.append((time.monotonic(), self._n_samples))
+        self._wind = self._source()
+
+    def _count(self, _sample: Any) -> None:
+        self._n_samples += 1
+
+    def _source(self) -> dict[str, object]:
+        """Return what the wind is, by the nodes that publish it, and its present rate [Hz]."""
+        topic = self.resolve_topic_name(WIND.name)
+        names = [info.node_name for info in self.get_publishers_info_by_topic(topic)]
+        if not names:
+            return {'kind': 'none'}
+        if all(name in _SIMULATORS for name in names):
+            return {'kind': 'simulated'}
+        if all(name in _PLAYERS for name in names):
+            return {'kind': 'recorded', 'name': topic}
+        (begin, first), (end, last) = self._counted[0], self._counted[-1]
+        rate = (last - first) / (end - begin) if end > begin else 0.0
+        return {'kind': 'live', 'name': topic, 'rate': round(rate, 1)}
 
     def _describe(self, message: Any) -> None:
         if message.data == self._described or not self.is_active:
@@ -103,7 +140,9 @@ class ViewerNode(TreeSwayNode):
         self.server.publish(frame)
 
     def _make_server(self) -> PageServer:
-        return PageServer(self._settings, self._panel, lambda: {'source': 'ROS 2'})
+        return PageServer(
+            self._settings, self._panel, lambda: {'source': 'ROS 2', 'wind': self._wind}
+        )
 
     def _statuses(self) -> list[Status]:
         values = {'pages': self.server.n_clients, 'frames': self._sequence}

@@ -152,7 +152,7 @@ export function checkMessage(message) {
   const { sequence = 0, mean = [0, 0, 0], delay = [], wind = [] } = gusts ?? {};
   need(mean.length === 3 && [sequence, ...mean, ...delay, ...wind].every(Number.isFinite), "gusts");
   need(isFinite(pong), "pong");
-  need(isObject(status), "status");
+  need(isObject(status) && isObject(status.wind ?? {}), "status");
   need(isObject(values), "values");
   need(refused === undefined || typeof refused?.reason === "string", "refused");
   const controls = hello === undefined ? [] : hello?.controls;
