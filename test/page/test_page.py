@@ -196,12 +196,14 @@ def test_the_wind_comes_from_one_of_360_degrees(live: Live, visit: Visit) -> Non
             (225, 'SW (225°)'),
         ):
             await browser.run(
-                f"{{const s = {slider}; s.value = {degrees}; s.dispatchEvent(new Event('input'));}}"
+                f'{{const s = {slider}; s.value = {degrees};'
+                " s.dispatchEvent(new Event('input'));}"
             )
             assert await browser.run(f"{slider}.getAttribute('aria-valuetext')") == point
             x, y = -np.sin(np.radians(degrees)), -np.cos(np.radians(degrees))
             await browser.until(
-                f'((w) => (w[0] * {x} + w[1] * {y}) / Math.hypot(...w) > 0.8)(treeSway.playout.wind)'
+                f'((w) => (w[0] * {x} + w[1] * {y}) / Math.hypot(...w) > 0.8)'
+                '(treeSway.playout.wind)'
             )
         assert await browser.run(
             "document.getElementById('control-tolerance').closest('.field').hidden"
