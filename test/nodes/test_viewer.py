@@ -17,9 +17,11 @@ pytestmark = pytest.mark.ros
 from tree_sway.page.placer import Placer  # noqa: E402
 from tree_sway.page.protocol import decode_description, decode_frame  # noqa: E402
 from tree_sway_ros.process.topics import (  # noqa: E402
+    message_class,
     SEGMENT_POSES,
     TREE_DESCRIPTION,
     TREE_STATE,
+    WIND,
 )
 from tree_sway_ros.wire.tree_state import read_state_entry, WIND_NAMES  # noqa: E402
 from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
@@ -82,6 +84,55 @@ def test_the_page_is_fed_and_passes_changes_on(compose, observer, tree_file):
         threading.Event().wait(0.01)
 
 
+def wind_of_status(url, holds):
+    """Return the wind in the status of a page, once it is as wanted."""
+
+    async def look():
+        async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream') as ws:
+            end = time.monotonic() + DEADLINE
+            while time.monotonic() < end:
+                message = await asyncio.wait_for(ws.receive(), DEADLINE)
+                if message.type is aiohttp.WSMsgType.TEXT and 'status' in message.data:
+                    wind = json.loads(message.data)['status']['wind']
+                    if holds(wind):
+                        return wind
+            return None
+
+    return asyncio.run(look())
+
+
+def test_the_page_knows_a_simulated_wind(compose, tree_file):
+    nodes = compose(anemometer={}, wind={}, solver={'tree': tree_file}, viewer=QUIET)
+    url = nodes['viewer'].server.url
+    assert wind_of_status(url, lambda wind: wind['kind'] != 'none') == {'kind': 'simulated'}
+
+
+def test_the_page_knows_a_live_wind_and_its_rate(compose, observer, tree_file):
+    nodes = compose(wind={}, solver={'tree': tree_file}, viewer=QUIET)
+    url = nodes['viewer'].server.url
+    assert wind_of_status(url, lambda wind: True) == {'kind': 'none'}
+    publisher, is_over = observer.publisher(WIND), threading.Event()
+
+    def measure():
+        message = message_class(WIND)()
+        message.vector.x = 5.0
+        while not is_over.wait(0.05):
+            message.header.stamp = observer.node.get_clock().now().to_msg()
+            publisher.publish(message)
+
+    mast = threading.Thread(target=measure)
+    mast.start()
+    try:
+        wind = wind_of_status(url, lambda wind: wind.get('rate', 0.0) > 10.0)
+    finally:
+        is_over.set()
+        mast.join()
+    assert wind is not None
+    assert wind['kind'] == 'live'
+    assert wind['name'].endswith('/wind')
+    assert wind['rate'] < 22.0
+
+
 def test_a_page_without_solver_says_what_is_missing(compose):
     nodes = compose(viewer=QUIET)
     url = nodes['viewer'].server.url
@@ -113,7 +164,16 @@ def test_a_drag_on_the_page_pulls_the_tree(compose, observer, statuses, tree_fil
                 assert time.monotonic() < end
                 await ws.send_json({'pull': pull})
                 await asyncio.sleep(0.05)
-            await ws.send_json({'pull': {**pull, 'stiffness': 0.0}})
+            reset, foot = threading.Event(), {**pull, 'segment': 0}
+            solver.simulator.reset = reset.set
+            while 0 not in solver.simulator.touch.pushes:
+                assert time.monotonic() < end
+                await ws.send_json({'pull': foot})
+                await ws.send_json({'pull': pull})
+                await asyncio.sleep(0.05)
+            assert not reset.is_set()  # the tree goes on
+            for held in (foot, pull):
+                await ws.send_json({'pull': {**held, 'stiffness': 0.0}})
             while is_pulled():
                 await asyncio.sleep(0.01)
             assert time.monotonic() < end

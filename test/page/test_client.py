@@ -27,6 +27,7 @@ from tree_sway.page.placer import Placer  # noqa: E402
 from tree_sway.page.playout import ClockOffset, Moment, Playout  # noqa: E402
 from tree_sway.page.protocol import (  # noqa: E402
     decode_description,
+    encode_description,
     encode_frame,
     Frame,
     RESTARTED,
@@ -145,6 +146,29 @@ def test_who_asks_for_the_wind_only_gets_28_bytes_and_no_poses(server: PageServe
         assert client.unreadable == 0
     assert {len(frame.coordinates) for frame in heard} == {0}
     assert heard[0].wind == pytest.approx([3.0, 0.0, 0.0])
+
+
+def test_a_state_is_placed_by_its_own_description(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = decode_description(DESCRIPTION)
+    place = whole.arrays['tree_place'][:1]
+    header = {**whole.header, 'trees': whole.header['trees'][:1]}
+    other = decode_description(encode_description(header, {**whole.arrays, 'tree_place': place}))
+    client = StreamClient('http://127.0.0.1:9/')
+    client._describe(whole)
+    moment = Moment(1.0, np.zeros(len(whole.scale)), np.zeros(3), 0)
+    describers = [threading.Thread(target=client._describe, args=(other,))]
+
+    def sample(_now: float | None = None) -> Moment:
+        describers[0].start()
+        describers[0].join(0.3)  # a new tree is described just now
+        return moment
+
+    monkeypatch.setattr(client, 'sample', sample)
+    poses = client.poses()
+    describers[0].join()
+    assert poses is not None
+    assert len(poses) == Placer(whole).n_segments
+    assert client.description is other
 
 
 def test_no_message_shows_the_token() -> None:

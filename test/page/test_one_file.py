@@ -94,6 +94,10 @@ def test_it_is_small_and_sways(file: Path, visit: Callable[..., None]) -> None:
 
     async def script(browser: Browser) -> None:
         await browser.until(LIVE)
+        await browser.until("document.getElementById('source').textContent === 'Simulated wind'")
+        assert await browser.run("document.getElementById('state-text').textContent") == (
+            'On this device'
+        )
         before = picture(await browser.screenshot())
         tip = await browser.run('treeSway.scene.position()')
         moved = 'Math.hypot(...treeSway.scene.position().map((x, c) => x - {}[c])) > 0.002'
@@ -120,6 +124,7 @@ def test_a_table_of_wind_blows_and_another_file_is_refused(
         rows = 'time,speed [km/h],direction\n0,36,270\n1,36,270\n2,36,270\n'
         await drop(browser, 'mast.csv', rows)
         await browser.until('Math.abs(treeSway.playout.wind[0] - 10) < 1e-6')
+        await browser.until("document.getElementById('source').textContent === 'Recorded: mast'")
         await drop(browser, 'tree.csv', 'x,y,z\n0,0,1\n')
         await browser.until(TOAST)
         text = await browser.run(TOAST)

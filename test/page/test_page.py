@@ -42,6 +42,8 @@ class Live:
         self.session = Session(lambda _: simulator, Choices('goldcrest'), self.wind)
         controls = (
             Control('mean_speed', 'Wind', 9.0, 'Mean', 'm/s', 0.0, 40.0),
+            Control('bearing_to', 'Blows to', 0.5 * np.pi, 'Blows to', 'rad', -6.3, 6.3),
+            Control('tolerance', 'Tolerance', 0.005, 'Of auto', 'm', 1e-6, 10.0),
             Control('pause', 'Pause', False),
             Control('reset', 'Reset', None, is_action=True),
         )
@@ -142,7 +144,7 @@ def test_the_slider_moves_the_wind(live: Live, visit: Visit) -> None:
             "{const s = document.getElementById('control-mean_speed'); s.value = 3;"
             " s.dispatchEvent(new Event('input'));}"
         )
-        await browser.until('Math.hypot(...treeSway.playout.wind) < 5.5')
+        await browser.until('Math.hypot(...treeSway.playout.wind) < 3.6')  # no lull of 9 m/s
         assert live.wind.values['mean_speed'] == 3.0
         await browser.run(
             "{const s = document.getElementById('control-mean_speed'); s.value = 9;"
@@ -151,6 +153,106 @@ def test_the_slider_moves_the_wind(live: Live, visit: Visit) -> None:
         await browser.until('Math.hypot(...treeSway.playout.wind) > 5.5')
 
     visit(script)
+
+
+def test_the_head_names_the_wind_the_line_and_the_error(live: Live, visit: Visit) -> None:
+    text = "document.getElementById('%s').textContent"
+
+    async def script(browser: Browser) -> None:
+        await browser.until(f"{text % 'source'} === 'Simulated wind'")
+        assert await browser.run(text % 'state-text') == 'Connected'
+        sign, value, unit = (await browser.run(text % 'error')).split()
+        assert (sign, unit) == ('±', 'mm')
+        basis = live.session._scene.kinds[0].basis
+        assert float(value) == pytest.approx(1000.0 * basis.error, rel=0.06)
+        live.wind.source = {'kind': 'recorded', 'name': 'canopy'}
+        await browser.until(f"{text % 'source'} === 'Recorded: canopy'")
+        live.wind.source = {'kind': 'live', 'name': '/wind', 'rate': 20.2}  # type: ignore[dict-item]
+        await browser.until(f"{text % 'source'} === 'Live: /wind, 20 Hz'")
+        await browser.run(
+            "{const s = document.getElementById('language'); s.value = 'de';"
+            " s.dispatchEvent(new Event('change'));}"
+        )
+        live.wind.source = {'kind': 'simulated'}
+        await browser.until(f"{text % 'source'} === 'Simulierter Wind'")
+
+    visit(script)
+
+
+def test_the_wind_comes_from_one_of_360_degrees(live: Live, visit: Visit) -> None:
+    slider = "document.getElementById('control-bearing_to')"
+
+    async def script(browser: Browser) -> None:
+        label = f'{slider}.labels[0].innerText.split(/\\s*\\n\\s*/).join(" ")'
+        assert await browser.run(f'[{slider}.min, {slider}.max, {slider}.value]') == [
+            '0', '360', '270',
+        ]  # fmt: skip
+        assert await browser.run(label) == 'Wind from W (270°)'
+        assert 'comes from' in await browser.run(f'{slider}.title')
+        for degrees, point in (
+            (90, 'E (90°)'),
+            (0, 'N (0°)'),
+            (360, 'N (0°)'),
+            (225, 'SW (225°)'),
+        ):
+            await browser.run(
+                f'{{const s = {slider}; s.value = {degrees};'
+                " s.dispatchEvent(new Event('input'));}"
+            )
+            assert await browser.run(f"{slider}.getAttribute('aria-valuetext')") == point
+            x, y = -np.sin(np.radians(degrees)), -np.cos(np.radians(degrees))
+            await browser.until(
+                f'((w) => (w[0] * {x} + w[1] * {y}) / Math.hypot(...w) > 0.8)'
+                '(treeSway.playout.wind)'
+            )
+        assert await browser.run(
+            "document.getElementById('control-tolerance').closest('.field').hidden"
+        )
+        await browser.run(
+            f"{{const s = {slider}; s.value = 270; s.dispatchEvent(new Event('input'));}}"
+        )
+        await browser.until('treeSway.playout.wind[0] > 4')
+
+    visit(script)
+
+
+def test_a_token_leaves_the_address_and_links_are_to_look_only(
+    live: Live, browser_class: Any
+) -> None:
+    settings = PageSettings(port=0, token='long-enough-token')
+    with PageServer(settings, live.panel, live.session.status, live.session.written) as server:
+
+        async def whole() -> None:
+            async with browser_class() as browser:
+                is_live = "window.treeSway && treeSway.state === 'live' && treeSway.fps > 0"
+                live.session.serve(server)
+                await browser.open(server.url)
+                await browser.until("document.getElementById('refused')")
+                await browser.open(f'{server.url}?token=long-enough-token')
+                await browser.until(is_live)
+                assert await browser.run('location.href') == server.url
+                assert not await browser.run("document.getElementById('panel').hidden")
+                await browser.run("document.getElementById('link').click()")
+                await browser.until("!document.getElementById('toast').hidden")
+                link = await browser.run("document.getElementById('toast').innerText")
+                assert f'?token={server.viewers_token}#view=' in link
+                assert 'to look only' in link
+                assert 'token' not in await browser.run('location.href')
+                await browser.open(server.url)  # again: the cookie has it
+                await browser.until(is_live)
+                assert not await browser.run("document.getElementById('panel').hidden")
+                await browser.open(f'{server.url}?token={server.viewers_token}')
+                await browser.until(is_live)
+                assert await browser.run("document.getElementById('panel').hidden")
+                own = {'headers': {'X-Requested-With': 'x'}}
+                for options, status in ((own, 200), ({}, 403)):
+                    asked = f"fetch('tree.glb', {json.dumps(options)}).then((a) => a.status)"
+                    assert await browser.run(asked) == status
+
+        try:
+            asyncio.run(whole())
+        finally:
+            live.session.serve(live.server)
 
 
 def test_a_lost_server_is_reported_and_found_again(live: Live, visit: Visit) -> None:

@@ -15,6 +15,7 @@ import shutil
 import socket
 import ssl
 import subprocess
+import threading
 import time
 from typing import Any
 
@@ -23,8 +24,8 @@ import pytest
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.errors import ParameterError  # noqa: E402
-from tree_sway.page import doorkeeper  # noqa: E402
-from tree_sway.page.access import read_token  # noqa: E402
+from tree_sway.page import access, doorkeeper  # noqa: E402
+from tree_sway.page.access import make_token, read_token  # noqa: E402
 from tree_sway.page.client import StreamClient  # noqa: E402
 from tree_sway.page.controls import Control, ControlPanel  # noqa: E402
 from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
@@ -171,6 +172,32 @@ def test_a_value_of_400_digits_is_refused_in_words(name: str, server: PageServer
                 return
 
     run(server, script)
+
+
+def test_a_pull_that_is_refused_later_is_reported_to_its_sender_alone() -> None:
+    def pull(_segment: int, _to: Any, _stiffness: float, refused: Callable[[str], None]) -> None:
+        refuser = threading.Thread(target=lambda: refused('no segment 7'))
+        refuser.start()
+        refuser.join()
+
+    async def whole(url: str) -> list[list[Any]]:
+        heard: list[list[Any]] = [[], []]
+        async with (
+            aiohttp.ClientSession() as session,
+            session.ws_connect(f'{url}stream') as one,
+            session.ws_connect(f'{url}stream') as other,
+        ):
+            await one.send_str('{"pull":{"segment":7,"to":[1,0,1],"stiffness":5}}')
+            for number, ws in enumerate((one, other)):
+                await ws.send_str('{"ping":1}')
+                while 'status' not in (message := await ws.receive_json(timeout=DEADLINE)):
+                    heard[number] += [message['refused']] if 'refused' in message else []
+        return heard
+
+    with PageServer(PageSettings(port=0), ControlPanel(pull=pull)) as server:
+        heard = asyncio.run(whole(server.url))
+        assert heard == [[{'name': 'pull', 'reason': 'no segment 7'}], []]
+        assert server.n_refused == 1
 
 
 def test_a_slow_client_has_one_timer(server: PageServer) -> None:
@@ -383,7 +410,9 @@ def test_a_viewer_without_the_token_is_asked_for_it() -> None:
     with PageServer(PageSettings(port=0, token=TOKEN)) as server:
         answer = answer_to(server.port, b'GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n')
         assert b'text/html' in answer
-        assert b'<input name="token" type="password"' in answer
+        assert b'name="token" type="password"' in answer
+        assert b'type the token' in answer
+        assert b'href="static/style.css"' in answer
 
 
 @pytest.mark.parametrize(
@@ -409,3 +438,145 @@ def test_a_bad_token_file_is_refused(
         read_token(path)
     assert TOKEN not in str(error.value)
     assert read_token('') == ''
+
+
+def test_a_token_is_made_where_there_is_none(tmp_path: Path) -> None:
+    path = tmp_path / 'token'
+    token = make_token(path)
+    assert path.stat().st_mode & 0o777 == 0o600
+    assert read_token(path) == token
+    assert len(token) >= 40
+    for taken in (path, tmp_path / 'no folder' / 'token'):
+        with pytest.raises(ParameterError, match='no token can be written'):
+            make_token(taken)
+    assert read_token(path) == token
+
+
+def status_of(port: int, path: str, *headers: str) -> int:
+    """Return the status of the answer to a GET."""
+    lines = [f'GET {path} HTTP/1.1', 'Host: 127.0.0.1', 'Connection: close', *headers, '', '']
+    return int(answer_to(port, '\r\n'.join(lines).encode()).split()[1])
+
+
+def test_a_viewers_token_shows_and_changes_nothing() -> None:
+    changed: list[Any] = []
+    wind = Control('wind', 'Wind', 6.0, minimum=0.0, maximum=40.0)
+    panel = ControlPanel((wind,), lambda *each: changed.append(each), lambda *_: None)
+
+    async def script(ws: Any) -> list[Any]:
+        hello = (await ws.receive_json(timeout=DEADLINE))['hello']
+        await ws.send_str('{"set":{"name":"wind","value":9},"pull":{"segment":0}}')
+        reasons = []
+        while len(reasons) < 2:
+            message = await asyncio.wait_for(ws.receive(), DEADLINE)
+            if message.type is aiohttp.WSMsgType.TEXT:
+                text = json.loads(message.data)
+                reasons += [text['refused']['reason']] if 'refused' in text else []
+        return [hello, *reasons]
+
+    with PageServer(PageSettings(port=0, token=TOKEN), panel) as server:
+        server.describe(DESCRIPTION)
+        headers = {'Authorization': f'Bearer {server.viewers_token}'}
+        hello, *reasons = run(server, script, headers=headers)
+        assert hello['controls'] == []
+        assert hello['can_pull'] is False
+        assert hello['viewers_token'] == server.viewers_token
+        assert all('to look only' in reason for reason in reasons)
+        assert changed == []
+        assert server.n_refused == 2
+        assert TOKEN not in server.viewers_token
+
+        async def control(ws: Any) -> Any:
+            return (await ws.receive_json(timeout=DEADLINE))['hello']
+
+        hello = run(server, control, headers={'Authorization': f'Bearer {TOKEN}'})
+        assert [each['name'] for each in hello['controls']] == ['wind']
+        assert hello['can_pull'] is True
+
+
+@pytest.mark.parametrize('is_viewer', [False, True])
+def test_a_cookie_replaces_the_token_of_the_address(is_viewer: bool) -> None:
+    with PageServer(PageSettings(port=0, token=TOKEN)) as server:
+        token = server.viewers_token if is_viewer else TOKEN
+        request = f'GET /?token={token} HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n'
+        answer = answer_to(server.port, request.encode()).partition(b'\r\n\r\n')[0].decode()
+        (line,) = [each for each in answer.split('\r\n') if each.startswith('Set-Cookie: ')]
+        assert 'HttpOnly' in line
+        assert 'SameSite=Strict' in line
+        assert TOKEN not in answer
+        cookie = line.removeprefix('Set-Cookie: ').partition(';')[0]
+        assert status_of(server.port, '/', f'Cookie: {cookie}') == 200
+        assert status_of(server.port, '/', f'Cookie: {cookie}x') == 403
+        assert status_of(server.port, '/') == 403
+
+        async def control(ws: Any) -> Any:
+            return (await ws.receive_json(timeout=DEADLINE))['hello']['can_pull']
+
+        server._panel = ControlPanel(pull=lambda *_: None)
+        assert run(server, control, headers={'Cookie': cookie}) != is_viewer
+
+
+def test_guesses_of_a_token_are_slowed_by_address(monkeypatch: pytest.MonkeyPatch) -> None:
+    with PageServer(PageSettings(port=0, token=TOKEN)) as server:
+        for number in range(access.GUESSES):
+            assert status_of(server.port, f'/?token=guess{number}') == 403
+        assert status_of(server.port, '/?token=another') == 429
+        assert status_of(server.port, f'/?token={TOKEN}') == 429  # else it would be an answer
+        assert status_of(server.port, '/') == 403  # which is no guess
+        monkeypatch.setattr(access, 'GUESSING_TIME', 0.0)
+        until(lambda: status_of(server.port, f'/?token={TOKEN}') == 200)
+
+
+def test_an_old_cookie_is_one_guess() -> None:
+    with PageServer(PageSettings(port=0, token=TOKEN)) as server:
+        for _ in range(3 * access.GUESSES):
+            assert status_of(server.port, '/', f'Cookie: tree_sway_{server.port}=old') == 403
+        assert status_of(server.port, f'/?token={TOKEN}') == 200
+
+
+def test_guesses_are_counted_in_bounded_memory() -> None:
+    guesses = access.Guesses()
+    for number in range(100):
+        guesses.note(f'2001:db8::{number:x}', f'guess{number}', 0.0)
+    assert guesses.waiting_time('2001:db8::ffff', 0.0) == 81.0
+    assert guesses.waiting_time('2001:db8::ffff', 60.0) == 21.0
+    assert guesses.waiting_time('2001:db8:0:1::1', 0.0) == 0.0
+    for number in range(5000):
+        guesses.note(f'10.0.{number // 256}.{number % 256}', 'x', 0.0)
+    assert len(guesses._of) <= 1024
+
+
+def test_pictures_of_other_pages_cause_no_files(tmp_path: Path) -> None:
+    """A browser requests the address of an image from any server, without an Origin."""
+    asked, may_end, running = [], threading.Event(), [0, 0]
+
+    def written(suffix: str) -> bytes:
+        asked.append(suffix)
+        running[0] += 1
+        running[1] = max(running)
+        may_end.wait(DEADLINE)
+        running[0] -= 1
+        return b'tree'
+
+    with PageServer(PageSettings(port=0), None, None, written) as server:
+        origin = f'Origin: http://127.0.0.1:{server.port}'
+        host = f'Host: 127.0.0.1:{server.port}'
+        for headers in ((), ('Sec-Fetch-Site: cross-site',), ('Referer: http://evil.example/',)):
+            assert status_of(server.port, '/tree.html', *headers) == 403
+        assert status_of(server.port, '/tree.html', 'Origin: http://evil.example') == 403
+        assert asked == []
+        statuses: list[int] = []
+        own = f'GET /tree.html HTTP/1.1\r\n{host}\r\n{origin}\r\nConnection: close\r\n\r\n'
+
+        def ask() -> None:
+            statuses.append(int(answer_to(server.port, own.encode()).split()[1]))
+
+        threads = [threading.Thread(target=ask) for _ in range(12)]
+        for thread in threads:
+            thread.start()
+        until(lambda: statuses.count(503) == 8)
+        may_end.set()
+        for thread in threads:
+            thread.join()
+        assert sorted(statuses) == 4 * [200] + 8 * [503]
+        assert running[1] == 1

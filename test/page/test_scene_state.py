@@ -4,10 +4,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import json
 from pathlib import Path
 import shutil
 import subprocess
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -237,3 +239,46 @@ def test_more_coordinates_than_a_frame_can_count_are_refused(
     monkeypatch.setattr(check_description, 'MOST_COORDINATES', 999)
     with pytest.raises(FormatError, match='coordinates'):
         SceneState(avenue[0])
+
+
+def pair_of_trees() -> SceneSimulator:
+    """Make two trees of one kind, of different sizes."""
+    source = open_tree(HERE.parent / 'files' / 'data' / 'seedling.yaml')
+    trees = [PlacedTree('one', source), PlacedTree('two', source, x=3.0, yaw=0.7, scale=1.4)]
+    return Scene(trees).simulator(model=12)
+
+
+def gently_tuned(scene: SceneSimulator, is_done: Callable[[], bool]) -> None:
+    """Step a scene in a steady wind and tune it again and again, until done and at a goal."""
+    number = 0
+    while number < 200 or not is_done():
+        if number % 40 == 0:
+            scene.tune(stiffness_factor=1.5 + 0.5 * (number // 40 % 2), gravity=9.81)
+        scene.step((5.0, 1.0, 0.0), 1.0 / 60.0)
+        number += 1
+    scene.tune(stiffness_factor=2.0)
+    for _ in range(60):
+        scene.step((5.0, 1.0, 0.0), 1.0 / 60.0)
+
+
+def test_a_basis_is_found_while_the_scene_is_stepped_and_tuned() -> None:
+    scene, undisturbed = pair_of_trees(), pair_of_trees()
+    finder = Thread(target=lambda: SceneState(scene))
+    finder.start()
+    gently_tuned(scene, lambda: not finder.is_alive())
+    finder.join()
+    gently_tuned(undisturbed, lambda: True)
+    # Both have reached the same goal.
+    np.testing.assert_allclose(
+        scene._time_steps['whole'], undisturbed._time_steps['whole'], rtol=1e-12, atol=1e-15
+    )
+    np.testing.assert_allclose(
+        scene._time_steps['half'], undisturbed._time_steps['half'], rtol=1e-12, atol=1e-15
+    )
+
+
+def test_a_running_scene_has_the_same_description_and_steps_none_of_its_models() -> None:
+    scene = pair_of_trees()
+    at_rest = SceneState(pair_of_trees(), is_running=False).description
+    assert SceneState(scene).description == at_rest
+    assert [model.counts.steps for model, _, _ in scene.shared] == [0]

@@ -20,6 +20,7 @@ aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.errors import ParameterError, TransportError  # noqa: E402
 from tree_sway.page import doorkeeper  # noqa: E402
+from tree_sway.page import server as server_module  # noqa: E402
 from tree_sway.page.access import is_loopback, refusal, require_token  # noqa: E402
 from tree_sway.page.controls import Control, ControlPanel  # noqa: E402
 from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
@@ -215,6 +216,54 @@ def test_a_port_in_use_is_an_error_in_words(server: PageServer) -> None:
         PageServer(PageSettings(port=server.port)).start()
 
 
+def test_a_server_that_does_not_start_in_time_is_an_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(server_module, '_START_TIMEOUT', 0.05)
+    made = PageServer(PageSettings(port=0))
+    may_go_on, serve = threading.Event(), made._serve
+
+    async def late() -> None:
+        await asyncio.to_thread(may_go_on.wait, DEADLINE)
+        await serve()
+
+    monkeypatch.setattr(made, '_serve', late)
+    with pytest.raises(TransportError, match='not served after'):
+        made.start()
+    may_go_on.set()
+    made._thread.join(DEADLINE)
+    assert not made._thread.is_alive()  # it ends by itself
+
+
+def test_a_server_that_was_never_started_leaves_no_loop() -> None:
+    made = PageServer(PageSettings(port=0))
+    made.close()
+    made.close()
+    assert made._loop.is_closed()
+
+
+def test_a_client_that_does_not_read_keeps_its_hello() -> None:
+    class Socket:
+        closed = False
+
+        def __init__(self) -> None:
+            self.sent: list[Any] = []
+
+        async def send_str(self, text: str) -> None:
+            self.sent.append(json.loads(text))
+
+    with PageServer(PageSettings(port=0)) as made:
+        socket = Socket()
+        client = server_module._Client(socket, None)  # type: ignore[arg-type]
+        client.hello = json.dumps({'hello': made._hello(client)})
+        for number in range(50):
+            client.say({'status': number})
+        asyncio.run(made._send_due(client))
+    assert 'hello' in socket.sent[0]
+    assert socket.sent[-1] == {'status': 49}
+    assert len(socket.sent) == 17
+
+
 def test_health_and_headers(server: PageServer) -> None:
     async def script(viewer: Viewer) -> None:
         await viewer.binary()
@@ -239,7 +288,8 @@ def test_a_tree_is_written_or_refused_with_the_reason(server: PageServer) -> Non
         found = []
         async with aiohttp.ClientSession() as session:
             for suffix in ('glb', 'html'):
-                async with session.get(f'{url}tree.{suffix}') as answer:
+                asked = {'X-Requested-With': 'test'}
+                async with session.get(f'{url}tree.{suffix}', headers=asked) as answer:
                     found.append((answer.status, await answer.read()))
         return found
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+import threading
 import time
 from typing import Any
 
@@ -18,6 +19,9 @@ from tree_sway.core.scene.run import Run  # noqa: E402
 from tree_sway.core.simulator.settings import Settings  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
+from tree_sway.page import wind_source  # noqa: E402
+from tree_sway.page.controls import ControlPanel  # noqa: E402
+from tree_sway.page.newest import Newest  # noqa: E402
 from tree_sway.page.protocol import decode_description, decode_frame, PAUSED  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
 from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind  # noqa: E402
@@ -137,6 +141,7 @@ def test_the_wind_changes_at_once_and_a_record_does_not(live: tuple[Session, Sin
     session, _ = live
     ((_, before),) = session.wind.between(10.0, 10.05)
     session.apply('mean_speed', 10.0)
+    until(lambda: [sample for _, sample in session.wind.between(10.0, 10.05)] != [before])
     ((_, after),) = session.wind.between(10.0, 10.05)  # the same gusts about another mean
     assert 1.5 < np.linalg.norm(after) / np.linalg.norm(before) < 2.5
     session.wind = RecordedWind(np.array([0.0, 1.0]), np.array([[1.0, 0, 0], [3.0, 0, 0]]))
@@ -147,6 +152,59 @@ def test_the_wind_changes_at_once_and_a_record_does_not(live: tuple[Session, Sin
     assert cut == samples
     with pytest.raises(ParameterError, match='record'):
         session.apply('mean_speed', 3.0)
+
+
+def test_a_run_that_begins_late_is_given_the_last_samples_alone() -> None:
+    class Counted(SimulatedWind):
+        n_samples = 0
+
+        def between(self, since: float, until: float) -> Iterator[Any]:
+            for sample in super().between(since, until):
+                self.n_samples += 1
+                yield sample
+
+    run, wind = Run(open_scene(str(SEEDLING)).simulator()), Counted(8.0)
+    week = 7 * 24 * 3600 * 10**9 // run.period * run.period
+    blow(run, wind, week)
+    assert run.simulator.wind[0] > 2.0  # it blows from the first step on
+    assert 0 < wind.n_samples <= 200
+    blow(run, wind, week + run.period)
+    assert wind.n_samples <= 201
+
+
+def test_turbulence_is_made_on_another_thread_and_the_newest_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    may_go_on, made = threading.Event(), list[tuple[int, float]]()
+    own = wind_source.AnemometerModel
+
+    def slow(mean_speed: float, **others: Any) -> Any:
+        made.append((threading.get_ident(), mean_speed))
+        may_go_on.wait(DEADLINE)
+        return own(mean_speed, **others)
+
+    wind = SimulatedWind(5.0)
+    monkeypatch.setattr(wind_source, 'AnemometerModel', slow)
+    for speed in np.linspace(6.0, 12.0, 50).tolist():
+        wind.set('mean_speed', speed)
+    ((_, calm),) = wind.between(10.0, 10.05)  # the old one goes on
+    may_go_on.set()
+    until(lambda: [sample for _, sample in wind.between(10.0, 10.05)] != [calm])
+    until(lambda: wind._maker.wanted is None)
+    assert threading.get_ident() not in {thread for thread, _ in made}
+    assert [speed for _, speed in made] in ([6.0, 12.0], [12.0])
+    ((_, strong),) = wind.between(10.0, 10.05)
+    assert np.linalg.norm(strong) > 2.0 * np.linalg.norm(calm)
+
+
+def test_no_request_is_lost_between_two() -> None:
+    done = list[int]()
+    newest = Newest(done.append, 'test')
+    for number in range(1, 3000):
+        newest.want(number)
+    until(lambda: newest.wanted is None)
+    assert done[-1] == 2999
+    assert done == sorted(set(done))
 
 
 def test_a_record_goes_on_from_any_of_its_times(live: tuple[Session, Sink]) -> None:
@@ -161,10 +219,57 @@ def test_a_record_goes_on_from_any_of_its_times(live: tuple[Session, Sink]) -> N
     assert session.status()['record_time'] == pytest.approx(7.0, abs=0.2)
 
 
+def test_damping_and_wind_are_those_in_use(live: tuple[Session, Sink]) -> None:
+    session, sink = live
+    own = session.values()['damping_ratio']
+    assert own == session._scene.kinds[0].simulator.reductions.damping_ratio > 0.0
+    assert session.choices.damping_ratio == 0.0
+    session.apply('damping_ratio', 0.25)
+    until(lambda: len(sink.descriptions) == 2)
+    assert session.values()['damping_ratio'] == 0.25
+    session.apply('damping_ratio', 0.0)  # back to that of the species
+    until(lambda: len(sink.descriptions) == 3)
+    assert session.values()['damping_ratio'] == own
+    assert session.status()['wind'] == {'kind': 'simulated'}
+    session.wind = RecordedWind(np.array([0.0, 1.0]), np.ones((2, 3)), 'canopy')
+    assert session.status()['wind'] == {'kind': 'recorded', 'name': 'canopy'}
+
+
 def test_what_is_shown_is_written_as_a_file(live: tuple[Session, Sink]) -> None:
     session, _ = live
     assert session.written('glb')[:4] == b'glTF'
     assert b'id="scene"' in session.written('html')
+
+
+@pytest.mark.parametrize(
+    'pull',
+    [
+        {'segment': True, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': 0.0, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': 0, 'to': [True, 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': 0, 'to': ['1', 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': 0, 'to': [1.0, 0.0, 1.0], 'stiffness': '5'},
+        {'segment': 0, 'to': [1.0, 0.0, 1.0], 'stiffness': None},
+        {'segment': 0, 'to': [1.0, 0.0, 1e6], 'stiffness': 5.0},
+        {'segment': 10**30, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': 0, 'to': [1.0, 0.0, 1.0], 'stiffness': 1e-300},
+        {'segment': 0, 'to': [1e5, 1e5, 1e5], 'stiffness': 1e7},
+        {'segment': 0, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0},
+        {'segment': -1, 'to': [1.0, 0.0, 1.0], 'stiffness': 5.0},
+    ],
+)
+def test_no_pull_ends_the_session(pull: Any, live: tuple[Session, Sink]) -> None:
+    session, sink = live
+    reasons: list[str] = []
+    refused = ControlPanel(pull=session.pull).pull(pull, reasons.append)
+    n = len(sink.frames)
+    until(lambda: len(sink.frames) > n + 10 or session.failure)
+    assert session.failure is None
+    assert not sink.messages  # others hear nothing of it
+    is_possible = pull['segment'] == 0 and all(type(x) is float for x in pull['to'])
+    is_possible &= type(pull['segment']) is int and type(pull['stiffness']) is float
+    is_possible &= max(abs(float(x)) for x in pull['to']) <= 1e5
+    assert (refused is None and not reasons) == is_possible
 
 
 def test_a_record_that_breaks_off_is_held_and_fades_on_the_page_too() -> None:

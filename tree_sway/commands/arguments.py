@@ -179,7 +179,7 @@ def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
     """Open the record of the arguments, repeated, or simulated wind of their speed."""
     if arguments.wind is not None:
         record = opened_record(arguments)
-        return RecordedWind(record.time, record.velocity)
+        return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
     return SimulatedWind(SWAY['mean_speed'].checked(arguments.speed))
 
 

@@ -5,10 +5,13 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 import socket
+from urllib.parse import urlencode
 
 from tree_sway.core.checks import within
-from tree_sway.page.server import PageSettings
+from tree_sway.page.access import make_token, read_token
+from tree_sway.page.server import PageServer, PageSettings
 
 _PORT = 8765
 
@@ -27,7 +30,7 @@ def add_page_arguments(parser: argparse.ArgumentParser) -> None:
         '--token-file',
         default='',
         metavar='FILE',
-        help='token of viewers: a file that only its owner may read',
+        help='file with the token, which only its owner may read; made if it is missing',
     )
     add('--certificate', default='', metavar='PEM', help='for https')
     add(
@@ -41,11 +44,18 @@ def add_page_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def page_settings(arguments: argparse.Namespace) -> PageSettings:
-    """Make settings of the page's server from the arguments; a `ParameterError` for a bad port."""
+    """
+    Make settings of the page's server from the arguments, and a missing file with a token.
+
+    A `ParameterError` reports a bad port, or a token that cannot be written.
+    """
     port = arguments.port
     if port is None:
         port = _PORT if _is_free(arguments.address, _PORT) else 0
     within('--port', port, 0, 65535)
+    if arguments.token_file and not Path(arguments.token_file).exists():
+        make_token(arguments.token_file)
+        print(f'{arguments.token_file}: a new token, which only you may read', flush=True)
     return PageSettings(
         arguments.address,
         port,
@@ -54,6 +64,16 @@ def page_settings(arguments: argparse.Namespace) -> PageSettings:
         private_key=arguments.private_key,
         origins=tuple(arguments.origin),
     )
+
+
+def print_address(server: PageServer, begin: str) -> None:
+    """Print how the page is opened: with a token, its links for control and to look only."""
+    if not server.viewers_token:
+        print(f'{begin} {server.url}', flush=True)
+        return
+    token = read_token(server.settings.token_file)
+    print(f'{begin} {server.url}?{urlencode({"token": token})}')
+    print(f'to look only: {server.url}?{urlencode({"token": server.viewers_token})}', flush=True)
 
 
 def _is_free(address: str, port: int) -> bool:

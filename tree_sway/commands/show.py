@@ -18,7 +18,7 @@ from tree_sway.commands.arguments import (
     opened_scene,
     opened_wind,
 )
-from tree_sway.commands.page_arguments import add_page_arguments, page_settings
+from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
@@ -73,9 +73,11 @@ def run(arguments: argparse.Namespace) -> int:
         is_one_tree = session.status()['trees'] == arguments.stand
         controls = _controls(choices, wind, is_one_tree=is_one_tree)
         panel = ControlPanel(controls, session.apply, session.pull)
+        panel.update(session.values())
     with PageServer(settings, panel, session.status, session.written) as server:
         session.serve(server)
-        print(f'open {server.url} (Ctrl-C ends)', flush=True)
+        print_address(server, 'open')
+        print('Ctrl-C ends', flush=True)
         if arguments.open:
             webbrowser.open(server.url)
         try:
@@ -146,6 +148,6 @@ def _controls(
     controls.append(Control('tree', 'Tree', choices.tree, 'Tree on the page.', choices=trees))
     if is_one_tree:
         # Models and number of the trees of a stand are those of its file.
-        how_many = Control('count', 'Stand of', choices.count, 'Number of trees.', choices=counts)
+        how_many = Control('count', 'Number of trees', choices.count, choices=counts)
         controls.append(how_many)
     return (*controls, *PAUSE_AND_RESET)

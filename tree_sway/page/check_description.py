@@ -32,15 +32,21 @@ _GREATEST = 1e12
 
 Array = NDArray[Any]
 
-_TYPES = {'f32': '<f4', 'i32': '<i4', 'u8': 'u1'}
+Forms = Mapping[str, tuple[str, Sequence[str | int]]]
+"""Type and axes of arrays by name; an axis is its size, or a name of which all are of one size."""
 
-_FORMS: dict[str, tuple[str, list[str | int]]] = {
-    name: (_TYPES[kind], axes)
-    for name, (kind, *axes) in json.loads(
-        resources.files('tree_sway.page').joinpath('static', 'arrays.json').read_text()
-    )['description'].items()
-}
-"""Type and axes of each array of a kind; those of leaves only where it has any."""
+_TYPES = {'f32': '<f4', 'i32': '<i4', 'i16': '<i2', 'u8': 'u1'}
+
+
+def forms_of(message: str) -> Forms:
+    """Return the forms of the arrays of a kind in a ``description`` or in ``tables``."""
+    text = resources.files('tree_sway.page').joinpath('static', 'arrays.json').read_text()
+    entries = json.loads(text)[message].items()
+    return {name: (_TYPES[kind], axes) for name, (kind, *axes) in entries}
+
+
+_FORMS = forms_of('description')
+"""Arrays of a kind; those of leaves only where it has any."""
 
 
 def check_description(
@@ -65,19 +71,19 @@ def check_description(
         out of range.
 
     """
-    _require('header', all(isinstance(header[name], str) for name in ('name', 'frame_id')))
-    _require('kinds', len(kinds) > 0)
+    require('header', all(isinstance(header[name], str) for name in ('name', 'frame_id')))
+    require('kinds', len(kinds) > 0)
     sizes = []
     for number, (kind, arrays) in enumerate(zip(header['kinds'], kinds, strict=True)):
         with inside(f'kind {number}'):
             sizes.append(_check_kind(kind, arrays))
     numbers = [tree['kind'] for tree in header['trees']]
     names = [tree['name'] for tree in header['trees']]
-    _require('trees', all(isinstance(name, str) for name in names) and len(names) > 0)
-    _require('kind of a tree', all(type(k) is int and 0 <= k < len(kinds) for k in numbers))
-    _require('tree_place', places.dtype == '<f4' and places.shape == (len(numbers), 5))
-    _require('tree_place', np.isfinite(places).all(axis=1) & (places[:, 4] > 0.0))
-    _require('flutter', all(_is_finite(value) for value in header.get('flutter', {}).values()))
+    require('trees', all(isinstance(name, str) for name in names) and len(names) > 0)
+    require('kind of a tree', all(type(k) is int and 0 <= k < len(kinds) for k in numbers))
+    require('tree_place', places.dtype == '<f4' and places.shape == (len(numbers), 5))
+    require('tree_place', np.isfinite(places).all(axis=1) & (places[:, 4] > 0.0))
+    require('flutter', all(is_finite(value) for value in header.get('flutter', {}).values()))
     segments, coordinates = np.array(sizes).T
     for what, count, most in (
         ('segments of the kinds', segments.sum(), MOST_SEGMENTS),
@@ -90,15 +96,17 @@ def check_description(
 
 def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[int, int]:
     """Refuse an inconsistent kind; return its numbers of segments and coordinates."""
-    size = _sizes(arrays)
+    has_leaves = 'leaf_segment' in arrays
+    forms = {n: form for n, form in _FORMS.items() if has_leaves or not n.startswith('leaf')}
+    size = sizes_of(arrays, forms)
     b, n, rows = size['branches'], size['segments'], size['rows']
-    _require('branch_parent', b > 0)
-    _require('basis_scale', arrays['basis_scale'] > 0.0)
-    _require('species', isinstance(kind['species'], str) and isinstance(kind['model'], str))
+    require('branch_parent', b > 0)
+    require('basis_scale', arrays['basis_scale'] > 0.0)
+    require('species', isinstance(kind['species'], str) and isinstance(kind['model'], str))
     numbers = kind['height'], kind['basis_error'], kind.get('modulus', 0.0)
-    _require('height', all(map(_is_finite, numbers)))
+    require('height', all(map(is_finite, numbers)))
     names = kind['branch_names']
-    _require('branch_names', len(names) == b and all(isinstance(name, str) for name in names))
+    require('branch_names', len(names) == b and all(isinstance(name, str) for name in names))
 
     parent, under, coordinate, keys, base_turn, turn = (
         arrays[f'branch_{name}'].astype(np.int64)
@@ -106,51 +114,55 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[i
     )
     first = arrays['branch_first'].astype(np.int64)
     row = np.arange(b)
-    _require('branch_parent', (parent < row) & (parent >= np.minimum(row - 1, 0)))
-    _require('branch_first', size['branches + 1'] == b + 1 and first[0] == 0 and first[-1] == n)
+    require('branch_parent', (parent < row) & (parent >= np.minimum(row - 1, 0)))
+    require('branch_first', size['branches + 1'] == b + 1 and first[0] == 0 and first[-1] == n)
     count = np.diff(first)
-    _require('branch_first', count > 0)
+    require('branch_first', count > 0)
     # Here, as it loads the compiler, which is not needed before a description.
     from tree_sway.core.branch.shapes import MAX_COORDINATES
 
     is_stem = row == 0
     on_it = (first[parent] <= under) & (under < first[parent + 1])
-    _require('branch_base_segment', np.where(is_stem, under == -1, on_it))
-    _require('branch_keys', (keys >= 2) & (keys <= MAX_COORDINATES))
-    _require('branch_coordinate', (coordinate >= 0) & (coordinate + keys <= size['keys']))
+    require('branch_base_segment', np.where(is_stem, under == -1, on_it))
+    require('branch_keys', (keys >= 2) & (keys <= MAX_COORDINATES))
+    require('branch_coordinate', (coordinate >= 0) & (coordinate + keys <= size['keys']))
     within = (base_turn >= 0) & (base_turn + keys[parent] <= rows)
-    _require('branch_base_turn', np.where(is_stem, base_turn == -1, within))
+    require('branch_base_turn', np.where(is_stem, base_turn == -1, within))
     within = (turn >= 0) & (turn + count * keys <= rows)
-    _require('branch_turn', np.where(turn == -1, keys <= 2, within))
+    require('branch_turn', np.where(turn == -1, keys <= 2, within))
     if 'leaf_segment' in arrays:
-        _require('leaf_segment', (arrays['leaf_segment'] >= 0) & (arrays['leaf_segment'] < n))
+        require('leaf_segment', (arrays['leaf_segment'] >= 0) & (arrays['leaf_segment'] < n))
     return n, size['coordinates']
 
 
-def _sizes(arrays: Mapping[str, Array]) -> dict[str, int]:
-    """Sizes of all axes by name; refuses missing arrays, wrong types or shapes, and infinities."""
+def sizes_of(arrays: Mapping[str, Array], forms: Forms) -> dict[str, int]:
+    """
+    Sizes of the named axes of arrays.
+
+    Raises a `FormatError` for a missing array, a wrong type or shape, or a number that is not
+    finite.
+    """
     sizes: dict[str, int] = {}
-    for name, (kind, axes) in _FORMS.items():
-        if name.startswith('leaf') and 'leaf_segment' not in arrays:
-            continue
+    for name, (kind, axes) in forms.items():
         array = arrays.get(name)
         if array is None:
             raise FormatError('it is missing', where=name)
-        _require(f'type of {name}', array.dtype == kind)
-        _require(f'shape of {name}', array.ndim == len(axes))
+        require(f'type of {name}', array.dtype == kind)
+        require(f'shape of {name}', array.ndim == len(axes))
         for axis, size in zip(axes, array.shape, strict=True):
             wanted = axis if isinstance(axis, int) else sizes.setdefault(axis, size)
-            _require(f'shape of {name}', size == wanted)
+            require(f'shape of {name}', size == wanted)
         if kind == '<f4':
-            _require(name, np.isfinite(array).all(axis=tuple(range(1, array.ndim))))
+            require(name, np.isfinite(array).all(axis=tuple(range(1, array.ndim))))
     return sizes
 
 
-def _is_finite(value: object) -> bool:
+def is_finite(value: object) -> bool:
+    """Whether a value of JSON is a number, and not beyond `_GREATEST`."""
     return type(value) in (int, float) and -_GREATEST < value < _GREATEST  # type: ignore[operator]
 
 
-def _require(name: str, holds: ArrayLike) -> None:
+def require(name: str, holds: ArrayLike) -> None:
     """Refuse a false condition, or the first row where it is false."""
     rows = np.atleast_1d(holds)
     if not rows.all():

@@ -183,7 +183,8 @@ class StreamClient:
 
         None before the first state.
         """
-        moment, placer = self.sample(now), self._placer
+        with self._more:  # a state is placed by its own description
+            moment, placer = self.sample(now), self._placer
         if moment is None or placer is None:
             return None
         return placer.place(moment.coordinates)

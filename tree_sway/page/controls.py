@@ -18,8 +18,15 @@ Value = bool | float | str | None
 """Value of a control, as in JSON; None for a button."""
 
 
-Pull = Callable[[int, tuple[float, ...], float], None]
-"""Pull at a segment towards a place [m], (3,), by a stiffness [N/m]; 0 releases it."""
+Refused = Callable[[str], None]
+"""Function called with the reason of a refusal, from any thread."""
+
+Pull = Callable[[int, tuple[float, ...], float, Refused], None]
+"""
+Pull at a segment towards a place [m], (3,), by a stiffness [N/m]; 0 releases it.
+
+The last argument is called if the pull is refused later, when it is applied.
+"""
 
 
 @dataclass(frozen=True)
@@ -144,17 +151,42 @@ class ControlPanel:
             self._controls[control.name] = replace(control, value=checked)
         return None
 
-    def pull(self, given: object) -> str | None:
-        """Pull at a segment for a viewer; returns the reason of a refusal, or None."""
+    def pull(self, given: object, refused: Refused) -> str | None:
+        """
+        Pull at a segment for a viewer.
+
+        Parameters
+        ----------
+        given
+            Request of the viewer, from JSON.
+        refused
+            Function called with the reason if it is refused later.
+
+        Returns
+        -------
+        str | None
+            Reason of a refusal now, or None.
+
+        """
         if self._pull is None:
             return 'no branch can be pulled here'
         try:
             match given:
-                case {'segment': int(segment), 'to': [_, _, _] as to, 'stiffness': stiffness}:
+                case {
+                    'segment': int(segment),
+                    'to': [_, _, _] as to,
+                    'stiffness': stiffness,
+                } if all(map(_is_number, (segment, *to, stiffness))):
                     far = tuple(within('pull: to', x, -_FARTHEST, _FARTHEST, 'm') for x in to)
-                    self._pull(segment, far, within('pull: stiffness', stiffness, 0.0, STIFFEST))
+                    stiff = within('pull: stiffness', stiffness, 0.0, STIFFEST, 'N/m')
+                    self._pull(segment, far, stiff, refused)
                 case _:
                     return 'a pull has a segment, a place to pull it to, and a stiffness'
-        except (TreeSwayError, TypeError) as error:
+        except TreeSwayError as error:
             return str(error)
         return None
+
+
+def _is_number(value: object) -> bool:
+    """Whether a value of JSON is a number; true and false are none."""
+    return type(value) in (int, float)

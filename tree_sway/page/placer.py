@@ -99,7 +99,7 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     base_turn, own_turn = (arrays[f'branch_{name}'].astype(np.int64) for name in _TURNS)
     matrix, turns = arrays['basis_matrix'].astype(np.float64), arrays['turn']
     slope, tip_slope = arrays['segment_slope'], arrays['segment_tip_slope']
-    block, _, n_records = assign_slots(first, parent)
+    block, _, n_records = assign_slots(first, parent, keys)  # as `segment_records` does
     sizes, room = (len(parent), n_records, len(np.unique(block)) + 1), room_for_fields(keys.max())
     layouts = branch_layout(room), segment_layout(room), block_layout(room)
     memory = sum(n * layout.itemsize for n, layout in zip(sizes, layouts, strict=True))

@@ -26,6 +26,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.state.state_basis import FULL_SCALE, MARGIN
 from tree_sway.errors import FormatError
 from tree_sway.page.check_description import Array, check_description
+from tree_sway.page.check_tables import check_tables
 
 if TYPE_CHECKING:
     from tree_sway.core.scene.received_scene import ReceivedScene
@@ -171,14 +172,21 @@ class Tables:
     arrays: dict[str, Array]
 
     def scene(self, description: Description, dt: float) -> ReceivedScene:
-        """Return the scene at rest, for time steps of dt [s]; else a `FormatError`."""
+        """
+        Return the scene at rest, for time steps of dt [s].
+
+        Raises a `FormatError` for tables of another description, and the errors of `check_tables`.
+        """
         # Here, as it loads the compiler, which drawing does not need.
         from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene
 
         header = self.header
-        if header['description'] != description.identity:
-            raise FormatError('tables of a different description', cure='request both again')
-        parts = of_kinds(self.arrays, len(header['kinds']))
+        with _reading('tables'):
+            if header['description'] != description.identity:
+                raise FormatError('they are of a different description', cure='request both again')
+            parts = of_kinds(self.arrays, len(header['kinds']))
+            speeds, n_trees = self.arrays['tree_speed'], len(description.header['trees'])
+            check_tables(header, parts, speeds, description.kinds, n_trees)
         kinds = [
             ReceivedKind(numbers, arrays, numbers['drag_law'])
             for numbers, arrays in zip(header['kinds'], parts, strict=True)

@@ -65,8 +65,8 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
         return [_alone(0, each, is_running) for each in simulator.simulators]
     kinds, trees = [], simulator.scene.trees
     for model, bank, numbers in simulator.shared:
-        # The model stays at rest: the scene steps its table.
-        basis = state_basis(model)
+        # The scene steps its own records, but a change of tuning goes through the model.
+        basis = state_basis(_runner(model, is_running))
         per_shape = bank.all_shapes @ basis.projection.T
 
         def found(numbers: Ints = numbers, per_shape: Floats = per_shape) -> Floats:

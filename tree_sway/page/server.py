@@ -30,7 +30,19 @@ from aiohttp import web, WSCloseCode, WSMsgType
 from aiohttp.typedefs import Handler
 
 from tree_sway.errors import TransportError, TreeSwayError
-from tree_sway.page.access import given_token, is_token, read_token, refusal, require_token
+from tree_sway.page.access import (
+    Access,
+    access_of,
+    cookie_token,
+    given_token,
+    Guesses,
+    is_own_page,
+    read_token,
+    refusal,
+    require_token,
+    viewers_token,
+    WRONG_TOKEN,
+)
 from tree_sway.page.controls import ControlPanel, Value
 from tree_sway.page.doorkeeper import Doorkeeper
 from tree_sway.page.protocol import FRAME_SIZE, part_of_frame
@@ -57,14 +69,14 @@ MOST_IN_STATE = 600
 _COMPLAINT_PERIOD = 10.0
 _LARGEST_PING = 1e15
 _LONGEST_PATH = 100
-_FORM = (
-    '<!doctype html><title>tree sway</title><p>refused: {}</p>'
-    '<form><label>Token <input name="token" type="password" autofocus></label> '
-    '<button>Open</button></form>'
-)
 _LOGGER = logging.getLogger('tree_sway.page')
 _START_TIMEOUT = 10.0
 _SEND_TIMEOUT = 5.0
+_MOST_TEXTS = 16
+_MOST_WAITING = 3
+"""Requests for the tree as a file that wait for the one that is written."""
+
+_MAY_LOOK = 'this link is to look only: ask for one with control'
 _STATIC = Path(str(resources.files('tree_sway.page'))) / 'static'
 _HEADERS = {
     'Content-Security-Policy': "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'",
@@ -115,8 +127,10 @@ class _Client:
         self.next_due = 0.0
         self.sent = -1
         self.wake = asyncio.Event()
-        self.texts: deque[str] = deque(maxlen=16)
+        self.hello = ''
+        self.texts: deque[str] = deque(maxlen=_MOST_TEXTS)
         self.description = b''
+        self.may_control = False
         self.wants_wind = self.is_solving = self.wants_nothing_else = False
         self.states, self.next_state, self.first = 0, 0.0, 0
         self.last_heard = time.monotonic()
@@ -139,7 +153,7 @@ class _Client:
         return part
 
     def say(self, content: Mapping[str, object]) -> None:
-        """Queue a text."""
+        """Queue a text; a client that does not read loses the oldest, but not its hello."""
         self.texts.append(json.dumps(content))
         self.wake.set()
 
@@ -185,7 +199,8 @@ class PageServer:
         require_token(settings.address, self._token)
         self._panel = panel or ControlPanel()
         self._status, self._written = status or dict, written
-        self._writing = asyncio.Lock()
+        self._writing, self._waiting = asyncio.Lock(), 0
+        self._guesses = Guesses()
         self._description = b''
         self._tables: Callable[[], bytes | None] = lambda: None
         self._gusts: Callable[[], Mapping[str, object] | None] = lambda: None
@@ -210,11 +225,16 @@ class PageServer:
         Raises
         ------
         TransportError
-            The address cannot be bound, or the TLS files cannot be used.
+            The address cannot be bound, the TLS files cannot be used, or the server does not start
+            in time.
 
         """
         self._thread.start()
-        self._started.wait(_START_TIMEOUT)
+        if not self._started.wait(_START_TIMEOUT):
+            self._loop.call_soon_threadsafe(self._ending.set)
+            what = f'the page is not served after {_START_TIMEOUT:g} s'
+            cure = 'try again when this machine has less to do'
+            raise TransportError(what, where=self.settings.address, cure=cure)
         if self._failure is not None:
             self._thread.join()
             where = f'{self.settings.address}:{self.settings.port}'
@@ -227,6 +247,8 @@ class PageServer:
         if self._thread.is_alive():
             self._loop.call_soon_threadsafe(self._ending.set)
             self._thread.join(timeout=10.0)
+        elif self._thread.ident is None:  # never started
+            self._loop.close()
 
     def __enter__(self) -> PageServer:
         self.start()
@@ -242,6 +264,11 @@ class PageServer:
         address = self.settings.address
         host = f'[{address}]' if ':' in address else address
         return f'{scheme}://{host}:{self.port}/'
+
+    @property
+    def viewers_token(self) -> str:
+        """Token of links to look only; empty without a token."""
+        return viewers_token(self._token)
 
     @property
     def n_clients(self) -> int:
@@ -316,7 +343,7 @@ class PageServer:
 
     async def _serve(self) -> None:
         app = web.Application(middlewares=[self._guard])
-        app.router.add_get('/', _index)
+        app.router.add_get('/', self._index)
         app.router.add_get('/stream', self._stream)
         app.router.add_get('/healthz', self._health)
         app.router.add_get('/tree.{suffix:glb|html}', self._tree)
@@ -363,9 +390,18 @@ class PageServer:
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        settings, given = self.settings, given_token(request.headers, request.query)
-        is_known = not self._token or is_token(given, self._token)
-        self._doors.let_in(request.transport, is_known=is_known)
+        settings = self.settings
+        given = self._given(request)
+        now, address = time.monotonic(), request.remote or ''
+        if given and self._token:
+            wait = self._guesses.waiting_time(address, now)
+            if wait > 0.0:
+                slow, with_page = 'too many wrong tokens: wait a moment', request.path == '/'
+                return self._refused(429, slow, with_page=with_page, retry_after=wait)
+        access = access_of(given, self._token)
+        if given and access is Access.NONE:
+            self._guesses.note(address, given, now)
+        self._doors.let_in(request.transport, is_known=access is not Access.NONE)
         if request.can_read_body:
             return self._refused(413, 'requests have no body')
         try:
@@ -377,7 +413,7 @@ class PageServer:
                     origins=settings.origins,
                 )  # fmt: skip
                 if why is not None:
-                    return self._refused(403, why, with_form=request.path == '/')
+                    return self._refused(403, why, with_page=request.path == '/')
         except ValueError as error:
             return self._refused(400, f'not understood: {error}')
         response: web.StreamResponse = await handler(request)
@@ -385,13 +421,40 @@ class PageServer:
             response.enable_compression(web.ContentCoding.gzip)
         return response
 
-    def _refused(self, status: int, why: str, *, with_form: bool = False) -> web.Response:
+    def _refused(
+        self, status: int, why: str, *, with_page: bool = False, retry_after: float = 0.0
+    ) -> web.Response:
         self._complain(f'a request was refused: {why!a}')
         text, kind = f'refused: {why}\n', 'text/plain'
-        if with_form:
-            text, kind = _FORM.format(escape(why)), 'text/html'
+        if with_page:
+            text, kind = _refusal_page(why), 'text/html'
         answer = web.Response(status=status, text=text, content_type=kind)
+        if retry_after:
+            answer.headers['Retry-After'] = str(math.ceil(retry_after))
         answer.force_close()
+        return answer
+
+    @property
+    def _cookie(self) -> str:
+        """Name of the cookie with the token; cookies are common to all ports of a machine."""
+        return f'tree_sway_{self.port}'
+
+    def _given(self, request: web.Request) -> str:
+        return given_token(request.headers, request.query, self._cookie)
+
+    def _may_control(self, request: web.Request) -> bool:
+        return access_of(self._given(request), self._token) is Access.CONTROL
+
+    async def _index(self, request: web.Request) -> web.FileResponse:
+        """Answer with the page; a cookie replaces the token in its address."""
+        answer = web.FileResponse(_STATIC / 'index.html')
+        if 'token' in request.query and self._token:
+            has_control = self._may_control(request)
+            value = cookie_token(self._token) if has_control else self.viewers_token
+            is_secure = bool(self.settings.certificate)
+            answer.set_cookie(
+                self._cookie, value, httponly=True, samesite='Strict', secure=is_secure
+            )
         return answer
 
     async def _health(self, _request: web.Request) -> web.Response:
@@ -401,12 +464,21 @@ class PageServer:
         """Answer with the tree as a file, one at a time."""
         if self._written is None:
             return self._refused(404, 'no files are written here: use tree-sway convert')
-        async with self._writing:
-            try:
+        if not is_own_page(request.headers):
+            why = 'take the button of the page, or send the header X-Requested-With'
+            return self._refused(403, why)
+        if self._waiting > _MOST_WAITING:
+            why = 'other files are being written: try again'
+            return self._refused(503, why, retry_after=_START_TIMEOUT)
+        self._waiting += 1
+        try:
+            async with self._writing:
                 suffix = request.match_info['suffix']
                 data = await asyncio.to_thread(self._written, suffix)
-            except TreeSwayError as error:
-                return self._refused(409, str(error))
+        except TreeSwayError as error:
+            return self._refused(409, str(error))
+        finally:
+            self._waiting -= 1
         return web.Response(body=data, content_type='application/octet-stream')
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
@@ -417,8 +489,9 @@ class PageServer:
         )
         await socket.prepare(request)
         client = _Client(socket, request.transport)
-        hello = {'controls': self._panel.entries(), 'can_pull': self._panel.can_pull}
-        client.say({'hello': {**hello, 'address': self.settings.address}})
+        client.may_control = self._may_control(request)
+        client.hello = json.dumps({'hello': self._hello(client)})
+        client.wake.set()
         self._clients.add(client)
         sender = self._loop.create_task(self._send(client))
         try:
@@ -440,6 +513,16 @@ class PageServer:
                 client.timer.cancel()
         return socket
 
+    def _hello(self, client: _Client) -> dict[str, object]:
+        """Return what a client may change, and the token that its links have."""
+        may = client.may_control
+        return {
+            'controls': self._panel.entries() if may else [],
+            'can_pull': self._panel.can_pull and may,
+            'address': self.settings.address,
+            'viewers_token': self.viewers_token,
+        }
+
     def _take(self, client: _Client, text: str) -> None:
         """Handle a message of a client; raises a `ValueError` or `TypeError` for anything else."""
         message = json.loads(text)
@@ -456,11 +539,22 @@ class PageServer:
         if message.get('wind') is True:
             client.wants_wind, client.description = True, b''
         client.wants_nothing_else |= message.get('wind') == 'only'
-        if 'set' in message:
-            self._change(client, message['set'])
-        if 'pull' in message and (why := self._panel.pull(message['pull'])) is not None:
-            self._refuse(client, 'pull', why)
+        for name, action in (('set', self._change), ('pull', self._pull)):
+            if name in message and client.may_control:
+                action(client, message[name])
+            elif name in message:
+                self._refuse(client, name, _MAY_LOOK)
         client.wake.set()
+
+    def _pull(self, client: _Client, pull: object) -> None:
+        """Pull for a client, which alone hears of a refusal, now or later."""
+
+        def refused(why: str) -> None:
+            self._call(lambda: self._refuse(client, 'pull', why))
+
+        why = self._panel.pull(pull, refused)
+        if why is not None:
+            self._refuse(client, 'pull', why)
 
     def _change(self, client: _Client, change: object) -> None:
         change = change if isinstance(change, dict) else {}
@@ -495,6 +589,9 @@ class PageServer:
             client.sending_since = math.inf
 
     async def _send_due(self, client: _Client) -> None:
+        if client.hello:
+            hello, client.hello = client.hello, ''
+            await client.socket.send_str(hello)
         while client.texts:
             await client.socket.send_str(client.texts.popleft())
         if client.description is not self._description:
@@ -557,8 +654,11 @@ def _number(message: dict[str, Any], name: str, low: float, high: float) -> floa
     return float(min(value, _LARGEST_PING))
 
 
-async def _index(_request: web.Request) -> web.FileResponse:
-    return web.FileResponse(_STATIC / 'index.html')
+def _refusal_page(why: str) -> str:
+    """Return the page of a refusal: why, and what to do."""
+    page = (_STATIC / 'refused.html').read_text(encoding='utf-8')
+    kind = 'token' if why == WRONG_TOKEN else 'other'
+    return page.replace('{why}', escape(why)).replace('{kind}', kind)
 
 
 def _takes_packed(request: web.Request) -> bool:

@@ -24,7 +24,8 @@ from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.files.export.gltf_tree import morphing_tree
-from tree_sway.page.controls import Value
+from tree_sway.page.controls import Refused, Value
+from tree_sway.page.newest import Newest
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.scene_state import SceneState
 from tree_sway.page.server import PageServer
@@ -111,8 +112,7 @@ class Session:
         self._ticks, self._steps = 0, 0
         self._work, self._spacing = 0.0, self._period
         self._last = time.perf_counter()
-        self._builder: threading.Thread | None = None
-        self._wanted: Choices | None = None
+        self._builder = Newest(self._build_wanted, 'builder')
         self._thread = threading.Thread(target=self._run, name='session', daemon=True)
         self.failure: Exception | None = None
 
@@ -160,18 +160,21 @@ class Session:
             self.wind.seek(float(value or 0.0), self._now)
         elif name in Choices.__dataclass_fields__:
             changed = {name: value}
-            self._want(replace(self._wanted or self.choices, **changed))  # type: ignore[arg-type]
+            before = self._builder.wanted or self.choices
+            self._builder.want(replace(before, **changed))  # type: ignore[arg-type]
         else:
             raise ParameterError(f"'{name}' cannot be changed", where='page')
 
-    def pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
-        """Pull at a segment by a spring to a place, as `Run.pull`; a refusal goes to all pages."""
-        self._runtime.pull(segment, to, stiffness, self._refuse_pull)
+    def pull(
+        self, segment: int, to: tuple[float, ...], stiffness: float, refused: Refused
+    ) -> None:
+        """Pull at a segment by a spring to a place, as `Run.pull`."""
+        self._runtime.pull(segment, to, stiffness, refused)
 
-    def _refuse_pull(self, why: str) -> None:
-        if self._server is not None:
-            self._server.n_refused += 1
-            self._server.announce({'refused': {'name': 'pull', 'reason': why}})
+    def values(self) -> dict[str, Value]:
+        """Return the choices as they are shown: the damping ratio in use, not 0 for the usual."""
+        damping = self._scene.kinds[0].simulator.reductions.damping_ratio
+        return {**vars(self.choices), 'damping_ratio': damping}
 
     def status(self) -> dict[str, object]:
         """Return the status on the page."""
@@ -181,7 +184,8 @@ class Session:
             'rate': round(1.0 / max(self._spacing, 1e-6), 1),
             'work_us': round(1e6 * self._work, 1),
             'trees': len(self._scene.names),
-            'building': self._wanted is not None,
+            'wind': self.wind.source,
+            'building': self._builder.wanted is not None,
         }
         if isinstance(self.wind, RecordedWind):
             status['record_time'] = self.wind.time(self._now)
@@ -217,29 +221,20 @@ class Session:
         intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
         return scene, Run(simulator, self._rate, intake=intake)
 
-    def _want(self, choices: Choices) -> None:
-        self._wanted = choices
-        if self._builder is None or not self._builder.is_alive():
-            self._builder = threading.Thread(target=self._build_wanted, daemon=True)
-            self._builder.start()
-
-    def _build_wanted(self) -> None:
-        """Build the last request; viewers get the reason of a refusal or a failure."""
-        while (wanted := self._wanted) is not None:
-            try:
-                self._next = self._made(wanted)
-                self.choices = wanted
-                refused = None
-            except TreeSwayError as error:
-                refused = {'name': '', 'reason': str(error)}
-            except Exception as error:
-                _LOGGER.exception('%s cannot be built', wanted)
-                reason = f'{wanted.tree} cannot be built ({type(error).__name__}: {error})'
-                refused = {'name': '', 'reason': reason[:400]}
-            if self._wanted is wanted:
-                self._wanted = None
-            if refused is not None and self._server is not None:
-                self._server.announce({'refused': refused}, vars(self.choices))
+    def _build_wanted(self, wanted: Choices) -> None:
+        """Build what is requested; viewers get the reason of a refusal or a failure."""
+        try:
+            self._next = self._made(wanted)
+            self.choices = wanted
+            return
+        except TreeSwayError as error:
+            refused = {'name': '', 'reason': str(error)}
+        except Exception as error:
+            _LOGGER.exception('%s cannot be built', wanted)
+            reason = f'{wanted.tree} cannot be built ({type(error).__name__}: {error})'
+            refused = {'name': '', 'reason': reason[:400]}
+        if self._server is not None:
+            self._server.announce({'refused': refused}, self.values())
 
     def _run(self) -> None:
         try:
@@ -259,6 +254,7 @@ class Session:
         if self._next is not None:
             (self._scene, self._runtime), self._next = self._next, None
             self._server.describe(self._scene.description, self._scene.tables, self._scene.gusts)
+            self._server.announce({}, self.values())
         if has_restarted:
             self._scene.simulator.reset()
         if not self._is_paused:

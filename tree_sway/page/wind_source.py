@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 import math
 from typing import Protocol
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.run import Run
 from tree_sway.core.wind.simulated.anemometer import AnemometerModel
+from tree_sway.page.newest import Newest
 
 _RATE = 20.0
 Sample = tuple[float, tuple[float, float, float]]
@@ -20,13 +21,25 @@ Sample = tuple[float, tuple[float, float, float]]
 class WindSource(Protocol):
     """Samples of wind by their times."""
 
+    @property
+    def source(self) -> Mapping[str, str]:
+        """What the wind is, for viewers: its ``kind``, simulated or recorded, and a ``name``."""
+
     def between(self, since: float, until: float) -> Iterator[Sample]:
         """Return the samples after a time up to a later one, both in [s]."""
 
 
+_BEFORE = 10.0
+"""Time in [s] before the first step of a run whose samples it is given."""
+
+
 def blow(run: Run, wind: WindSource, until: int) -> None:
-    """Step a run up to a time [ns] with the samples of a source since its last step."""
-    since = -1.0 if run.time is None else 1e-9 * run.time
+    """
+    Step a run up to a time [ns] with the samples of a source since its last step.
+
+    A run may begin days after the source: it is given the last samples, not all of them.
+    """
+    since = 1e-9 * until - _BEFORE if run.time is None else 1e-9 * run.time
     for time, velocity in wind.between(since, 1e-9 * until):
         run.offer(round(1e9 * time), velocity)
     run.advance(until)
@@ -57,13 +70,20 @@ class SimulatedWind:
         seed: int = 0,
     ) -> None:
         self.values = {'mean_speed': speed, 'intensity': intensity, 'bearing_to': bearing_to}
+        self.source = {'kind': 'simulated'}
         self._seed = seed
-        self._model = self._made()
+        self._maker = Newest(self._make, 'wind')
+        self._make(self.values)
 
     def set(self, name: str, value: float) -> None:  # noqa: A003
-        """Change ``mean_speed`` [m/s], ``intensity`` or ``bearing_to`` [rad]."""
-        self.values[name] = value
-        self._model = self._made()
+        """
+        Change ``mean_speed`` [m/s], ``intensity`` or ``bearing_to`` [rad].
+
+        The new turbulence takes some hundredths of a second, on another thread; until then the
+        wind is as before.
+        """
+        self.values = {**self.values, name: value}
+        self._maker.want(self.values)
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
         """Return the samples after a time up to a later one, both in [s]."""
@@ -73,9 +93,8 @@ class SimulatedWind:
             x, y, z = model.sample(tick).tolist()
             yield tick / _RATE, (x, y, z)
 
-    def _made(self) -> AnemometerModel:
-        values = self.values
-        return AnemometerModel(
+    def _make(self, values: Mapping[str, float]) -> None:
+        self._model = AnemometerModel(
             values['mean_speed'],
             bearing_to=values['bearing_to'],
             intensity=values['intensity'],
@@ -94,10 +113,13 @@ class RecordedWind:
         Time of each sample in [s], increasing, (n,).
     velocity
         Wind, blowing to, in [m/s], (n, 3).
+    name
+        Name of the record for viewers.
 
     """
 
-    def __init__(self, time: Floats, velocity: Floats) -> None:
+    def __init__(self, time: Floats, velocity: Floats, name: str = '') -> None:
+        self.source = {'kind': 'recorded', 'name': name}
         self._time, self._velocity = time - time[0], velocity
         last = float(self._time[-1])
         self.length = last + max(last / max(len(time) - 1, 1), 1e-3)

@@ -17,7 +17,7 @@ import webbrowser
 
 from tree_sway.commands.arguments import add_sway_arguments, opened_scene
 from tree_sway.commands.ending import Ending, LONGEST
-from tree_sway.commands.page_arguments import add_page_arguments, page_settings
+from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.core.scene.scene import Scene
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.tree_export import write_tree
@@ -81,10 +81,10 @@ def _serve_page(nodes: Composition, arguments: argparse.Namespace) -> None:
     values = {**vars(page_settings(arguments)), 'control': True}
     values['origins'] = ' '.join(values['origins'])
     del values['token']  # the node reads it from the file
-    url = nodes.add('viewer', values).server.url
-    print(f'page: {url}', flush=True)
+    server = nodes.add('viewer', values).server
+    print_address(server, 'page:')
     if arguments.open:
-        webbrowser.open(url)
+        webbrowser.open(server.url)
 
 
 def _tree_of(scene: Scene, arguments: argparse.Namespace, files: ExitStack) -> str:

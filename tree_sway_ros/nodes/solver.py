@@ -25,7 +25,7 @@ from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
-from tree_sway.page.controls import ControlPanel
+from tree_sway.page.controls import ControlPanel, Refused
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import CAMERA, PULL, PUSH, WIND_FILTERED
@@ -144,26 +144,28 @@ class SolverNode(TreeSwayNode):
         elif not math.hypot(*components) <= _STRONGEST_PUSH:  # false for NaN
             self._refuse('push', f'not finite or above {_STRONGEST_PUSH:g} N')
         else:
-            self._run.request(lambda: self._push(self._segments[name], components))
+            self._run.request(
+                lambda: self._push(self._segments[name], components),
+                lambda why: self._refuse('push', why),
+            )
 
     def _push(self, segment: int, components: tuple[float, float, float]) -> None:
         """Push at the origin of a segment's frame, by a force [N] in its axes."""
         axes = Rotation.from_quat(self.simulator.place()[segment, 3:])
-        try:
-            self.simulator.push(segment, axes.apply(components), _PUSH_LASTS, along=0.0)
-        except ParameterError as error:
-            self._refuse('push', str(error))
+        self.simulator.push(segment, axes.apply(components), _PUSH_LASTS, along=0.0)
 
     def _take_pull(self, message: Any) -> None:
         try:
-            why = self._hands.pull(json.loads(message.data))
+            why = self._hands.pull(json.loads(message.data), lambda why: self._refuse('pull', why))
         except (ValueError, RecursionError) as error:
             why = f'not JSON ({error})'
         if why is not None:
             self._refuse('pull', why)
 
-    def _pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
-        self._run.pull(segment, to, stiffness, lambda why: self._refuse('pull', why))
+    def _pull(
+        self, segment: int, to: tuple[float, ...], stiffness: float, refused: Refused
+    ) -> None:
+        self._run.pull(segment, to, stiffness, refused)
 
     def _refuse(self, what: str, why: str) -> None:
         """Count refused pushes, for the report."""
@@ -189,9 +191,11 @@ class SolverNode(TreeSwayNode):
         changes = {name: values[name] for name in LIVE if name in values}
         if changes and self.is_active:
             self._tuned |= changes
-            self._run.request(lambda: self.simulator.tune(**changes))
+            self._run.request(
+                lambda: self.simulator.tune(**changes), lambda why: self._refuse('change', why)
+            )
         if self.values['model'] == 'auto':
-            self._run.request(self._set_demand)
+            self._run.request(self._set_demand, lambda why: self._refuse('change', why))
 
     def _set_demand(self) -> None:
         set_demand(

@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 import json
+import time
 from typing import Any
 
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -14,12 +16,19 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.errors import FormatError, ParameterError
-from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET
+from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET, Refused
 from tree_sway.page.protocol import decode_description, Description, encode_state
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import PULL, qos_profile, TREE_DESCRIPTION, TREE_STATE
+from tree_sway_ros.process.topics import (
+    PULL,
+    qos_profile,
+    TREE_DESCRIPTION,
+    TREE_STATE,
+    WIND,
+    WIND_FILTERED,
+)
 from tree_sway_ros.reports.diagnostics import OK, Status
 from tree_sway_ros.wire.tree_state import read_state, read_state_entry
 from tree_sway_ros.wire.wind_messages import stamp_to_ns
@@ -31,6 +40,11 @@ _LIVE = {
     'bearing_to': ('anemometer', 'Blows to'),
     'tolerance': ('solver', 'Tolerance'),
 }
+_SIMULATORS, _PLAYERS = ('anemometer',), ('player', 'rosbag2_player')
+"""Names of nodes whose wind is simulated, or recorded; that of others is measured now."""
+
+_LOOKS = 8
+"""Number of looks, a period apart, over which the rate of the wind is counted."""
 
 
 class ViewerNode(TreeSwayNode):
@@ -50,6 +64,9 @@ class ViewerNode(TreeSwayNode):
         self._described = ''
         self._sequence = 0
         self._subscription: Any = None
+        self._n_samples = 0
+        self._counted: deque[tuple[float, int]] = deque(maxlen=_LOOKS)
+        self._wind: dict[str, object] = {'kind': 'none'}
         self._setters = {
             node: self.create_client(SetParameters, f'{node}/set_parameters')
             for node in ('anemometer', 'solver')
@@ -62,7 +79,8 @@ class ViewerNode(TreeSwayNode):
         self.report_with('page', self._statuses)
 
     def activate(self) -> None:
-        """Serve the page."""
+        """Serve the page, by a new server, as one that was closed cannot start again."""
+        self.server.close()
         self.server = self._make_server()
         self.server.start()
         self.on_close(self.server.close)
@@ -73,6 +91,26 @@ class ViewerNode(TreeSwayNode):
         """Subscribe to the state once a page is connected: until then it need not be computed."""
         if self._subscription is None and self.server.n_clients > 0:
             self._subscription = self.subscription(TREE_STATE, self._receive)
+            self.subscription(WIND_FILTERED, self._count)
+        self._counted.append((time.monotonic(), self._n_samples))
+        self._wind = self._source()
+
+    def _count(self, _sample: Any) -> None:
+        self._n_samples += 1
+
+    def _source(self) -> dict[str, object]:
+        """Return what the wind is, by the nodes that publish it, and its present rate [Hz]."""
+        topic = self.resolve_topic_name(WIND.name)
+        names = [info.node_name for info in self.get_publishers_info_by_topic(topic)]
+        if not names:
+            return {'kind': 'none'}
+        if all(name in _SIMULATORS for name in names):
+            return {'kind': 'simulated'}
+        if all(name in _PLAYERS for name in names):
+            return {'kind': 'recorded', 'name': topic}
+        (begin, first), (end, last) = self._counted[0], self._counted[-1]
+        rate = (last - first) / (end - begin) if end > begin else 0.0
+        return {'kind': 'live', 'name': topic, 'rate': round(rate, 1)}
 
     def _describe(self, message: Any) -> None:
         if message.data == self._described or not self.is_active:
@@ -102,7 +140,9 @@ class ViewerNode(TreeSwayNode):
         self.server.publish(frame)
 
     def _make_server(self) -> PageServer:
-        return PageServer(self._settings, self._panel, lambda: {'source': 'ROS 2'})
+        return PageServer(
+            self._settings, self._panel, lambda: {'source': 'ROS 2', 'wind': self._wind}
+        )
 
     def _statuses(self) -> list[Status]:
         values = {'pages': self.server.n_clients, 'frames': self._sequence}
@@ -119,8 +159,10 @@ class ViewerNode(TreeSwayNode):
             request = SetParameters.Request(parameters=[ParameterMessage(name=name, value=number)])
             self._ask(self._setters[_LIVE[name][0]], request)
 
-    def _pull(self, segment: int, to: tuple[float, ...], stiffness: float) -> None:
-        """Forward a viewer's pull to the solver."""
+    def _pull(
+        self, segment: int, to: tuple[float, ...], stiffness: float, _refused: Refused
+    ) -> None:
+        """Forward a viewer's pull to the solver, which reports refusals in its diagnostics."""
         kinds = self._description.header['kinds'] if self._description else ()
         if any(kind['model'] == 'branch' for kind in kinds):
             raise ParameterError("model 'branch' cannot be pulled", where='pull')

@@ -17,6 +17,7 @@ from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway.core.wind.simulated.sensor_faults import SensorFaults
+from tree_sway.errors import ParameterError
 
 SECOND = 10**9
 PERIOD = round(1e9 / 60)
@@ -151,6 +152,24 @@ def test_requests_are_done_before_the_next_step():
     assert done == []
     made.advance(START + PERIOD)
     assert done == [1]
+
+
+def test_a_request_that_fails_is_counted_and_reported_and_the_steps_continue():
+    simulator = Recorder()
+    made, reasons, done = running(simulator), [], []
+
+    def refuse():
+        raise ParameterError('a tree that buckles', cure='give more stiffness')
+
+    made.request(refuse, reasons.append)
+    made.request(lambda: 1 / 0, reasons.append)
+    made.request(lambda: [][0])
+    made.request(lambda: done.append(1), reasons.append)
+    assert made.advance(START + PERIOD) == 1
+    assert len(simulator.steps) == done[0] == 1
+    assert made.refused_requests == 3
+    assert 'a tree that buckles' in reasons[0]
+    assert reasons[1:] == ['it failed (ZeroDivisionError: division by zero)']
 
 
 def test_warming_up_leaves_a_tree_at_rest():

@@ -276,3 +276,27 @@ def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
     print(f'{name}: 60 coordinates are up to {own:.4f} off, as shown {shown:.4f}')
     assert own < 0.03
     assert shown < 0.03
+
+
+@pytest.mark.parametrize('model', [20, 'full', 'auto'])
+def test_a_spring_at_the_foot_of_the_stem_moves_nothing(tree, model):
+    pulled, alone = (make_simulator(tree, WOOD, model=model) for _ in range(2))
+    for number in range(120):
+        if number % 20 == 0:
+            pulled.push(0, Spring((3.0, 0.0, 1.0), 1e6), 0.5, along=0.0)
+        for each in (pulled, alone):
+            each.step((6.0, 1.0, 0.0), DT)
+    np.testing.assert_allclose(pulled.place(), alone.place(), atol=1e-9)
+    assert pulled.push_load[0] > 1e5
+
+
+@pytest.mark.parametrize('stiffness', [1e-12, 50.0, 1e7])
+@pytest.mark.parametrize('far', [0.0, 1e5])
+def test_a_spring_at_any_segment_and_place_leaves_the_motion_finite(tree, stiffness, far):
+    sim = make_simulator(tree, WOOD, model=20)
+    for segment in range(tree.n_segments):
+        for along in (0.0, 1.0):
+            sim.push(segment, Spring((far, -far, far), stiffness), 0.05, along=along)
+            sim.step((6.0, 1.0, 0.0), DT)
+            assert np.isfinite(sim.place()).all()
+    assert sim.counts.restarted == 0

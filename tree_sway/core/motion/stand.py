@@ -60,7 +60,7 @@ def step_stand(
     Step every tree that is not still, in its mean wind over the step in [m/s], (t, 3).
 
     Records are of `table_layout` (k,), `time_step_layout` (p,), `PLACEMENT` and
-    `instance_layout` (t,); C and N of each kind (k, 2).
+    `instance_layout` (t,); C, N and C0 of the `DragLaw` of each kind (k, 3).
 
     Returns
     -------

@@ -24,9 +24,14 @@ from tree_sway.core.motion.wind_basis import fill_time_step, Propagators
 from tree_sway.core.oscillators.propagator import propagator
 from tree_sway.core.scene.placement_records import own_steps, placement_records
 from tree_sway.core.wind.gust_travel import GustHistory
+from tree_sway.errors import ParameterError
 
 _SLOWEST = 0.3
 """Smallest response to a rate within a time step, over that of the slowest coordinate."""
+
+
+_LAW = 3
+"""Numbers of a `DragLaw`."""
 
 
 @dataclass(frozen=True)
@@ -57,13 +62,19 @@ class ReceivedScene:
     dt
         Time step in [s].
 
+    Raises
+    ------
+    ParameterError
+        A tree of a kind that is not there, or arrays of different lengths.
+
     """
 
     def __init__(
         self, kinds: Sequence[ReceivedKind], kind_of: Ints, places: Floats, speeds: Floats, *,
         dt: float, anemometer: ArrayLike | None = None, convection_ratio: float = 1.0,
     ) -> None:  # fmt: skip
-        """Begin at rest."""
+        """Begin at rest; a `ParameterError` for arrays that the kernel would read past its end."""
+        _check(kinds, kind_of, places, speeds)
         self._dt, self._sizes = dt, [len(kind.arrays['stiffness']) for kind in kinds]
         m = max(self._sizes)
         self.tables = np.concatenate([table_of(k.numbers, k.arrays, m) for k in kinds])
@@ -126,3 +137,17 @@ class ReceivedScene:
         """Return to rest, without wind."""
         self.instances[:] = np.zeros((), dtype=self.instances.dtype)
         self.gusts.reset()
+
+
+def _check(kinds: Sequence[ReceivedKind], kind_of: Ints, places: Floats, speeds: Floats) -> None:
+    """Refuse numbers of kinds that do not exist, and arrays of wrong lengths."""
+    count = len(kind_of)
+    is_known = (kind_of >= 0) & (kind_of < len(kinds))
+    for name, holds in (
+        ('kind_of', bool(is_known.all())),
+        ('places', places.shape == (count, 5)),
+        ('speeds', speeds.shape == (count,)),
+        ('drag_law', all(len(kind.drag_law) == _LAW for kind in kinds)),
+    ):
+        if not holds:
+            raise ParameterError('it does not fit the rest', where=name)

@@ -29,7 +29,7 @@ from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.gate import GateCounts
 from tree_sway.core.wind.intake import GoodWind, WindIntake
-from tree_sway.errors import ParameterError
+from tree_sway.errors import TreeSwayError
 
 LONGEST_JUMP = 500_000_000
 """Longest time that one `Run.advance` solves [ns]; time before it is skipped."""
@@ -43,7 +43,11 @@ _BLOCK = 10_000_000_000_000
 _QUEUE = 4096
 _PULL_LASTS = 0.5
 _WARM_FRAMES = 20
+_LONGEST_REASON = 400
 _NEWEST = 0.02  # weight of the newest step in the running mean of its cost
+
+Refused = Callable[[str], object]
+"""Function called with the reason why a request is refused."""
 
 
 class Run:
@@ -84,12 +88,14 @@ class Run:
         self.is_paused = False
         self.clamped = 0
         """Number of forward jumps that were cut to `LONGEST_JUMP`."""
+        self.refused_requests = 0
+        """Number of requests that failed, and changed nothing."""
         self.wind_state = 'none'
         """State of the wind: none, live, holding, decaying or stale, as `WindAverage.state`."""
         self._make_wind, self._stepped, self._timer = make_wind, stepped, timer
         self._wind = make_wind()
         self._samples: deque[GoodWind] = deque(maxlen=_QUEUE)
-        self._requests: deque[Callable[[], object]] = deque(maxlen=_QUEUE)
+        self._requests: deque[tuple[Callable[[], object], Refused]] = deque(maxlen=_QUEUE)
         self._index: int | None = None
         self._origin, self._felt, self._cost = 0, 0.0, 0.0
 
@@ -127,13 +133,24 @@ class Run:
             self._samples.append(good)
         return good
 
-    def request(self, action: Callable[[], object]) -> None:
-        """Call a function before the next step, in its thread."""
-        self._requests.append(action)
-
-    def pull(
-        self, segment: int, to: ArrayLike, stiffness: float, refused: Callable[[str], object]
+    def request(
+        self, action: Callable[[], object], refused: Refused = lambda reason: None
     ) -> None:
+        """
+        Call a function before the next step, in its thread.
+
+        Parameters
+        ----------
+        action
+            The function. If it raises an error, the steps continue, and the error is counted in
+            `refused_requests`.
+        refused
+            Function called with the text of that error, from the thread of the steps.
+
+        """
+        self._requests.append((action, refused))
+
+    def pull(self, segment: int, to: ArrayLike, stiffness: float, refused: Refused) -> None:
         """
         Pull at a segment by a spring before the next step, for half a second unless repeated.
 
@@ -153,12 +170,9 @@ class Run:
 
         def push() -> None:
             force = Spring(to, stiffness) if stiffness else (0.0, 0.0, 0.0)
-            try:
-                self.simulator.push(segment, force, _PULL_LASTS if stiffness else 1e-9, along=0.0)
-            except ParameterError as error:
-                refused(str(error))
+            self.simulator.push(segment, force, _PULL_LASTS if stiffness else 1e-9, along=0.0)
 
-        self.request(push)
+        self.request(push, refused)
 
     def restart(self, time: int) -> None:
         """Begin at a time [ns]: forget the wind and the motion."""
@@ -192,7 +206,7 @@ class Run:
 
         """
         while self._requests:
-            self._requests.popleft()()
+            self._fulfil(*self._requests.popleft())
         if self._index is None:
             self._begin(to)
         elif to < self._index * self.period - _BACK:
@@ -216,6 +230,19 @@ class Run:
         """Solve the next step in a known mean wind (3,) in [m/s], without the samples."""
         self._index = 1 if self._index is None else self._index + 1
         self._solve(self._index * self.period, wind, self.period * 1e-9)
+
+    def _fulfil(self, action: Callable[[], object], refused: Refused) -> None:
+        """Call a requested function; an error of it must not end the steps."""
+        try:
+            action()
+        except TreeSwayError as error:
+            reason = str(error)
+        except Exception as error:
+            reason = f'it failed ({type(error).__name__}: {error})'
+        else:
+            return
+        self.refused_requests += 1
+        refused(reason[:_LONGEST_REASON])
 
     def _begin(self, time: int) -> None:
         self._index = time // self.period - 1

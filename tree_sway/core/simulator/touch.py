@@ -43,6 +43,11 @@ _TURN = 1e-6
 SETTLES = 0.05
 """Time constant in [s] of the static correction for shapes outside of the model."""
 
+_LEAST_GIVE = 0.5 / STIFFEST
+"""
+Give of a place in a time step [m/N] below which it does not limit a spring; 0 at the root node.
+"""
+
 _GONE = 1e-3
 """Share of the correction, and rotation in [rad], below which a push is over."""
 
@@ -166,7 +171,8 @@ class Touch:
                 # Implicit, by the force at the end of the step, with the stiffness that it can
                 # follow.
                 give = per_force * push.by_mode @ push.by_mode.T
-                k = share * min(push.stiffness, 0.5 / float(np.trace(give)))
+                most = 0.5 / max(float(np.trace(give)), _LEAST_GIVE)
+                k = share * min(push.stiffness, most)
                 give += settled * push.lever @ push.residual
                 force = np.linalg.solve(np.eye(3) + k * give, k * (push.force - place))
             moments += force @ push.lever

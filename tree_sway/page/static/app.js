@@ -10,7 +10,7 @@ import { keptScene, OwnLine } from "./own_line.js";
 import { element, made, Panel } from "./panel.js";
 import { distance } from "./quaternions.js";
 import { QUANTITIES, Trace, unitOf } from "./trace.js";
-import { language, setLanguage, windFrom, word } from "./words.js";
+import { language, setLanguage, windFrom, windSource, word } from "./words.js";
 
 /** Age of the newest state from which on it is behind, and time until numbers are written again [ms]. */
 const [BEHIND, FACTS_EVERY] = [1000, 400];
@@ -33,7 +33,15 @@ const traces = {
   tip: new Trace(element("tip-trace"), "motion"),
 };
 const { settings, view } = readLink(location.hash);
-const query = new URLSearchParams(location.search);
+/** Address of this page, with the token for the stream; the bar of the browser does not keep it, as people
+ * pass on what is there. A cookie has it when the page is loaded again. */
+const address = new URL(location.href);
+const query = address.searchParams;
+const barAddress = new URL(address);
+barAddress.searchParams.delete("token");
+history.replaceState(null, "", barAddress);
+/** Token of links to this page: those who have it can look, not change anything. */
+let viewersToken = "";
 let line = /** @type {"connecting" | "open" | "lost"} */ ("connecting");
 let retryAt = 0;
 let lastFrameAt = 0;
@@ -53,7 +61,7 @@ const kept = await keptScene().catch((error) => giveUp(word("damaged"), word("wr
 // Nothing is left out in full quality, however slow that is.
 const scene = await (async () => new Scene(canvas, query.get("quality") === "full"))()
   .catch((error) => giveUp(word("blind"), word("cure", error.message)));
-const stream = new TreeStream(location.href, {
+const stream = new TreeStream(address.href, {
   onState(state, retryIn) {
     line = state;
     retryAt = performance.now() + retryIn;
@@ -66,11 +74,11 @@ const stream = new TreeStream(location.href, {
     const { name, trees, nSegments, kinds } = description;
     const models = new Set(kinds.map(({ model }) => modelName(model)));
     const counts = { trees: trees.length.toLocaleString("en"), segments: nSegments.toLocaleString("en") };
-    write({ name, ...counts, model: [...models].join(", ") });
-    document.title = `${name} – tree sway`;
     const error = Math.max(...kinds.map((kind) => kind.basis_error));
-    element("model").title = `± ${(1000 * error).toFixed(1)} mm`;
+    write({ name, ...counts, model: [...models].join(", "), error: `± ${Number((1000 * error).toPrecision(2))} mm` });
+    document.title = `${name} – tree sway`;
     showButtons();
+    showPanel();
     pick(isFirst && settings.branch ? Number(settings.branch) : scene.picked);
     showState();
   },
@@ -82,9 +90,10 @@ const stream = new TreeStream(location.href, {
   onMessage({ hello, refused, unreadable, values, status: newStatus }) {
     if (hello) {
       controls = hello.controls;
-      panel.build(controls);
+      showPanel();
       element("panel").hidden = controls.length === 0;
       element("pull").hidden = hello.can_pull !== true;
+      viewersToken = hello.viewers_token ?? "";
     }
     if (refused || unreadable) toast(unreadable ?? refused.reason);
     if (values) {
@@ -117,7 +126,8 @@ function stateNow() {
   if (!lastFrameAt) return ["behind", word("waiting")];
   if (age > BEHIND) return ["behind", word("behind", (age / 1000).toFixed(1))];
   if (status.building) return ["behind", word("building")];
-  return playout.isPaused ? ["paused", word("paused")] : ["live", word("live")];
+  if (playout.isPaused) return ["paused", word("paused")];
+  return ["live", word(kept ? "own" : "live")];
 }
 
 function showState() {
@@ -129,6 +139,12 @@ function showState() {
   else if (state === "empty") notice(text, word("soon"));
   else if (state !== "connecting") element("notice").hidden = true;
   else if (!connection.description) notice(text, word("seeking"));
+}
+
+/** Show the controls, except the tolerance where it has no effect. */
+function showPanel() {
+  panel.build(controls);
+  panel.hide("tolerance", !connection.description?.kinds.some(({ model }) => model === "auto"));
 }
 
 /** @param {string} title @param {string} text @param {boolean} [canRetry] */
@@ -162,6 +178,7 @@ function showFacts() {
     stream: `${Math.round(frames / span)} Hz, ${(bytes / span / 1000).toFixed(1)} kB/s`,
     latency: Number.isFinite(latency) ? `${latency.toFixed(0)} + ${playout.delay.toFixed(0)} ms` : "–",
     "wind-now": `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
+    source: windSource(status.wind),
     gust: word("gust", mean.toFixed(1), greatest.toFixed(1)),
     ...(status.model && status.trees === 1 && { model: modelName(status.model) }),
     ...(status.rate && { rate: `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms` }),
@@ -234,8 +251,10 @@ async function copyLink() {
   const { leavesShown: leaves, isAutumn: autumn, picked: branch } = scene;
   const all = { day, lang: language(), leaves, autumn, shown: shown.value, ...(branch >= 0 && { branch }) };
   history.replaceState(null, "", viewLink(scene, all));
-  await navigator.clipboard?.writeText(location.href).catch(() => undefined);
-  toast(`${word("copied")}: ${location.href}`);
+  const link = new URL(location.href);
+  if (viewersToken) link.searchParams.set("token", viewersToken);
+  await navigator.clipboard?.writeText(link.href).catch(() => undefined);
+  toast(`${word(viewersToken ? "copied_to_look" : "copied")}: ${link.href}`);
 }
 
 /** @param {string} chosen language */
@@ -243,7 +262,8 @@ function speak(chosen) {
   setLanguage(chosen);
   /** @type {HTMLSelectElement} */ (element("language")).value = language();
   element("keys-list").replaceChildren(...word("keys").split("|").map((text) => made("li", {}, text)));
-  panel.build(controls);
+  showPanel();
+  element("error").parentElement?.setAttribute("title", word("error_of_what"));
   showButtons();
   pick(scene.picked);
   showState();
@@ -260,8 +280,8 @@ const actions = {
     endClip?.();
     endClip = endClip ? null : recordClip(canvas, treeName());
   },
-  glb: () => saveTree("glb", treeName()),
-  html: () => saveTree("html", treeName()),
+  glb: () => saveTree("glb", treeName(), query.get("token")),
+  html: () => saveTree("html", treeName(), query.get("token")),
   link: copyLink,
   full: () => (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.()),
   help: () => help.showModal(),

@@ -10,6 +10,12 @@ export class ProtocolError extends Error {}
 const MOST_SEGMENTS = 500000;
 const MOST_POSES = 10000000;
 const MOST_COORDINATES = 65535;
+/** Tables times their coordinates squared, and trees times coordinates of a table. */
+const MOST_SLOPES = 400000;
+const MOST_STATES = 50000000;
+/** Largest wind of a tree over that of its kind, and smallest speed of gusts over the mean wind. */
+const FASTEST = 1e6;
+const LEAST_RATIO = 0.1;
 /** Of a height or an error [m]. */
 const GREATEST = 1e12;
 
@@ -102,6 +108,40 @@ export function checkTrees(header, kinds, own) {
   need(coordinates <= MOST_COORDINATES, "number of coordinates");
 }
 
+/** Sizes of the axes of the arrays of a table; refuses numbers or arrays that are inconsistent, as
+ * tree_sway/page/check_tables.py does. @param {Record<string, any>} numbers @param {Arrays} parts */
+export function checkTable(numbers, parts) {
+  const size = sizesOf(parts, FORMS.tables);
+  const { m } = size;
+  need(m > 0 && m * m <= MOST_SLOPES && size["m m"] === m * m, "stiffness");
+  need(parts.stiffness.values.every((each) => each > 0), "stiffness");
+  for (const name of ["limit", "own_damping", "motion", "cross_damping"]) {
+    need(parts[name].values.every((each) => each >= 0), name);
+  }
+  const { values: levels, shape: [, count] } = parts.levels;
+  need(levels.every((level, i) => i % count === 0 || level >= levels[i - 1]), "levels");
+  for (const name of ["most_pressure", "most_energy"]) need(isFinite(numbers[name]) && numbers[name] > 0, name);
+  const { drag_law: law } = numbers;
+  need(Array.isArray(law) && law.length === 3 && law.every(isFinite), "drag_law");
+  return size;
+}
+
+/** Refuse a header of tables, or winds of trees. @param {Record<string, any>} header
+ * @param {number[]} sizes number of coordinates of each table @param {Arrays} own arrays of no kind */
+export function checkTablesHeader(header, sizes, own) {
+  const { description, anemometer, convection_ratio: ratio } = header;
+  const speeds = own.tree_speed;
+  const most = Math.max(0, ...sizes);
+  need(typeof description === "string", "description");
+  const isPlace = Array.isArray(anemometer) && anemometer.length === 3 && anemometer.every(isFinite);
+  need(anemometer === null || isPlace, "anemometer");
+  need(ratio === null || (isFinite(ratio) && ratio >= LEAST_RATIO), "convection_ratio");
+  need(speeds?.values.constructor === Float32Array && speeds.shape.length === 1, "tree_speed");
+  need(speeds.values.every((each) => each >= 0 && each < FASTEST), "tree_speed");
+  need(sizes.length * most ** 2 <= MOST_SLOPES, "number of slopes");
+  need(speeds.values.length * most <= MOST_STATES, "number of coordinates of all trees");
+}
+
 /** @param {any} value */
 const isObject = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
 
@@ -112,11 +152,11 @@ export function checkMessage(message) {
   const { sequence = 0, mean = [0, 0, 0], delay = [], wind = [] } = gusts ?? {};
   need(mean.length === 3 && [sequence, ...mean, ...delay, ...wind].every(Number.isFinite), "gusts");
   need(isFinite(pong), "pong");
-  need(isObject(status), "status");
+  need(isObject(status) && isObject(status.wind ?? {}), "status");
   need(isObject(values), "values");
   need(refused === undefined || typeof refused?.reason === "string", "refused");
   const controls = hello === undefined ? [] : hello?.controls;
-  need(Array.isArray(controls), "hello");
+  need(Array.isArray(controls) && typeof (hello?.viewers_token ?? "") === "string", "hello");
   need(controls.every((/** @type {any} */ each) => isObject(each) && typeof each.name === "string"), "hello");
   return message;
 }

@@ -36,9 +36,12 @@ export function recordClip(canvas, name) {
   return () => recorder.stop();
 }
 
-/** Save the tree as the server writes it. @param {"glb" | "html"} suffix @param {string} name */
-export async function saveTree(suffix, name) {
-  const answer = await fetch(`tree.${suffix}${location.search}`);
+/** Save the tree as the server writes it. @param {"glb" | "html"} suffix @param {string} name
+ * @param {string | null} token of the page; without one a cookie may have it */
+export async function saveTree(suffix, name, token) {
+  // No page of another origin can send this header.
+  const headers = { "X-Requested-With": "tree-sway", ...(token && { Authorization: `Bearer ${token}` }) };
+  const answer = await fetch(`tree.${suffix}`, { headers });
   if (!answer.ok) throw new Error(await answer.text());
   save(await answer.blob(), name, suffix);
 }

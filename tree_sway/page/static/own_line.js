@@ -28,6 +28,9 @@ export class OwnLine {
     this.stand = stand;
     this.listeners = listeners;
     this.roundTrip = NaN;
+    this._address = address;
+    /** Name of the recorded wind. */
+    this._record = "";
     this._turbulence = new Turbulence();
     /** @type {{next: (dt: number) => number[]}} */
     this._wind = this._turbulence;
@@ -93,7 +96,14 @@ export class OwnLine {
   /** Let a recorded wind blow; a `ProtocolError` if the file is none. @param {File} file */
   async take(file) {
     this._wind = readWind(await file.text(), file.name);
+    this._record = file.name.replace(/\.[^.]*$/, "");
     this._hello();
+  }
+
+  /** What blows now, as a server says it in its status. */
+  _source() {
+    if (this._live) return { kind: "live", name: this._address ?? "" };
+    return this._wind instanceof Recorded ? { kind: "recorded", name: this._record } : { kind: "simulated" };
   }
 
   _go() {
@@ -116,6 +126,7 @@ export class OwnLine {
     const { trees, outside, dt } = this.stand;
     this.listeners.onMessage({ status: {
       model: trees[0].state.table.m.toString(), trees: trees.length, rate: 1 / dt, work_us: 1000 * this._work, outside,
+      wind: this._source(),
       ...(this._wind instanceof Recorded && { record_time: this._wind.time }),
     } });
   }

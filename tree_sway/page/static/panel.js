@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Controls as the server describes them: sliders, choices, buttons; a refusal puts them back. */
 
-import { hasWord, windFrom, word } from "./words.js";
+import { hasWord, windPoint, word } from "./words.js";
 
 const SEND_EVERY = 80;
 const STEPS = 400;
@@ -23,14 +23,37 @@ export function made(tag, properties, ...within) {
 /** @param {Control} control */
 const nameOf = ({ name, label }) => (hasWord(name) ? word(name) : label);
 /** @param {Control} control */
-const named = ({ name, description: title }) => ({ id: `control-${name}`, title });
+const named = ({ name, description }) =>
+  ({ id: `control-${name}`, title: hasWord(`${name}_hint`) ? word(`${name}_hint`) : description });
 
 /** A number as people read it. @param {Control} control @param {number} value */
 function textOf({ name, unit }, value) {
-  if (name === "bearing_to") return windFrom([Math.sin(value), Math.cos(value)]);
+  if (name === "bearing_to") return windPoint([Math.sin(value), Math.cos(value)]);
   if (unit === "rad") return `${Math.round((value * 180) / Math.PI)}°`;
   if (unit === "m" && value < 0.1) return `${Number((1000 * value).toPrecision(2))} mm`;
   return `${Number(value.toPrecision(unit === "s" ? 4 : 2))} ${unit}`.trim();
+}
+
+/** Range of a slider, and what its positions are as values. @param {Control} control
+ * @returns {{min: number, max: number, step: number, valueOf: (at: number) => number, positionOf: (value: number) => number}} */
+function scaleOf({ name, minimum, maximum }) {
+  const [low, high] = [minimum ?? 0, maximum ?? 1];
+  const half = Math.PI;
+  // In degrees that the wind comes from, once about; the value is the angle that it blows to.
+  if (name === "bearing_to") {
+    return {
+      min: 0, max: 360, step: 1,
+      valueOf: (at) => ((at + 180) % 360) * (half / 180),
+      positionOf: (value) => Math.round(((value + half) * (180 / half)) % 360 + 360) % 360,
+    };
+  }
+  const isWide = low > 0 && high / low > WIDE;
+  const [min, max] = isWide ? [0, Math.log(high / low)] : [low, high];
+  return {
+    min, max, step: (max - min) / STEPS,
+    valueOf: (at) => Math.min(high, isWide ? low * Math.exp(at) : at),
+    positionOf: (value) => (isWide ? Math.log(value / low) : value),
+  };
 }
 
 export class Panel {
@@ -61,6 +84,12 @@ export class Panel {
     }
   }
 
+  /** Hide a control that has no effect now. @param {string} name @param {boolean} isHidden */
+  hide(name, isHidden) {
+    const field = /** @type {HTMLElement | null | undefined} */ (this.form.querySelector(`#control-${name}`)?.closest(".field"));
+    if (field) field.hidden = isHidden;
+  }
+
   /** @param {Control} control @param {HTMLElement} input @param {Node} [shown] its value as text */
   _field(control, input, shown = made("span", {})) {
     return made("div", { className: "field" }, made("label", { htmlFor: input.id }, nameOf(control), shown), input);
@@ -68,12 +97,10 @@ export class Panel {
 
   /** @param {Control} control */
   _slider(control) {
-    const { name, minimum, maximum } = control;
-    const [low, high] = [minimum ?? 0, maximum ?? 1];
-    const isWide = low > 0 && high / low > WIDE;
-    const [min, max] = isWide ? [0, Math.log(high / low)] : [low, high];
-    const input = made("input", { ...named(control), type: "range", min, max, step: (max - min) / STEPS });
-    const valueOf = () => Math.min(high, isWide ? low * Math.exp(Number(input.value)) : Number(input.value));
+    const { name } = control;
+    const { min, max, step, valueOf: valueAt, positionOf } = scaleOf(control);
+    const input = made("input", { ...named(control), type: "range", min, max, step });
+    const valueOf = () => valueAt(Number(input.value));
     const shown = made("span", {});
     const show = (/** @type {number} */ value) => {
       shown.textContent = textOf(control, value);
@@ -88,7 +115,7 @@ export class Panel {
     });
     input.addEventListener("change", () => setTimeout(() => (this._inHand = ""), 600));
     this._show.set(name, (value) => {
-      input.value = String(isWide ? Math.log(value / low) : value);
+      input.value = String(positionOf(value));
       show(value);
     });
     return this._field(control, input, shown);

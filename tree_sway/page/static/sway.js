@@ -7,7 +7,7 @@
  * that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it;
  * doc/tree_as_a_file.md is for its users. */
 
-import { FORMS, need, ProtocolError, sizesOf } from "./checks.js";
+import { checkTable, checkTablesHeader, FORMS, need, ProtocolError } from "./checks.js";
 import { reader } from "./protocol.js";
 import { Touch } from "./touch.js";
 
@@ -16,7 +16,7 @@ export const STEP = 1 / 60;
 
 const [AZIMUTHS, LEVELS] = [24, 7];
 /** Sine of the elevation from which on a wind goes over to one straight up or down. */
-const [STEEP, MOST_COORDINATES] = [Math.sin(Math.PI / 4), 1000];
+const STEEP = Math.sin(Math.PI / 4);
 const HALF_AIR_DENSITY = 0.5 * 1.225; // [kg/m^3]
 /** Speeds between which leaves streamline [m/s]. */
 const [STREAMLINING_FROM, STREAMLINING_TO] = [4, 20];
@@ -35,11 +35,8 @@ const DEGREE = 5;
 /** Read tables; a `ProtocolError` with a sentence if they are damaged. */
 export const decodeTables = reader("tables", (header, kinds, own) => {
   const { description, anemometer, convection_ratio: ratio } = header;
-  need(typeof description === "string", "description");
-  need(anemometer === null || (anemometer.length === 3 && anemometer.every(Number.isFinite)), "anemometer");
-  need(ratio === null || ratio > 0, "convection_ratio");
-  const speeds = own.tree_speed?.values;
-  need(speeds instanceof Float32Array && speeds.every((each) => each >= 0 && each < 1e6), "tree_speed");
+  checkTablesHeader(header, kinds.map((arrays) => arrays.stiffness?.values.length ?? 0), own);
+  const speeds = own.tree_speed.values;
   const tables = kinds.map((arrays, number) => new Table(header.kinds[number], arrays));
   return { description, anemometer, ratio: ratio ?? Infinity, kinds: tables, speeds: Float64Array.from(speeds) };
 });
@@ -48,14 +45,9 @@ export const decodeTables = reader("tables", (header, kinds, own) => {
 export class Table {
   /** @param {Record<string, any>} numbers @param {Arrays} arrays */
   constructor(numbers, arrays) {
-    const size = sizesOf(arrays, FORMS.tables);
+    const size = checkTable(numbers, arrays);
     const { m, n } = size;
     const { most_pressure: mostPressure, most_energy: mostEnergy, drag_law: law } = numbers;
-    need(m > 0 && m <= MOST_COORDINATES && size["m m"] === m * m, "stiffness");
-    need(mostPressure > 0 && mostEnergy > 0, "most_pressure");
-    need(law?.length === 3 && law.every(Number.isFinite), "drag_law");
-    need(arrays.stiffness.values.every((each) => each > 0), "stiffness");
-    for (const name of ["limit", "own_damping"]) need(arrays[name].values.every((each) => each >= 0), name);
     /** Coordinates, and those of the description. */
     this.m = m;
     this.n = n;
@@ -385,7 +377,14 @@ export class Stand {
   constructor(tables, description, dt = STEP) {
     const { kinds, trees, identity } = description;
     need(tables.description === identity && tables.speeds.length === trees.length, "description");
-    need(tables.kinds.every(({ n, nKeys }, k) => n === kinds[k]?.nCoordinates && nKeys === kinds[k].nKeys), "state");
+    need(tables.kinds.length === kinds.length, "kinds");
+    tables.kinds.forEach(({ n, nKeys, arrays }, k) => {
+      const { nCoordinates, nKeys: rows, arrays: { branch_keys: keys } } = kinds[k];
+      let most = 0;
+      for (const each of keys) most = Math.max(most, each);
+      need(n === nCoordinates, "state");
+      need(nKeys === rows && arrays.branch_compliance.length >= rows * most, "branch_compliance");
+    });
     this.dt = dt;
     this.description = description;
     this._newGusts = () => new Gusts(trees.map(({ place }) => place), tables, dt);

@@ -34,9 +34,23 @@ export function word(key, ...values) {
 /** Whether there is a word of a key. @param {string} key */
 export const hasWord = (key) => key in WORDS;
 
-/** Where a wind comes from: the one convention of the page. @param {Numbers} wind to east and north [m/s] */
-export function windFrom([x, y]) {
+/** Direction that a wind comes from, the one convention of the page: its point, and degrees clockwise from
+ * north; empty in calm. @param {Numbers} wind to east and north [m/s] */
+export function windPoint([x, y]) {
   if (Math.hypot(x, y) < 0.05) return "";
-  const degrees = (((Math.atan2(-x, -y) * 180) / Math.PI) + 360) % 360;
-  return word("from", `${word("points").split(" ")[Math.round(degrees / 45) % 8]} (${Math.round(degrees)}°)`);
+  const degrees = Math.round(((Math.atan2(-x, -y) * 180) / Math.PI) + 360) % 360;
+  return `${word("points").split(" ")[Math.round(degrees / 45) % 8]} (${degrees}°)`;
+}
+
+/** The same in a sentence. @param {Numbers} wind to east and north [m/s] */
+export function windFrom(wind) {
+  const point = windPoint(wind);
+  return point && word("from", point);
+}
+
+/** Source of the wind. @param {{kind?: string, name?: string, rate?: number}} [source] of a status */
+export function windSource({ kind = "", name = "", rate } = {}) {
+  if (kind === "recorded") return name ? word("wind_recorded", name) : word("wind_recorded_unnamed");
+  if (kind === "live") return word("wind_live", rate ? `${name}, ${Math.round(rate)} Hz` : name);
+  return hasWord(`wind_${kind}`) ? word(`wind_${kind}`) : "";
 }
