@@ -217,7 +217,7 @@ class SolverNode(TreeSwayNode):
         self._run.advance(now, delay=delay, most=periods, may_join=may_join)
         index = now // self.pacer.period
         self.stream.publish(self.simulator, index, now, self.values['publish_every'])
-        self._state.publish(index, now)
+        self._state.publish(index, now, self._run)
 
     def _reset(self, _request: Any, response: Any) -> Any:
         self._run.request(self.simulator.reset)

@@ -94,6 +94,11 @@ class Run:
         self._origin, self._felt, self._cost = 0, 0.0, 0.0
 
     @property
+    def is_wind_lost(self) -> bool:
+        """Whether no sample is in use: none yet, or the last one is older than its time-out."""
+        return self.wind_state in ('none', 'decaying', 'stale')
+
+    @property
     def time(self) -> int | None:
         """End of the last step in [ns]; None before the first."""
         return None if self._index is None else self._index * self.period

@@ -19,7 +19,7 @@ _RECOVERY = {
     'mcap': "make room, then 'mcap recover' restores the written part: its index is missing",
     'sqlite3': 'make room; the written part can be read',
 }
-"""Cure after a full disk, by storage: an MCAP file has its index at its end, SQLite in its pages."""
+"""Cure after a full disk, by storage: the index of an MCAP file is at its end."""
 COMMIT_EVERY = 1.0
 """Time [s] after which written messages are in the file, however the process ends."""
 
