@@ -26,6 +26,7 @@ from tree_sway_ros.process.topics import (  # noqa: E402
     TREE_DESCRIPTION,
     TREE_STATE,
 )
+from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 from tree_sway_ros.wire.tree_state import read_state, read_state_entry, WIND_NAMES  # noqa: E402
 from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
@@ -109,6 +110,10 @@ def test_a_drag_on_the_page_pulls_the_tree(compose, observer, statuses, tree_fil
     def is_pulled():
         return np.linalg.norm(solver.simulator.push_load[:3]) > 1.0
 
+    def is_refused():
+        status = statuses('solver: pull')
+        return status is not None and status.level[0] == WARN
+
     async def drag():
         async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream') as ws:
             assert json.loads((await ws.receive()).data)['hello']['can_pull']
@@ -122,7 +127,7 @@ def test_a_drag_on_the_page_pulls_the_tree(compose, observer, statuses, tree_fil
             while is_pulled():
                 await asyncio.sleep(0.01)
             assert time.monotonic() < end
-            while statuses('solver: pull') is None:
+            while not is_refused():
                 await ws.send_json({'pull': {**pull, **wrong}})
                 await asyncio.sleep(0.05)
 

@@ -16,6 +16,11 @@ class Worker:
         self._stopping = threading.Event()
         self._thread = threading.Thread(name=name)
 
+    @property
+    def is_stopping(self) -> bool:
+        """Whether the thread is to end."""
+        return self._stopping.is_set()
+
     def start(self) -> None:
         """Start the thread."""
         self._stopping.clear()

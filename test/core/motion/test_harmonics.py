@@ -31,9 +31,7 @@ def test_they_are_orthonormal():
 
 def test_the_opposite_wind_has_the_opposite_values():
     directions, _ = sphere()
-    assert harmonics_at(-directions) == pytest.approx(
-        -harmonics_at(directions), abs=1e-14
-    )
+    assert harmonics_at(-directions) == pytest.approx(-harmonics_at(directions), abs=1e-14)
 
 
 def test_the_addition_theorem_holds_():
