@@ -4,14 +4,14 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping, Sequence
 import math
 import time
 
-from tree_sway.core.wind.gate import GateCounts, WindGate
+from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
+from tree_sway_ros.reports.recent_counts import is_fault, listed, RecentCounts
 from tree_sway_ros.reports.sequence_gaps import SequenceGaps
 
 _PERIODS = 3.0
@@ -30,10 +30,6 @@ _STAMPS = {
     'out_of_order': 'out of order',
 }
 """Counts of refused stamps; a driver that gives none at all is no fault."""
-_SHARE, _FEWEST = 0.1, 3
-"""Share of the recent samples, and their number, from which a refusal is reported."""
-_RECENT = 6
-"""Number of reports over which samples are recent."""
 _SHOWN = 5
 """Largest number of nodes that are named."""
 STALE_AFTER = 5.0
@@ -45,7 +41,7 @@ class WindReport:
 
     def __init__(self) -> None:
         self._timing, self._newest = SensorTiming(0.0), -math.inf
-        self._marks: deque[dict[str, int]] = deque(maxlen=_RECENT)
+        self._counts = RecentCounts()
         self.gaps = SequenceGaps()
         """Samples that were lost on their way to the node."""
 
@@ -95,7 +91,7 @@ class WindReport:
 
         """
         age, timeout = self.age, max(timeout, _PERIODS * (self._timing.period or 0.0))
-        recent = self._recent(gate.counts)
+        recent = self._counts.growth(vars(gate.counts))
         lost = self.gaps.report(len(publishers))
         refusals = _shares(recent, _REFUSALS, gate)
         values: dict[str, object] = {
@@ -126,11 +122,11 @@ class WindReport:
         faults = []
         if refusals:
             faults.append(f'{sum(refusals.values())} of {_total(recent)} samples refused: ')
-            faults[-1] += _listed(refusals)
+            faults[-1] += listed(refusals)
         elif math.isinf(age) and gate.counts.refused:
             faults.append(f'{gate.counts.refused} samples refused')
         if stamps := _shares(recent, _STAMPS, gate):
-            faults.append(f'stamps replaced by the time of arrival: {_listed(stamps)}')
+            faults.append(f'stamps replaced by the time of arrival: {listed(stamps)}')
         if lost:
             faults.append(f'{lost} samples lost on the way')
         if len(publishers) > 1:
@@ -138,15 +134,6 @@ class WindReport:
             faults.append(f'{len(publishers)} publishers mix: {shown}')
         level = max(level, WARN) if faults else level
         return Status('wind', level, '; '.join([text, *faults]), values)
-
-    def _recent(self, counts: GateCounts) -> dict[str, int]:
-        """Return the counts of the last reports, each second of which is one."""
-        now = dict(vars(counts))
-        if not self._marks:
-            self._marks.append(dict.fromkeys(now, 0))
-        before = self._marks[0]
-        self._marks.append(now)
-        return {name: count - before[name] for name, count in now.items()}
 
 
 def _total(recent: Mapping[str, int]) -> int:
@@ -157,10 +144,6 @@ def _shares(recent: Mapping[str, int], names: Mapping[str, str], gate: WindGate)
     """Return counts of samples by a reason in words; none if they are few."""
     counts = {names[name]: recent[name] for name in names if recent[name]}
     total = sum(counts.values())
-    if total < _FEWEST or total < _SHARE * _total(recent):
+    if not is_fault(total, _total(recent)):
         return {}
     return {name.format(gate=gate): count for name, count in counts.items()}
-
-
-def _listed(counts: Mapping[str, int]) -> str:
-    return ', '.join(f'{count} {name}' for name, count in counts.items())

@@ -10,34 +10,30 @@ times as long on the clock that stamps and arrivals are read from.
 from __future__ import annotations
 
 from collections import deque
+from statistics import median
 import time
 from typing import Any
 
-_SPAN = 3.0
-"""Time over which the rate is measured [s]."""
-_SHORTEST = 0.1
-"""Time after which it is known [s]."""
 _RESOLUTION = 0.02
-"""Shortest interval between two readings [s]."""
-_PAUSE = 0.5
-"""Interval without a reading after which the clock was paused [s]."""
-_FASTEST = 1000.0
-"""Rate above which the clock was set forward; the fastest playback of the player."""
-_JUMP = 0.5
-"""Step of the clock that is accepted at any rate [s]."""
+"""Shortest interval that is measured [s]."""
+_INTERVALS, _FEWEST = 150, 5
+"""Largest number of intervals that the rate is measured over, and the number that it needs."""
+_ALIKE = 2.0
+"""Factor between an interval's rate and the median: outside, the clock was paused or set."""
 
 
 class ClockRate:
     """
     Measured rate of a clock that follows ``/clock``; 1 where it is the machine's own.
 
-    A clock that is set, or paused, keeps the last rate until the next one is known.
+    Intervals in which the clock was set or paused differ from the others, and are left out.
     """
 
     def __init__(self) -> None:
         self.rate = 1.0
         """Seconds of the clock per second of the machine."""
-        self._readings: deque[tuple[float, float]] = deque()
+        self._last: tuple[float, float] | None = None
+        self._intervals: deque[tuple[float, float]] = deque(maxlen=_INTERVALS)
         self._handle: Any = None
 
     def follow(self, clock: Any) -> None:
@@ -66,16 +62,22 @@ class ClockRate:
 
     def note(self, now: float, nanoseconds: int) -> None:
         """Note the time of the clock [ns] at a time of the machine [s]."""
-        readings, shown = self._readings, 1e-9 * nanoseconds
-        if readings:
-            passed, step = now - readings[-1][0], shown - readings[-1][1]
-            if passed > _PAUSE or not 0.0 <= step <= _JUMP + _FASTEST * passed:
-                readings.clear()
-            elif passed < _RESOLUTION:
-                return
-        readings.append((now, shown))
-        while now - readings[0][0] > _SPAN:
-            readings.popleft()
-        begin, first = readings[0]
-        if now - begin >= _SHORTEST:
-            self.rate = (shown - first) / (now - begin)
+        shown = 1e-9 * nanoseconds
+        if self._last is None:
+            self._last = now, shown
+            return
+        passed, step = now - self._last[0], shown - self._last[1]
+        if passed < _RESOLUTION:
+            return
+        self._last = now, shown
+        self._intervals.append((passed, step))
+        if len(self._intervals) < _FEWEST:
+            return
+        middle = median(step / passed for passed, step in self._intervals)
+        alike = [
+            (passed, step)
+            for passed, step in self._intervals
+            if middle / _ALIKE <= step / passed <= middle * _ALIKE
+        ]
+        if middle > 0.0:
+            self.rate = sum(step for _, step in alike) / sum(passed for passed, _ in alike)

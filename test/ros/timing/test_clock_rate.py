@@ -58,8 +58,17 @@ def test_a_clock_that_is_set_keeps_its_rate(player: Player, step: float) -> None
 def test_a_pause_is_no_slow_playback(player: Player) -> None:
     player.play(5.0, 2.0)
     player.now += 60.0
+    player.note()
+    assert player.measured.rate == pytest.approx(5.0, rel=1e-3)
     player.play(5.0, 0.02)
     assert player.measured.rate == pytest.approx(5.0, rel=1e-3)
+
+
+def test_a_clock_that_stands_before_it_begins_is_no_slow_playback(player: Player) -> None:
+    player.note()
+    player.now += 0.4
+    player.play(2.0, 0.2)
+    assert player.measured.rate == pytest.approx(2.0, rel=1e-3)
 
 
 def test_a_busy_moment_changes_little(player: Player) -> None:
