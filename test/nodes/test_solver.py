@@ -245,6 +245,8 @@ def test_two_trees_side_by_side(compose, observer, tree_file):
     elm = observer.listen(SEGMENT_POSES, name='elm/segment_poses')
     Breeze(observer, (8.0, 0.0, 0.0), name='oak/wind/filtered')
     observer.until(lambda: oak and block(oak[-1])[2, 0] > 1e-3, 'the oak to bend')
+    n = len(elm)  # none, where it is found later than the oak
+    observer.until(lambda: len(elm) > n + 10, 'the elm beside it')
     np.testing.assert_array_equal(block(elm[-1]), block(elm[0]))
     topics = dict(observer.node.get_topic_names_and_types())
     assert not {'/segment_poses', '/markers', '/tree_description'} & set(topics)
