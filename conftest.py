@@ -8,8 +8,8 @@ import gc
 import os
 from pathlib import Path
 import random
+import socket
 import sys
-import tempfile
 import time
 
 # Before a participant is made: the profile counts for the whole process.
@@ -37,6 +37,9 @@ settings.load_profile(os.environ.get('HYPOTHESIS_PROFILE', 'repeatable'))
 
 LAST_DOMAIN = 101
 """Of those whose ports are not handed out by the system."""
+
+_FIRST_PORT, _PORTS_OF_DOMAIN = 7400, 250
+"""Ports of RTPS: of domain 0, and of each domain."""
 
 
 LONG_FOLDERS = [Path(__file__).parent / 'lab' / 'test' / name for name in ('battery', 'methods')]
@@ -105,30 +108,39 @@ def memory_alone():
         measured.start()
 
 
+def _claimed_port(domain):
+    """
+    Return a socket that claims a ROS domain on this machine; None if it is in use.
+
+    Participants of a domain bind ports of its own range, from the lowest on. The highest one,
+    which only the 120th would bind, is the claim: the system gives it to one process at a time,
+    and takes it back whatever that dies of. Where another port is bound, a graph is alive that no
+    test has claimed, such as a demo: its messages would be heard.
+    """
+    first = _FIRST_PORT + _PORTS_OF_DOMAIN * domain
+    claim = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        claim.bind(('', first + _PORTS_OF_DOMAIN - 1))
+        for port in range(first, first + _PORTS_OF_DOMAIN - 1):
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+                probe.bind(('', port))
+    except OSError:
+        claim.close()
+        return None
+    return claim
+
+
 @contextlib.contextmanager
 def _claimed_domain():
-    """
-    Claim a ROS domain that no other test has, of this run or another on this machine.
-
-    It is locked until the end of the block, or of the process whatever it dies of.
-    """
-    if not sys.platform.startswith('linux'):
-        yield random.randint(1, LAST_DOMAIN)
-        return
-    import fcntl
-
-    folder = Path(tempfile.gettempdir()) / 'tree_sway_ros_test_domains'
-    folder.mkdir(mode=0o777, exist_ok=True)
+    """Claim a ROS domain in which nobody is heard, for one test on this machine."""
     # Anywhere first: a domain that was left a moment ago may still hold what it last sent.
     for domain in random.sample(range(1, LAST_DOMAIN + 1), LAST_DOMAIN):
-        with (folder / str(domain)).open('a') as place:
-            try:
-                fcntl.flock(place, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                continue
-            yield domain
+        claim = _claimed_port(domain)
+        if claim is not None:
+            with claim:
+                yield domain
             return
-    pytest.fail('all ROS domains are taken by other tests on this machine')
+    pytest.fail('all ROS domains are in use on this machine')
 
 
 @pytest.fixture(scope='session')

@@ -1,7 +1,9 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
+import ast
 import importlib.util
 from pathlib import Path
+import re
 from xml.etree import ElementTree
 
 import pytest
@@ -132,6 +134,22 @@ def test_what_is_shipped_in_config_overrides_no_default():
 def test_every_argument_is_declared(launch_file):
     declared = {action.name for action in launch_file.generate_launch_description().entities[:-1]}
     assert declared == {name for name, *_ in launch_file.ARGUMENTS}
+
+
+def test_the_pages_give_arguments_that_exist():
+    source = (ROOT / 'launch' / 'sway.launch.py').read_text(encoding='utf-8')
+    table = next(
+        node.value
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == 'ARGUMENTS'
+    )
+    declared = {row.elts[0].value for row in table.elts}
+    pages = ''.join(path.read_text(encoding='utf-8') for path in (ROOT / 'doc').rglob('*.md'))
+    given = re.findall(r'launch_arguments=\{(.*?)\}', pages, re.DOTALL)
+    typed = re.findall(r'sway\.launch\.py((?: +\S+:=\S+)+)', pages)
+    names = re.findall(r'"(\w+)":', ' '.join(given)) + re.findall(r'(\w+):=', ' '.join(typed))
+    assert {'source', 'pose'} <= {*names}
+    assert {*names} <= declared
 
 
 def test_rviz_shows_our_topics():

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 import dataclasses
 from datetime import datetime
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -14,8 +16,15 @@ from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: E402
 
 from tree_sway.errors import TreeSwayError  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
-from tree_sway_ros.process.topics import CLOCK, SEGMENT_POSES, WIND  # noqa: E402
+from tree_sway_ros.process.topics import (  # noqa: E402
+    CLOCK,
+    SEGMENT_POSES,
+    WIND,
+    WIND_FILTERED,
+)
 from tree_sway_ros.timing.playback import LONGEST_CLOCK_STEP  # noqa: E402
+from tree_sway_ros.wire.cdr import poses_of as poses_in  # noqa: E402
+from tree_sway_ros.wire.cdr import stamp_of  # noqa: E402
 from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 
@@ -24,9 +33,9 @@ def wind_file(tmp_path):
     return gusty(tmp_path)
 
 
-def gusty(tmp_path):
-    """Four seconds of a gusty westerly at 20 Hz."""
-    time = np.arange(80) * 0.05
+def gusty(tmp_path, count=80):
+    """Write samples of a gusty westerly at 20 Hz: four seconds of it."""
+    time = np.arange(count) * 0.05
     wind = 6.0 + 2.0 * np.sin(2.0 * time) + 0.3 * np.cos(9.0 * time)
     path = tmp_path / 'wind.csv'
     rows = [f'{t:.2f},{u:.4f},{0.2 * np.sin(t):.4f},0.0' for t, u in zip(time, wind, strict=True)]
@@ -94,6 +103,59 @@ def test_replays_are_the_same_bit_for_bit_whatever_the_machine_does_beside(
             if compared > 60:
                 break
         assert compared > 60
+
+
+@pytest.fixture
+def busy_core():
+    """Start a process that computes all the time."""
+    busy = subprocess.Popen([sys.executable, '-c', 'while True: pass'])
+    yield
+    busy.kill()
+    busy.wait()
+
+
+@pytest.mark.parametrize('rate', [2, 5])
+@pytest.mark.usefixtures('busy_core')
+def test_fast_replays_of_processes_are_the_same_and_say_what_they_are(
+    run, observer, statuses, tmp_path, tree_file, rate
+):
+    """Two runs of the nodes as they are launched, each in a process of its own."""
+    wind = gusty(tmp_path, count=200)
+    last = 10**9 + 99 * 10**8
+    frames, known = observer.listen(SEGMENT_POSES, raw=True, depth=2000), None
+
+    def are_ready():
+        topics = (WIND, WIND_FILTERED)
+        return [observer.node.count_subscribers(each.name) for each in topics] == [1, 1]
+
+    def is_told():
+        status = statuses('solver: wind')
+        measured = {pair.key: pair.value for pair in status.values}['replay rate']
+        is_near = float(measured) == pytest.approx(rate, rel=0.2)
+        return is_near and status.message.startswith('replay at ')
+
+    for _ in range(2):
+        frames.clear()
+        simulated = 'use_sim_time:=true'
+        solver = run('solver', f'tree:={tree_file}', 'wind_delay:=1.0', simulated)
+        filtering = run('wind', simulated)
+        observer.until(are_ready, 'the nodes')
+        record = (f'file:={wind}', 'publish_clock:=true', 'loop:=false', f'rate:={rate}.0')
+        player = run('player', *record)
+        observer.until(lambda: frames and stamp_of(frames[-1]) > last, 'the end of the record')
+        observer.until(is_told, 'the rate')
+        counts = {pair.key: pair.value for pair in statuses('wind: wind').values}
+        found = {stamp_of(data): poses_in(data).tobytes() for data in list(frames)}
+        for process in (player, filtering, solver):
+            process.terminate()
+            process.wait()
+        stamps = ('future_stamp', 'old_stamp', 'out_of_order', 'lost', 'refused')
+        assert {counts[name] for name in stamps} == {'0'}
+        known = found if known is None else known
+    both = [stamp for stamp in sorted({*known} & {*found}) if 10**9 < stamp < last]
+    assert len(both) > 150
+    assert np.ptp([np.frombuffer(known[stamp])[14] for stamp in both]) > 1e-3
+    assert [stamp for stamp in both if found[stamp] != known[stamp]] == []
 
 
 def test_nothing_begins_before_a_subscriber_is_there_nor_does_the_clock(

@@ -42,6 +42,19 @@ def test_a_westerly_of_an_instrument_blows_to_the_east(compose, observer, status
     assert (status.level, status.values['reading']) == (0, 'MWV R')
 
 
+def test_lines_that_are_refused_are_a_warning(compose, observer, statuses, port, say):
+    compose(sensor={'address': f'udp://127.0.0.1:{port[1]}'})
+
+    def said():
+        say(port, 'WIMWV,270.0,R,10.0,N,A')
+        say(port, 'WIMWV,270.0,R,10.0,N,V')
+        return getattr(statuses('sensor: link'), 'message', '')
+
+    observer.until(lambda: 'lines refused' in said(), 'a warning', poll=0.1)
+    assert 'status is' in said()
+    assert statuses('sensor: link').level[0] == 1
+
+
 def test_what_is_no_address_is_refused(compose):
     with pytest.raises(TreeSwayError, match='no address of an instrument'):
         compose(sensor={'address': 'com1'})

@@ -15,7 +15,12 @@ aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytestmark = pytest.mark.ros
 
 from tree_sway.page.placer import Placer  # noqa: E402
-from tree_sway.page.protocol import decode_description, decode_frame  # noqa: E402
+from tree_sway.page.protocol import (  # noqa: E402
+    decode_description,
+    decode_frame,
+    PAUSED,
+    WIND_LOST,
+)
 from tree_sway_ros.process.topics import (  # noqa: E402
     message_class,
     SEGMENT_POSES,
@@ -23,7 +28,8 @@ from tree_sway_ros.process.topics import (  # noqa: E402
     TREE_STATE,
     WIND,
 )
-from tree_sway_ros.wire.tree_state import read_state_entry, WIND_NAMES  # noqa: E402
+from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
+from tree_sway_ros.wire.tree_state import read_state, read_state_entry, WIND_NAMES  # noqa: E402
 from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 DEADLINE = 60.0
@@ -43,7 +49,7 @@ def test_poses_are_rebuilt_from_state_and_description(compose, observer, tree_fi
     solved = by_stamp[stamp_to_ns(state.header.stamp)].poses
     exact = np.array([[p.position.x, p.position.y, p.position.z] for p in solved])
     placer = Placer(description)
-    rebuilt = placer.place(np.array(state.position[3:]))
+    rebuilt = placer.place(read_state(state)[1])
     at_rest = placer.place(np.zeros(len(description.scale)))
     moved = np.linalg.norm(exact - at_rest[:, :3])
     assert moved > 1e-4
@@ -155,6 +161,10 @@ def test_a_drag_on_the_page_pulls_the_tree(compose, observer, statuses, tree_fil
     def is_pulled():
         return np.linalg.norm(solver.simulator.push_load[:3]) > 1.0
 
+    def is_refused():
+        status = statuses('solver: pull')
+        return status is not None and status.level[0] == WARN
+
     async def drag():
         async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream') as ws:
             assert json.loads((await ws.receive()).data)['hello']['can_pull']
@@ -177,7 +187,7 @@ def test_a_drag_on_the_page_pulls_the_tree(compose, observer, statuses, tree_fil
             while is_pulled():
                 await asyncio.sleep(0.01)
             assert time.monotonic() < end
-            while statuses('solver: pull') is None:
+            while not is_refused():
                 await ws.send_json({'pull': {**pull, **wrong}})
                 await asyncio.sleep(0.05)
 
@@ -214,6 +224,56 @@ def test_the_first_who_listens_need_not_wait_for_the_basis(compose, observer, tr
     observer.until(lambda: states, 'a state')
     assert not basis_is_sought()
     nodes.check()
+
+
+def n_states(nodes):
+    return nodes['solver'].count_subscribers(TREE_STATE.name)
+
+
+def test_states_are_subscribed_only_while_a_page_is_open(compose, observer, tree_file):
+    """And there is one server, with one event loop, for each time that the node is active."""
+    made = []
+    make = asyncio.new_event_loop
+    asyncio.new_event_loop = lambda: made.append(make()) or made[-1]
+    try:
+        nodes = compose(anemometer={}, wind={}, solver={'tree': tree_file}, viewer=QUIET)
+        viewer = nodes['viewer']
+        assert len(made) == 1
+        url = viewer.server.url
+
+        async def look():
+            async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream'):
+                await asyncio.to_thread(
+                    observer.until, lambda: n_states(nodes) == 1, 'a subscription'
+                )
+
+        asyncio.new_event_loop = make
+        asyncio.run(look())
+        observer.until(lambda: n_states(nodes) == 0, 'its end')
+        viewer.trigger_deactivate()
+        assert all(loop.is_closed() for loop in made)
+        viewer.trigger_activate()
+        assert viewer.server.url
+    finally:
+        asyncio.new_event_loop = make
+
+
+def test_flags_of_the_solver_reach_the_page(compose, observer, tree_file):
+    nodes = compose(wind={}, solver={'tree': tree_file}, viewer=QUIET)
+    url, flags = nodes['viewer'].server.url, []
+
+    async def look():
+        async with aiohttp.ClientSession() as session, session.ws_connect(f'{url}stream') as ws:
+            await ws.send_json({'credit': 200})
+            while len(flags) < 100 and WIND_LOST | PAUSED not in flags:
+                message = await asyncio.wait_for(ws.receive(), DEADLINE)
+                if message.type is aiohttp.WSMsgType.BINARY and message.data[:4] != b'TSWD':
+                    flags.append(decode_frame(message.data).flags)
+                    nodes['solver']._run.is_paused = True
+
+    asyncio.run(look())
+    assert flags[0] == WIND_LOST
+    assert flags[-1] == WIND_LOST | PAUSED
 
 
 def test_without_states_no_basis_is_sought(compose, observer, tree_file):

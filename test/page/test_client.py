@@ -6,9 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 import json
+import os
 from pathlib import Path
 import shutil
 import subprocess
+import sys
 import threading
 import time
 
@@ -179,6 +181,89 @@ def test_no_message_shows_the_token() -> None:
         assert 'confidential' not in f'{client.problem} {error.value} {client.url}'
     with pytest.raises(ParameterError, match='address'):
         StreamClient('http://[')
+
+
+@pytest.mark.parametrize(
+    'text', ['there:8765', 'there', '', 'http:///8765', 'file:///tmp', 'ftp://a']
+)
+def test_what_has_no_scheme_or_no_host_is_refused_with_the_cure(text: str) -> None:
+    with pytest.raises(ParameterError, match='give http:// or https://'):
+        StreamClient(text)
+
+
+def refused(url: str) -> str:
+    """Return the error of waiting at a server that refuses, which comes long before the time."""
+    began = time.monotonic()
+    with StreamClient(url) as client, pytest.raises(TransportError) as error:
+        client.wait(DEADLINE)
+    assert time.monotonic() - began < 0.5 * DEADLINE
+    return str(error.value)
+
+
+def test_a_wrong_token_is_an_error_at_once() -> None:
+    with PageServer(PageSettings(port=0, token='the right one')) as server:
+        assert 'give the token' in refused(f'{server.url}?token=wrong')
+        assert 'give the token' in refused(server.url)
+
+
+def certificate(folder: Path, name: str) -> tuple[str, str]:
+    """Certificate that its own key has signed, and that key."""
+    openssl = shutil.which('openssl')
+    if openssl is None:
+        pytest.skip('openssl is not installed here')
+    files = str(folder / 'own.pem'), str(folder / 'own.key')
+    subprocess.run(
+        [openssl, 'req', '-x509', '-newkey', 'rsa:2048', '-nodes', '-days', '2', '-subj',
+         '/CN=test', '-addext', f'subjectAltName={name}', '-out', files[0], '-keyout', files[1]],
+        check=True, capture_output=True,
+    )  # fmt: skip
+    return files
+
+
+WAITING = """
+import sys
+from tree_sway.errors import TransportError
+from tree_sway.page.client import StreamClient
+with StreamClient(sys.argv[1]) as client:
+    try:
+        client.wait(60.0)
+    except TransportError as error:
+        raise SystemExit(str(error))
+"""
+
+
+def test_a_certificate_that_is_not_trusted_names_the_variable(tmp_path: Path) -> None:
+    """The cure is the one that works: with the certificate in it, frames come."""
+    certified, key = certificate(tmp_path, 'IP:127.0.0.1')
+    settings = PageSettings(port=0, certificate=certified, private_key=key)
+    with PageServer(settings) as server:
+        server.describe(DESCRIPTION)
+        sender = Sender(server)
+        sender.start()
+        error = refused(server.url)
+        assert 'self-signed certificate' in error
+        assert 'set SSL_CERT_FILE' in error
+        environment = os.environ | {'SSL_CERT_FILE': certified}
+        command = [sys.executable, '-c', WAITING, server.url]
+        done = subprocess.run(command, env=environment, capture_output=True, timeout=DEADLINE)
+        assert (done.returncode, done.stderr) == (0, b'')
+        sender.ended.set()
+
+
+def test_a_certificate_of_another_name_says_so(tmp_path: Path) -> None:
+    certified, key = certificate(tmp_path, 'DNS:there')
+    settings = PageSettings(port=0, certificate=certified, private_key=key)
+    with PageServer(settings) as server:
+        environment = os.environ | {'SSL_CERT_FILE': certified}
+        command = [sys.executable, '-c', WAITING, server.url]
+        done = subprocess.run(
+            command, env=environment, capture_output=True, text=True, timeout=DEADLINE
+        )
+    assert 'use a host name that the certificate contains' in done.stderr
+
+
+def test_https_where_there_is_no_tls_says_so(server: PageServer) -> None:
+    assert 'give http://' in refused(server.url.replace('http:', 'https:'))
 
 
 def test_who_is_not_there_or_sends_an_older_form_is_reported(server: PageServer) -> None:

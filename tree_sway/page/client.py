@@ -44,6 +44,15 @@ _ON_THE_WAY = 200_000
 """Largest amount of data in transit in [bytes], so that a slow line has little old data."""
 
 _LARGEST_TEXT = 2**20
+_SCHEMES = {'http': 'ws', 'ws': 'ws', 'https': 'wss', 'wss': 'wss'}
+"""Scheme of the stream by that of the page's address."""
+
+_OTHER_NAME = (62, 64)
+"""Codes of OpenSSL for a certificate of a different host name or address."""
+
+_DENIED = (401, 403)
+"""HTTP status of a missing or wrong token."""
+
 _ENDS = aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSING, aiohttp.WSMsgType.CLOSED
 _SHORTEST_WAIT, _LONGEST_WAIT = 0.5, 10.0
 _PING_EVERY, _SILENCE = 2.0, 4.0
@@ -75,7 +84,7 @@ class StreamClient:
     Raises
     ------
     ParameterError
-        A text that is not an address, or a rate outside of 0.1 to 1000 Hz.
+        A text that is not an address of a page, or a rate outside of 0.1 to 1000 Hz.
 
     Examples
     --------
@@ -99,11 +108,16 @@ class StreamClient:
             parts = urlsplit(url)
         except ValueError as error:
             raise ParameterError(f'not an address ({error})', where='url') from None
+        if parts.scheme not in _SCHEMES or not parts.hostname:
+            raise ParameterError(
+                f"'{url.partition('?')[0]}' is not the address of a page",
+                where='url',
+                cure='give http:// or https:// before the host, as http://there:8765/',
+            )
         if not 0.1 <= rate <= 1000.0:
             raise ParameterError(f'{rate:g} Hz', where='rate', cure='ask for 0.1 .. 1000 Hz')
         path = parts.path.rstrip('/') + '/stream'
-        scheme = {'https': 'wss', 'wss': 'wss'}.get(parts.scheme, 'ws')
-        self.url = urlunsplit((scheme, parts.netloc, path, '', ''))
+        self.url = urlunsplit((_SCHEMES[parts.scheme], parts.netloc, path, '', ''))
         """Address of the stream; its token is sent separately, so that no message shows it."""
         token = parse_qs(parts.query).get('token')
         self._headers = {'Authorization': f'Bearer {token[0]}'} if token else {}
@@ -129,6 +143,7 @@ class StreamClient:
         self._more = threading.Condition()
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._run, name='stream', daemon=True)
+        self._refusal: TransportError | None = None
         self._socket: aiohttp.ClientWebSocketResponse | None = None
         self._awaited, self._credit = 0, _MOST_CREDIT
 
@@ -153,11 +168,15 @@ class StreamClient:
         Raises
         ------
         TransportError
-            Fewer frames within a time [s].
+            Fewer frames within a time [s]; at once if the server refuses the token, or its
+            certificate is not trusted.
 
         """
         with self._more:
-            if not self._more.wait_for(lambda: self.received >= frames, seconds):
+            self._more.wait_for(lambda: self.received >= frames or self._refusal, seconds)
+            if self.received < frames and self._refusal is not None:
+                raise self._refusal
+            if self.received < frames:
                 what = f'{self.received} frames within {seconds:g} s ({self.problem})'
                 cure = 'start tree-sway show, or check the address'
                 raise TransportError(what, where=self.url, cure=cure)
@@ -203,9 +222,13 @@ class StreamClient:
                         self.url, max_msg_size=LARGEST_DESCRIPTION, heartbeat=_SILENCE
                     ) as socket:
                         self._socket, self._awaited, self.state = socket, 0, 'open'
+                        self._refusal = None
                         await self._follow(socket)
                 except Exception as error:
                     self.problem = str(error) or type(error).__name__
+                    with self._more:
+                        self._refusal = _refusal_of(error, self.url)
+                        self._more.notify_all()
                 self._socket, self.state = None, 'lost'
                 if self.received > received:
                     wait = _SHORTEST_WAIT
@@ -302,3 +325,22 @@ class StreamClient:
                 self._on_frame(frame, arrival)
             except Exception as error:
                 self.problem = f'on_frame: {type(error).__name__}: {error}'
+
+
+def _refusal_of(error: Exception, url: str) -> TransportError | None:
+    """Return the error for a caller who waits, with its cure; None if waiting may help."""
+    if isinstance(error, aiohttp.ClientConnectorCertificateError):
+        reason = error.certificate_error
+        why = getattr(reason, 'verify_message', '') or str(reason)
+        if getattr(reason, 'verify_code', 0) in _OTHER_NAME:
+            cure = 'use a host name that the certificate contains'
+        else:
+            cure = "set SSL_CERT_FILE to the server's certificate (PEM) if you trust it"
+        return TransportError(f'its certificate is refused ({why})', where=url, cure=cure)
+    if isinstance(error, aiohttp.ClientConnectorSSLError):
+        what, cure = f'it does not speak TLS ({error.strerror or error})', 'give http://'
+        return TransportError(what, where=url, cure=cure)
+    if isinstance(error, aiohttp.WSServerHandshakeError) and error.status in _DENIED:
+        what = f'it refuses the connection (HTTP {error.status})'
+        return TransportError(what, where=url, cure='give the token of its page')
+    return None

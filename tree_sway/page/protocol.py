@@ -39,8 +39,13 @@ FRAME_KIND = 0x46
 WIND_UNIT = 0.005
 """Unit of the wind's int16 in [m/s]."""
 
-PAUSED, BEYOND_SCALE, RESTARTED, PART = 1, 2, 4, 8
-"""Flags of a frame: paused, a number clamped to its scale, the motion jumped, some coordinates."""
+PAUSED, BEYOND_SCALE, RESTARTED, PART, WIND_LOST = 1, 2, 4, 8, 16
+"""
+Flags of a frame: paused, a number clamped to its scale, the motion jumped, some coordinates, no
+measured wind: there is no sample yet, or the last one is older than its time-out and its force
+decays.
+
+"""
 
 _TYPES = {'f32': '<f4', 'i32': '<i4', 'u8': 'u1', 'i16': '<i2'}
 _NAMES = {np.dtype(code): name for name, code in _TYPES.items()}
@@ -77,7 +82,7 @@ class Frame(NamedTuple):
     stamp
         Time of the state in [ns].
     flags
-        Sum of `PAUSED`, `BEYOND_SCALE`, `RESTARTED`.
+        Sum of `PAUSED`, `BEYOND_SCALE`, `RESTARTED`, `PART`, `WIND_LOST`.
     wind
         Wind at the anemometer, blowing to, in [m/s], (3,).
     coordinates

@@ -13,7 +13,7 @@ from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
 from tree_sway.core.simulator.season import is_in_leaf
 from tree_sway.page.description import describe_scene
-from tree_sway.page.protocol import decode_description, encode_state, PAUSED, RESTARTED
+from tree_sway.page.protocol import decode_description, encode_state, PAUSED, RESTARTED, WIND_LOST
 from tree_sway.page.scene_kind import scene_kinds, SceneKind
 from tree_sway.page.tables import tables_of
 
@@ -119,7 +119,14 @@ class SceneState:
                 parts += [(one.touch.beyond(self._matrices[number] @ own) + before).ravel()]
         return np.concatenate(parts)
 
-    def frame(self, stamp: int, *, is_paused: bool = False, has_restarted: bool = False) -> bytes:
+    def frame(
+        self,
+        stamp: int,
+        *,
+        is_paused: bool = False,
+        has_restarted: bool = False,
+        is_wind_lost: bool = False,
+    ) -> bytes:
         """
         Write the present state.
 
@@ -131,9 +138,11 @@ class SceneState:
             True while time is paused.
         has_restarted
             True if the motion jumped since the frame before.
+        is_wind_lost
+            True while there is no measured wind.
 
         """
-        flags = PAUSED * is_paused + RESTARTED * has_restarted
+        flags = PAUSED * is_paused + RESTARTED * has_restarted + WIND_LOST * is_wind_lost
         sequence, gusts = self._framed[0] + 1, self.simulator.gusts
         self._framed = sequence, 0.0 if gusts is None else gusts.time
         wind, coordinates = self.simulator.wind, self.coordinates()

@@ -263,7 +263,10 @@ class Session:
         self._steps += 1
         if has_restarted or self._steps % 2 == 0 or self._work < _BUSY * self._period:
             frame = self._scene.frame(
-                time.time_ns(), is_paused=self._is_paused, has_restarted=has_restarted
+                time.time_ns(),
+                is_paused=self._is_paused,
+                has_restarted=has_restarted,
+                is_wind_lost=self._runtime.is_wind_lost,
             )
             self._server.publish(frame)
         now = time.perf_counter()

@@ -22,17 +22,21 @@ from tree_sway_ros.process.topics import (
     WIND,
     WIND_FILTERED,
 )
-from tree_sway_ros.wire.cdr import stamp_of
+from tree_sway_ros.wire.cdr import poses_of, stamp_of
 from tree_sway_ros.wire.wind_messages import wind_from_message
 
-_POSE = 7 * 8
 _QUEUE = 50
 """Length of the queue: messages that arrive while this program is busy are late, not missing."""
 _LOOK_AROUND = 1.0  # [s]: time of discovery of running programs
 
 
 class StreamMonitor(Listener):
-    """A node that receives poses and wind; without a tree it only counts poses."""
+    """
+    A node that receives poses and wind; without a tree it only counts poses.
+
+    With a tree, pose arrays of a different number of segments are those of another program: they
+    are counted apart.
+    """
 
     def __init__(self, context: Any, tree: Tree | None, namespace: str = '') -> None:
         super().__init__('monitor', namespace, context)
@@ -67,19 +71,21 @@ class StreamMonitor(Listener):
         return recent
 
     def _receive_poses(self, data: bytes) -> None:
-        arrival = time.time()
-        stamp, tip = 1e-9 * stamp_of(data), self._displacement(data)
+        arrival, poses = time.time(), poses_of(data)
+        if poses is not None and self._tree is not None and len(poses) != self._tree.n_segments:
+            poses = None
         for totals in (self.totals, self.recent):
-            totals.add_poses(arrival, stamp, tip)
+            if poses is None:
+                totals.foreign += 1
+            else:
+                totals.add_poses(arrival, 1e-9 * stamp_of(data), self._displacement(poses))
 
-    def _displacement(self, data: bytes) -> Floats:
-        """Displacement of the highest tip from rest in a serialised pose array in [m], (3,)."""
+    def _displacement(self, poses: Floats) -> Floats:
+        """Displacement of the highest tip from rest in [m], (3,)."""
         if self._tree is None:
             return np.zeros(3)
-        # The poses are at the end of the message.
-        offset = len(data) - (self._tree.n_segments - self._tip) * _POSE
-        pose = np.frombuffer(data, np.float64, 7, offset)
-        _, end = ends_of_poses(pose[None], self._tree.length[self._tip, None])
+        pose = poses[self._tip, None]
+        _, end = ends_of_poses(pose, self._tree.length[self._tip, None])
         return end[0] - self._tree.end[self._tip]
 
     def _receive_wind(self, message: Any) -> None:

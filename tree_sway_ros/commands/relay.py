@@ -11,17 +11,26 @@ from __future__ import annotations
 
 import argparse
 import time
+from typing import Any
+from urllib.parse import parse_qsl, urlencode, urlsplit
 
 from tree_sway.commands.ending import Ending
+from tree_sway.errors import ParameterError
 from tree_sway.page.access import read_token
 from tree_sway.page.client import StreamClient
-from tree_sway.page.protocol import Frame
+from tree_sway.page.protocol import Frame, PAUSED, WIND_LOST
 from tree_sway_ros.commands.watch import add_seconds, seconds_of
 from tree_sway_ros.process.listener import Listener
-from tree_sway_ros.process.topics import message_class, qos_profile, WIND
+from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile, WIND
+from tree_sway_ros.reports.diagnostics import OK, Status, status_array, WARN
 from tree_sway_ros.wire.wind_messages import WindWriter
 
 _LOOK = 0.2
+_REPORT_EVERY = 1.0
+"""Interval of reports on `/diagnostics` [s]."""
+
+_OVERDUE = 2.0
+"""Time without a frame after which the remote site counts as lost [s]."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,20 +45,92 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Relay the wind until the time is over or Ctrl-C."""
-    seconds, token = seconds_of(arguments), read_token(arguments.token_file)
-    writer = WindWriter('geometry_msgs/Vector3Stamped', 'to', 'map')
+    seconds = seconds_of(arguments)
+    url = with_token(arguments.url, read_token(arguments.token_file))
     with Ending() as ending, Listener('tree_sway_relay', arguments.namespace) as site:
-        publisher = site.node.create_publisher(message_class(WIND), WIND.name, qos_profile(WIND))
-
-        def take(frame: Frame, _arrival: float) -> None:
-            publisher.publish(writer.message(frame.stamp, frame.wind))
-
-        url = f'{arguments.url}?token={token}' if token else arguments.url
-        with StreamClient(url, rate=arguments.rate, wind_only=True, on_frame=take) as client:
+        relay = Relay(site.node)
+        with StreamClient(url, rate=arguments.rate, wind_only=True, on_frame=relay.take) as client:
             client.wait()
             print(f'relaying the wind of {client.url}', flush=True)
             end = time.monotonic() + seconds
             while not ending.is_asked and time.monotonic() < end:
                 site.spin(_LOOK)
-            print(f'{client.received} samples, {client.unreadable} unreadable')
+                relay.report(client)
+            print(f'{relay.published} samples, {client.unreadable} unreadable')
     return 0
+
+
+def with_token(url: str, token: str) -> str:
+    """Return the address with a token in its query, unless that is empty."""
+    if not token:
+        return url
+    try:
+        parts = urlsplit(url)
+    except ValueError as error:
+        raise ParameterError(f'not an address ({error})', where='url') from None
+    others = [(name, value) for name, value in parse_qsl(parts.query) if name != 'token']
+    return parts._replace(query=urlencode([*others, ('token', token)])).geturl()
+
+
+class Relay:
+    """
+    Publisher of the remote wind, as long as a sensor measures it there.
+
+    A frame of a paused tree repeats an old wind, and one without a measured wind has the decaying
+    or the calm wind of its solver: neither is a sample.
+    """
+
+    def __init__(self, node: Any) -> None:
+        self.published = 0
+        """Number of samples."""
+        self._writer = WindWriter('geometry_msgs/Vector3Stamped', 'to', 'map')
+        self._node = node
+        self._wind = node.create_publisher(message_class(WIND), WIND.name, qos_profile(WIND))
+        self._diagnostics = node.create_publisher(
+            message_class(DIAGNOSTICS), DIAGNOSTICS.name, qos_profile(DIAGNOSTICS)
+        )
+        self._flags, self._arrival = 0, time.monotonic()
+        self._reported = -_REPORT_EVERY
+        self._text = ''
+
+    def take(self, frame: Frame, _arrival: float) -> None:
+        """Publish the wind of a frame if it is a sample; called by the client's thread."""
+        self._flags, self._arrival = frame.flags, time.monotonic()
+        if not frame.flags & (PAUSED | WIND_LOST):
+            self._wind.publish(self._writer.message(frame.stamp, frame.wind))
+            self.published += 1
+
+    def status(self, client: StreamClient) -> Status:
+        """Status of the wind for `/diagnostics`."""
+        silence = time.monotonic() - self._arrival
+        values: dict[str, object] = {
+            'samples': self.published,
+            'frames': client.received,
+            'unreadable': client.unreadable,
+            'connection': client.state,
+            'age of the last frame [s]': silence,
+        }
+        level, text = OK, f'the wind of {client.url}'
+        if silence > _OVERDUE:
+            level, text = WARN, f'nothing from {client.url} for {silence:.0f} s: {client.problem}'
+        elif self._flags & PAUSED:
+            level, text = WARN, 'nothing is published: the remote tree is paused'
+        elif self._flags & WIND_LOST:
+            level, text = WARN, 'nothing is published: the remote site has no measured wind'
+        return Status('wind', level, text, values)
+
+    def report(self, client: StreamClient) -> None:
+        """Publish the status if it is due, and print it when the wind is lost or back."""
+        now = time.monotonic()
+        if now - self._reported < _REPORT_EVERY:
+            return
+        self._reported = now
+        status = self.status(client)
+        name = self._node.get_fully_qualified_name().lstrip('/')
+        stamp = self._node.get_clock().now().to_msg()
+        array = status_array([status], prefix=name, hardware=client.url, stamp=stamp)
+        self._diagnostics.publish(array)
+        heading = status.message.partition(':')[0]
+        if heading != self._text and (self._text or status.level != OK):
+            print(status.message, flush=True)
+        self._text = heading

@@ -23,7 +23,8 @@ def status_line(recent: StreamTotals, elapsed: float) -> str:
     tip = f' tip {1e3 * recent.poses.length:6.1f} mm |' if recent.poses.largest else ''
     half, most = recent.latency(0.5, 0.95)
     late = f'{1e3 * half:.2f} ms (p95 {1e3 * most:.2f})'
-    return f'{elapsed:6.1f} s | {wind} |{tip} poses {recent.poses.rate:5.1f} Hz, latency {late}'
+    line = f'{elapsed:6.1f} s | {wind} |{tip} poses {recent.poses.rate:5.1f} Hz, latency {late}'
+    return f'{line} | {_foreign(recent)}' if recent.foreign else line
 
 
 def summary(totals: StreamTotals, rate: float) -> str:
@@ -49,7 +50,13 @@ def summary(totals: StreamTotals, rate: float) -> str:
             f'tip      {mean:.1f} mm from rest on average, {most:.1f} at most; '
             f'mean {east:+.1f} east, {north:+.1f} north, {up:+.1f} up'
         )
+    if totals.foreign:
+        lines.append(f'ignored  {_foreign(totals)}')
     return '\n'.join(lines)
+
+
+def _foreign(totals: StreamTotals) -> str:
+    return f'{totals.foreign} pose arrays of another program'
 
 
 def _from(vector: Floats) -> str:

@@ -55,6 +55,8 @@ class StreamTotals:
 
     def __init__(self) -> None:
         self.poses, self.wind = Series(), Series()
+        self.foreign = 0
+        """Number of pose arrays that are not of this tree, which are not counted as poses."""
         self.latencies: deque[float] = deque(maxlen=_LATEST)
 
     def add_poses(self, arrival: float, stamp: float, tip: Floats) -> None:

@@ -26,10 +26,10 @@ class PlayerNode(TreeSwayNode):
         options: dict[str, Any] = {**reader_options(self.values['reader_options'].split())}
         self._record = read_wind(self.values['file'], **options)
         self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
-        self._wind = self.publisher(WIND, self._writer.message_class)
+        has_clock = self.values['publish_clock']
+        self._wind = self.publisher(WIND, self._writer.message_class, is_replay=has_clock)
         for note in self._record.notes:
             self.get_logger().info(note)
-        has_clock = self.values['publish_clock']
         self._ticks: Any = self.publisher(CLOCK) if has_clock else None
         epoch = self._record.epoch
         if has_clock and not is_ros_time(epoch, self._record.time):

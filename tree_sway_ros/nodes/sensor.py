@@ -13,6 +13,7 @@ from tree_sway_ros.link.line_source import LineSource
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import WIND
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
+from tree_sway_ros.reports.recent_counts import is_fault, listed, RecentCounts
 from tree_sway_ros.wire.wind_messages import WindWriter
 
 
@@ -26,6 +27,7 @@ class SensorNode(TreeSwayNode):
         self._kind = self.values['sentence']
         self._accepted = self._other = 0
         self._refused: dict[str, int] = {}
+        self._recent = RecentCounts()
         self._source = LineSource(
             read_address(self.values['address']),
             self.guard.wrapped(self._take),
@@ -63,6 +65,8 @@ class SensorNode(TreeSwayNode):
 
     def _report(self) -> list[Status]:
         source = self._source
+        recent = self._recent.growth({**self._refused, '': self._accepted})
+        refused = {cause: count for cause, count in recent.items() if cause and count}
         values: dict[str, object] = {
             'reading': self._kind,
             'links made': source.links,
@@ -74,5 +78,9 @@ class SensorNode(TreeSwayNode):
         if not source.is_up:
             return [Status('link', WARN, f'no link: {source.failure or "not yet"}', values)]
         if not self._accepted:
-            return [Status('link', WARN, 'no sentence of wind yet', values)]
+            text = f'no sentence of wind yet in {source.lines} lines'
+            return [Status('link', WARN, text, values)]
+        if is_fault(sum(refused.values()), sum(refused.values()) + recent['']):
+            text = f'{self._kind}; lines refused: {listed(refused)}'
+            return [Status('link', WARN, text, values)]
         return [Status('link', OK, f'{self._kind}', values)]

@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 import json
 import math
+import threading
 import time
 from typing import Any
 
@@ -28,8 +30,8 @@ from tree_sway.files.trees.source import open_scene
 from tree_sway.page.controls import ControlPanel, Refused
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import CAMERA, PULL, PUSH, WIND_FILTERED
-from tree_sway_ros.reports.diagnostics import Status, WARN
+from tree_sway_ros.process.topics import CAMERA, PULL, PUSH, SEGMENT_POSES, WIND_FILTERED
+from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.sway_report import SwayReport
 from tree_sway_ros.timing.pacer import Tick
 from tree_sway_ros.wire.pose_stream import PoseStream
@@ -43,6 +45,12 @@ _FARTHEST_CAMERA = 1e6
 
 _STRONGEST_PUSH, _PUSH_LASTS = 1e5, 0.5
 """Largest force [N], and time [s] after which a push ends if it is not repeated."""
+
+_PATIENCE = 0.5
+"""Time [s] of the machine for which a replay waits for a sample."""
+
+_LOOK = 0.05
+"""Interval [s] of checks whether the node is ended while it waits."""
 
 
 class SolverNode(TreeSwayNode):
@@ -93,8 +101,10 @@ class SolverNode(TreeSwayNode):
         if self.values['stiffness_factor'] != 1.0:
             self.simulator.tune(**self.values('stiffness_factor'))
         self._camera: Any = None
-        self._refused: dict[str, tuple[int, str]] = {}
         self._tuned: dict[str, float] = {}
+        self._refused = dict.fromkeys(('camera', 'push', 'pull', 'change'), (0, ''))
+        self._arrived = threading.Event()
+        self._missed: int | None = -1
         self.pacer = self.pacer_of(self._tick)
         self._run = Run(
             self.simulator,
@@ -110,7 +120,7 @@ class SolverNode(TreeSwayNode):
         leaves = source.leaves(settings.in_leaf, _LEAF_CLUSTERS)
         self.stream = PoseStream(self, source.tree, leaves)
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
-        self.subscription(WIND_FILTERED, self._receive)
+        self._topic = self.subscription(WIND_FILTERED, self._receive).topic_name
         self.subscription(CAMERA, self._see)
         names = source.tree.segment_names
         self._segments = {name: number for number, name in enumerate(names)}
@@ -121,11 +131,13 @@ class SolverNode(TreeSwayNode):
         self.create_service(SetBool, '~/pause', self._pause)
         self.report_with(source.tree.name, self._statuses)
 
-    def _receive(self, message: Any) -> None:
+    def _receive(self, message: Any, info: Mapping[str, Any]) -> None:
+        self._sway_report.gaps.note(info)
         sample = wind_from_message(message)
         arrival = int(self.get_clock().now().nanoseconds)
         components = (sample.u, sample.v, sample.w)
-        self._run.offer(sample.stamp, components, arrival, lead=self.clock_lead)
+        self._run.offer(sample.stamp, components, arrival, **self.stamp_limits)
+        self._arrived.set()
 
     def _see(self, message: Any) -> None:
         at = message.pose.position
@@ -169,7 +181,7 @@ class SolverNode(TreeSwayNode):
 
     def _refuse(self, what: str, why: str) -> None:
         """Count refused pushes, for the report."""
-        self._refused[what] = self._refused.get(what, (0, ''))[0] + 1, why
+        self._refused[what] = self._refused[what][0] + 1, why
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Refuse a change that is impossible while the trees sway."""
@@ -214,9 +226,27 @@ class SolverNode(TreeSwayNode):
             self._run.restart(tick.time)
         if self.pacer.is_simulated:  # in a replay every frame is published, however late
             for later in range(tick.periods - 1, -1, -1):
-                self._frame(tick.time - later * self.pacer.period, 1, may_join=False)
+                to = tick.time - later * self.pacer.period
+                self._await_wind(to)
+                self._frame(to, 1, may_join=False)
         else:
             self._frame(tick.time, tick.periods, may_join=True)
+
+    def _await_wind(self, to: int) -> None:
+        """Wait for a sample that acts before a time in [ns], once for each that does not come."""
+        delay, newest = self.values['wind_delay'], self._run.newest
+        if newest == self._missed:
+            return
+        end = time.monotonic() + _PATIENCE
+        while not self.pacer.is_stopping:
+            self._arrived.clear()
+            if not self._run.lacks_wind(to, delay=delay):
+                return
+            left = end - time.monotonic()
+            if left <= 0.0:
+                self._missed = self._run.newest
+                return
+            self._arrived.wait(min(left, _LOOK))
 
     def _frame(self, now: int, periods: int, *, may_join: bool) -> None:
         """Solve up to a time in [ns], and publish due messages."""
@@ -224,7 +254,7 @@ class SolverNode(TreeSwayNode):
         self._run.advance(now, delay=delay, most=periods, may_join=may_join)
         index = now // self.pacer.period
         self.stream.publish(self.simulator, index, now, self.values['publish_every'])
-        self._state.publish(index, now)
+        self._state.publish(index, now, self._run)
 
     def _reset(self, _request: Any, response: Any) -> Any:
         self._run.request(self.simulator.reset)
@@ -237,7 +267,15 @@ class SolverNode(TreeSwayNode):
         return response
 
     def _statuses(self) -> list[Status]:
-        statuses = self._sway_report.statuses(self._run, self.pacer, self.stream.frames)
-        for what, (count, why) in list(self._refused.items()):
-            statuses.append(Status(what, WARN, f'{count} refused: {why}', {'refused': count}))
+        wind = self.publishers_of(self._topic, 'geometry_msgs/Vector3Stamped')
+        poses = self.publishers_of(
+            self.resolve_topic_name(SEGMENT_POSES.name), 'geometry_msgs/PoseArray'
+        )
+        replay = self.clock_rate.rate if self.is_simulated else None
+        statuses = self._sway_report.statuses(
+            self._run, self.pacer, self.stream.frames, replay, wind, poses
+        )
+        for what, (count, why) in self._refused.items():
+            level, text = (WARN, f'{count} refused: {why}') if count else (OK, 'none refused')
+            statuses.append(Status(what, level, text, {'refused': count}))
         return statuses

@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import TreeSwayError
+from tree_sway.page.protocol import PAUSED, WIND_LOST
 from tree_sway.page.scene_state import SceneState
 from tree_sway_ros.process.topics import TREE_STATE
 from tree_sway_ros.timing.divider import Divider
@@ -42,16 +44,17 @@ class StatePublisher:
             finder.start()
             self._node.on_close(lambda: finder.join(timeout=10.0))
 
-    def publish(self, index: int, stamp: int) -> None:
-        """Publish the state if one is due at a tick of that number and time [ns]."""
+    def publish(self, index: int, stamp: int, run: Run) -> None:
+        """Publish the state of a run if one is due at a tick of that number and time [ns]."""
         if not self._every or not self._divider.is_due(index, self._every):
             return
         if self._scene is None or self._publisher.get_subscription_count() == 0:
             return
-        state = np.concatenate([self._simulator.wind, self._scene.coordinates()])
+        flags = PAUSED * run.is_paused + WIND_LOST * run.is_wind_lost
+        state = np.concatenate([self._simulator.wind, [flags], self._scene.coordinates()])
         if len(state) != len(self._template.blocks[0]):
             names = self._scene.coordinate_names
-            names += [f'pulled{k}' for k in range(len(state) - 3 - len(names))]
+            names += [f'pulled{k}' for k in range(len(state) - 4 - len(names))]
             self._template = state_template(names, self._node.values['frame_id'])
         self._template.blocks[0][:] = state
         self._publisher.publish(self._template.to_bytes(stamp))

@@ -16,6 +16,7 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.errors import FormatError, ParameterError
+from tree_sway.page.access import read_token, require_token
 from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET, Refused
 from tree_sway.page.protocol import decode_description, Description, encode_state
 from tree_sway.page.server import PageServer, PageSettings
@@ -57,6 +58,7 @@ class ViewerNode(TreeSwayNode):
             **self.values('max_clients'),
             origins=tuple(self.values['origins'].split()),
         )
+        require_token(self._settings.address, read_token(self._settings.token_file))
         controls = _controls(), self._apply, self._pull
         self._panel = ControlPanel(*controls) if self.values['control'] else None
         self._pulls = self.create_publisher(String, 'solver/pull', qos_profile(PULL))
@@ -64,6 +66,7 @@ class ViewerNode(TreeSwayNode):
         self._described = ''
         self._sequence = 0
         self._subscription: Any = None
+        self._wind_subscription: Any = None
         self._n_samples = 0
         self._counted: deque[tuple[float, int]] = deque(maxlen=_LOOKS)
         self._wind: dict[str, object] = {'kind': 'none'}
@@ -73,25 +76,38 @@ class ViewerNode(TreeSwayNode):
         }
         self._reset = self.create_client(Trigger, 'solver/reset')
         self._pause = self.create_client(SetBool, 'solver/pause')
-        self.server = self._make_server()
+        self.server: PageServer | None = None
         self.subscription(TREE_DESCRIPTION, self._describe)
         self.create_timer(_CHECK_PERIOD, self._look)
         self.report_with('page', self._statuses)
 
     def activate(self) -> None:
-        """Serve the page, by a new server, as one that was closed cannot start again."""
-        self.server.close()
-        self.server = self._make_server()
-        self.server.start()
-        self.on_close(self.server.close)
-        self._described = ''
-        self.get_logger().info(f'the page is at {self.server.url}')
+        """Serve the page."""
+        server = PageServer(
+            self._settings, self._panel, lambda: {'source': 'ROS 2', 'wind': self._wind}
+        )
+        server.start()
+        self.server, self._described = server, ''
+        self.on_close(self._end_page)
+        self.get_logger().info(f'the page is at {server.url}')
+
+    def _end_page(self) -> None:
+        if self.server is not None:
+            self.server.close()
+            self.server = None
+        self._look()
 
     def _look(self) -> None:
-        """Subscribe to the state once a page is connected: until then it need not be computed."""
-        if self._subscription is None and self.server.n_clients > 0:
+        """Subscribe to the state while pages are connected; it is not computed without any."""
+        server = self.server
+        is_seen = server is not None and server.n_clients > 0
+        if is_seen and self._subscription is None:
             self._subscription = self.subscription(TREE_STATE, self._receive)
-            self.subscription(WIND_FILTERED, self._count)
+            self._wind_subscription = self.subscription(WIND_FILTERED, self._count)
+        elif not is_seen and self._subscription is not None:
+            self.destroy_subscription(self._subscription)
+            self.destroy_subscription(self._wind_subscription)
+            self._subscription = self._wind_subscription = None
         self._counted.append((time.monotonic(), self._n_samples))
         self._wind = self._source()
 
@@ -113,7 +129,8 @@ class ViewerNode(TreeSwayNode):
         return {'kind': 'live', 'name': topic, 'rate': round(rate, 1)}
 
     def _describe(self, message: Any) -> None:
-        if message.data == self._described or not self.is_active:
+        server = self.server
+        if message.data == self._described or server is None:
             return
         self._described = message.data
         try:
@@ -123,30 +140,26 @@ class ViewerNode(TreeSwayNode):
         if data is None:
             return
         self._description = decode_description(data)
-        self.server.describe(data)
+        server.describe(data)
 
     def _receive(self, message: Any) -> None:
-        description = self._description
-        if description is None:
+        description, server = self._description, self.server
+        if description is None or server is None:
             return
-        wind, coordinates = read_state(message)
+        wind, coordinates, flags = read_state(message)
         count = len(description.scale)
         if len(coordinates) < count or (len(coordinates) - count) % 2:
             what = f'{len(coordinates)} coordinates of a tree with {count}'
             raise FormatError(what, where='tree_state')
         stamp = stamp_to_ns(message.header.stamp)
-        frame = encode_state(description, self._sequence, stamp, wind, coordinates)
+        frame = encode_state(description, self._sequence, stamp, wind, coordinates, flags)
         self._sequence += 1
-        self.server.publish(frame)
-
-    def _make_server(self) -> PageServer:
-        return PageServer(
-            self._settings, self._panel, lambda: {'source': 'ROS 2', 'wind': self._wind}
-        )
+        server.publish(frame)
 
     def _statuses(self) -> list[Status]:
-        values = {'pages': self.server.n_clients, 'frames': self._sequence}
-        return [Status('page', OK, f'{self.server.n_clients} pages', values)]
+        n_pages = 0 if self.server is None else self.server.n_clients
+        values = {'pages': n_pages, 'frames': self._sequence}
+        return [Status('page', OK, f'{n_pages} pages', values)]
 
     def _apply(self, name: str, value: Any) -> None:
         """Forward a viewer's change to its node; a refusal arrives later."""
@@ -177,10 +190,12 @@ class ViewerNode(TreeSwayNode):
                 f'nothing offers {client.srv_name}', cure='start the node, or do not change this'
             )
 
+        server = self.server
+
         def answered(future: Any) -> None:
             for result in getattr(future.result(), 'results', ()):  # of parameters
-                if not result.successful:
-                    self.server.announce({'refused': {'name': '', 'reason': result.reason}})
+                if not result.successful and server is not None:
+                    server.announce({'refused': {'name': '', 'reason': result.reason}})
 
         client.call_async(request).add_done_callback(answered)
 

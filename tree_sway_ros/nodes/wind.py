@@ -4,9 +4,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from geometry_msgs.msg import Vector3Stamped
+import numpy as np
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 
@@ -43,6 +45,7 @@ class WindNode(TreeSwayNode):
         self._report = WindReport()
         self._convention = WindConvention(**self.values(*_CONVENTION))
         self._intake = WindIntake(self._convention, WindGate(**self.values(*_GATE)))
+        self._convention.force_plane_quaternion(np.array([1.0, 0.0, 0.0]))  # loads what it needs
         self._attitude: Any = None
         self._frames: Any = None
         self._filtered = self.publisher(WIND_FILTERED)
@@ -67,9 +70,10 @@ class WindNode(TreeSwayNode):
         self._convention = WindConvention(**self.values(*_CONVENTION))
         self._intake.convention = self._convention
 
-    def _receive(self, message: Any) -> None:
+    def _receive(self, message: Any, info: Mapping[str, Any]) -> None:
         if not self.is_active:
             return
+        self._report.gaps.note(info)
         sample = wind_from_message(message)
         frame_id, turn = self.values['frame_id'], None
         if sample.frame_id not in ('', frame_id):
@@ -83,7 +87,7 @@ class WindNode(TreeSwayNode):
         components = (sample.u, sample.v, sample.w)
         arrival = self.get_clock().now().nanoseconds or None  # simulated time has not begun
         good = self._intake.offer(
-            sample.stamp, components, arrival, lead=self.clock_lead, rotation=turn
+            sample.stamp, components, arrival, rotation=turn, **self.stamp_limits
         )
         if good is None:
             return
@@ -97,11 +101,13 @@ class WindNode(TreeSwayNode):
 
     def _statuses(self) -> list[Status]:
         gate, others = self._intake.gate, self._types_not_read()
-        statuses = [self._report.status(self.values['timeout'], gate, others)]
+        publishers = self.publishers_of(self._topic, self.values['input_type'])
+        replay = self.clock_rate.rate if self.is_simulated else None
+        wind = self._report.status(self.values['timeout'], gate, others, publishers, replay)
+        level, text = OK, f"the wind is in frame '{self.values['frame_id']}'"
         if self._frames is not None and self._frames.age < _RECENT:
-            level = WARN if self._frames.is_lacking else OK
-            statuses.append(Status('frame', level, self._frames.text))
-        return statuses
+            level, text = WARN if self._frames.is_lacking else OK, self._frames.text
+        return [wind, Status('frame', level, text)]
 
     def _types_not_read(self) -> list[str]:
         """Types other than `input_type` that are published on the topic."""

@@ -9,22 +9,32 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.clock import Clock, ClockType
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.lifecycle import LifecycleNodeMixin, TransitionCallbackReturn
 from rclpy.node import Node
+from rclpy.qos import ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-from tree_sway.core.wind.gate import LARGEST_LEAD
+from tree_sway.core.wind.gate import LONGEST_TRANSPORT
 from tree_sway.errors import TreeSwayError
 from tree_sway_ros.parameters.declaration import ParameterValues
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.process.guard import CallbackGuard
 from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile, Topic
-from tree_sway_ros.reports.diagnostics import Status, status_array, WARN
+from tree_sway_ros.reports.diagnostics import OK, Status, status_array, WARN
+from tree_sway_ros.timing.clock_rate import ClockRate
 from tree_sway_ros.timing.pacer import Pacer, Tick
 from tree_sway_ros.timing.worker import Worker
 
 REPORT_PERIOD = 1.0
 """Interval of reports [s] of wall time, also while simulated time is paused."""
+
+_REPLAY_LIMITS = {'lead': LONGEST_TRANSPORT, 'lag': 5 * LONGEST_TRANSPORT}
+"""
+Further lead and lag [ns] of stamps in simulated time, at its real rate: samples and ticks of the
+clock come by different ways, and wait for a busy process.
+
+"""
 
 _ENTITIES = {
     'publishers': 'destroy_publisher',
@@ -53,6 +63,8 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         self.is_done = self.is_active = False
         self._refusal: Exception | None = None
         self._closers: list[Callable[[], None]] = []
+        self.clock_rate = ClockRate()
+        self.clock_rate.follow(self.get_clock())
         try:
             table = NODE_PARAMETERS[name]
             self.values = ParameterValues(self, table, self.on_change, self.check_values)
@@ -147,29 +159,76 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         """Start a timer, with the guard around the callback."""
         return super().create_timer(period, self.guard.wrapped(callback), *more, **named)
 
-    def publisher(self, topic: Topic, kind: Any = None) -> Any:
-        """Make a publisher of a topic of the table, of a kind where a parameter chooses it."""
+    def publisher(self, topic: Topic, kind: Any = None, *, is_replay: bool | None = None) -> Any:
+        """
+        Make a publisher of a topic of the table, of a kind where a parameter chooses it.
+
+        It is that of a replay in simulated time, unless that is given.
+        """
+        is_replay = self.is_simulated if is_replay is None else is_replay
         return self.create_publisher(
             kind or message_class(topic),
             topic.name,
-            qos_profile(topic),
+            qos_profile(topic, is_replay=is_replay),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
 
-    def subscription(self, topic: Topic, callback: Callable[[Any], None], kind: Any = None) -> Any:
-        """Subscribe to a topic of the table, of a kind where a parameter chooses it."""
-        return self.create_subscription(
-            kind or message_class(topic),
+    def subscription(self, topic: Topic, callback: Callable[..., None], kind: Any = None) -> Any:
+        """
+        Subscribe to a topic of the table, of a kind where a parameter chooses it.
+
+        A reliable subscription to wind, which hears no publisher of best effort, is made again
+        with best effort as soon as there is such a publisher.
+        """
+        message = kind or message_class(topic)
+
+        def fall_back(_event: Any) -> None:
+            if first not in self.subscriptions:
+                return
+            self.get_logger().warning(
+                f"a publisher of '{topic.name}' is best effort: it is heard, but samples may be "
+                'lost'
+            )
+            quality = first.qos_profile
+            quality.reliability = ReliabilityPolicy.BEST_EFFORT
+            self.destroy_subscription(first)
+            self.create_subscription(message, topic.name, callback, quality)
+
+        events = SubscriptionEventCallbacks(incompatible_qos=self.guard.wrapped(fall_back))
+        first = self.create_subscription(
+            message,
             topic.name,
             callback,
-            qos_profile(topic, is_input=True),
+            qos_profile(topic, is_input=True, is_replay=self.is_simulated),
+            event_callbacks=events if topic.replay_depth else None,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
+        return first
 
     @property
-    def clock_lead(self) -> int:
-        """Largest lead of stamps over the clock in [ns]: simulated time stops between ticks."""
-        return LARGEST_LEAD if self.get_clock().ros_time_is_active else 0
+    def is_simulated(self) -> bool:
+        """Whether the clock of the node is simulated time."""
+        return bool(self.get_clock().ros_time_is_active)
+
+    @property
+    def stamp_limits(self) -> dict[str, int]:
+        """
+        Further lead and lag of stamps in [ns], as keywords of `WindGate.offer`.
+
+        Simulated time stops between ticks, and passes faster than messages in a fast replay.
+        """
+        if not self.is_simulated:
+            return {'lead': 0, 'lag': 0}
+        factor = self.clock_rate.factor
+        return {name: round(limit * factor) for name, limit in _REPLAY_LIMITS.items()}
+
+    def publishers_of(self, topic: str, type_name: str) -> list[str]:
+        """Return the full names of the nodes that publish a type ``package/Name`` on a topic."""
+        return [
+            f'{each.node_namespace.rstrip("/")}/{each.node_name}'
+            for each in self.get_publishers_info_by_topic(topic)
+            if each.topic_type.replace('/msg/', '/') == type_name
+        ]
 
     def report_with(self, hardware: str, collect: Callable[[], list[Status]]) -> None:
         """
@@ -184,11 +243,12 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
         self.create_timer(REPORT_PERIOD, self.report, clock=steady)
 
     def report(self) -> None:
-        """Publish one report, with the failures of callbacks if there are any."""
+        """Publish one report, with the failures of callbacks."""
         statuses = self._collect()
-        if self.guard.count:
-            values = {'failed': self.guard.count, 'last': self.guard.latest}
-            statuses.append(Status('callbacks', WARN, f'{self.guard.count} failed', values))
+        failed = self.guard.count
+        values = {'failed': failed, 'last': self.guard.latest}
+        level, text = (WARN, f'{failed} failed') if failed else (OK, 'none failed')
+        statuses.append(Status('callbacks', level, text, values))
         self._diagnostics.publish(
             status_array(
                 statuses,
@@ -206,7 +266,14 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     def pacer_of(self, work: Callable[[Tick], None]) -> Pacer:
         """Make the pacer that calls `work` at the parameter `rate`, by the clock of the node."""
-        return Pacer(self.get_clock(), self.values['rate'], work, self.fail, self.note_failure)
+        return Pacer(
+            self.get_clock(),
+            self.values['rate'],
+            work,
+            self.fail,
+            self.note_failure,
+            self.clock_rate,
+        )
 
     def run_worker(self, worker: Worker) -> None:
         """Start a worker thread; it stops with the node."""
@@ -234,6 +301,7 @@ class TreeSwayNode(LifecycleNodeMixin, Node):  # type: ignore[misc]
 
     def destroy_node(self) -> None:
         """Leave the graph at once, and not when rclpy's state machine is collected."""
+        self.clock_rate.close()
         super().destroy_node()
         if (machine := getattr(self, '_state_machine', None)) is not None:
             machine.destroy_when_not_in_use()

@@ -19,7 +19,9 @@ class Topic:
 
     ``reliable``: lost samples are sent again; ``latched``: a late subscriber receives the last one
     (TRANSIENT_LOCAL); ``depth``: number of stored samples; ``any_input``: our subscriptions accept
-    best effort as well, as of drivers of sensors.
+    best effort as well, as of drivers of sensors; ``replay_depth``: number of stored samples in a
+    replay, where every sample counts. With it, our subscriptions are reliable in simulated time,
+    and fall back to best effort once a publisher offers no more.
     """
 
     name: str
@@ -29,6 +31,7 @@ class Topic:
     latched: bool = False
     depth: int = 1
     any_input: bool = False
+    replay_depth: int = 0
 
 
 _TABLE = yaml.safe_load(Path(__file__).with_name('topics.yaml').read_text(encoding='utf-8'))
@@ -51,13 +54,18 @@ TF = _BY_NAME['/tf']
 TF_STATIC = _BY_NAME['/tf_static']
 
 
-def qos_profile(topic: Topic, *, is_input: bool = False) -> Any:
-    """Quality of service of a topic's publishers, or subscriptions, as rclpy's object."""
+def qos_profile(topic: Topic, *, is_input: bool = False, is_replay: bool = False) -> Any:
+    """
+    Quality of service of a topic's publishers, or subscriptions, as rclpy's object.
+
+    Of the wind in a replay it is deep and reliable.
+    """
     from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-    is_reliable = topic.reliable and not (is_input and topic.any_input)
+    is_strict = is_replay and topic.replay_depth > 0
+    is_reliable = topic.reliable and (is_strict or not (is_input and topic.any_input))
     return QoSProfile(
-        depth=topic.depth,
+        depth=max(topic.depth, topic.replay_depth if is_replay else 0),
         reliability=ReliabilityPolicy['RELIABLE' if is_reliable else 'BEST_EFFORT'],
         durability=DurabilityPolicy['TRANSIENT_LOCAL' if topic.latched else 'VOLATILE'],
     )

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 import time
 
@@ -12,6 +13,7 @@ from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.wind.gate import GateCounts
 from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
+from tree_sway_ros.reports.sequence_gaps import SequenceGaps
 from tree_sway_ros.timing.pacer import Pacer, Timing
 
 _WIND = {
@@ -22,6 +24,9 @@ _WIND = {
     'stale': (STALE, 'no wind: its force has decayed'),
 }
 
+_SHOWN = 5
+"""Largest number of nodes that are named."""
+
 _SILENCE = 1.0
 """Time without a frame [s], of a running clock, after which the stream is reported as halted."""
 
@@ -31,14 +36,57 @@ class SwayReport:
 
     def __init__(self) -> None:
         self._skipped = 0
-        self._frames = 0
+        self._frames = self._late = 0
+        self.gaps = SequenceGaps()
+        """Samples of the wind that were lost on their way to the node."""
         self._time = time.monotonic()
 
-    def statuses(self, run: Run, pacer: Pacer, frames: int) -> list[Status]:
-        """Report on the wind, the output and the model, after a number of pose arrays."""
+    def statuses(
+        self,
+        run: Run,
+        pacer: Pacer,
+        frames: int,
+        replay: float | None = None,
+        winds: Sequence[str] = ('',),
+        poses: Sequence[str] = ('',),
+    ) -> list[Status]:
+        """
+        Report on the wind, the output and the model.
+
+        Parameters
+        ----------
+        run
+            The run of the scene.
+        pacer
+            Pacer of its steps.
+        frames
+            Number of published pose arrays.
+        replay
+            Seconds of the record per second of the machine; None for a live wind.
+        winds, poses
+            Names of the nodes that publish the wind, and the poses.
+
+        """
         output = self._output(pacer.timing(), 1e9 / pacer.period, frames, pacer.is_simulated)
+        wind = _wind(run.wind_state, run.counts)
+        wind = self._of_replay(wind, run, replay, self.gaps.report(len(winds)))
         model = _with_reductions(_model(run.simulator), run.simulator)
-        return [_wind(run.wind_state, run.counts), output, model]
+        return [_mixed(wind, winds), _mixed(output, poses), model]
+
+    def _of_replay(self, wind: Status, run: Run, replay: float | None, lost: int) -> Status:
+        """Add the rate of a replay, and samples that are missing or late in it."""
+        late, self._late = run.late - self._late, run.late
+        values = {**wind.values, 'lost': self.gaps.lost, 'late': run.late}
+        level, text = wind.level, wind.message
+        if replay is not None:
+            values['replay rate'] = replay
+            text = f'replay at {replay:.2g}x: {text}'
+        if lost:
+            level, text = max(level, WARN), f'{text}; {lost} samples lost on the way'
+        if replay is not None and late > 0:
+            text = f'{text}; {late} samples came after their time: raise wind_delay or play slower'
+            level = max(level, WARN)
+        return Status(wind.name, level, text, values)
 
     def _output(self, timing: Timing, rate: float, frames: int, is_simulated: bool) -> Status:
         now = time.monotonic()
@@ -53,6 +101,14 @@ class SwayReport:
             level, text = WARN, f'{skipped} frames skipped, {late}'
         values = {**timing._asdict(), 'wanted': rate, 'published': published, 'frames': frames}
         return Status('output', level, text, values)
+
+
+def _mixed(status: Status, publishers: Sequence[str]) -> Status:
+    """Return a status with a warning if several nodes publish its topic."""
+    if len(publishers) < 2:
+        return status
+    text = f'{len(publishers)} publishers mix: {", ".join(sorted(publishers)[:_SHOWN])}'
+    return replace(status, level=max(status.level, WARN), message=f'{status.message}; {text}')
 
 
 def _wind(state: str, counts: GateCounts) -> Status:

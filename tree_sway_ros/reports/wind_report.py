@@ -4,15 +4,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 import math
 import time
 
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.sensor_timing import SensorTiming
 from tree_sway_ros.reports.diagnostics import OK, STALE, Status, WARN
+from tree_sway_ros.reports.recent_counts import is_fault, listed, RecentCounts
+from tree_sway_ros.reports.sequence_gaps import SequenceGaps
 
 _PERIODS = 3.0
+_REFUSALS = {
+    'not_finite': 'not a number',
+    'sentinel': "a sensor's code for no reading",
+    'too_fast': 'faster than max_speed ({gate.max_speed:g} m/s)',
+    'spike': 'too far from the last good one',
+    'repeated': 'sent twice',
+    'no_time': 'no later than the one before',
+}
+"""Counts of refused samples, and their reasons in words."""
+_STAMPS = {
+    'future_stamp': "ahead of this machine's clock",
+    'old_stamp': "far behind this machine's clock",
+    'out_of_order': 'out of order',
+}
+"""Counts of refused stamps; a driver that gives none at all is no fault."""
+_SHOWN = 5
+"""Largest number of nodes that are named."""
 STALE_AFTER = 5.0
 """Number of time-outs after which a lost wind is stale, and the trees are at rest."""
 
@@ -22,6 +41,9 @@ class WindReport:
 
     def __init__(self) -> None:
         self._timing, self._newest = SensorTiming(0.0), -math.inf
+        self._counts = RecentCounts()
+        self.gaps = SequenceGaps()
+        """Samples that were lost on their way to the node."""
 
     def add(self) -> None:
         """Count a good sample."""
@@ -40,25 +62,53 @@ class WindReport:
         period = self._timing.period or math.inf
         return 0.0 if self.age > 1.0 + 2.0 * period else 1.0 / max(period, 1e-9)
 
-    def status(self, timeout: float, gate: WindGate, types_not_read: Sequence[str] = ()) -> Status:
+    def status(
+        self,
+        timeout: float,
+        gate: WindGate,
+        types_not_read: Sequence[str] = (),
+        publishers: Sequence[str] = ('',),
+        replay: float | None = None,
+    ) -> Status:
         """
-        Report the counts of the gate, and types on the topic that are not read.
+        Report the samples, and why some of them are not used.
 
         The wind counts as lost when its last good sample is older than a timeout [s]; three
         periods of a sensor that is slower.
+
+        Parameters
+        ----------
+        timeout
+            Age of a lost wind in [s].
+        gate
+            Gate of the samples.
+        types_not_read
+            Types of messages on the topic that are not read.
+        publishers
+            Names of the nodes that publish the samples.
+        replay
+            Seconds of the record per second of the machine; None for a live wind.
+
         """
         age, timeout = self.age, max(timeout, _PERIODS * (self._timing.period or 0.0))
+        recent = self._counts.growth(vars(gate.counts))
+        lost = self.gaps.report(len(publishers))
+        refusals = _shares(recent, _REFUSALS, gate)
         values: dict[str, object] = {
             'rate [Hz]': self.rate,
             'age [s]': 'never' if math.isinf(age) else age,
+            'publishers': len(publishers),
+            'lost': self.gaps.lost,
             'refused': gate.counts.refused,
             **vars(gate.counts),
         }
+        if replay is not None:
+            values['replay rate'] = replay
         level, text = OK, f'{self.rate:.1f} Hz'
+        if replay is not None:
+            text = f'replay at {replay:.2g}x, {text}'
         if math.isinf(age):
             level, text = WARN, 'no wind yet'
-            if gate.counts.refused:
-                text += f'; {gate.counts.refused} samples refused'
             if types_not_read:
                 text += f'; set input_type to read {", ".join(types_not_read)}'
         elif age > STALE_AFTER * timeout:
@@ -66,5 +116,34 @@ class WindReport:
         elif age > timeout:
             level, text = WARN, f'no wind for {age:.1f} s, its force decays'
         elif gate.is_frozen:
-            level, text = WARN, 'frozen: the sensor repeats the same sample'
-        return Status('wind', level, text, values)
+            level, text = WARN, f'frozen: the sensor repeats the same sample; {text}'
+        elif gate.is_still:
+            level, text = WARN, f'exactly 0 m/s: calm air at a cup, or a stuck sensor; {text}'
+        faults = []
+        if refusals:
+            faults.append(f'{sum(refusals.values())} of {_total(recent)} samples refused: ')
+            faults[-1] += listed(refusals)
+        elif math.isinf(age) and gate.counts.refused:
+            faults.append(f'{gate.counts.refused} samples refused')
+        if stamps := _shares(recent, _STAMPS, gate):
+            faults.append(f'stamps replaced by the time of arrival: {listed(stamps)}')
+        if lost:
+            faults.append(f'{lost} samples lost on the way')
+        if len(publishers) > 1:
+            shown = ', '.join(sorted(publishers)[:_SHOWN])
+            faults.append(f'{len(publishers)} publishers mix: {shown}')
+        level = max(level, WARN) if faults else level
+        return Status('wind', level, '; '.join([text, *faults]), values)
+
+
+def _total(recent: Mapping[str, int]) -> int:
+    return recent['accepted'] + sum(recent[name] for name in _REFUSALS)
+
+
+def _shares(recent: Mapping[str, int], names: Mapping[str, str], gate: WindGate) -> dict[str, int]:
+    """Return counts of samples by a reason in words; none if they are few."""
+    counts = {names[name]: recent[name] for name in names if recent[name]}
+    total = sum(counts.values())
+    if not is_fault(total, _total(recent)):
+        return {}
+    return {name.format(gate=gate): count for name, count in counts.items()}

@@ -14,13 +14,14 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 import threading
 import time
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from tree_sway_ros.timing.clock_rate import ClockRate
 from tree_sway_ros.timing.worker import Worker
 
 LONGEST_STEP = 500_000_000
@@ -77,6 +78,7 @@ class Pacer(Worker):
     work: Callable[[Tick], None]
     on_error: Callable[[Exception], None]
     on_slip: Callable[[Exception], None] = lambda _error: None
+    clock_rate: ClockRate = field(default_factory=ClockRate)
 
     def __post_init__(self) -> None:
         """Prepare the thread."""
@@ -169,9 +171,13 @@ class Pacer(Worker):
         if periods <= 0:
             return None
         steady = time.monotonic_ns()
-        passed = steady - self._last_steady + self._late  # since the last tick's time on the grid
+        since = steady - self._last_steady
+        passed = since + self._late  # since the last tick's time on the grid
         self._last, self._last_steady, self._late = index, steady, now % self.period
-        most = max(1, LONGEST_STEP // self.period)
+        longest = LONGEST_STEP
+        if self.is_simulated:  # in a fast replay much of it passes while this thread is late
+            longest += round(self.clock_rate.rate * since)
+        most = max(1, longest // self.period)
         if not self.is_simulated:
             # Periods are skipped by elapsed time, not by a wall clock that was set forward.
             self._skipped += min(periods, max(1, round(passed / self.period))) - 1

@@ -19,6 +19,11 @@ class Worker:
         self._stopping = threading.Event()
         self._thread = threading.Thread(name=name)
 
+    @property
+    def is_stopping(self) -> bool:
+        """Whether the thread is to end."""
+        return self._stopping.is_set()
+
     def start(self) -> None:
         """Start the thread; a `TransportError` if the one of before has not ended."""
         if self._thread.is_alive():

@@ -22,6 +22,12 @@ from numpy.typing import NDArray
 from tree_sway.errors import TransportError
 
 _LITTLE_ENDIAN = 1
+_HEADER = 4
+"""Size of the encapsulation header [bytes]; alignment is counted from its end."""
+_NAME = _HEADER + 8
+"""Offset of the size of a frame's name, after the header's stamp."""
+_POSE = 7 * 8
+"""Size of a pose [bytes]."""
 # Patterns that no other field of a message has: both numbers of a stamp, and a number's value.
 # They are longer than the gaps between fields, where the serialiser leaves old bytes.
 _STAMP = 0x5EC0_0000
@@ -107,6 +113,29 @@ def stamp_of(data: bytes) -> int:
     """Stamp of a serialised message that begins with a header, in [ns]."""
     second, nanosecond = struct.unpack_from('<iI', data, 4)
     return int(second * 1_000_000_000 + nanosecond)
+
+
+def poses_of(data: bytes) -> NDArray[np.float64] | None:
+    """
+    Poses of a serialised ``geometry_msgs/PoseArray``, x y z qx qy qz qw, (n, 7).
+
+    None for bytes that end before the poses do.
+    """
+    try:
+        (name_size,) = struct.unpack_from('<I', data, _NAME)
+        at = _aligned(_NAME + 4 + name_size, 4)
+        (count,) = struct.unpack_from('<I', data, at)
+    except struct.error:
+        return None
+    begin = _aligned(at + 4, 8)
+    if len(data) < begin + _POSE * count:
+        return None
+    return np.frombuffer(data, np.float64, 7 * count, begin if count else 0).reshape(count, 7)
+
+
+def _aligned(offset: int, size: int) -> int:
+    """Return the next multiple of a size, counted from the end of the encapsulation header."""
+    return offset + (_HEADER - offset) % size
 
 
 def block_mark(number: int = 0) -> float:

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The state of a tree as `sensor_msgs/JointState`: a name per coordinate, the wind first.
+The state of a tree as `sensor_msgs/JointState`: a name per coordinate; wind and flags first.
 
 With the ``state`` of `tree_description` all poses follow from it; a bag of it can be plotted by
 other programs and takes some 50 MB per hour.
@@ -17,25 +17,29 @@ from sensor_msgs.msg import JointState
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
+from tree_sway.page.protocol import PAUSED, WIND_LOST
 from tree_sway_ros.wire.cdr import block_mark, CdrTemplate, mark_stamp
 
 WIND_NAMES = ('wind/x', 'wind/y', 'wind/z')
 """Wind at the anemometer, blowing to, in [m/s]; the first numbers of a state."""
 
+FLAGS_NAME = 'flags'
+"""Name of the sum of the flags of `protocol`, after the wind; states of old bags have none."""
+
 
 def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
-    """Make the bytes of a state, whose one block has wind [m/s] and coordinates, (3 + m,)."""
+    """Make the bytes of a state: its block has wind [m/s], flags and coordinates, (4 + m,)."""
     message = JointState()
     message.header.frame_id = frame_id
     mark_stamp(message.header.stamp)
-    message.name = [*WIND_NAMES, *coordinate_names]
+    message.name = [*WIND_NAMES, FLAGS_NAME, *coordinate_names]
     message.position = [block_mark(), *[0.0] * (len(message.name) - 1)]
     # Velocities and efforts: two empty lists.
     return CdrTemplate(message, 1, [(len(message.name),)], tail=8)
 
 
-def read_state(message: Any) -> tuple[Floats, Floats]:
-    """Wind (3,) [m/s] and coordinates (m,) of a state; a `FormatError` for wrong names."""
+def read_state(message: Any) -> tuple[Floats, Floats, int]:
+    """Wind (3,) [m/s], coordinates (m,), flags of a state; a `FormatError` for wrong names."""
     if tuple(message.name[:3]) != WIND_NAMES or len(message.name) != len(message.position):
         raise FormatError(
             f'{len(message.position)} positions of {len(message.name)} names',
@@ -45,7 +49,9 @@ def read_state(message: Any) -> tuple[Floats, Floats]:
     values = np.array(message.position, dtype=np.float64)
     if not np.isfinite(values).all():
         raise FormatError('a state that is not finite', where='tree_state')
-    return values[:3], values[3:]
+    if tuple(message.name[3:4]) != (FLAGS_NAME,):
+        return values[:3], values[3:], 0
+    return values[:3], values[4:], int(values[3]) & (PAUSED | WIND_LOST)
 
 
 def state_entry(description: bytes) -> dict[str, str]:

@@ -247,3 +247,40 @@ def test_a_dropout_is_clamped_then_fades_and_the_wind_comes_back_without_a_step(
     assert 0.0 < winds[1190] < 0.2  # after 13 s of tau 3 s
     assert winds[-1] == pytest.approx(8.0)
     assert np.abs(np.diff(winds[10:])).max() < 0.5
+
+
+def sampled(made, times):
+    for number in times:
+        made.offer(START + number * 50_000_000, (5.0, 0.0, 0.0))
+
+
+def test_a_sample_that_is_due_is_missed_until_it_arrives():
+    made = running(Recorder())
+    sampled(made, range(5))
+    made.advance(START + 200_000_000)
+    newest = START + 200_000_000
+    assert not made.lacks_wind(newest + 40_000_000)
+    assert made.lacks_wind(newest + 50_000_000)
+    assert not made.lacks_wind(newest + 50_000_000, delay=0.02)
+    sampled(made, (5,))
+    assert not made.lacks_wind(newest + 50_000_000)
+
+
+def test_nothing_is_missed_of_a_sensor_that_nobody_has_heard():
+    made = running(Recorder())
+    assert not made.lacks_wind(START + 10 * SECOND)
+    sampled(made, (0,))
+    assert not made.lacks_wind(START + 10 * SECOND)
+
+
+def test_samples_after_the_step_of_their_time_are_counted():
+    made = running(Recorder())
+    sampled(made, range(5))
+    made.advance(START + 300_000_000, delay=0.02)
+    assert made.late == 0
+    sampled(made, (5,))  # at 250 ms, where the steps are at 280 ms
+    assert made.late == 1
+    sampled(made, (6,))
+    assert made.late == 1
+    made.restart(START)
+    assert made.late == 0

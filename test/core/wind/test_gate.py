@@ -165,7 +165,10 @@ def test_a_calm_of_zeros_is_not_frozen():
     gate = WindGate()
     offer_all(gate, [(0.0, 0.0, 0.0)] * 600)
     assert not gate.is_frozen
+    assert gate.is_still
     assert gate.counts.accepted == 600
+    offer(gate, 60.0, (0.0, 0.1, 0.0))
+    assert not gate.is_still
 
 
 class TestStamps:
@@ -302,6 +305,20 @@ class TestStamps:
             stamp = 100 * SECOND + i * SECOND // 20
             tick = stamp - stamp % (SECOND // 10)  # two samples for each tick of the clock
             verdict = gate.offer(stamp, (3.0 + 0.01 * i, 0.0, 0.0), tick, lead=LARGEST_LEAD)
+            assert verdict[:3] == (True, 'accepted', stamp)
+
+    def test_in_a_fast_replay_a_late_sample_keeps_its_stamp(self):
+        """At 5x, 3 s of the clock are 0.6 s of the machine; without the lag it is a fault."""
+        for lag, expected in ((8 * SECOND, 97), (0, 100)):
+            gate = WindGate()
+            verdict = gate.offer(97 * SECOND, (3.0, 0.0, 0.0), 100 * SECOND, lag=lag)
+            assert verdict.time == expected * SECOND
+
+    def test_in_a_fast_replay_samples_may_come_before_a_tick_that_is_late(self):
+        gate = WindGate()
+        for i in range(100):
+            stamp = 100 * SECOND + i * SECOND // 20
+            verdict = gate.offer(stamp, (3.0, 0.01 * i, 0.0), 100 * SECOND, lead=10 * SECOND)
             assert verdict[:3] == (True, 'accepted', stamp)
 
     def test_why_a_stamp_was_not_believed_is_counted(self):

@@ -126,5 +126,10 @@ def test_a_full_disk_is_one_line_and_leaves_what_was_written(tmp_path: Path, sto
     assert 'cannot be written to' in ended.stdout
     (file,) = (each for each in (tmp_path / 'bag').iterdir() if each.suffix != '.yaml')
     assert file.read_bytes().count(bytes(1000)) > 20
-    if storage == 'sqlite3':
+    if storage == 'mcap':
+        assert "'mcap recover' restores the written part" in ended.stdout
+        with pytest.raises(FormatError, match="repair it with 'mcap recover'"):
+            read_bag(tmp_path / 'bag', [STATE_TYPE])
+    else:
+        assert 'the written part can be read' in ended.stdout
         assert len(read_bag(tmp_path / 'bag', [STATE_TYPE]).messages['/state']) > 20

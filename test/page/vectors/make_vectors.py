@@ -30,7 +30,14 @@ from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.page.description import describe_scene
-from tree_sway.page.protocol import decode_description, encode_frame, Frame, PAUSED, quantised
+from tree_sway.page.protocol import (
+    decode_description,
+    encode_frame,
+    Frame,
+    PAUSED,
+    quantised,
+    WIND_LOST,
+)
 
 HERE = Path(__file__).parent
 N_COORDINATES = 5
@@ -114,7 +121,7 @@ def main() -> None:
         values = size * scale * rng.uniform(-1.0, 1.0, len(scale))
         steps, _ = quantised(values, scale)
         wind = 4.0 * number * np.array([1.0, -0.5, 0.05])
-        flags = PAUSED if number == 1 else 0
+        flags = (0, PAUSED, WIND_LOST, 0)[number]
         stamp = 1_700_000_000_000_000_000 + 16_666_667 * number
         frame = Frame(description.short_identity, 2**32 - 2 + number, stamp, flags, wind, steps)
         (HERE / f'frame{number}.bin').write_bytes(encode_frame(frame))

@@ -4,11 +4,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 import subprocess
 import sys
 import threading
 import time
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,10 +19,22 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.page.protocol import decode_description, encode_state  # noqa: E402
+from tree_sway.page.protocol import (  # noqa: E402
+    decode_description,
+    encode_state,
+    PAUSED,
+    WIND_LOST,
+)
 from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway_ros.process.composition import Composition  # noqa: E402
 from tree_sway_ros.process.listener import Listener  # noqa: E402
-from tree_sway_ros.process.topics import message_class, qos_profile, WIND  # noqa: E402
+from tree_sway_ros.process.topics import (  # noqa: E402
+    DIAGNOSTICS,
+    message_class,
+    qos_profile,
+    WIND,
+)
+from tree_sway_ros.reports.diagnostics import OK, WARN  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
@@ -28,53 +43,142 @@ DESCRIPTION = (ROOT / 'test' / 'page' / 'vectors' / 'description.bin').read_byte
 DEADLINE = 60.0
 
 
-def publish_until(server: PageServer, ended: threading.Event) -> None:
-    """Publish states at rest in an east wind of 3 m/s, 60 times per second."""
-    described = decode_description(DESCRIPTION)
-    wind, still = np.array([3.0, 0.0, 0.0]), np.zeros(len(described.scale))
-    sequence = 0
-    while not ended.wait(1.0 / 60.0):
-        server.publish(encode_state(described, sequence, time.time_ns(), wind, still))
-        sequence += 1
+class Site:
+    """A page whose tree rests in an east wind of 3 m/s, 60 times per second."""
+
+    def __init__(self, server: PageServer) -> None:
+        self._server, self._ended = server, threading.Event()
+        self._thread = threading.Thread(target=self._publish)
+        self.flags = 0
+
+    def __enter__(self) -> Site:
+        self._server.describe(DESCRIPTION)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ended.set()
+        self._thread.join()
+
+    def _publish(self) -> None:
+        described = decode_description(DESCRIPTION)
+        wind, still = np.array([3.0, 0.0, 0.0]), np.zeros(len(described.scale))
+        sequence = 0
+        while not self._ended.wait(1.0 / 60.0):
+            stamp = time.time_ns()
+            frame = encode_state(described, sequence, stamp, wind, still, self.flags)
+            self._server.publish(frame)
+            sequence += 1
 
 
-def test_the_wind_of_a_page_is_published_as_a_driver_would(
-    ros_environment: dict[str, str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+class Ear(Listener):
+    """What the relay publishes: samples, and the newest status."""
+
+    def __init__(self) -> None:
+        super().__init__('ear')
+        self.heard: list[Any] = []
+        self.said: list[Any] = []
+        for topic, store in ((WIND, self.heard), (DIAGNOSTICS, self.said)):
+            quality = qos_profile(topic, is_input=True)
+            kind = message_class(topic)
+            self.node.create_subscription(kind, topic.name, store.append, quality)
+
+    def until(self, holds: Callable[[], object]) -> None:
+        """Listen until something is true; fail after the deadline."""
+        end = time.monotonic() + DEADLINE
+        while not holds():
+            assert time.monotonic() < end
+            self.spin(0.05)
+
+    def status(self) -> tuple[int, str]:
+        """Level and message of the newest status."""
+        if not self.said:
+            return -1, ''
+        status = self.said[-1].status[0]
+        return status.level[0], status.message
+
+
+@pytest.fixture
+def own_domain(ros_environment: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in ros_environment.items():
         monkeypatch.setenv(name, value)
-    token = tmp_path / 'token'
-    token.write_text('long enough\n')
-    token.chmod(0o600)
-    ended, heard = threading.Event(), []
-    with PageServer(PageSettings(port=0, token_file=str(token))) as server, Listener('ear') as ear:
-        server.describe(DESCRIPTION)
-        sender = threading.Thread(target=publish_until, args=(server, ended))
-        sender.start()
-        quality = qos_profile(WIND, is_input=True)
-        ear.node.create_subscription(message_class(WIND), WIND.name, heard.append, quality)
-        command = [sys.executable, '-m', 'tree_sway.commands.cli', 'relay', server.url]
-        relay = subprocess.Popen(
-            [*command, '--token-file', str(token)], cwd=ROOT, text=True, stderr=subprocess.PIPE,
-        )  # fmt: skip
-        try:
-            end = time.monotonic() + DEADLINE
-            while len(heard) < 10 and relay.poll() is None and time.monotonic() < end:
-                ear.spin(0.1)
-            relay.terminate()
-            _, errors = relay.communicate(timeout=DEADLINE)
-        finally:
-            ended.set()
-            relay.kill()
-            sender.join()
-    assert len(heard) >= 10, errors
-    assert relay.returncode == 0
-    stamps = [each.header.stamp.sec + 1e-9 * each.header.stamp.nanosec for each in heard]
+
+
+@contextmanager
+def relaying(url: str, *arguments: str) -> Iterator[subprocess.Popen[str]]:
+    """Run the command, which ends without an error."""
+    command = [sys.executable, '-m', 'tree_sway.commands.cli', 'relay', url, *arguments]
+    pipe = subprocess.PIPE
+    relay = subprocess.Popen(command, cwd=ROOT, text=True, stderr=pipe, stdout=pipe)
+    try:
+        yield relay
+        relay.terminate()
+        _, errors = relay.communicate(timeout=DEADLINE)
+        assert (relay.returncode, errors) == (0, '')
+    finally:
+        relay.kill()
+        relay.wait()
+
+
+@pytest.mark.usefixtures('own_domain')
+@pytest.mark.parametrize('token', ['long enough', 'a+b/c&d=e%f#g?h'])
+def test_the_wind_of_a_page_is_published_as_a_driver_would(tmp_path: Path, token: str) -> None:
+    file = tmp_path / 'token'
+    file.write_text(f'{token}\n')
+    file.chmod(0o600)
+    settings = PageSettings(port=0, token_file=str(file))
+    with PageServer(settings) as server, Site(server), Ear() as ear:
+        with relaying(server.url, '--token-file', str(file)) as relay:
+            ear.until(lambda: len(ear.heard) >= 10 or relay.poll() is not None)
+    assert len(ear.heard) >= 10
+    stamps = [each.header.stamp.sec + 1e-9 * each.header.stamp.nanosec for each in ear.heard]
     assert (np.diff(stamps) > 0.0).all()
     assert abs(stamps[-1] - time.time()) < DEADLINE
-    assert {(each.vector.x, each.vector.y) for each in heard} == {(3.0, 0.0)}
+    assert {(each.vector.x, each.vector.y) for each in ear.heard} == {(3.0, 0.0)}
 
 
-def test_what_is_no_address_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(['relay', 'http://[', '--seconds', '1']) == 2
-    assert 'not an address' in capsys.readouterr().err
+@pytest.mark.usefixtures('own_domain')
+@pytest.mark.parametrize(
+    ('flag', 'reason'), [(WIND_LOST, 'no measured wind'), (PAUSED, 'tree is paused')]
+)
+def test_a_wind_that_nobody_measures_is_not_published(flag: int, reason: str) -> None:
+    with PageServer(PageSettings(port=0)) as server, Site(server) as site, Ear() as ear:
+        with relaying(server.url):
+            ear.until(lambda: len(ear.heard) > 3 and ear.status()[0] == OK)
+            site.flags = flag
+            ear.until(lambda: ear.status()[0] == WARN)
+            assert reason in ear.status()[1]
+            n_heard, n_said = len(ear.heard), len(ear.said)
+            ear.until(lambda: len(ear.said) > n_said + 1)
+            assert len(ear.heard) == n_heard
+            site.flags = 0
+            ear.until(lambda: len(ear.heard) > n_heard + 3 and ear.status()[0] == OK)
+
+
+@pytest.mark.usefixtures('own_domain')
+def test_the_wind_of_a_dead_anemometer_is_not_published() -> None:
+    """Over the nodes of the remote site, whose anemometer is killed."""
+    with Composition({}) as nodes:
+        tree = {'tree': 'goldcrest', 'model': '20'}
+        nodes.add('solver', tree, namespace='remote')
+        nodes.add('wind', {}, namespace='remote')
+        viewer = nodes.add('viewer', {'port': 0}, namespace='remote')
+        mast = nodes.add('anemometer', {}, namespace='remote')
+        with Ear() as ear, relaying(viewer.server.url):
+            ear.until(lambda: len(ear.heard) > 10)
+            mast.stop()
+            ear.until(lambda: ear.status()[0] == WARN and 'no measured wind' in ear.status()[1])
+            n_heard, n_said = len(ear.heard), len(ear.said)
+            ear.until(lambda: len(ear.said) > n_said + 1)
+            assert len(ear.heard) == n_heard
+        nodes.check()
+
+
+@pytest.mark.parametrize(
+    ('url', 'reason'), [('http://[', 'not an address'), ('there:8765', 'http:// or https://')]
+)
+def test_what_is_no_address_is_refused(
+    capsys: pytest.CaptureFixture[str], url: str, reason: str
+) -> None:
+    assert main(['relay', url, '--seconds', '1']) == 2
+    assert reason in capsys.readouterr().err

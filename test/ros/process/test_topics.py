@@ -18,6 +18,7 @@ from tree_sway_ros.process.topics import (
     TOPICS,
     TREE_DESCRIPTION,
     WIND,
+    WIND_FILTERED,
 )
 
 
@@ -36,6 +37,15 @@ def test_any_driver_matches_the_wind():
     assert qos_profile(WIND).reliability == ReliabilityPolicy.RELIABLE
     assert qos_profile(WIND, is_input=True).reliability == ReliabilityPolicy.BEST_EFFORT
     assert not WIND.latched
+
+
+@pytest.mark.parametrize('topic', [WIND, WIND_FILTERED], ids=lambda topic: topic.name)
+def test_a_replay_loses_no_wind(topic):
+    """Both ends are reliable, and hold ten seconds of a sonic at 100 Hz and more."""
+    for is_input in (False, True):
+        quality = qos_profile(topic, is_input=is_input, is_replay=True)
+        assert quality.reliability == ReliabilityPolicy.RELIABLE
+        assert quality.depth >= 1000
 
 
 def test_the_description_waits_for_late_joiners():

@@ -19,7 +19,8 @@ from tree_sway_ros.reports.diagnostics import (  # noqa: E402
     status_array,
     WARN,
 )
-from tree_sway_ros.reports.sway_report import SwayReport  # noqa: E402
+from tree_sway_ros.reports.sequence_gaps import SequenceGaps  # noqa: E402
+from tree_sway_ros.reports.sway_report import _wind, SwayReport  # noqa: E402
 from tree_sway_ros.reports.wind_report import STALE_AFTER, WindReport  # noqa: E402
 from tree_sway_ros.timing.pacer import Timing  # noqa: E402
 
@@ -107,6 +108,111 @@ def test_refused_samples_are_no_wind(clock):
     assert status.values['not_finite'] == 1
 
 
+def offered(report, gate, clock, samples, every=SECOND // 20):
+    """Offer samples at 20 Hz, and return the last of the reports of each second."""
+    for k, sample in enumerate(samples):
+        clock.now += 1e-9 * every
+        if gate.offer(SECOND + k * every, sample).accepted:
+            report.add()
+        if k % 20 == 19:
+            status = report.status(TIMEOUT, gate)
+    return status
+
+
+def test_every_second_sample_without_a_reading_is_a_warning(clock):
+    """And one such sample in a minute is not."""
+    good, bad = (3.0, 0.0, 0.0), (999.99, 0.0, 0.0)
+    samples = [(3.0 + 0.1 * (k % 2), 0.0, 0.0) for k in range(1200)]
+    assert offered(WindReport(), WindGate(), clock, [*samples[:600], bad, *samples]).level == OK
+    status = offered(WindReport(), WindGate(), clock, [good, bad] * 100)
+    assert status.level == WARN
+    assert "60 of 120 samples refused: 60 a sensor's code for no reading" in status.message
+
+
+def test_a_refused_storm_says_that_it_is_too_fast(clock):
+    report, gate = WindReport(), WindGate()
+    status = offered(report, gate, clock, [(45.0, 0.0, 0.0)] * 40)
+    assert status.level == WARN
+    assert 'no wind yet' in status.message
+    assert '40 of 40 samples refused: 40 faster than max_speed (40 m/s)' in status.message
+    report, gate = WindReport(), WindGate()
+    calm = [(3.0 + 0.1 * (k % 2), 0.0, 0.0) for k in range(100)]
+    status = offered(report, gate, clock, calm + [(45.0, 0.0, 0.0)] * 100)
+    assert 'no wind for 5' in status.message
+    assert '100 faster than max_speed (40 m/s)' in status.message
+
+
+def test_samples_of_zero_are_a_warning(clock):
+    report, gate = WindReport(), WindGate(frozen_after=10.0)
+    assert offered(report, gate, clock, [(0.0, 0.0, 0.0)] * 100).level == OK
+    status = offered(report, gate, clock, [(0.0, 0.0, 0.0)] * 300)
+    assert (status.level, gate.counts.frozen) == (WARN, 0)
+    assert 'exactly 0 m/s' in status.message
+
+
+def test_several_publishers_are_named(clock):
+    report, gate = WindReport(), WindGate()
+    report.add()
+    one = report.status(TIMEOUT, gate, publishers=('/mast',))
+    assert (one.level, one.values['publishers']) == (OK, 1)
+    two = report.status(TIMEOUT, gate, publishers=('/roof', '/mast'))
+    assert two.level == WARN
+    assert '2 publishers mix: /mast, /roof' in two.message
+
+
+def test_a_replay_is_no_live_wind(clock):
+    report, gate = WindReport(), WindGate()
+    report.add()
+    assert 'replay at 5x' in report.status(TIMEOUT, gate, replay=5.002).message
+
+
+def numbered(gaps, numbers):
+    for number in numbers:
+        gaps.note({'publication_sequence_number': number})
+
+
+def test_lost_samples_are_counted_by_their_numbers(clock):
+    report, gate = WindReport(), WindGate()
+    report.add()
+    numbered(report.gaps, (7, 8, 11, 12))
+    status = report.status(TIMEOUT, gate)
+    assert (status.level, status.values['lost']) == (WARN, 2)
+    assert '2 samples lost on the way' in status.message
+    assert report.status(TIMEOUT, gate).level == OK
+    numbered(report.gaps, (1, 2, 3))  # the publisher was started again
+    assert report.status(TIMEOUT, gate).values['lost'] == 2
+
+
+@pytest.mark.parametrize('info', [{}, {'publication_sequence_number': None}])
+def test_middleware_without_numbers_counts_nothing(info):
+    gaps = SequenceGaps()
+    gaps.note(info)
+    assert gaps.report(1) == 0
+
+
+def test_numbers_of_two_publishers_are_no_gaps():
+    gaps = SequenceGaps()
+    numbered(gaps, (1, 900, 2, 901))
+    assert gaps.report(2) == 0
+    numbered(gaps, (903, 904))  # one of them has ended in this second
+    assert gaps.report(1) == 0
+    numbered(gaps, (905, 907))
+    assert gaps.report(1) == 1
+
+
+def test_late_samples_of_a_replay_are_a_warning():
+    report, run = WindOfSolver(), LateRun()
+    quiet = report.told(run, 1.0)
+    assert (quiet.level, quiet.message) == (OK, 'replay at 1x: live')
+    run.late = 3
+    late = report.told(run, 1.0)
+    assert late.level == WARN
+    assert '3 samples came after their time' in late.message
+    assert report.told(run, 1.0).level == OK
+    run.late = 9
+    assert report.told(run, None).level == OK  # a live wind is late by its transport
+
+
 def test_a_frozen_sensor_is_named(clock):
     report, gate = WindReport(), WindGate(frozen_after=1.0)
     for k in range(30):
@@ -114,6 +220,19 @@ def test_a_frozen_sensor_is_named(clock):
         report.add()
     status = report.status(TIMEOUT, gate)
     assert (status.level, status.message[:6]) == (WARN, 'frozen')
+
+
+class LateRun:
+    """The counts of a run."""
+
+    wind_state, counts, late = 'live', GateCounts(), 0
+
+
+class WindOfSolver(SwayReport):
+    """The status of the wind alone."""
+
+    def told(self, run, replay):
+        return self._of_replay(_wind(run.wind_state, run.counts), run, replay, 0)
 
 
 def timing_of(skipped, silence=0.0):
@@ -141,8 +260,6 @@ def test_a_stream_that_stops_is_a_warning_unless_simulated_time_does():
     [('none', WARN), ('live', OK), ('holding', OK), ('decaying', WARN), ('stale', STALE)],
 )
 def test_every_state_of_the_wind_has_a_level(state, level):
-    from tree_sway_ros.reports.sway_report import _wind
-
     status = _wind(state, GateCounts(accepted=7, spike=2, no_time=1))
     assert status.level == level
     assert (status.values['refused'], status.values['spike']) == (3, 2)

@@ -13,6 +13,7 @@ from rclpy.clock import ROSClock  # noqa: E402
 from rclpy.time import Time  # noqa: E402
 
 from tree_sway_ros.timing import pacer  # noqa: E402
+from tree_sway_ros.timing.clock_rate import ClockRate  # noqa: E402
 from tree_sway_ros.timing.pacer import LONGEST_STEP, Pacer, PATIENCE  # noqa: E402
 
 DEADLINE = 10.0
@@ -131,6 +132,20 @@ def test_a_jump_forward_is_no_long_step(ticks):
     paced.set(1000 * 10**9, wait_for=2)
     assert paced.seen[1].periods * PERIOD <= LONGEST_STEP
     assert paced.pacer.timing().clamped == 1
+
+
+def test_a_late_thread_in_a_fast_replay_skips_nothing(monkeypatch):
+    """At 20x, 0.2 s of the machine are 4 s of the clock; 3600 s in the same time are a jump."""
+    wall = Wall(monkeypatch)
+    wall.ros_time_is_active = True
+    rate = ClockRate()
+    rate.rate = 20.0
+    paced = Pacer(wall, 50.0, print, print, clock_rate=rate)
+    paced._due(wall.wall)
+    assert paced._due(wall.go(0.2, wall=4.0)).periods == 200
+    assert paced.timing().clamped == 0
+    assert paced._due(wall.go(0.2, wall=3600.0)).periods <= 50 * (20.0 * 0.2 + 0.5)
+    assert paced.timing().clamped == 1
 
 
 def test_work_that_takes_too_long_skips_frames_without_a_backlog(ticks):

@@ -9,12 +9,17 @@ pytestmark = pytest.mark.ros
 from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion  # noqa: E402, I100
 from hypothesis import given, settings  # noqa: E402
 from hypothesis import strategies as st  # noqa: E402
-from rclpy.serialization import deserialize_message  # noqa: E402
+from rclpy.serialization import deserialize_message, serialize_message  # noqa: E402
 from sensor_msgs.msg import PointCloud2  # noqa: E402
 from std_msgs.msg import String  # noqa: E402
 
 from tree_sway.errors import TransportError  # noqa: E402
-from tree_sway_ros.wire.cdr import CdrTemplate, mark_stamp, pose_array_template  # noqa: E402
+from tree_sway_ros.wire.cdr import (  # noqa: E402
+    CdrTemplate,
+    mark_stamp,
+    pose_array_template,
+    poses_of,
+)
 
 FRAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=12)
 
@@ -38,6 +43,21 @@ def test_bytes_say_what_objects_say(n_poses, frame_id, stamp, seed):
     template.blocks[0][:] = poses
     message = deserialize_message(template.to_bytes(stamp), PoseArray)
     assert message == built(poses, frame_id, stamp)
+
+
+@settings(deadline=None)
+@given(st.integers(0, 5), FRAMES, st.integers(0, 2**32))
+def test_poses_are_read_as_the_middleware_writes_them(n_poses, frame_id, seed):
+    poses = np.random.default_rng(seed).normal(size=(n_poses, 7))
+    data = bytes(serialize_message(built(poses, frame_id, 5)))
+    np.testing.assert_array_equal(poses_of(data), poses)
+    for size in range(len(data) - 4 if n_poses else 16):  # the end may be padding
+        cut = poses_of(data[:size])
+        assert cut is None or len(cut) == 0 == n_poses
+
+
+def test_a_name_that_is_longer_than_the_message_is_no_pose():
+    assert poses_of(bytes(12) + b'\xff\xff\xff\xff' + bytes(40)) is None
 
 
 @pytest.mark.parametrize('n_poses', [0, 1, 1000])

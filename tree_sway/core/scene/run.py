@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+import math
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,7 @@ _BLOCK = 10_000_000_000_000
 """Times in seconds are relative to a multiple of this [ns]: few digits, the same in every run."""
 
 _QUEUE = 4096
+_EARLIEST = 0.9  # of the period of a sensor, after which its next sample is expected
 _PULL_LASTS = 0.5
 _WARM_FRAMES = 20
 _LONGEST_REASON = 400
@@ -92,12 +94,21 @@ class Run:
         """Number of requests that failed, and changed nothing."""
         self.wind_state = 'none'
         """State of the wind: none, live, holding, decaying or stale, as `WindAverage.state`."""
+        self.late = 0
+        """Number of samples that arrived after the step of their time, since the last restart."""
+        self.newest: int | None = None
+        """Time of the newest sample in [ns]; None before any."""
         self._make_wind, self._stepped, self._timer = make_wind, stepped, timer
         self._wind = make_wind()
         self._samples: deque[GoodWind] = deque(maxlen=_QUEUE)
         self._requests: deque[tuple[Callable[[], object], Refused]] = deque(maxlen=_QUEUE)
         self._index: int | None = None
-        self._origin, self._felt, self._cost = 0, 0.0, 0.0
+        self._origin, self._felt, self._cost = 0, -math.inf, 0.0
+
+    @property
+    def is_wind_lost(self) -> bool:
+        """Whether no sample is in use: none yet, or the last one is older than its time-out."""
+        return self.wind_state in ('none', 'decaying', 'stale')
 
     @property
     def time(self) -> int | None:
@@ -130,8 +141,29 @@ class Run:
         """Check a sample as `WindIntake.offer`; returns it if accepted, else None."""
         good = self.intake.offer(stamp, components, arrival, **how)
         if good is not None:
+            is_late = self._index is not None and self._seconds(good.time) <= self._felt
+            self.late += is_late
             self._samples.append(good)
+            self.newest = good.time
         return good
+
+    def lacks_wind(self, to: int, *, delay: float = 0.0) -> bool:
+        """
+        Whether the next sample of a regular sensor acts before a time, and has not arrived.
+
+        Parameters
+        ----------
+        to
+            End of the step in [ns].
+        delay
+            Delay of the wind in [s], as for `advance`.
+
+        """
+        period, newest = self._wind.period, self.newest
+        if newest is None or period is None:
+            return False
+        expected = self._seconds(newest) + self._wind.lateness + _EARLIEST * period
+        return self._seconds(to) - delay >= expected
 
     def request(
         self, action: Callable[[], object], refused: Refused = lambda reason: None
@@ -179,6 +211,7 @@ class Run:
         self._begin(time)
         self._wind = self._make_wind()
         self._samples.clear()
+        self.newest, self.late, self._felt = None, 0, -math.inf
         self.intake.gate.reset()
         self.simulator.reset()
 

@@ -83,6 +83,11 @@ class WindAverage:
         """Estimated period of the sensor in [s]; None before the second sample."""
         return self._timing.period
 
+    @property
+    def lateness(self) -> float:
+        """Estimated time in [s] by which samples arrive after the step of their time."""
+        return self._timing.lateness
+
     def add(self, time: float, vector: ArrayLike) -> bool:
         """
         Add a sample.

@@ -146,7 +146,8 @@ class WindGate:
         frozen_after: float = 10.0,
     ) -> None:
         """Begin without samples."""
-        self._max_speed = within('max_speed', max_speed, 0.0, FASTEST_WIND, 'm/s', above=True)
+        self.max_speed = within('max_speed', max_speed, 0.0, FASTEST_WIND, 'm/s', above=True)
+        """Largest speed of accepted samples [m/s]."""
         self._max_rate = within('max_rate', max_rate, 0.0, 1e4, 'm/s^2', above=True)
         refusal = within('longest_refusal', longest_refusal, 0.0, 60.0, 's')
         frozen = within('frozen_after', frozen_after, 0.0, 1e5, 's', above=True)
@@ -166,9 +167,17 @@ class WindGate:
         self._equal_since = 0
         self.is_frozen = False
         """Whether the sensor repeats one reading for longer than a live sensor."""
+        self.is_still = False
+        """Whether the reading is exactly zero for that long: calm air, or a stuck sensor."""
 
     def offer(
-        self, stamp: int, vector: ArrayLike, arrival: int | None = None, *, lead: int = 0
+        self,
+        stamp: int,
+        vector: ArrayLike,
+        arrival: int | None = None,
+        *,
+        lead: int = 0,
+        lag: int = 0,
     ) -> Verdict:
         """
         Check a sample.
@@ -182,8 +191,11 @@ class WindGate:
         arrival
             Time of arrival in [ns], on the clock of the stamps; None if unknown.
         lead
-            Further lead that stamps may have in [ns]: 0 for a running clock, up to one tick for
-            simulated time, which is constant in between.
+            Further lead that stamps may have in [ns]: 0 for a running clock; in simulated time,
+            which is constant between two ticks, the time that passes while a tick is on its way.
+        lag
+            Further age that stamps may have in [ns], where simulated time is faster than the
+            transport: 0 for a running clock.
 
         Returns
         -------
@@ -198,7 +210,7 @@ class WindGate:
         """
         x, y, z = three_numbers('wind', vector)
         is_repeated = 0 < stamp == self._stamp and (x, y, z) == self._seen
-        time = self._time_of(stamp, arrival, lead)
+        time = self._time_of(stamp, arrival, lead, lag)
         since = 1e-9 * (time - self._time)
         if is_repeated:
             reason = 'repeated'
@@ -208,11 +220,7 @@ class WindGate:
             reason = self._judge(time, x, y, z)
             self._time, self._stamp = time, stamp
             self._arrival = stamp if arrival is None else arrival
-            if (x, y, z) != self._seen or self._seen == (0.0, 0.0, 0.0):
-                self._seen, self._equal_since, self.is_frozen = (x, y, z), time, False
-            elif not self.is_frozen and time - self._equal_since >= self._frozen_after:
-                self.is_frozen = True
-                self.counts.frozen += 1
+            self._note_reading(time, (x, y, z))
         self.counts.add(reason)
         is_good = reason == 'accepted'
         if is_good:
@@ -220,6 +228,19 @@ class WindGate:
             self._refused_since = _NEVER
             self._fade_in(since)
         return Verdict(is_good, reason, time, self._given)
+
+    def _note_reading(self, time: int, reading: tuple[float, float, float]) -> None:
+        """Note for how long the sensor has repeated one reading."""
+        if reading != self._seen:
+            self._seen, self._equal_since = reading, time
+            self.is_frozen = self.is_still = False
+        elif time - self._equal_since < self._frozen_after:
+            return
+        elif reading == (0.0, 0.0, 0.0):
+            self.is_still = True
+        elif not self.is_frozen:
+            self.is_frozen = True
+            self.counts.frozen += 1
 
     def _fade_in(self, since: float) -> None:
         """Return the last good sample; a new level fades in no faster than a gust."""
@@ -230,13 +251,13 @@ class WindGate:
         x, y, z = (a + most / left * (b - a) for a, b in zip(self._given, self._good, strict=True))
         self._given = x, y, z
 
-    def _time_of(self, stamp: int, given: int | None, lead: int) -> int:
+    def _time_of(self, stamp: int, given: int | None, lead: int, lag: int) -> int:
         """Return the stamp if it is plausible, or else the time to use instead."""
         arrival = stamp if given is None else given
         if arrival < self._arrival - CLOCK_RESET:
             self.counts.clock_back += 1
             self.reset()
-        fault = self._fault(stamp, arrival, lead)
+        fault = self._fault(stamp, arrival, lead, lag)
         if not fault:
             return stamp
         self.counts.add(fault)
@@ -244,22 +265,23 @@ class WindGate:
             return arrival
         usual = min(arrival, self._time + arrival - self._arrival)
         # An accepted stamp may have been ahead of the present arrival.
-        return max(usual, self._time + 1) if self._time < arrival + LARGEST_LEAD else usual
+        latest = arrival + max(lead, LARGEST_LEAD)
+        return max(usual, self._time + 1) if self._time < latest else usual
 
-    def _fault(self, stamp: int, arrival: int, lead: int) -> str:
+    def _fault(self, stamp: int, arrival: int, lead: int, lag: int) -> str:
         """Return why a stamp is refused, by the name of its count; empty if it is not."""
         if stamp <= 0 < arrival:
             return 'zero_stamp'
-        ahead = max(lead, max(self._time - self._arrival, 0) + LEAD_GROWTH)
-        if stamp > arrival + min(ahead, LARGEST_LEAD):
+        ahead = min(max(self._time - self._arrival, 0) + LEAD_GROWTH, LARGEST_LEAD)
+        if stamp > arrival + max(lead, ahead):
             return 'future_stamp'
-        if stamp < arrival - LONGEST_TRANSPORT:
+        if stamp < arrival - LONGEST_TRANSPORT - lag:
             return 'old_stamp'
         return 'out_of_order' if stamp <= self._time else ''
 
     def _judge(self, time: int, x: float, y: float, z: float) -> str:
         """Return why a sample is refused, by the name of its count, or ``accepted``."""
-        if not is_wind(x, y, z, self._max_speed):
+        if not is_wind(x, y, z, self.max_speed):
             if not all(map(math.isfinite, (x, y, z))):
                 return 'not_finite'
             is_code = any(abs(abs(c) - code) < 0.006 for c in (x, y, z) for code in SENTINELS)

@@ -55,6 +55,7 @@ class WindIntake:
         arrival: int | None = None,
         *,
         lead: int = 0,
+        lag: int = 0,
         rotation: Floats | None = None,
     ) -> GoodWind | None:
         """
@@ -67,7 +68,7 @@ class WindIntake:
         velocity = np.array(components) if reads is None else reads.velocity(components)
         if rotation is not None and np.abs(velocity).max() <= FASTEST_WIND:  # else refused
             velocity = rotation @ velocity
-        verdict = self.gate.offer(stamp, velocity, arrival, lead=lead)
+        verdict = self.gate.offer(stamp, velocity, arrival, lead=lead, lag=lag)
         if not verdict.accepted:
             return None
         good = np.array(verdict.wind)

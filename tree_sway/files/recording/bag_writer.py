@@ -15,6 +15,11 @@ from tree_sway.errors import FormatError, ParameterError
 
 FORMATS = ('mcap', 'sqlite3')
 """Kinds of storage."""
+_RECOVERY = {
+    'mcap': "make room, then 'mcap recover' restores the written part: its index is missing",
+    'sqlite3': 'make room; the written part can be read',
+}
+"""Cure after a full disk, by storage: the index of an MCAP file is at its end."""
 COMMIT_EVERY = 1.0
 """Time [s] after which written messages are in the file, however the process ends."""
 
@@ -49,6 +54,7 @@ class BagWriter:
         if path.exists():
             raise FormatError('it is there already', where=str(path), cure='name another folder')
         self._writer = Writer(path, version=9, storage_plugin=StoragePlugin[format.upper()])
+        self._format = format
         self._types = get_typestore(Stores.ROS2_JAZZY)
         self._connections: dict[str, object] = {}
         self.counts: dict[str, int] = {}
@@ -115,7 +121,7 @@ class BagWriter:
             raise FormatError(
                 f'cannot be written to: {error}',
                 where=str(self._writer.path),
-                cure='make room; the written part can be read',
+                cure=_RECOVERY[self._format],
             ) from error
 
     def __enter__(self) -> BagWriter:

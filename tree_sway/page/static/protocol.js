@@ -17,6 +17,8 @@ export const PAUSED = 1;
 export const BEYOND_SCALE = 2;
 export const RESTARTED = 4;
 export const PART = 8;
+/** No measured wind: none yet, or the last sample is too old and its force decays. */
+export const WIND_LOST = 16;
 
 /** First bytes of what is sent once. */
 const MAGIC = { description: "TSWD", tables: "TSWT" };
