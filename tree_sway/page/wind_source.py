@@ -10,6 +10,7 @@ from typing import Protocol
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.run import Run
+from tree_sway.core.wind.interpolated import interpolated_means
 from tree_sway.core.wind.simulated.anemometer import AnemometerModel
 
 _RATE = 20.0
@@ -93,11 +94,13 @@ class RecordedWind:
     time
         Time of each sample in [s], increasing, (n,).
     velocity
-        Wind, blowing to, in [m/s], (n, 3).
+        Wind, blowing to, in [m/s], (n, 3); interpolated if the samples are means
+        (`interpolated_means`).
 
     """
 
     def __init__(self, time: Floats, velocity: Floats) -> None:
+        time, velocity = interpolated_means(time, velocity)
         self._time, self._velocity = time - time[0], velocity
         last = float(self._time[-1])
         self.length = last + max(last / max(len(time) - 1, 1), 1e-3)

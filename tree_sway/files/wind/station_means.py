@@ -22,7 +22,7 @@ def filled_means(record: WindRecord, turbulence: bool, seed: float) -> WindRecor
     """Return a record with turbulence about its samples if these are means, with a note."""
     if not (seed >= 0 and float(seed).is_integer()):
         raise ParameterError(f'seed is {seed:g}', cure='give a whole number of 0 or more')
-    if record.period < LEAST_INTERVAL or len(record.time) < 3:
+    if record.period < LEAST_INTERVAL or len(record.time) < 2:
         return record
     means = f'samples {record.period:g} s apart are taken as means'
     if not turbulence:
