@@ -33,23 +33,23 @@ CONSTRAINTS = ROOT / '.ci' / 'constraints-ros-jazzy.txt'
 HASHES = ROOT / '.ci' / 'hashes-ros-jazzy.txt'
 #: The oldest Python that this package runs on, and the newest that there are ROS wheels for.
 OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
-#: What is always installed: compiled kernels, and bars for waits.
-ALWAYS = ('fast', 'progress')
+#: What is always installed: compiled kernels, bars for waits, and what the commands of the library
+#: use. Other parts are large: ROS, the encoder of MP4 (165 MB), Parquet (170 MB).
+ALWAYS = ('fast', 'progress', 'plot', 'study', 'bag')
 #: Extras that a command needs beside those, by the program or by the command of `tree-sway`.
 NEEDS = {
     **dict.fromkeys(
         ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer', 'ros2'), ('ros',)
     ),
-    **dict.fromkeys(('tree-sway demo', 'tree-sway listen', 'tree-sway relay'), ('ros',)),
-    'tree-sway plot': ('plot',),
+    **dict.fromkeys(
+        ('tree-sway demo', 'tree-sway listen', 'tree-sway relay', 'tree-sway record'), ('ros',)
+    ),
     'tree-sway render': ('film',),
-    'tree-sway record': ('ros', 'bag'),
-    'tree-sway study': ('study',),
     'tree-sway lab': ('ros', 'lab'),
     **dict.fromkeys(
         ('pytest', 'py.test'),
         (
-            *('ros', 'serial', 'bag', 'film', 'plot', 'study', 'test'),
+            *('ros', 'serial', 'film', 'parquet', 'test'),
             *('lab', 'docs'),
         ),
     ),
@@ -58,7 +58,7 @@ NEEDS = {
     'sphinx-build': ('docs',),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
-NEEDS_OF_FILES = {'.db3': 'bag', '.mcap': 'bag'}
+NEEDS_OF_FILES = {'.parquet': 'parquet'}
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
     'AMENT_PREFIX_PATH',
@@ -112,22 +112,12 @@ def extras_for(command):
         path = Path(argument.rpartition('=')[2])
         if path.suffix in NEEDS_OF_FILES:
             needed.add(NEEDS_OF_FILES[path.suffix])
-        elif is_bag(path):
-            needed.add('bag')
         elif argument.rpartition('=')[2].startswith('serial:'):
             needed.add('serial')
     if names[0] == 'pytest' and no_ros_wheels():
         needed.discard('ros')  # the tests that need it say that they are left out
     check_machine('ros' in needed)
     return needed
-
-
-def is_bag(path):
-    """Whether a path is the folder of a rosbag2 recording."""
-    try:
-        return (path / 'metadata.yaml').is_file()
-    except OSError:  # an argument that is no path at all
-        return False
 
 
 def no_ros_wheels():

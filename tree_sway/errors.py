@@ -3,9 +3,8 @@
 """
 Types of errors: each has what is wrong, where, and the cure.
 
-The command line and the nodes turn a `TreeSwayError` into one line and exit code 2. An error
-carries the offending values as attributes, so that a program can act on them without reading the
-text.
+The command line and the nodes turn a `TreeSwayError` into one line and exit code 2. The three
+parts are the attributes ``what``, ``where`` and ``cure``; the class tells the kind of fault.
 """
 
 from __future__ import annotations

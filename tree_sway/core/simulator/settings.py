@@ -24,6 +24,7 @@ MODELS = ('auto', 'branch', 'full')
 
 MOST = 1000
 """Largest number of coordinates."""
+_MOST_DIGITS = 9
 
 STIFFEST = 1e7
 """Largest stiffness in [N/m] of a spring at a segment."""
@@ -154,7 +155,8 @@ def model_of(given: object) -> int | str:
     """
     if isinstance(given, str) and given in MODELS:
         return given
-    number = int(given) if isinstance(given, str) and given.isdecimal() else given
+    is_number = isinstance(given, str) and given.isdecimal() and len(given) <= _MOST_DIGITS
+    number = int(given) if is_number else given
     if isinstance(number, float) and number.is_integer():
         number = int(number)  # files of numbers have floats
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number <= MOST:

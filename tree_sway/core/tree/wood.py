@@ -33,9 +33,9 @@ class Species:
         Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, 0.82 to
         1.2.
     shear_ratio
-        Shear modulus over Young's modulus in [-]; that of an isotropic rod. Along the grain, wood
-        is nearer to 1/14 (Forest Products Laboratory, Wood Handbook, 2010), which makes only the
-        twist of stems softer.
+        Shear modulus over Young's modulus in [-]. Wood has some 1/14 along the grain (Forest
+        Products Laboratory, Wood Handbook, 2010); an isotropic rod would have 1/2.6. It sets the
+        twist of stems only.
     root_stiffness
         Stiffness of the roots against tilting of the stem in [N m/rad]; infinite for rigid roots.
         It is that of one tree; `typical_root_stiffness` gives that of a size.
