@@ -51,7 +51,8 @@ class Case:
     tree
         ``{"name": ...}``, ``{"file": path}`` or ``{"species", "height", "seed"}``.
     wind
-        ``{"file": path or name of a built-in wind, "scale"}`` or ``{"speed", "intensity", "seed"}``.
+        ``{"file": path, "scale"}``, where a built-in wind has its name for a path, or ``{"speed",
+        "intensity", "seed"}``.
     settings
         Fields of `Settings`.
     seconds, rate
@@ -125,7 +126,7 @@ def read_study(path: str | Path) -> list[Case]:
 
 
 def _content(file: str | None) -> bytes:
-    """Digest of a file, empty for none and for the built-in winds, which are a part of the code."""
+    """Digest of a file; empty for none, and for built-in winds, which are a part of the code."""
     if file is None or file in EXAMPLES:
         return b''
     return hashlib.blake2b(read_bytes(Path(file)), digest_size=20).digest()

@@ -230,7 +230,7 @@ def _through_record(
         yield
 
 
-def _samples(time: Floats, velocity: Floats) -> Iterator[tuple[int, list[float]]]:
+def _samples(time: Floats, velocity: Floats) -> Iterator[tuple[int, Any]]:
     """Yield stamps [ns] and velocities [m/s] as plain numbers, which take ten times the memory."""
     for first in range(0, len(time), _CHUNK):
         part = slice(first, first + _CHUNK)

@@ -155,8 +155,9 @@ def model_of(given: object) -> int | str:
     """
     if isinstance(given, str) and given in MODELS:
         return given
-    is_number = isinstance(given, str) and given.isdecimal() and len(given) <= _MOST_DIGITS
-    number = int(given) if is_number else given
+    number = given
+    if isinstance(given, str) and given.isdecimal() and len(given) <= _MOST_DIGITS:
+        number = int(given)
     if isinstance(number, float) and number.is_integer():
         number = int(number)  # files of numbers have floats
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number <= MOST:

@@ -96,8 +96,8 @@ def read_stand_table(
     Raises
     ------
     FormatError
-        No tree, a missing column (also one for the size), a cell that is not a finite number, an impossible height, two
-        trees of one name; with the line.
+        No tree, a missing column (also one for the size), a cell that is not a finite number, an
+        impossible height, two trees of one name; with the line.
 
     """
     table = parse_table(read_lines(path), str(path))
