@@ -58,7 +58,7 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     if not path.exists():
         guess = nearest(text, BUILTIN_TREES)
         if text in species_keys():
-            guess = f'it is a species: tree-sway grow --species {text} --height 10 -o {text}.yaml;'
+            guess = f'it is a species: tree-sway grow {text} --height 10 -o {text}.yaml;'
         cure = f'{guess} give a file, or one of {", ".join(BUILTIN_TREES)}'.lstrip()
         raise FormatError(f"no tree '{text}'", cure=cure)
     head = read_head(path) if path.is_file() else None
