@@ -8,11 +8,11 @@ Run a command in this checkout's own virtual environment, made first if it is no
     python3 .ci/in_venv.py pytest
 
 Needs Python 3.10 or newer, and the network the first time. The package is installed in editable
-form, with what the command needs and no more: `tree-sway demo` brings the real rclpy and Fast DDS
-of hashes-ros-jazzy.txt and no other (x86_64 Linux, Python 3.10-3.14), `pytest` what the
-tests use, `ruff` the linters; a later command adds what it lacks. The environment is made again
-when the Python differs and brought up to date when a file that describes the installation has
-changed. TREE_SWAY_VENV names another place for it than .venv.
+form, with what the commands of the library need, and the further parts of the one that is named:
+`tree-sway demo` brings the real rclpy and Fast DDS of hashes-ros-jazzy.txt and no other (x86_64
+Linux, Python 3.10-3.14), `pytest` what the tests use, `ruff` the linters; a later command adds
+what it lacks. The environment is made again when the Python differs and brought up to date when a
+file that describes the installation has changed. TREE_SWAY_VENV names another place for it than .venv.
 
 """
 

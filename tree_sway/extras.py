@@ -52,17 +52,29 @@ def cure_of_missing(module: str, command: str = '...') -> str:
     of_ros = _OF_ROS.fullmatch(package) is not None
     if not of_ros and package not in EXTRAS:
         return f'the installation is incomplete: install {PACKAGE} again'
+    if line := line_in_venv(command):
+        return f'install it and run this: {line}'
     folder = _folder()
-    if folder is not None and (Path(sys.prefix) / _STAMP).is_file():
-        script = Path('.ci', 'in_venv.py')
-        # A path that can be typed where the user is.
-        shown = script if Path.cwd() == folder else folder / script
-        return f'install it and run this: python3 {shown} tree-sway {command}'
     extra = 'ros' if of_ros else EXTRAS[package]
     install = f'pip install "{folder or PACKAGE}[{extra}]"'
     if of_ros:
         return f'it needs ROS: source a ROS 2 installation, or {install}'
     return f'install it: {install}'
+
+
+def line_in_venv(command: str) -> str:
+    """
+    Return the line that installs what a command of ``tree-sway`` needs, and runs it.
+
+    It is empty outside of the environment that ``.ci/in_venv.py`` makes in a checkout.
+    """
+    folder = _folder()
+    if folder is None or not (Path(sys.prefix) / _STAMP).is_file():
+        return ''
+    script = Path('.ci', 'in_venv.py')
+    # A path that can be typed where the user is.
+    shown = script if Path.cwd() == folder else folder / script
+    return f'python3 {shown} tree-sway {command}'
 
 
 def _folder() -> Path | None:

@@ -24,7 +24,7 @@ import warnings
 
 from tree_sway.commands.command import Command, commands_beside
 from tree_sway.errors import nearest, shown, TreeSwayError
-from tree_sway.extras import cure_of_missing, refuse_missing
+from tree_sway.extras import cure_of_missing, line_in_venv, refuse_missing
 
 COMMANDS = commands_beside(__file__)
 
@@ -32,9 +32,8 @@ COMMANDS = commands_beside(__file__)
 #: the table above, those of the laboratory are called by the name of their entry point.
 GROUP = 'tree_sway.commands'
 MERGED = 'ros'
-#: Commands of other packages, with a module that is missing where they are, or what to do.
+#: Commands of the nodes.
 _OF_ROS = ('demo', 'listen', 'record', 'relay')
-_LAB_CURE = 'it belongs to the laboratory: pip install ./lab in the checkout'
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
@@ -75,7 +74,7 @@ def _main(given: list[str]) -> int:
     table, group = _table(given[0] if given else '')
     command = given[bool(group)] if len(given) > bool(group) else ''
     if not group and command not in table and command in (*_OF_ROS, 'lab'):
-        return _fail(command, _LAB_CURE if command == 'lab' else cure_of_missing('rclpy', command))
+        return _fail(command, _cure_elsewhere(command, shlex.join(given)))
     try:
         arguments = _parser(command, table, group).parse_args(given[bool(group) :])
         # This is without notes and progress: errors are printed afterwards.
@@ -119,6 +118,14 @@ def _write_any_name() -> None:
 def _fail(command: str, text: str) -> int:
     print(f'tree-sway {command}: {" ".join(text.split())}', file=sys.stderr)
     return _FAILURE
+
+
+def _cure_elsewhere(command: str, line: str) -> str:
+    """Return what to do for a command of another package that is not installed."""
+    if command != 'lab':
+        return cure_of_missing('rclpy', line)
+    install = line_in_venv(line) or 'pip install ./lab in the checkout'
+    return f'it belongs to the laboratory: {install}'
 
 
 def _table(first: str) -> tuple[dict[str, Command], str]:

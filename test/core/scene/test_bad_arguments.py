@@ -4,12 +4,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.simulate import simulate
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import RESTARTED, SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
@@ -144,3 +148,21 @@ def test_an_absurd_twig_leaves_no_pose_that_is_not_finite(model):
 def test_a_wind_that_is_not_three_numbers_is_one_clear_error(sim, wind):
     with pytest.raises(ParameterError, match=r'wind: .*is not three numbers; give x, y and z'):
         sim.step(wind, DT)
+
+
+@pytest.mark.parametrize('wind', ['wind.csv', Path('wind.csv')])
+def test_the_name_of_a_record_is_no_wind_and_says_what_reads_it(wind):
+    with pytest.raises(ParameterError, match=r"wind: 'wind\.csv', .*; read it: read_wind\('wind"):
+        simulate(bench_tree(), wind, model=12)
+
+
+def test_a_wind_of_no_numbers_is_refused():
+    with pytest.raises(ParameterError, match='not an array of numbers'):
+        simulate(bench_tree(), [[1.0, 2.0, 3.0], [4.0]], model=12)
+
+
+@pytest.mark.parametrize('model', ['branch', 12])
+@pytest.mark.parametrize('count', [0, -1, float('nan')])
+def test_a_number_of_frequencies_below_one_is_refused(model, count):
+    with pytest.raises(ParameterError, match=r'count: .* is out of range'):
+        simulator(bench_tree(), model).frequencies(count)

@@ -190,7 +190,7 @@ def _steps(
         count, what = int(duration * rate + 1e-6), f'a wind record of {duration:g} s'
         steps = _through_record(simulator, wind, rate, measure)
     else:
-        means = np.asarray(wind, dtype=np.float64)
+        means = _numbers(wind)
         is_long = means.ndim == 2 and means.shape[1] == 3
         count, what = len(means) if is_long else 0, f'wind of shape {means.shape}'
         if not np.isfinite(means).all():
@@ -201,6 +201,18 @@ def _steps(
         cure = 'give a record of one step at least, or the mean of each step, (t, 3)'
         raise ParameterError(what, where='wind', cure=cure)
     return count, steps
+
+
+def _numbers(wind: ArrayLike) -> Floats:
+    """Return a wind as an array; a `ParameterError` for a file's name, or no numbers."""
+    if isinstance(wind, str) or hasattr(wind, '__fspath__'):
+        cure = f"read it: read_wind('{wind}')"
+        raise ParameterError(f"'{wind}', the name of a record", where='wind', cure=cure)
+    try:
+        return np.asarray(wind, dtype=np.float64)
+    except (TypeError, ValueError):
+        cure = 'give a record, or the mean of each step, (t, 3)'
+        raise ParameterError('not an array of numbers', where='wind', cure=cure) from None
 
 
 def _through_record(

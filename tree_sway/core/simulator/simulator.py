@@ -13,7 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
+from tree_sway.core.checks import (
+    array_to_fill,
+    array_to_read,
+    refuse_time_step,
+    three_numbers,
+    within,
+)
 from tree_sway.core.motion.drag import pressure
 from tree_sway.core.simulator.assembly import assembled
 from tree_sway.core.simulator.bank import Bank
@@ -33,6 +39,8 @@ if TYPE_CHECKING:
     from tree_sway.core.simulator.live_tuning import LiveTuning, Tuning
     from tree_sway.core.simulator.touch import Spring, Touch
     from tree_sway.core.wind.gust_travel import GustHistory
+
+_MOST_FREQUENCIES = 1e6
 
 OK, WIND_REFUSED, LOAD_CLAMPED, RESTARTED = 0, 1, 2, 4
 """Bits of the result of `SwaySimulator.step`."""
@@ -155,8 +163,10 @@ class SwaySimulator:
         """
         Lowest natural frequencies of the tree in [Hz], without air, (count,) or fewer.
 
-        On the model ``branch`` they are those of the isolated branches.
+        On the model ``branch`` they are those of the isolated branches. Raises a `ParameterError`
+        for a count below 1.
         """
+        within('count', count, 1, _MOST_FREQUENCIES)
         if self.settings.model == 'branch':
             tunable = self.bank.oscillators.tunable
             circular = np.sort(np.sqrt(tunable.stiffness / tunable.inertia))[:count]

@@ -62,7 +62,8 @@ def tree_from_segments(
         that does not exist, a cycle, more than one root, a branch that is not a chain.
 
     """
-    starts, ends, diameters = (np.array(each, dtype=np.float64) for each in (start, end, diameter))
+    starts, ends = _numbers('start', start), _numbers('end', end)
+    diameters = _numbers('diameter', diameter)
     if diameters.ndim == 1:
         diameters = np.stack([diameters, diameters], axis=1)
     n = len(starts)
@@ -110,6 +111,18 @@ def tree_from_segments(
         subtree_end=_subtree_end(branch_parent), source_index=order.astype(np.int64),
         branch_names=tuple(names), name=name, species=species,
     )  # fmt: skip
+
+
+def _numbers(what: str, values: ArrayLike) -> Floats:
+    """Return a copy of values as an array; a `TreeError` if they are no array of numbers."""
+    try:
+        numbers = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        cure = 'give an array of numbers, a row for each segment'
+        raise TreeError('not an array of numbers', where=what, cure=cure) from None
+    if numbers.ndim not in (1, 2):
+        raise TreeError(f'{numbers.ndim} dimensions', where=what, cure='give (n, 3), or (n,)')
+    return numbers
 
 
 def _check_geometry(
