@@ -12,7 +12,8 @@ form, with what the commands of the library need, and the further parts of the o
 `tree-sway demo` brings the real rclpy and Fast DDS of hashes-ros-jazzy.txt and no other (x86_64
 Linux, Python 3.10-3.14), `pytest` what the tests use, `ruff` the linters; a later command adds
 what it lacks. The environment is made again when the Python differs and brought up to date when a
-file that describes the installation has changed. TREE_SWAY_VENV names another place for it than .venv.
+file that describes the installation has changed. TREE_SWAY_VENV names another place for it than
+.venv.
 
 """
 

@@ -62,7 +62,7 @@ def test_it_runs_as_typed(page: Path, clone: Path, ros_environment: dict[str, st
     for language, text in pages.blocks(page, 'sh', 'python'):
         lines = f"python3 - <<'END_OF_PAGE'\n{text}END_OF_PAGE\n" if language == 'python' else text
         printed = typed(f'source .venv/bin/activate\n{lines}', clone, ros_environment)
-        assert printed
+        assert printed or language == 'sh'
         for suffix in ('png', 'gif', 'csv'):
             for written in re.findall(rf'-o (\S+\.{suffix})\b', text):
                 assert (clone / written).stat().st_size > 100

@@ -59,7 +59,7 @@ def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> Win
     record = rows.record()
     if len(record.time) == 1:
         record = _ten_minutes(record)
-    return filled_means(record, turbulence, seed)
+    return filled_means(record, turbulence, seed, least=2)
 
 
 def _ten_minutes(record: WindRecord) -> WindRecord:
