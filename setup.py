@@ -55,7 +55,7 @@ if 'bdist_wheel' in sys.argv:
 
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
 extras = {
-    # Compiled kernels; without numba the same steps run on numpy alone, slower.
+    # Compiled kernels; without numba a tree runs on numpy, slower (doc/faq.md).
     'fast': ['numba>=0.59'],
     # Bars for long waits; without tqdm a line is printed now and then.
     'progress': ['tqdm>=4.60'],
@@ -86,8 +86,9 @@ extras = {
         'types-PyYAML',
         'types-jsonschema',
     ],
-    # Studies on all cores or a cluster, and their tables as Parquet.
-    'study': ['distributed>=2023.1', 'cryptography>=41', 'pyarrow>=12'],
+    # Studies on all cores or a cluster; tables as Parquet.
+    'study': ['distributed>=2023.1', 'cryptography>=41'],
+    'parquet': ['pyarrow>=12'],
     'docs': ['sphinx>=7', 'myst-parser>=2'],
 }
 

@@ -8,11 +8,12 @@ Run a command in this checkout's own virtual environment, made first if it is no
     python3 .ci/in_venv.py pytest
 
 Needs Python 3.10 or newer, and the network the first time. The package is installed in editable
-form, with what the command needs and no more: `tree-sway demo` brings the real rclpy and Fast DDS
-of hashes-ros-jazzy.txt and no other (x86_64 Linux, Python 3.10-3.14), `pytest` what the
-tests use, `ruff` the linters; a later command adds what it lacks. The environment is made again
-when the Python differs and brought up to date when a file that describes the installation has
-changed. TREE_SWAY_VENV names another place for it than .venv.
+form, with what the commands of the library need, and the further parts of the one that is named:
+`tree-sway demo` brings the real rclpy and Fast DDS of hashes-ros-jazzy.txt and no other (x86_64
+Linux, Python 3.10-3.14), `pytest` what the tests use, `ruff` the linters; a later command adds
+what it lacks. The environment is made again when the Python differs and brought up to date when a
+file that describes the installation has changed. TREE_SWAY_VENV names another place for it than
+.venv.
 
 """
 
@@ -33,28 +34,26 @@ CONSTRAINTS = ROOT / '.ci' / 'constraints-ros-jazzy.txt'
 HASHES = ROOT / '.ci' / 'hashes-ros-jazzy.txt'
 #: The oldest Python that this package runs on, and the newest that there are ROS wheels for.
 OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
-#: What is always installed: compiled kernels, and bars for waits.
-ALWAYS = ('fast', 'progress')
+#: What is always installed: compiled kernels, bars for waits, and what the commands of the library
+#: use. Other parts are large: ROS, the encoder of MP4 (165 MB), Parquet (170 MB).
+ALWAYS = ('fast', 'progress', 'plot', 'study', 'bag')
 #: Extras that a command needs beside those, by the program or by the command of `tree-sway`.
 NEEDS = {
     **dict.fromkeys(
         ('anemometer', 'wind', 'solver', 'player', 'sensor', 'viewer', 'ros2'), ('ros',)
     ),
-    **dict.fromkeys(('tree-sway demo', 'tree-sway listen', 'tree-sway relay'), ('ros',)),
-    'tree-sway plot': ('plot',),
+    **dict.fromkeys(
+        ('tree-sway demo', 'tree-sway listen', 'tree-sway relay', 'tree-sway record'), ('ros',)
+    ),
     'tree-sway render': ('film',),
-    'tree-sway record': ('ros', 'bag'),
-    'tree-sway study': ('study',),
     'tree-sway lab': ('ros', 'lab'),
     **dict.fromkeys(
         ('pytest', 'py.test'),
         (
             'ros',
             'serial',
-            'bag',
             'film',
-            'plot',
-            'study',
+            'parquet',
             'test',
             'lab',
             'docs',
@@ -65,7 +64,7 @@ NEEDS = {
     'sphinx-build': ('docs',),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
-NEEDS_OF_FILES = {'.db3': 'bag', '.mcap': 'bag'}
+NEEDS_OF_FILES = {'.parquet': 'parquet'}
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
     'AMENT_PREFIX_PATH',
@@ -119,22 +118,12 @@ def extras_for(command):
         path = Path(argument.rpartition('=')[2])
         if path.suffix in NEEDS_OF_FILES:
             needed.add(NEEDS_OF_FILES[path.suffix])
-        elif is_bag(path):
-            needed.add('bag')
         elif argument.rpartition('=')[2].startswith('serial:'):
             needed.add('serial')
     if names[0] == 'pytest' and no_ros_wheels():
         needed.discard('ros')  # the tests that need it say that they are left out
     check_machine('ros' in needed)
     return needed
-
-
-def is_bag(path):
-    """Whether a path is the folder of a rosbag2 recording."""
-    try:
-        return (path / 'metadata.yaml').is_file()
-    except OSError:  # an argument that is no path at all
-        return False
 
 
 def no_ros_wheels():
@@ -202,7 +191,7 @@ def make_ready(environment, extras):
     began = time.monotonic()
     if made_from[0] != wanted()[0]:
         there = set()
-        size = 'two minutes and 0.6 GB' if 'ros' in extras else 'a minute and 0.5 GB'
+        size = 'two minutes and 0.8 GB' if 'ros' in extras else 'a minute and 0.7 GB'
         say(f'setting up {VENV}, once: about {size}{" and the tests" * ("test" in extras)}')
         make_venv(environment)
         pip(environment, 'setuptools>=70.1,<81')

@@ -74,8 +74,8 @@ def test_a_python_without_wheels(
     [
         ('tree-sway demo --sensor serial:/dev/ttyUSB0:4800', 'serial'),
         ('sensor --ros-args -p address:=serial:/dev/ttyUSB0', 'serial'),
-        ('tree-sway study oaks.yaml', 'study'),
-        ('tree-sway demo --wind mast.mcap', 'bag'),
+        ('tree-sway study oaks.yaml -o oaks.parquet', 'parquet'),
+        ('tree-sway render oak.yaml -o oak.mp4', 'film'),
     ],
 )
 def test_what_a_command_line_names_brings_its_extra(
@@ -99,13 +99,12 @@ def test_a_machine_without_wheels(
 @pytest.mark.parametrize(
     ('command', 'brought', 'left'),
     [
-        ('tree-sway demo --seconds 10', {'fast', 'ros'}, {'plot', 'lab', 'test', 'lint'}),
-        ('tree-sway --version', {'fast'}, {'ros'}),
-        ('tree-sway info scan.mat', {'fast'}, {'ros', 'plot'}),
-        ('tree-sway demo --wind=gale.mcap', {'ros', 'bag'}, {'plot'}),
-        ('tree-sway plot', {'plot'}, {'ros'}),
-        ('tree-sway lab compare', {'lab'}, {'plot', 'test'}),
-        ('solver --ros-args', {'ros'}, {'plot'}),
+        ('tree-sway demo --seconds 10', {'fast', 'ros'}, {'film', 'lab', 'test', 'lint'}),
+        ('tree-sway --version', {'fast', 'plot', 'study', 'bag'}, {'ros'}),
+        ('tree-sway info scan.mat', {'fast'}, {'ros', 'film'}),
+        ('tree-sway demo --wind=gale.mcap', {'ros', 'bag'}, {'film'}),
+        ('tree-sway lab compare', {'lab'}, {'film', 'test'}),
+        ('solver --ros-args', {'ros'}, {'film'}),
         ('pytest -n 4', {'ros', 'bag', 'plot', 'lab', 'test'}, {'lint'}),
         ('mypy', {'lint'}, {'ros', 'lab'}),
         (f'python {"x" * 300}', {'fast'}, {'ros'}),

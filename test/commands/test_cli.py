@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import argparse
+import importlib
+import importlib.util
 import os
 from pathlib import Path
 import subprocess
@@ -13,7 +15,10 @@ import warnings
 
 import pytest
 
+from tree_sway import extras
 from tree_sway.commands import cli
+from tree_sway.files.export import table_writing
+from tree_sway.pictures import animation
 
 SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
 #: All commands but those of the laboratory.
@@ -43,7 +48,7 @@ def one_line(text: str) -> str:
         (['dmeo'], "did you mean 'demo'?"),
         (['demo', '--sped', '3'], "unrecognized arguments: --sped; did you mean '--speed'?"),
         (['plot', 'benjamina', '--model', 'ful'], "did you mean 'full'?"),
-        (['info', 'oak'], 'it is a species: tree-sway grow --species oak --height 10 -o oak.yaml'),
+        (['info', 'oak'], 'it is a species: tree-sway grow oak --height 10 -o oak.yaml'),
         (['info', 'x' * 300], 'File name too long'),
         (['info'], 'required: TREE'),
         (['info', 'nope'], "no tree 'nope'; give a file, or one of benjamina"),
@@ -61,6 +66,16 @@ def one_line(text: str) -> str:
             "invalid float value: 'tall'",
         ),
         (['grow', '--species', 'oak', '--height', '12', '-o', 'x.doc'], "cannot write '.doc'"),
+        (['grow', '--height', '12', '-o', 'x.yaml'], 'no species; give one, as in tree-sway grow'),
+        (
+            ['grow', 'oak', '--species', 'ash', '--height', '12', '-o', 'x.yaml'],
+            'two species, oak and ash',
+        ),
+        (['grow', 'oka', '--height', '12', '-o', 'x.yaml'], "did you mean 'oak'?"),
+        (
+            ['convert', 'no_such_tree', '-o', 'x.stl'],
+            "cannot write '.stl'; use .yaml, .yml, .glb, .html, .usda, .xml (MJCF), .sdf",
+        ),
         (['lab', 'bench', 'jog'], "invalid choice: 'jog'"),
         (['lab', 'bench', 'step', '--rounds', '0'], '--rounds: 0'),
         (['demo', '--seconds', '-1'], '--seconds: -1'),
@@ -95,7 +110,7 @@ def test_every_command_has_its_module_and_help(
     assert run(command, '--help')[0] == 0
     text = ' '.join(capsys.readouterr().out.split())
     assert f'usage: tree-sway {command}' in text
-    summary, example, _ = ALL[command]
+    summary, example = ALL[command].summary, ALL[command].example
     assert f'{summary[0].upper()}{summary[1:]}.' in text  # DDS and MuJoCo keep their capitals
     assert f'example: tree-sway {example}' in text
 
@@ -106,34 +121,92 @@ def test_the_example_of_a_command_is_one_of_it(command: str) -> None:
     assert cli._parser(command, ALL, '').parse_args(example).command == command
 
 
-@pytest.mark.parametrize(
-    ('module', 'cure'),
-    [
-        ('numba', 'pip install "tree_sway_ros[fast]"'),
-        ('serial.tools', 'pip install "tree_sway_ros[serial]"'),
-        ('PIL', 'pip install "tree_sway_ros[plot]"'),
-        ('geometry_msgs.msg', 'source a ROS 2 installation'),
-        ('left_pad', 'install tree_sway_ros again'),
-    ],
-)
+CURES = [
+    ('numba', 'fast'),
+    ('serial.tools', 'serial'),
+    ('PIL', 'plot'),
+    ('pyarrow', 'parquet'),
+    ('geometry_msgs.msg', 'ros'),
+]
+
+
+@pytest.mark.parametrize(('module', 'extra'), CURES)
 def test_the_cure_for_a_missing_module_is_from_our_own_table(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], module: str, cure: str
+    module: str, extra: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """From the folder of the installation, by in_venv.py in its environment, else by its name."""
+    monkeypatch.setattr(extras, '_folder', lambda: None)
+    assert f'pip install "tree_sway_ros[{extra}]"' in extras.cure_of_missing(module, 'plot')
+    monkeypatch.setattr(extras, '_folder', lambda: tmp_path)
+    monkeypatch.setattr(sys, 'prefix', str(tmp_path))
+    assert f'pip install "{tmp_path}[{extra}]"' in extras.cure_of_missing(module, 'plot')
+    (tmp_path / 'tree_sway_ros.stamp').touch()
+    cure = extras.cure_of_missing(module, 'plot oak.yaml')
+    assert cure.endswith(f'python3 {tmp_path}/.ci/in_venv.py tree-sway plot oak.yaml')
+    monkeypatch.chdir(tmp_path)
+    cure = extras.cure_of_missing(module, 'plot oak.yaml')
+    assert cure.endswith(': python3 .ci/in_venv.py tree-sway plot oak.yaml')
+    for each in ('left_pad', module):  # a name of a module may be that of a different project
+        assert f'pip install {each.partition(".")[0]}' not in extras.cure_of_missing(each)
+    assert 'install tree_sway_ros again' in extras.cure_of_missing('left_pad')
+
+
+def test_a_missing_module_is_one_line_with_its_cure(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def missing(_name: str) -> object:
-        raise ModuleNotFoundError(f"No module named '{module}'", name=module)
+        raise ModuleNotFoundError("No module named 'numba'", name='numba')
 
     monkeypatch.setattr(cli.importlib, 'import_module', missing)
     monkeypatch.setattr(cli, '_parser', lambda *_: argparse.Namespace(parse_args=lambda given:
         argparse.Namespace(quiet=False, command='info')))  # fmt: skip
-    assert cli.main(['info', 'benjamina']) == 2
+    assert cli.main(['info', 'two words']) == 2
+    assert extras.cure_of_missing('numba', "info 'two words'") in one_line(capsys.readouterr().err)
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'module'),
+    [
+        ('plot no_such_tree -o a.png', 'matplotlib'),
+        ('render no_such_tree -o a.gif', 'matplotlib'),
+        ('render no_such_tree -o a.mp4', 'imageio_ffmpeg'),
+        ('study no_such_study.yaml -o a.csv', 'distributed'),
+        ('study no_such_study.yaml -o a.parquet', 'pyarrow'),
+        ('simulate no_such_tree -o a.parquet', 'pyarrow'),
+        ('demo no_such_tree', 'rclpy'),
+        ('record -o bag', 'rosbags'),
+    ],
+)
+def test_a_command_says_what_it_lacks_before_it_opens_anything(
+    arguments: str, module: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    words = arguments.split()
+    if words[0] not in ALL:
+        pytest.skip('the nodes are not installed')
+    find, load = importlib.util.find_spec, importlib.import_module
+
+    def no_spec(name: str, package: str | None = None) -> object:
+        return None if name == module else find(name, package)
+
+    def no_module(name: str, package: str | None = None) -> object:
+        if name == module:
+            raise ModuleNotFoundError(f"No module named '{name}'", name=name)
+        return load(name, package)
+
+    monkeypatch.setattr(extras, 'find_spec', no_spec)
+    monkeypatch.setattr(table_writing, 'find_spec', no_spec)
+    monkeypatch.setattr(animation, 'import_module', no_module)
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(words) == 2
     printed = one_line(capsys.readouterr().err)
-    assert cure in printed
-    assert f'pip install {module.partition(".")[0]}' not in printed
+    assert module in printed
+    assert extras.cure_of_missing(module).rpartition(' ')[0] in printed
 
 
 def test_every_extra_that_is_advised_is_one_of_the_package() -> None:
     text = (Path(__file__).parents[2] / 'setup.py').read_text(encoding='utf-8')
-    for extra in {*cli.EXTRAS.values(), 'ros'}:
+    for extra in {*extras.EXTRAS.values(), 'ros'}:
         assert f"    '{extra}': [" in text
 
 

@@ -77,11 +77,12 @@ def test_a_stem_that_its_crown_bends_over_is_said(
     assert bool(printed) == bool(warning)
 
 
+@pytest.mark.parametrize('species', [('spruce',), ('--species', 'spruce')])
 def test_a_grown_tree_is_as_high_as_asked_for(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    species: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / 'spruce.yaml'
-    command = ['grow', '--species', 'spruce', '--height', '7', '--seed', '2', '-o', str(path)]
+    command = ['grow', *species, '--height', '7', '--seed', '2', '-o', str(path)]
     assert cli.main(command) == 0
     assert 'spruce, ' in capsys.readouterr().out
     tree = open_tree(path).tree

@@ -151,6 +151,7 @@ def lines_of(page: Path) -> list[list[str]]:
     """Command lines of ours of each ``bash`` block."""
     found = []
     for _, text in blocks(page, 'bash'):
+        text = text.replace('python3 .ci/in_venv.py tree-sway', 'tree-sway')
         lines = [line.split(' # ')[0].strip() for line in text.splitlines() if line.strip()]
         found.append([line for line in lines if not line.startswith(OTHERS)])
     return [lines for lines in found if lines]

@@ -47,25 +47,14 @@ def blocks(page: Path, *languages: str) -> list[tuple[str, str]]:
     return [(language, text) for language, text in found if language in languages]
 
 
-LONG = (
-    'anemometer',
-    'blender_godot',
-    'calibration',
-    'first_trees',
-    'integrate',
-    'new_species',
-    'scan_to_numbers',
-    'stand',
-    'study',
-    'tree_as_a_file',
-    'trees',
-)
+LONG = ('blender_godot', 'calibration', 'integrate', 'tree_as_a_file', 'trees')
 """Pages whose commands take longer; `.ci/run` runs them, too."""
 
 
 def runnable() -> list[object]:
     """Pages with something to run."""
-    found = [page for page in PAGES if blocks(page, 'sh', 'python')]
+    own = ROOT / 'doc' / 'tutorials'  # run as typed in a fresh environment (test_tutorials.py)
+    found = [page for page in PAGES if page.parent != own and blocks(page, 'sh', 'python')]
     return [
         pytest.param(page, id=name(page), marks=[pytest.mark.long] if page.stem in LONG else [])
         for page in found
@@ -111,7 +100,8 @@ def commands() -> list[tuple[str, str]]:
         for _, text in blocks(page, 'sh', 'bash'):
             for line in text.splitlines():
                 before, found, words = line.partition('tree-sway ')
-                if found and before.strip() in ('', 'python3 .ci/in_venv.py'):
+                is_question = words.startswith('--')  # of the version or the help
+                if found and not is_question and before.strip() in ('', 'python3 .ci/in_venv.py'):
                     lines.append((name(page), words.split(' # ')[0].split(' | ')[0].strip()))
     return lines
 
@@ -140,6 +130,19 @@ def test_its_links_lead_somewhere(page: Path) -> None:
             headings = re.findall(r'^#+ (.*)$', target.read_text(encoding='utf-8'), re.MULTILINE)
             slugs = {re.sub(r'[^\w -]', '', h).strip().lower().replace(' ', '-') for h in headings}
             assert heading in slugs, f'{link} in {name(page)}'
+
+
+LAUNCHED = re.compile(r'sway\.launch\.py(.*)|launch_arguments=\{(.*?)\}')
+
+
+@pytest.mark.parametrize('page', [p for p in PAGES if LAUNCHED.search(p.read_text())], ids=name)
+def test_its_launch_arguments_are_arguments(page: Path) -> None:
+    declared = (ROOT / 'launch' / 'sway.launch.py').read_text(encoding='utf-8')
+    known = set(re.findall(r"^    \('(\w+)', '", declared, re.MULTILINE))
+    assert {'tree', 'pose'} <= known
+    for typed, included in LAUNCHED.findall(page.read_text(encoding='utf-8')):
+        given = {*re.findall(r'(\w+):=', typed), *re.findall(r'"(\w+)":', included)}
+        assert given <= known, typed or included
 
 
 def test_files_that_the_pages_name_are_there() -> None:

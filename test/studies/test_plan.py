@@ -5,12 +5,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+import tracemalloc
 
 import pytest
 
 from tree_sway import kernel_cache
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.studies import plan
+from tree_sway.studies.compute import _wind
 from tree_sway.studies.plan import read_study
 
 LEAST = 'trees: [a]\nwinds: [{speed: 3}]\n'
@@ -84,11 +86,50 @@ def test_and_after_the_source_of_growth_and_of_readers(study, tmp_path, monkeypa
         ('trees: [a]\nwinds: [{file: gone.csv}]', FormatError, r'gone\.csv'),
         ('trees: [a]\nwinds: [{seeds: 2}]', FormatError, 'a wind is a file or a speed'),
         ('trees: [', FormatError, r'study\.yaml:'),
+        ('trees: [a]\nwinds: [{speed: 3, intensity: true}]', FormatError, "intensity is 'true'"),
+        (f'{LEAST}settings: {{model: {"9" * 5000}}}', ParameterError, "unknown model '999"),
+        (f'{LEAST}seconds: {"9" * 5000}', FormatError, "seconds is '999"),
+        ('trees: [a]\nwinds: [{file: "~nosuchuser/wind.csv"}]', FormatError, 'no user'),
+        (f'trees: [{"a" * 300}]\nwinds: [{{speed: 3}}]', FormatError, 'File name too long'),
+        (f'{LEAST}seconds: 86400\nrate: 10000', FormatError, 'are 8.64e\\+08 steps of a case'),
     ],
 )
 def test_what_is_wrong_is_named(study, text, kind, words):
     with pytest.raises(kind, match=words):
         read_study(study(text))
+
+
+@pytest.mark.parametrize(
+    'text',
+    [
+        'trees: [{grow: {species: oak, height: [4, 8], seeds: 100000}}]\nwinds: [{speed: 3}]\n',
+        'trees: [a]\nwinds: [{speed: [3, 4], intensity: [0.1, 0.2], seeds: 100000}]\n',
+        LEAST + 'settings:\n' + ''.join(
+            f'  {name}: [{", ".join(f"{0.01 * k:.2f}" for k in range(1, 25))}]\n'
+            for name in ('damping_ratio', 'crown_coherence', 'gravity', 'stiffness_factor')
+        ),
+    ],
+)  # fmt: skip
+def test_a_small_file_of_a_huge_study_is_refused_before_any_work(study, text):
+    path = study(text)
+    assert path.stat().st_size < 2000
+    tracemalloc.start()
+    with pytest.raises(FormatError, match=r'are \d+ cases; give at most 100000 cases'):
+        read_study(path)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 10e6
+
+
+def test_the_built_in_wind_is_one_of_a_study(study, tmp_path):
+    path = study('trees: [goldcrest]\nwinds: [{file: canopy, scale: [1, 2]}]\nseconds: 1\n')
+    assert [case.wind for case in read_study(path)] == [
+        {'file': 'canopy', 'scale': 1.0}, {'file': 'canopy', 'scale': 2.0},
+    ]  # fmt: skip
+    once, twice = (_wind(case) for case in read_study(path))
+    assert (twice.velocity == 2.0 * once.velocity).all()
+    (tmp_path / 'canopy').write_text('time,u,v\n0,1,0\n1,2,0\n', encoding='utf-8')
+    assert [case.wind['file'] for case in read_study(path)] == [str(tmp_path / 'canopy')] * 2
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path):

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import os
 from pathlib import Path
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import threading
 import time
+from urllib.request import urlopen
 
 import pytest
 
@@ -266,3 +268,21 @@ def test_the_command_resumes_its_own_table_and_writes_over_no_other(tmp_path, ca
     assert cli.main([*words, '--force']) == 0
     assert cli.main(words) == 0
     assert len(table.read_text().splitlines()) == 2
+
+
+def test_no_page_of_the_cluster_answers_other_users() -> None:
+    psutil = pytest.importorskip('psutil', reason='needs psutil')
+    answered = {}
+    with runner._cluster(1):
+        me = psutil.Process()
+        sockets = (each for one in [me, *me.children(recursive=True)] for each in
+                   one.net_connections(kind='tcp'))  # fmt: skip
+        listening = {each.laddr for each in sockets if each.status == psutil.CONN_LISTEN}
+        for ip, port in listening:
+            assert ip == '127.0.0.1'
+            for page in ('', 'health', 'metrics', 'info/main/workers.html', 'sitemap.json'):
+                url = f'http://{ip}:{port}/{page}'
+                with contextlib.suppress(OSError), urlopen(url, timeout=10.0) as response:
+                    answered[page] = response.read()
+    assert len(listening) >= 4
+    assert answered in ({}, {'sitemap.json': b'{"paths": ["/sitemap.json"]}'})

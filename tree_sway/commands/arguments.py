@@ -17,11 +17,12 @@ from tree_sway.core.simulator.season import LEAVES
 from tree_sway.core.simulator.settings import model_of, Settings
 from tree_sway.core.tree.species import Species, species_keys, species_named
 from tree_sway.core.tree.tree import Tree
-from tree_sway.errors import ParameterError
+from tree_sway.errors import ParameterError, SpeciesError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.reader_options import reader_options
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, open_tree
+from tree_sway.files.trees.yaml.tree_yaml import is_species_file, read_species
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind
@@ -45,7 +46,8 @@ def add_tree_arguments(
     add('--seed', type=int, default=0, help='seed of a built-in tree (%(default)s)')
     add(
         '--species',
-        help=f"its species, if not the tree's own: a file, or {', '.join(species_keys())}",
+        help="its species, if not the tree's own: a YAML file with species and wood, or one of "
+        f'{", ".join(species_keys())}',
     )
     add('--modulus', type=float, metavar='PA', help="Young's modulus of green wood [Pa]")
     add('--density', type=float, metavar='RHO', help='green density [kg/m^3]')
@@ -66,9 +68,10 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     Raises a `TreeSwayError` for no such tree or species, a file that cannot be read, a modulus or
     density that is not positive.
     """
+    given = _species(arguments)
     with waiting(f'opening {arguments.tree}'):
         opened = open_tree(arguments.tree, arguments.seed, **_options(arguments))
-    species = species_named(arguments.species) if arguments.species else opened.species
+    species = given or opened.species
     return opened.of_species(dataclasses.replace(species, **_wood(arguments))).checked()
 
 
@@ -78,6 +81,7 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
 
     Errors are those of `opened_tree`, and values of one tree for several.
     """
+    given = _species(arguments)
     with waiting(f'opening {arguments.tree}'):
         scene = open_scene(
             arguments.tree,
@@ -92,10 +96,21 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
             where=scene.source,
             cure='use --species, or files of trees with their own wood',
         )
-    if not wood and not arguments.species:
+    if not wood and given is None:
         return scene
-    species = species_named(arguments.species) if arguments.species else scene.trees[0].species
+    species = given or scene.trees[0].species
     return scene.of_species(dataclasses.replace(species, **wood)).checked()
+
+
+def _species(arguments: argparse.Namespace) -> Species | None:
+    """Species of ``--species``, of the table or of a file; None without the option."""
+    name = arguments.species
+    if name is None:
+        return None
+    try:
+        return read_species(name) if is_species_file(name) else species_named(name)
+    except SpeciesError as error:
+        raise error.inside('--species') from None
 
 
 def _wood(arguments: argparse.Namespace) -> dict[str, Any]:

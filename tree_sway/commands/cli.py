@@ -17,12 +17,14 @@ from importlib.metadata import entry_points
 import io
 import os
 import re
+import shlex
 import sys
 from typing import Any, NoReturn
 import warnings
 
 from tree_sway.commands.command import Command, commands_beside
 from tree_sway.errors import nearest, shown, TreeSwayError
+from tree_sway.extras import cure_of_missing, line_in_venv, refuse_missing
 
 COMMANDS = commands_beside(__file__)
 
@@ -30,21 +32,8 @@ COMMANDS = commands_beside(__file__)
 #: the table above, those of the laboratory are called by the name of their entry point.
 GROUP = 'tree_sway.commands'
 MERGED = 'ros'
-_ROS_CURE = 'it needs ROS: source a ROS 2 installation, or pip install "tree_sway_ros[ros]"'
-#: Commands of other packages, with what to do where they are missing.
-_ELSEWHERE = {
-    **dict.fromkeys(('demo', 'listen', 'record', 'relay'), _ROS_CURE),
-    'lab': 'it belongs to the laboratory: pip install ./lab in the checkout',
-}
-#: Extra of the package with a module; a module that is not listed is in no extra, and no advice
-#: is made from the name of a module, which may be that of a different project.
-EXTRAS = {
-    **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
-    **dict.fromkeys(('cryptography', 'dask', 'distributed', 'pyarrow'), 'study'),
-    **{'numba': 'fast', 'rosbags': 'bag', 'serial': 'serial', 'tqdm': 'progress'},
-    'imageio_ffmpeg': 'film',
-}
-_OF_ROS = re.compile(r'rclpy|\w+_msgs|\w+_srvs|builtin_interfaces|ament_\w+|rosidl\w*|launch\w*')
+#: Commands of the nodes.
+_OF_ROS = ('demo', 'listen', 'record', 'relay')
 _FAILURE = 2
 _INTERRUPTED = 130
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
@@ -84,13 +73,14 @@ def _main(given: list[str]) -> int:
     _write_any_name()
     table, group = _table(given[0] if given else '')
     command = given[bool(group)] if len(given) > bool(group) else ''
-    if not group and command in _ELSEWHERE and command not in table:
-        return _fail(command, _ELSEWHERE[command])
+    if not group and command not in table and command in (*_OF_ROS, 'lab'):
+        return _fail(command, _cure_elsewhere(command, shlex.join(given)))
     try:
         arguments = _parser(command, table, group).parse_args(given[bool(group) :])
         # This is without notes and progress: errors are printed afterwards.
         quiet = contextlib.redirect_stderr(io.StringIO()) if arguments.quiet else None
         with quiet or contextlib.nullcontext():
+            refuse_missing(table[arguments.command].needs.split(), shlex.join(given))
             code = int(_module(table[arguments.command]).run(arguments))
             if sys.stdout is not None:
                 sys.stdout.flush()  # a full disk is reported here, not while Python ends
@@ -100,7 +90,7 @@ def _main(given: list[str]) -> int:
     except ModuleNotFoundError as error:
         if str(error.name).startswith('tree_sway'):
             raise
-        return _fail(command, f'{error}; {_cure_of_missing(str(error.name))}')
+        return _fail(command, f'{error}; {cure_of_missing(str(error.name), shlex.join(given))}')
     except BrokenPipeError:
         # The reader of our output has ended: prevent an error when Python flushes.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -130,14 +120,12 @@ def _fail(command: str, text: str) -> int:
     return _FAILURE
 
 
-def _cure_of_missing(module: str) -> str:
-    """Return how to install a missing module, by our table of extras."""
-    package = module.partition('.')[0]
-    if _OF_ROS.fullmatch(package):
-        return _ROS_CURE
-    if package in EXTRAS:
-        return f'install it: pip install "tree_sway_ros[{EXTRAS[package]}]"'
-    return 'the installation is incomplete: install tree_sway_ros again'
+def _cure_elsewhere(command: str, line: str) -> str:
+    """Return what to do for a command of another package that is not installed."""
+    if command != 'lab':
+        return cure_of_missing('rclpy', line)
+    install = line_in_venv(line) or 'pip install ./lab in the checkout'
+    return f'it belongs to the laboratory: {install}'
 
 
 def _table(first: str) -> tuple[dict[str, Command], str]:

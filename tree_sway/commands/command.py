@@ -10,13 +10,30 @@ from tree_sway.tables import table_beside
 
 
 class Command(NamedTuple):
-    """Summary, example and module of a command."""
+    """
+    A command of ``tree-sway``.
+
+    Parameters
+    ----------
+    summary, example
+        Texts for its help.
+    module
+        Module with its arguments and its function.
+    needs
+        Modules of other packages that it cannot run without, separated by spaces.
+
+    """
 
     summary: str
     example: str
     module: str
+    needs: str = ''
 
 
 def commands_beside(module: str) -> dict[str, Command]:
     """Read the commands of a package by name, from ``commands.csv`` beside a module's file."""
-    return {row.pop('name'): Command(**row) for row in table_beside(module, 'commands.csv')}
+    found = {}
+    for row in table_beside(module, 'commands.csv'):
+        name, needs = row.pop('name'), row.pop('needs') or ''  # an empty cell is a list of none
+        found[name] = Command(**row, needs=needs)
+    return found

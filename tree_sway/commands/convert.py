@@ -27,10 +27,10 @@ from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.simulator.simulator import SwaySimulator
-from tree_sway.errors import ParameterError
+from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
-from tree_sway.files.export.tree_export import write_gltf, write_tree
+from tree_sway.files.export.tree_export import SUFFIXES, write_gltf, write_tree
 from tree_sway.files.export.usd_tree import usd_of_tree
 from tree_sway.files.whole_file import write_text_whole
 
@@ -56,8 +56,16 @@ def run(arguments: argparse.Namespace) -> int:
     """Read a tree and write it."""
     output = output_path(arguments)
     suffix = Path(output).suffix.lower()
+    if suffix not in _FORMATS:
+        names = ', '.join('.xml (MJCF)' if each == '.xml' else each for each in _FORMATS)
+        what = f"cannot write '{Path(output).suffix}'"
+        raise FormatError(what, where=output, cure=f'use {names}')
     if arguments.sway is not None and suffix != '.glb':
         raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
+    if suffix == '.html':
+        from tree_sway.page.tables import refuse_without_compiler
+
+        refuse_without_compiler()
     scene = opened_scene(arguments)
     for note in scene.notes:
         print(f'note: {note}', file=sys.stderr)
@@ -80,6 +88,9 @@ _OF_ONE_TREE: dict[str, Callable[[SwaySimulator, LeafClusters | None], str]] = {
     '.xml': lambda simulator, _leaves: mjcf_of_tree(simulator),
     '.sdf': lambda simulator, _leaves: sdf_of_tree(simulator),
 }
+
+
+_FORMATS = (*SUFFIXES, '.html', *_OF_ONE_TREE)
 
 
 def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:

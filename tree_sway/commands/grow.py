@@ -21,14 +21,15 @@ from tree_sway.core.simulator.reductions import TreeReductions
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.grown_tree import rooted
 from tree_sway.core.tree.species import species_keys, species_named
-from tree_sway.errors import TreeError
+from tree_sway.errors import ParameterError, TreeError
 from tree_sway.files.trees.imported_tree import TreeFile
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add('--species', required=True, help=f'{", ".join(species_keys())}')
+    add('kind', metavar='SPECIES', nargs='?', help=f'one of {", ".join(species_keys())}')
+    add('--species', metavar='SPECIES', help='the same as an option')
     add('--height', type=float, required=True, metavar='M', help='height [m]')
     add(
         '--diameter',
@@ -44,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Grow a tree and write it."""
     within('--seed', arguments.seed, 0, 2**63)
     output = output_path(arguments)
-    species = species_named(arguments.species)
+    species = species_named(_chosen(arguments))
     tree = grow(
         species.key,
         arguments.height,
@@ -61,3 +62,12 @@ def run(arguments: argparse.Namespace) -> int:
         print(f'warning: it buckles in leaf: {error}', file=sys.stderr)
     write_tree_file(output, tree, species)
     return 0
+
+
+def _chosen(arguments: argparse.Namespace) -> str:
+    """Return the species, which is given once, as an argument or as an option."""
+    given = [name for name in (arguments.kind, arguments.species) if name is not None]
+    if len(given) != 1:
+        what = f'two species, {given[0]} and {given[1]}' if given else 'no species'
+        raise ParameterError(what, cure='give one, as in tree-sway grow oak --height 12')
+    return str(given[0])

@@ -29,6 +29,7 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.errors import FormatError, ParameterError, TreeError
+from tree_sway.files.text_file import is_file, path_of
 from tree_sway.page.wind_source import RecordedWind
 from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.pictures.pictures import picture_in_wind
@@ -84,8 +85,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _rows_of_study(path: str) -> list[dict[str, str]]:
     """Rows of the table of a study; none of other files."""
-    table = Path(path).expanduser()
-    if table.suffix != '.csv' or not table.is_file():
+    table = path_of(path)
+    if table.suffix != '.csv' or not is_file(table):
         return []
     with table.open(encoding='utf-8', errors='replace', newline='') as lines:
         header = lines.readline(_LONGEST_HEADER)

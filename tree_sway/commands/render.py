@@ -20,6 +20,7 @@ from tree_sway.commands.arguments import (
 from tree_sway.commands.progress import waiting
 from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
+from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.page.film import browser, page_pictures
 
 _LEAVES = 2800
@@ -50,15 +51,15 @@ def run(arguments: argparse.Namespace) -> int:
     began = time.monotonic()
     rate, pixels = arguments.rate, arguments.pixels
     frames = swaying(simulator, wind, rate, arguments.seconds)
-    if browser() is not None and isinstance(arguments.model, int):
+    why_plain = _why_not_the_page(arguments)
+    if not why_plain:
         from PIL import Image
 
         pictures = page_pictures(simulator, frames, rate, pixels, _LEAVES)
         images = (Image.open(BytesIO(each)).convert('RGB') for each in pictures)
         write_pictures(images, target, rate)
     else:
-        print('note: drawn by matplotlib, as there is no Chromium or no --model with a number of '
-              'coordinates', file=sys.stderr)  # fmt: skip
+        print(f'note: drawn by matplotlib, as {why_plain}', file=sys.stderr)
         shown = [(simulator.place().copy(), simulator.wind.copy()) for _ in frames]
         leaves = scene.leaves(chosen_leaves(arguments), _LEAVES)
         with waiting('painting'):
@@ -72,3 +73,12 @@ def run(arguments: argparse.Namespace) -> int:
         f'{arguments.seconds:g} s of wind in {spent:.1f} s'
     )
     return 0
+
+
+def _why_not_the_page(arguments: argparse.Namespace) -> str:
+    """Return why the page cannot draw the film; empty if it can."""
+    if browser() is None:
+        return 'there is no Chromium'
+    if not isinstance(arguments.model, int):
+        return 'the page draws a --model with a number of coordinates'
+    return WHY_PLAIN

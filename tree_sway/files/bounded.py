@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.errors import FormatError, MissingDependencyError
+from tree_sway.extras import cure_of_missing
 from tree_sway.files.text_file import reason_of
 
 MEMORY, SECONDS = 768 << 20, 20
@@ -60,7 +61,7 @@ def bounded_arrays(
     if reason.startswith('no module '):
         missing = reason.rsplit(' ', 1)[1]
         raise MissingDependencyError(
-            f'to read {kind} needs {missing}', where=str(path), cure=f'pip install {missing}'
+            f'to read {kind} needs {missing}', where=str(path), cure=cure_of_missing(missing)
         )
     if ended is None or ended.returncode:
         is_large = ended is None or ended.returncode < 0 or 'MemoryError' in reason

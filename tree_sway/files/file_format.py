@@ -14,6 +14,10 @@ from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.text_file import read_head
 
 
+class UnknownFormatError(FormatError):
+    """A file that no format recognises."""
+
+
 @dataclass(frozen=True)
 class FileFormat:
     """
@@ -83,8 +87,10 @@ def format_of(
 
     Raises
     ------
+    UnknownFormatError
+        If no format fits.
     FormatError
-        If no format fits, or numbers have decimal commas.
+        If numbers have decimal commas.
     ParameterError
         If no format has that name.
 
@@ -111,4 +117,5 @@ def format_of(
     cure = f'give one of {names}, or give its format'
     if kind == 'tree':
         cure += '; an inventory has columns for the place, the species, and the height or dbh'
-    raise FormatError(f'a file of an unknown {kind} format', where=str(path), cure=cure)
+    what = f'a file of an unknown {kind} format'
+    raise UnknownFormatError(what, where=str(path), cure=cure)

@@ -48,6 +48,14 @@ def path_of(name: str | Path) -> Path:
     return path
 
 
+def is_file(path: Path) -> bool:
+    """Whether a path is that of a file; impossible paths, as too long ones, are not."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
 def read_bytes(path: Path, at_most: int = -1) -> bytes:
     """
     Read a file, or a number of bytes from its beginning.

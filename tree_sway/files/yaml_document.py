@@ -173,7 +173,8 @@ def _check(document: YamlDocument) -> None:
 
     def items(validator: Any, inside: Schema, values: Any, whole: Schema) -> Any:
         """Check items; lists of numbers, of which a tree has thousands, are checked at once."""
-        if inside != numbers or not all(type(value) is float for value in values):
+        are_floats = isinstance(values, list) and all(type(value) is float for value in values)
+        if inside != numbers or not are_floats:
             yield from Draft202012Validator.VALIDATORS['items'](validator, inside, values, whole)
 
     known = {**Draft202012Validator.VALIDATORS, 'items': items, 'oneOf': lambda *_: ()}

@@ -23,8 +23,8 @@ import struct
 import numpy as np
 
 from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.errors import ParameterError
 from tree_sway.page.scene_state import SceneState
+from tree_sway.page.tables import why_no_tables
 
 _IMPORT = re.compile(r'(\bfrom\s+|\bimport[\s(]+)"(\.[^"]+)"')
 _COMMENT = re.compile(r'^ *(?://.*|/\*\*(?:[^*]|\*(?!/))*\*/ *)\n', re.MULTILINE)
@@ -47,8 +47,9 @@ def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
 
     Raises
     ------
-    ParameterError
-        A tree on a model that is not a number of coordinates.
+    TreeSwayError
+        A tree that has no table, such as one on a model that is not a number of coordinates; see
+        `why_no_tables`.
 
     """
     return page_of_state(SceneState(simulator, n_leaves, is_running=False))
@@ -58,9 +59,9 @@ def page_of_state(scene: SceneState, script: str = '') -> str:
     """Return the HTML of a described scene, with a module of the page that runs last."""
     tables = scene.tables()
     if tables is None:
-        what = f"model '{scene.simulator.model}' has no table to solve it by"
-        cure = 'give a number of coordinates, such as 60, and a crown_coherence of 1'
-        raise ParameterError(what, where='--model', cure=cure)
+        reason = why_no_tables(scene.kinds)
+        assert reason is not None
+        raise reason
     planes = [_in_planes(message) for message in (scene.description, tables)]
     packed = _packed(struct.pack('<I', len(planes[0])) + b''.join(planes))
     folder = Path(str(resources.files('tree_sway.page') / 'static'))

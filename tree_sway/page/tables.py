@@ -6,30 +6,67 @@ from __future__ import annotations
 
 import numpy as np
 
+from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.motion.exported_table import exported_table, rounded
 from tree_sway.core.motion.wind_basis import WindBasisBank
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.simulator.settings import USUAL
+from tree_sway.errors import MissingDependencyError, ParameterError, TreeSwayError
+from tree_sway.kernel_cache import PLAIN_VARIABLE
 from tree_sway.page.check_description import Array
 from tree_sway.page.protocol import encode_description, TABLES
 from tree_sway.page.scene_kind import SceneKind
+
+
+def refuse_without_compiler() -> None:
+    """Raise the error of `why_no_tables` where no tree has a table, before one is set up."""
+    if WHY_PLAIN:
+        raise _without_compiler()
+
+
+def _without_compiler() -> TreeSwayError:
+    is_turned_off = PLAIN_VARIABLE in WHY_PLAIN
+    return MissingDependencyError(
+        f'a tree that is solved elsewhere needs compiled kernels: {WHY_PLAIN or "they are off"}',
+        cure=f'unset {PLAIN_VARIABLE}' if is_turned_off else 'install numba 0.59 or later',
+    )
+
+
+def why_no_tables(kinds: list[SceneKind]) -> TreeSwayError | None:
+    """
+    Return the error of a scene that a receiver cannot solve; None if it can.
+
+    A table belongs to a tree on a number of coordinates, whose limbs meet each gust together. Only
+    compiled kernels make one.
+    """
+    for kind in kinds:
+        model = kind.simulator
+        if model.settings.crown_coherence < 1.0:
+            what = 'a crown whose limbs meet gusts one after another has no table to solve it by'
+            return ParameterError(what, where='crown_coherence', cure='set it to 1')
+        if isinstance(model.bank.oscillators, WindBasisBank):
+            continue
+        if model.bank.plain:
+            return _without_compiler()
+        what = f"model '{model.model}' has no table to solve it by"
+        cure = f'give a number of coordinates, such as {USUAL}'
+        return ParameterError(what, where='--model', cure=cure)
+    return None
 
 
 def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> bytes | None:
     """
     Write the tables of a scene that is described with an identity.
 
-    Returns None where a tree is on no table, on ``branch``, ``full`` or ``auto``, or where gusts
-    reach its limbs one after another.
+    Returns None where a tree has no table; see `why_no_tables`.
     """
+    if why_no_tables(kinds) is not None:
+        return None
     entries, arrays = [], dict[str, Array]()
     for number, kind in enumerate(kinds):
         model = kind.simulator
         bank = model.bank.oscillators
-        if not isinstance(model, SwaySimulator) or not isinstance(bank, WindBasisBank):
-            return None
-        if model.settings.crown_coherence < 1.0:
-            return None
+        assert isinstance(bank, WindBasisBank)
         numbers, own = exported_table(bank)
         state = bank.all_shapes @ kind.basis.projection.T
         # Motion of a correction of the coordinates with the least energy.

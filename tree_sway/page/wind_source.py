@@ -10,6 +10,7 @@ from typing import Protocol
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.run import Run
+from tree_sway.core.wind.interpolated import interpolated_means
 from tree_sway.core.wind.simulated.anemometer import AnemometerModel
 from tree_sway.page.newest import Newest
 
@@ -112,7 +113,8 @@ class RecordedWind:
     time
         Time of each sample in [s], increasing, (n,).
     velocity
-        Wind, blowing to, in [m/s], (n, 3).
+        Wind, blowing to, in [m/s], (n, 3); interpolated if the samples are means
+        (`interpolated_means`).
     name
         Name of the record for viewers.
 
@@ -120,6 +122,7 @@ class RecordedWind:
 
     def __init__(self, time: Floats, velocity: Floats, name: str = '') -> None:
         self.source = {'kind': 'recorded', 'name': name}
+        time, velocity = interpolated_means(time, velocity)
         self._time, self._velocity = time - time[0], velocity
         last = float(self._time[-1])
         self.length = last + max(last / max(len(time) - 1, 1), 1e-3)

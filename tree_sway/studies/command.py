@@ -6,12 +6,13 @@ from __future__ import annotations
 
 import argparse
 import os
-from pathlib import Path
 import sys
 import time
 
 from tree_sway.commands.arguments import refuse_overwriting
 from tree_sway.core.checks import within
+from tree_sway.files.export.table_writing import refuse_no_table
+from tree_sway.files.text_file import path_of
 from tree_sway.studies.plan import read_study
 from tree_sway.studies.runner import estimated_time, missing_cases, run_study
 from tree_sway.studies.table import write_table
@@ -36,8 +37,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Compute missing cases, write the table."""
     if arguments.workers is not None:
         within('--workers', arguments.workers, 1, 1024)
+    output = path_of(arguments.output)
+    refuse_no_table(output)
     cases = read_study(arguments.study)
-    output = Path(arguments.output).expanduser()
     cache = output.with_suffix('.cases')
     if not (arguments.force or cache.is_dir()):
         refuse_overwriting(output, '--output')

@@ -31,7 +31,7 @@ def compute(case: Case) -> Plain:
     Parameters
     ----------
     case
-        Case or cases to compute.
+        Case to compute.
 
     Returns
     -------

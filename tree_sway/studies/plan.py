@@ -11,16 +11,19 @@ follows from all its input: its values, the content of its files, and the source
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field, fields
+from functools import cache
 import hashlib
 from importlib.resources import files
 import itertools
 import json
+import math
 from pathlib import Path
 from typing import Any
 
 from tree_sway.core.simulator.settings import Settings
 from tree_sway.errors import FormatError, nearest, ParameterError
-from tree_sway.files.text_file import path_of, read_bytes, read_text
+from tree_sway.files.text_file import is_file, path_of, read_bytes, read_text
+from tree_sway.files.wind.wind_file import EXAMPLES
 from tree_sway.files.yaml_document import read_yaml
 from tree_sway.kernel_cache import ROOT, source_digest
 
@@ -28,6 +31,11 @@ Plain = dict[str, Any]
 
 _ARRAYS = {'leaf_mass', 'leaf_area', 'profile'}
 """Settings that a study does not vary."""
+
+MAX_CASES = 100_000
+"""Largest number of cases of a study, which are all planned before the first is computed."""
+MAX_STEPS = 6_000_000
+"""Largest number of steps of a case, all of which are in the memory."""
 
 _ROOMS = 'core', 'files', 'studies'
 """Rooms whose source and tables determine the results."""
@@ -43,7 +51,8 @@ class Case:
     tree
         ``{"name": ...}``, ``{"file": path}`` or ``{"species", "height", "seed"}``.
     wind
-        ``{"file": path, "scale"}`` or ``{"speed", "intensity", "seed"}``.
+        ``{"file": path, "scale"}``, where a built-in wind has its name for a path, or ``{"speed",
+        "intensity", "seed"}``.
     settings
         Fields of `Settings`.
     seconds, rate
@@ -84,7 +93,8 @@ def read_study(path: str | Path) -> list[Case]:
     Raises
     ------
     FormatError
-        A file that cannot be read, is not YAML, or does not match the schema.
+        A file that cannot be read, is not YAML, does not match the schema, or has more than
+        `MAX_CASES` cases or `MAX_STEPS` steps of a case.
     ParameterError
         An unknown setting, or a wrong value.
 
@@ -99,27 +109,65 @@ def read_study(path: str | Path) -> list[Case]:
         if ('file' in wind) == ('speed' in wind):
             where = document.where('winds', number)
             raise FormatError('a wind is a file or a speed', where=where, cure='give one of them')
-    varied = _settings(study.get('settings', {}), path)
     common = {key: study[key] for key in ('seconds', 'rate') if key in study}
+    _refuse_large(study, Case({}, {}, **common), str(path))
+    varied = _settings(study.get('settings', {}), path)
     code = ''.join(source_digest(ROOT / room) for room in _ROOMS).encode()
     cases = []
+    contents = cache(_content)
     for tree, wind, settings in itertools.product(
         _trees(study['trees'], path.parent), _winds(study['winds'], path.parent), varied
     ):
-        read = [Path(part['file']) for part in (tree, wind) if 'file' in part]
         digest = hashlib.blake2b(code, digest_size=10)
-        for each in read:
-            digest.update(read_bytes(each))
+        for part in (tree, wind):
+            digest.update(contents(part.get('file')))
         cases.append(Case(tree, wind, settings, **common, digest=digest.hexdigest()))
     return cases
+
+
+def _content(file: str | None) -> bytes:
+    """Digest of a file; empty for none, and for built-in winds, which are a part of the code."""
+    if file is None or file in EXAMPLES:
+        return b''
+    return hashlib.blake2b(read_bytes(Path(file)), digest_size=20).digest()
+
+
+def _refuse_large(study: Plain, case: Case, where: str) -> None:
+    """Raise a `FormatError` for too many cases, or too many steps of one, before any is made."""
+    trees = winds = 0
+    for entry in study['trees']:
+        trees += 1 if isinstance(entry, str) else _count(entry['grow'], 'species', 'height')
+    for entry in study['winds']:
+        winds += _count(entry, 'speed', 'intensity', 'scale')
+    settings = math.prod(len(_listed(value)) for value in study.get('settings', {}).values())
+    count = trees * winds * settings
+    if count > MAX_CASES:
+        raise FormatError(
+            f'{trees} trees in {winds} winds with {settings} settings are {count} cases',
+            where=where,
+            cure=f'give at most {MAX_CASES} cases in a study',
+        )
+    steps = case.seconds * case.rate
+    if steps > MAX_STEPS:
+        raise FormatError(
+            f'{case.seconds:g} s at {case.rate:g} Hz are {steps:.3g} steps of a case',
+            where=where,
+            cure=f'give at most {MAX_STEPS} steps, such as a day at 60 Hz',
+        )
+
+
+def _count(entry: Plain, *names: str) -> int:
+    """Count the combinations of the values of an entry, with its seeds."""
+    lengths = (len(_listed(entry[name])) for name in names if name in entry)
+    return math.prod(lengths) * int(entry.get('seeds', 1))
 
 
 def _trees(entries: list[Any], folder: Path) -> list[Plain]:
     found: list[Plain] = []
     for entry in entries:
         if isinstance(entry, str):
-            beside = folder / Path(entry).expanduser()
-            found.append({'file': str(beside)} if beside.is_file() else {'name': entry})
+            beside = folder / path_of(entry)
+            found.append({'file': str(beside)} if is_file(beside) else {'name': entry})
         else:
             grow = entry['grow']
             rows = itertools.product(
@@ -133,7 +181,9 @@ def _winds(entries: list[Plain], folder: Path) -> list[Plain]:
     found: list[Plain] = []
     for entry in entries:
         if 'file' in entry:
-            path = str(folder / Path(entry['file']).expanduser())
+            beside = folder / path_of(entry['file'])
+            is_built_in = entry['file'] in EXAMPLES and not is_file(beside)
+            path = entry['file'] if is_built_in else str(beside)
             found += [{'file': path, 'scale': float(s)} for s in _listed(entry.get('scale', 1.0))]
         else:
             rows = itertools.product(

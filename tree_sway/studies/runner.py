@@ -40,7 +40,7 @@ def run_study(cases: list[Case], folder: Path, *, workers: int | None = None) ->
     Parameters
     ----------
     cases
-        Case or cases to compute.
+        Cases of the study, computed before or not.
     folder
         Folder of finished cases.
     workers
@@ -149,13 +149,18 @@ def _cluster(workers: int) -> Iterator[tuple[Any, Any]]:
     Only this process handles Ctrl-C, and not before dask is loaded and the cluster up, half of
     which it would leave open. Its log is silent until the last of its threads has ended.
     """
-    quiet = {'distributed.nanny.pre-spawn-environ.DASK_LOGGING__DISTRIBUTED': 'critical'}
+    settings: Plain = {
+        'distributed.nanny.pre-spawn-environ.DASK_LOGGING__DISTRIBUTED': 'critical',
+        # Pages of dask have no password: neither the scheduler nor the workers have any.
+        'distributed.scheduler.http.routes': [],
+        'distributed.worker.http.routes': [],
+    }
     page = {'dashboard': False, 'dashboard_address': '127.0.0.1:0'}  # none, and at a free port
     with _delayed_interrupt() as delayed:
         dask, distributed = import_module('dask'), import_module('distributed')
         import_module('cryptography')  # keys that exclude other users of this machine
         with (
-            dask.config.set(quiet),
+            dask.config.set(settings),
             distributed.utils.silence_logging_cmgr('CRITICAL'),
             distributed.LocalCluster(
                 n_workers=workers, threads_per_worker=1, memory_limit=0, silence_logs='CRITICAL',

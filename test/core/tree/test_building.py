@@ -198,3 +198,18 @@ def test_what_cannot_be_is_refused_with_place_and_cure(change, message):
     }
     with pytest.raises(TreeError, match=message):
         tree_from_segments(**(given_input | change))
+
+
+@pytest.mark.parametrize(
+    ('start', 'end', 'diameter', 'message'),
+    [
+        ([[0, 0, 0], [0, 0]], [[0, 0, 1]] * 2, [0.1] * 2, 'start: not an array of numbers'),
+        ([[0, 0, 0]], [['a', 0, 1]], [0.1], 'end: not an array of numbers'),
+        ([[0, 0, 0]], [[0, 0, 1]], 0.1, 'diameter: 0 dimensions'),
+        ([[0, 0, 0]], [[0, 0, 1]], None, 'diameter: 0 dimensions'),
+        (1.0, 2.0, 0.1, 'start: 0 dimensions'),
+    ],
+)
+def test_arrays_that_are_none_are_one_clear_error(start, end, diameter, message):
+    with pytest.raises(TreeError, match=message):
+        tree_from_segments(start, end, diameter)

@@ -94,6 +94,20 @@ def test_a_species_of_no_table_is_one_of_its_group_and_said(name, key, guess):
     assert guess in note
 
 
+@pytest.mark.parametrize('name', ['oak_stiff.yaml', 'oak.yml', 'oak.JSON', 'oak.csv'])
+def test_a_file_is_not_a_species_of_the_table(name):
+    with pytest.raises(SpeciesError, match='the name of a file'):
+        species_named(name)
+
+
+@pytest.mark.parametrize(
+    ('name', 'guess'), [('okk', 'oak'), ('Qercus robur', 'quercus robur'), ('brich', 'birch')]
+)
+def test_a_misspelt_species_has_the_nearest_name(name, guess):
+    with pytest.raises(SpeciesError, match=f"did you mean '{guess}'"):
+        species_named(name)
+
+
 def test_every_name_is_of_one_species():
     names = [name for each in NAMES.values() for name in each]
     assert len(names) == len(set(names))

@@ -85,6 +85,19 @@ def test_names_are_plain_and_each_is_one(simulator):
         assert all(re.fullmatch('[A-Za-z][A-Za-z0-9_]*', name) for name in names)
 
 
+NAMES = {'null': 'a\0b', 'escape': 'a\x1b[1mb', 'markup': 'a"<&>b', 'umlaut': 'Bäume',
+         'surrogate': '\ud800', 'no character': '\uffff', 'digit': '7'}  # fmt: skip
+
+
+@pytest.mark.parametrize('name', NAMES.values(), ids=NAMES)
+def test_a_name_of_any_characters_is_readable(simulator, name, monkeypatch):
+    monkeypatch.setattr(simulator, 'tree', replace(simulator.tree, name=name))
+    assert simulator.tree.name == name
+    plain = re.sub('[\0\x1b\ud800\uffff]', '_', name)
+    assert ElementTree.fromstring(mjcf_of_tree(simulator)).get('model') == plain
+    assert ElementTree.fromstring(sdf_of_tree(simulator)).find('model').get('name') == plain
+
+
 @pytest.mark.parametrize('name', TREES)
 def test_mujoco_sways_it_at_our_first_frequency(name):
     mujoco = pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')

@@ -14,7 +14,7 @@ import pytest
 from tree_sway.errors import FormatError, ParameterError, TreeSwayError
 from tree_sway.files import text_file
 from tree_sway.files.scenes.stand_table import read_stand_table
-from tree_sway.files.trees.source import open_scene
+from tree_sway.files.trees.source import open_scene, open_tree
 
 CONFIG = Path(__file__).parents[3] / 'config'
 
@@ -199,7 +199,7 @@ def test_a_species_of_no_table_and_a_stem_that_would_not_stand_are_notes(tmp_pat
 
 MANY = r"""
 import re, sys
-from tree_sway.files.trees.source import open_scene
+from tree_sway.files.trees.source import open_scene, open_tree
 from tree_sway.core.scene.placed_tree import MOST_SEGMENTS
 scene = open_scene(sys.argv[1])
 assert len(scene.trees) == 30_000 and len(scene.kinds) <= 8
@@ -236,3 +236,41 @@ def test_the_head_of_a_file_is_read_once(tmp_path, monkeypatch, name):
     monkeypatch.setattr(text_file, 'read_bytes', counted)
     open_scene(path)
     assert heads == [path]
+
+
+def test_a_table_without_a_size_is_refused_by_its_columns(tmp_path):
+    written(tmp_path, 'x,y,species\n0,0,oak\n3,0,oak\n')
+    stand = written(tmp_path, 'stand: plot.csv\n', 'stand.yaml')
+    with pytest.raises(FormatError, match=r'plot\.csv:1: no column for the size among x, y, spec'):
+        open_scene(stand)
+
+
+@pytest.mark.parametrize(
+    ('header', 'row', 'missing'),
+    [
+        ('x,y,species', '0,0,oak', r'the size \(height, dbh or girth\) among x, y, species'),
+        ('x,y,kind,height', '0,0,oak,12', 'the species among'),
+        ('species,height', 'oak,12', 'the place'),
+        ('species,girth of it', 'oak,12', 'the place .* and none for the size'),
+    ],
+)
+def test_a_column_that_an_inventory_lacks_is_named(tmp_path, header, row, missing):
+    path = written(tmp_path, f'{header}\n{row}\n{row}\n')
+    with pytest.raises(FormatError, match=f'no column for {missing}'):
+        open_scene(path)
+
+
+def test_the_names_of_two_more_inventories(tmp_path):
+    path = written(tmp_path, 'x_m,y_m,species_latin,dbh_mm\n0,0,Quercus robur,300\n')
+    assert open_scene(path).trees[0].species.key == 'oak'
+    path = written(tmp_path, '@lat;@lon;species;Baumhöhe [m]\n48,8;2,3;oak;12,5\n')
+    assert open_scene(path).trees[0].placed().height == pytest.approx(12.5)
+
+
+@pytest.mark.parametrize('form', ['table', 'yaml'])
+def test_an_inventory_where_one_tree_is_expected_says_what_to_do(tmp_path, form):
+    path = written(tmp_path, 'x,y,species,height\n0,0,oak,12\n')
+    if form == 'yaml':
+        path = written(tmp_path, 'stand: plot.csv\n', 'stand.yaml')
+    with pytest.raises(FormatError, match='where one tree is expected; make one of them, such as'):
+        open_tree(path)

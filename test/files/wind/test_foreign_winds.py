@@ -4,13 +4,17 @@
 
 from datetime import datetime, timedelta
 from pathlib import Path
+import tracemalloc
 
 import numpy as np
 import pytest
+from tree_sway_lab.bench.bench_tree import bench_tree
 
+from tree_sway.core.scene.simulate import simulate
 from tree_sway.core.wind.simulated.about_means import turbulence_about_means
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.wind.nmea import parse_nmea
+from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sensor_line import checksum_of
 from tree_sway.files.wind.wind_file import read_wind
 
@@ -201,3 +205,43 @@ def test_what_is_not_a_wind_says_what_to_name(tmp_path: Path) -> None:
     path.write_text('time,rain\n0,1\n1,2\n')
     with pytest.raises(FormatError, match='no time with u and v, or with speed and direction'):
         read_wind(path)
+
+
+def test_one_report_of_an_airport_is_ten_minutes_of_wind(tmp_path: Path) -> None:
+    path = tmp_path / 'one.metar'
+    path.write_text('METAR EDDF 312250Z 27020G32KT 9999')
+    plain, filled = read_wind(path, turbulence=False), read_wind(path)
+    knots = 1852.0 / 3600.0
+    assert plain.duration == filled.duration == 600.0
+    np.testing.assert_allclose(plain.velocity, [[20.0 * knots, 0.0, 0.0]] * 2, atol=1e-9)
+    assert 'ten minutes' in plain.notes[0]
+    assert filled.velocity[:, 0].mean() == pytest.approx(20.0 * knots, rel=0.02)
+
+
+@pytest.mark.parametrize('apart', ['20', '108', 'means'])
+def test_a_tree_sways_in_means_however_far_apart(apart: str, tmp_path: Path) -> None:
+    path = tmp_path / 'wind'
+    if apart == 'means':  # too long for turbulence
+        rows = (f'{3600 * k},{5 + k % 2},270' for k in range(24 * 40))
+        path.write_text('\n'.join(['time,speed,direction', *rows]))
+    else:
+        later = 60 + int(apart)
+        hour, minute = 12 + later // 60, later % 60
+        path.write_text(f'EDDF 221300Z 27010KT\nEDDF 22{hour}{minute:02d}Z 27014KT\n')
+    for turbulence in (True, False):
+        record = read_wind(path, turbulence=turbulence)
+        swayed = simulate(bench_tree(), record, seconds=2.0, rate=30.0, model=12)
+        expected = np.interp(swayed.time, record.time, record.velocity[:, 0])
+        np.testing.assert_allclose(swayed.wind[15:, 0], expected[15:], atol=0.3)
+
+
+def test_a_few_seconds_of_a_long_record_take_little_memory() -> None:
+    time = 0.05 * np.arange(1_000_000)
+    record = WindRecord(time, np.tile([6.0, 0.0, 0.0], (len(time), 1)), 'a record')
+    tree = bench_tree()
+    simulate(tree, record, seconds=0.1, model=12)
+    tracemalloc.start()
+    simulate(tree, record, seconds=0.1, model=12)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2 * record.velocity.nbytes

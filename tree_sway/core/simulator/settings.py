@@ -26,6 +26,7 @@ MODELS = ('auto', 'branch', 'full')
 
 MOST = 1000
 """Largest number of coordinates."""
+_MOST_DIGITS = 9
 
 STIFFEST = 1e7
 """Largest stiffness in [N/m] of a spring at a segment."""
@@ -168,7 +169,9 @@ def model_of(given: object) -> int | str:
     """
     if isinstance(given, str) and given in MODELS:
         return given
-    number = int(given) if isinstance(given, str) and given.isdecimal() else given
+    number = given
+    if isinstance(given, str) and given.isdecimal() and len(given) <= _MOST_DIGITS:
+        number = int(given)
     if isinstance(number, float) and number.is_integer():
         number = int(number)  # files of numbers have floats
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number <= MOST:

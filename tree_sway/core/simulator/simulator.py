@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from tree_sway.core.simulator.touch import Spring, Touch
     from tree_sway.core.wind.gust_travel import GustHistory
 
+_MOST_FREQUENCIES = 1e6
+
 OK, WIND_REFUSED, LOAD_CLAMPED, RESTARTED = 0, 1, 2, 4
 """Bits of the result of `SwaySimulator.step`."""
 

@@ -115,13 +115,16 @@ def tree_from_segments(
     )  # fmt: skip
 
 
-def _numbers(name: str, values: ArrayLike) -> Floats:
+def _numbers(what: str, values: ArrayLike) -> Floats:
+    """Return a copy of values as an array; a `TreeError` if they are no array of numbers."""
     try:
-        return np.array(values, dtype=np.float64, ndmin=1)
+        numbers = np.array(values, dtype=np.float64, ndmin=1)
     except (TypeError, ValueError, OverflowError):
-        raise TreeError(
-            'not an array of numbers', where=name, cure='give (n, 3), (n, 3) and (n,) or (n, 2)'
-        ) from None
+        cure = 'give an array of numbers, a row for each segment'
+        raise TreeError('not an array of numbers', where=what, cure=cure) from None
+    if numbers.ndim not in (1, 2):
+        raise TreeError(f'{numbers.ndim} dimensions', where=what, cure='give (n, 3), or (n,)')
+    return numbers
 
 
 def _check_geometry(

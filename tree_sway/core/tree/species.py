@@ -52,6 +52,7 @@ SPECIES = {key: _species(row) for key, row in _ROWS.items()}
 _KEYS = {key.replace('_', ' '): key for key in SPECIES}
 _KEYS |= {name: key for key, names in NAMES.items() for name in names}
 _WORDS = [name for name in _KEYS if len(name) > 3]
+_FILE = re.compile(r'\.(ya?ml|json|csv)\s*$', re.IGNORECASE)
 _CONIFEROUS = re.compile(r'conifer|nadel|cypress|cedar|yew|hemlock|redwood|(fir|pine|spruce)\b')
 
 
@@ -62,7 +63,7 @@ def species_named(name: str) -> Species:
     Raises
     ------
     SpeciesError
-        If no species has that name; the error lists the species.
+        If no species has that name, or it is that of a file; the error lists the species.
 
     """
     if not isinstance(name, str):
@@ -70,11 +71,18 @@ def species_named(name: str) -> Species:
         raise SpeciesError(what, cure="give it as 'oak'")
     if name in SPECIES:
         return SPECIES[name]
+    if _FILE.search(name):
+        cure = 'give the name of a species; only the option --species reads a file'
+        raise SpeciesError(f"'{name}' is the name of a file", cure=cure)
     words = re.findall(r'\w+', name.lower().replace('_', ' '))
     for known in (' '.join(words), ' '.join(words[:2]), *words[:1]):
         if known in _KEYS:
             return SPECIES[_KEYS[known]]
-    cure = f'{nearest(name.lower(), _WORDS)} use one of: {", ".join(sorted(SPECIES))}'.lstrip()
+    known_names = [*_WORDS, *SPECIES]
+    # Of two words, one may be right: the whole name is far from each known name.
+    guesses = (nearest(each, known_names) for each in (name.lower(), *words))
+    guess = next(filter(None, guesses), '')
+    cure = f'{guess} use one of: {", ".join(sorted(SPECIES))}'.lstrip()
     raise SpeciesError(f"unknown species '{name}'", cure=cure)
 
 

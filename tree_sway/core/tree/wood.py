@@ -33,9 +33,9 @@ class Species:
         Cd without leaves, at every speed: that of a cylinder of a branch's size in wind, 0.82 to
         1.2.
     shear_ratio
-        Shear modulus over Young's modulus along the grain in [-]: some 1/14 for wood (Forest
-        Products Laboratory, Wood Handbook, 2010), where an isotropic rod has 0.38. It changes only
-        the twist of stems.
+        Shear modulus over Young's modulus in [-]. Wood has some 1/14 along the grain (Forest
+        Products Laboratory, Wood Handbook, 2010); an isotropic rod would have 1/2.6. It sets the
+        twist of stems only.
     root_stiffness
         Stiffness of the roots against tilting of the stem in [N m/rad]; infinite for rigid roots.
         It is that of one tree; `typical_root_stiffness` gives that of a size.

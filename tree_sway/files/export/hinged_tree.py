@@ -65,10 +65,15 @@ class HingedTree:
     largest_step: float
 
 
+def plain_name(name: str) -> str:
+    """Return a name of letters, digits and ``_``, a letter first."""
+    plain = re.sub(r'\W', '_', name, flags=re.ASCII)
+    return plain if plain[:1].isalpha() else f's_{plain}'
+
+
 def plain_names(tree: Tree) -> tuple[str, ...]:
     """Return unique names of the segments of letters, digits and ``_``."""
-    names = [re.sub(r'\W', '_', name, flags=re.ASCII) for name in tree.segment_names]
-    names = [name if name[0].isalpha() else f's_{name}' for name in names]
+    names = [plain_name(name) for name in tree.segment_names]
     if len(set(names)) < len(names):
         names = [f'{name}_{i}' for i, name in enumerate(names)]
     return tuple(names)

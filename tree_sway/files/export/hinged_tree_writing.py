@@ -10,6 +10,7 @@ Segments touch other things, and not each other in MuJoCo.
 from __future__ import annotations
 
 from collections.abc import Iterator
+import re
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -20,6 +21,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.files.export.hinged_tree import hinged_tree, HingedTree
 
 _USUAL_STEP = 0.002
+_NOT_IN_XML = re.compile('[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]')
 
 _BODY = """\
 <body name="{name}" pos="{place}" quat="{wxyz}" gravcomp="1">
@@ -59,7 +61,7 @@ def mjcf_of_tree(simulator: SwaySimulator) -> str:
     # Geometries collide where a bit of one is in the other's mask: segments have none.
     return '\n'.join(
         [
-            f'<mujoco model={quoteattr(tree.name)}>',
+            f'<mujoco model={_quoted(tree.name)}>',
             _comment(simulator, hinged),
             '<compiler angle="radian"/>',
             f'<option timestep="{min(_USUAL_STEP, hinged.largest_step):g}" integrator="Euler"/>',
@@ -78,11 +80,16 @@ def sdf_of_tree(simulator: SwaySimulator) -> str:
         [
             '<sdf version="1.9">',
             _comment(simulator, hinged),
-            f'<model name={quoteattr(tree.name)}>',
+            f'<model name={_quoted(tree.name)}>',
             *(_LINK.format_map(values) for values in _values(tree, hinged)),
             '</model>\n</sdf>\n',
         ]
     )
+
+
+def _quoted(name: str) -> str:
+    """Return a name as an attribute, with ``_`` for characters that XML 1.0 cannot have."""
+    return quoteattr(_NOT_IN_XML.sub('_', name))
 
 
 def _comment(simulator: SwaySimulator, hinged: HingedTree) -> str:

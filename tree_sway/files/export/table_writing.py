@@ -6,22 +6,37 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 import csv
+from importlib.util import find_spec
 import io
 import json
 from pathlib import Path
 from typing import Any
 
 from tree_sway.errors import FormatError, MissingDependencyError
+from tree_sway.extras import cure_of_missing
 from tree_sway.files.whole_file import whole_file, write_text_whole
 
 TABLE_SUFFIXES = ('.csv', '.parquet', '.json')
 
 
 def refuse_no_table(path: Path) -> None:
-    """Raise a `FormatError` for a suffix of no table, before anything is computed."""
+    """
+    Refuse a file that cannot be written as a table, before anything is computed.
+
+    Raises
+    ------
+    FormatError
+        A suffix that is not one of `TABLE_SUFFIXES`.
+    MissingDependencyError
+        Parquet without pyarrow.
+
+    """
     if path.suffix not in TABLE_SUFFIXES:
         cure = f'end it with one of: {", ".join(TABLE_SUFFIXES)}'
         raise FormatError(f"'{path.suffix}' is no table", where=str(path), cure=cure)
+    if path.suffix == '.parquet' and find_spec('pyarrow') is None:
+        cure = f'{cure_of_missing("pyarrow")}; or end the name with .csv'
+        raise MissingDependencyError('Parquet needs pyarrow', cure=cure)
 
 
 def write_columns(columns: Mapping[str, Sequence[Any]], path: Path) -> None:
@@ -31,9 +46,9 @@ def write_columns(columns: Mapping[str, Sequence[Any]], path: Path) -> None:
     Raises
     ------
     FormatError
-        A suffix that is not one of `TABLE_SUFFIXES`, or a file that cannot be written.
-    MissingDependencyError
-        Parquet without pyarrow.
+        A file that cannot be written.
+    TreeSwayError
+        Errors of `refuse_no_table`.
 
     """
     refuse_no_table(path)
@@ -46,12 +61,8 @@ def write_columns(columns: Mapping[str, Sequence[Any]], path: Path) -> None:
     elif path.suffix == '.json':
         write_text_whole(path, json.dumps({name: [*each] for name, each in columns.items()}))
     else:
-        try:
-            import pyarrow
-            from pyarrow import parquet
-        except ImportError:
-            raise MissingDependencyError(
-                'Parquet needs pyarrow', cure='pip install pyarrow, or end the name with .csv'
-            ) from None
+        import pyarrow
+        from pyarrow import parquet
+
         with whole_file(path) as partial:
             parquet.write_table(pyarrow.table(dict(columns)), partial)

@@ -19,7 +19,8 @@ from tree_sway.files.export.gltf_document import GltfDocument
 from tree_sway.files.export.yaml_writing import yaml_of_tree
 from tree_sway.files.whole_file import whole_file, write_text_whole
 
-_SUFFIXES = ('.yaml', '.yml', '.glb')
+SUFFIXES = ('.yaml', '.yml', '.glb')
+"""Suffixes of files that `write_tree` writes."""
 
 
 def write_tree(
@@ -53,9 +54,9 @@ def write_tree(
     if not isinstance(tree, Tree):
         tree, species = tree_and_species(tree, species)
     suffix = Path(path).suffix.lower()
-    if suffix not in _SUFFIXES:
+    if suffix not in SUFFIXES:
         what = f"cannot write '{Path(path).suffix}'"
-        raise FormatError(what, where=str(path), cure=f'use {", ".join(_SUFFIXES)}')
+        raise FormatError(what, where=str(path), cure=f'use {", ".join(SUFFIXES)}')
     if suffix == '.glb':
         from tree_sway.files.export.gltf_tree import skinned_tree  # it takes long to load
 

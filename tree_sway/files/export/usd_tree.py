@@ -11,7 +11,6 @@ branches in a steady wind, over that of the group that bends most.
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.species import bark_color, leaf_traits
 from tree_sway.core.tree.tree import Tree
 from tree_sway.files.export.breeze import in_breeze, RATE
-from tree_sway.files.export.hinged_tree import plain_names, poses_on_parents
+from tree_sway.files.export.hinged_tree import plain_name, plain_names, poses_on_parents
 from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
 
 _SECONDS = 10.0
@@ -39,7 +38,7 @@ def usd_of_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) ->
     """
     tree = simulator.tree
     frames = in_breeze(simulator, _SECONDS, lambda: poses_on_parents(tree, simulator.place()))
-    rest, name = tree.rest_poses, re.sub(r'\W', '_', tree.name, flags=re.ASCII)
+    rest, name = tree.rest_poses, plain_name(tree.name)
     joints = f'uniform token[] joints = {_strings(_paths(tree))}'
     last = len(frames) - 1
     parts = [

@@ -31,7 +31,7 @@ from tree_sway.core.tree.species import species_named
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.files.scenes.stand_table import read_stand_table
 from tree_sway.files.scenes.tree_names import refuse_same_names
-from tree_sway.files.text_file import path_of, read_text
+from tree_sway.files.text_file import is_file, path_of, read_text
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.yaml_document import packaged_schema, read_yaml, YamlDocument
 
@@ -117,4 +117,4 @@ def _trees(
 def _beside(folder: Path, name: str) -> str | Path:
     """File of a name in a folder; the name itself if the folder has no such file."""
     beside = folder / path_of(name)
-    return beside if beside.is_file() else name
+    return beside if is_file(beside) else name

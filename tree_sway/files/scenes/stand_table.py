@@ -38,17 +38,50 @@ _EARTH = 6.371e6
 _NUMBER = re.compile(r'-?\d+(?:\.\d+)?')
 _FAR = 1e5
 _HEIGHTS, _SLENDERNESSES = 3.0, 1.3
+_NEEDED = {
+    'the place (x and y, or latitude and longitude)': (
+        ('x', 'y'), ('latitude', 'longitude'), ('place',),
+    ),
+    'the species': (('species',),),
+    'the size (height, dbh or girth)': (('height',), ('diameter',), ('girth',)),
+}  # fmt: skip
+"""Columns of a stand: what they say, and the quantities that do."""
 
 
 def is_stand_table(head: str) -> bool:
     """Whether the beginning of a file is a table with the columns of a stand."""
+    table = _begun(head)
+    return table is not None and not _missing(table)
+
+
+def why_no_stand(head: str) -> str:
+    """
+    Return which columns of a stand the beginning of a file lacks.
+
+    The text is empty for a stand, and for a file that has no column of one.
+    """
+    table = _begun(head)
+    missing = _missing(table) if table is not None else []
+    if table is None or not missing or len(missing) == len(_NEEDED):
+        return ''
+    return f'no column for {" and none for ".join(missing)} among {", ".join(table.columns[:20])}'
+
+
+def _begun(head: str) -> TextTable | None:
+    """Table at the beginning of a file; None if it is no table."""
     try:
-        table = parse_table(head.splitlines()[:20], '')
+        return parse_table(head.splitlines()[:20], '')
     except FormatError:
-        return False
-    here = _find(table, 'x', 'y') or _find(table, 'latitude', 'longitude') or _find(table, 'place')
-    size = [table.find(each) for each in ('height', 'diameter', 'girth')]
-    return here is not None and table.find('species') is not None and any(size)
+        return None
+
+
+def _missing(table: TextTable) -> list[str]:
+    """Describe the columns of a stand that a table lacks."""
+    return [
+        what
+        for what, choices in _NEEDED.items()
+        if not any(_find(table, *quantities) for quantities in choices)
+    ]
 
 
 def read_stand_table(
@@ -69,8 +102,8 @@ def read_stand_table(
     Raises
     ------
     FormatError
-        No tree, a missing column, a cell that is not a finite number, an impossible height, two
-        trees of one name; with the line.
+        No tree, a missing column (also one for the size), a cell that is not a finite number, an
+        impossible height, two trees of one name; with the line.
 
     """
     table = parse_table(read_lines(path), str(path))
@@ -133,9 +166,12 @@ class _Inventory:
         height = table.find('height')
         self.height = np.zeros(0) if height is None else self._values(height)[0]
         self.diameter = self._diameter()
+        if not len(self.height) and self.diameter is None:
+            what = f'no column for the size among {", ".join(table.columns[:20])}'
+            raise table.error(what, cure='add one of height, dbh or girth')
 
     def note(self, *notes: str) -> None:
-        """Begin without assumptions."""
+        """Add assumptions."""
         self.notes += notes
 
     def texts(self, quantity: str) -> list[str]:
@@ -195,7 +231,7 @@ class _Inventory:
         return None
 
     def find_heights(self, keys: list[str]) -> None:
-        """Return heights of grown trees of such stems, where the table has none."""
+        """Take the heights of grown trees of such stems, where the table has none."""
         if len(self.height) or self.diameter is None:
             return
         found = [height_of_stem(key, d) for key, d in zip(keys, self.diameter, strict=True)]

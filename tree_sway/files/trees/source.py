@@ -16,8 +16,9 @@ from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
+from tree_sway.files.file_format import UnknownFormatError
 from tree_sway.files.scenes.scene_yaml import read_scene_yaml
-from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table
+from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table, why_no_stand
 from tree_sway.files.text_file import path_of, read_head
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
@@ -41,7 +42,7 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     Raises
     ------
     FormatError
-        Neither a built-in tree nor a file, or the file of a forest.
+        Neither a built-in tree nor a file, or the file of a forest or a stand.
     TreeSwayError
         An error of reading the file.
 
@@ -57,15 +58,30 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     if not path.exists():
         guess = nearest(text, BUILTIN_TREES)
         if text in species_keys():
-            guess = f'it is a species: tree-sway grow --species {text} --height 10 -o {text}.yaml;'
+            guess = f'it is a species: tree-sway grow {text} --height 10 -o {text}.yaml;'
         cure = f'{guess} give a file, or one of {", ".join(BUILTIN_TREES)}'.lstrip()
         raise FormatError(f"no tree '{text}'", cure=cure)
     head = read_head(path) if path.is_file() else None
-    if head is not None and begins_with_key(path, head, 'trees'):
-        raise FormatError(
-            'a forest, where one tree is expected', where=text, cure='name one of its trees'
-        )
+    if head is not None:
+        _refuse_several_trees(path, head)
     return read_tree(path, head=head, **options).checked()
+
+
+def _refuse_several_trees(path: Path, head: str) -> None:
+    """Raise a `FormatError` for a forest or a stand, with how to get one of its trees."""
+    where = str(path)
+    if begins_with_key(path, head, 'trees'):
+        what, cure = 'a forest, where one tree is expected', 'name one of its trees'
+        raise FormatError(what, where=where, cure=cure)
+    is_table = is_stand_table(head)
+    if is_table or begins_with_key(path, head, 'stand'):
+        what = 'an inventory' if is_table else 'a stand'
+        raise FormatError(
+            f'{what} of trees, where one tree is expected',
+            where=where,
+            cure='make one of them, such as by tree-sway grow oak --height 12 --diameter 0.3 -o '
+            'oak.yaml; info, show, plot and convert take all of them',
+        )
 
 
 def open_scene(
@@ -101,7 +117,13 @@ def open_scene(
     elif is_stand_table(head):
         read = partial(read_stand_table, path, seed=seed, exact=exact)
     if read is None:
-        files = [each.checked() for each in read_trees(path, head=head, **options)]
+        try:
+            files = [each.checked() for each in read_trees(path, head=head, **options)]
+        except UnknownFormatError as error:
+            if missing := why_no_stand(head):
+                cure = 'name them so in the header, if it is an inventory (doc/trees.md)'
+                raise FormatError(missing, where=error.where, cure=cure) from None
+            raise
         return scene_of_files(files, path.stem)
     if options:
         what = f"option '{next(iter(options))}' for a forest"

@@ -10,6 +10,7 @@ smaller than that of the line before is on the next day.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import radians
 from pathlib import Path
 import re
@@ -25,6 +26,8 @@ METAR = re.compile(
     r'\b(\d\d)(\d\d)(\d\d)Z\b.*?\b(\d{3}|VRB|///)(\d\d\d?|//)(?:G(\d\d\d?))?(KT|MPS|KMH)\b',
     re.ASCII,
 )
+_MEAN = 600.0
+"""Length of the mean of a report in [s] (WMO Manual on Codes 306, FM 15)."""
 _UNITS = {'KT': 1852.0 / 3600.0, 'MPS': 1.0, 'KMH': 1.0 / 3.6}
 
 
@@ -53,4 +56,18 @@ def read_metar_wind(path: Path, turbulence: bool = True, seed: float = 0) -> Win
         gusts.append(unit * float(report[6]) if report[6] else np.nan)
         rows.add(number, time, velocity_of_bearing(unit * float(report[5]), bearing))
     rows.gust = np.array(gusts)
-    return filled_means(rows.record(), turbulence, seed)
+    record = rows.record()
+    if len(record.time) == 1:
+        record = _ten_minutes(record)
+    return filled_means(record, turbulence, seed, least=2)
+
+
+def _ten_minutes(record: WindRecord) -> WindRecord:
+    """Return the wind of one report over the ten minutes that its mean is taken of."""
+    twice = replace(
+        record,
+        time=np.array([0.0, _MEAN]),
+        velocity=np.repeat(record.velocity, 2, axis=0),
+        gust=None if record.gust is None else np.repeat(record.gust, 2),
+    )
+    return twice.with_note('one report, of the mean over ten minutes: a record of that length')

@@ -18,11 +18,17 @@ from tree_sway.errors import ParameterError
 from tree_sway.files.wind.record import WindRecord
 
 
-def filled_means(record: WindRecord, turbulence: bool, seed: float) -> WindRecord:
-    """Return a record with turbulence about its samples if these are means, with a note."""
+def filled_means(
+    record: WindRecord, turbulence: bool, seed: float, *, least: int = 3
+) -> WindRecord:
+    """
+    Return a record with turbulence about its samples if these are means, with a note.
+
+    Fewer samples than the ``least`` number, as two of a table, may as well be a broken record.
+    """
     if not (seed >= 0 and float(seed).is_integer()):
         raise ParameterError(f'seed is {seed:g}', cure='give a whole number of 0 or more')
-    if record.period < LEAST_INTERVAL or len(record.time) < 3:
+    if record.period < LEAST_INTERVAL or len(record.time) < least:
         return record
     means = f'samples {record.period:g} s apart are taken as means'
     if not turbulence:

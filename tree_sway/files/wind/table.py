@@ -99,7 +99,10 @@ def _wind(
     if clock is None or None in found[:2]:
         names = ', '.join(table.columns[:20])
         what = f'no time with u and v, or with speed and direction, among {names}'
-        cure = 'use these names in the header, or the option columns'
+        cure = (
+            'use these names in the header, or give those of the components: '
+            '--wind-option columns=u,v'
+        )
         raise table.error(what, cure=cure)
     columns = [column for column in found if column is not None]
     indices = [column.index for column in columns]

@@ -23,6 +23,8 @@ RATE = 10.0
 LEAST_INTERVAL = 20.0
 """Interval [s] from which samples are means; at shorter ones they are the wind itself."""
 _MOST, _LEAST_RATE = 4_000_000, 2.0
+_BLOCK, _FADE = 131_072, 8_192
+"""Samples of turbulence that are drawn at a time, and those over which one passes to the next."""
 _GUST = 3.0
 
 
@@ -61,7 +63,8 @@ def turbulence_about_means(
     between = np.stack([np.interp(fine, time, column) for column in mean.T], axis=1)
     typical = min(max(float(level.mean()), 1.0), 40.0)
     whole = max(len(fine), math.ceil(600.0 * rate))
-    drawn = Turbulence(typical, intensity=1.0 / typical).record(whole, rate, rng)[: len(fine)]
+    turbulence = Turbulence(typical, intensity=1.0 / typical)
+    drawn = _long_record(turbulence, whole, rate, rng)[: len(fine)]
     # Means of the turbulence over the interval about each sample, which are subtracted.
     nearest = np.searchsorted(0.5 * (time[1:] + time[:-1]), fine)
     count = np.maximum(np.bincount(nearest, minlength=len(time)), 1)
@@ -81,3 +84,26 @@ def turbulence_about_means(
     between[:, 1] += sine * drawn[:, 0] + cosine * drawn[:, 1]
     between[:, 2] += drawn[:, 2]
     return fine, between
+
+
+def _long_record(
+    turbulence: Turbulence, count: int, rate: float, rng: np.random.Generator
+) -> Floats:
+    """
+    Draw turbulence of any length, (count, 3), in blocks, with the memory of one block.
+
+    A block of hours has all of the spectrum. Where one passes to the next, the weights of the two
+    are sine and cosine, which keeps the variance, as they are independent.
+    """
+    if count <= _BLOCK:
+        return turbulence.record(count, rate, rng)
+    drawn = np.zeros((count, 3))
+    rising = np.sin(np.linspace(0.0, 0.5 * math.pi, _FADE))[:, None]
+    for first in range(0, count - _FADE, _BLOCK - _FADE):
+        block = turbulence.record(_BLOCK, rate, rng)
+        if first > 0:
+            block[:_FADE] *= rising
+        block[-_FADE:] *= rising[::-1]
+        part = drawn[first : first + _BLOCK]
+        part += block[: len(part)]
+    return drawn

@@ -26,11 +26,11 @@ from pathlib import Path
 
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import FormatError, SpeciesError
-from tree_sway.files.text_file import read_text
+from tree_sway.files.text_file import path_of, read_text
 from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.branches import branch_segments
-from tree_sway.files.yaml_document import read_yaml, tree_schema, YamlDocument
+from tree_sway.files.yaml_document import read_yaml, tree_schema, YAML_SUFFIXES, YamlDocument
 
 
 def read_yaml_tree(path: Path) -> TreeFile:
@@ -57,6 +57,36 @@ def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree')
     name = values.get('name', default_name)
     tree = built_tree(source, **branch_segments(document), name=name, species=species.key)
     return TreeFile(tree, species, source)
+
+
+def is_species_file(name: str) -> bool:
+    """Whether a text names a file with a species, and not a species of the table."""
+    return Path(name).suffix.lower() in YAML_SUFFIXES or path_of(name).is_file()
+
+
+def read_species(path: str | Path) -> Species:
+    """
+    Read the species of a YAML file, with the wood that the file measures.
+
+    The file is that of a tree, whose branches are not used, or only has ``species`` and ``wood``.
+
+    Raises
+    ------
+    FormatError
+        A file that is missing, is not YAML, does not match the schema, or has neither ``species``
+        nor ``wood``.
+    SpeciesError
+        An unknown species.
+
+    """
+    path = path_of(path)
+    schema = {**tree_schema(), 'required': []}
+    document = read_yaml(read_text(path), str(path), schema)
+    if not {'species', 'wood'} & set(document.values):
+        raise FormatError(
+            'no species and no wood', where=str(path), cure="add 'species' or 'wood' to it"
+        )
+    return species_of(document)
 
 
 def species_of(document: YamlDocument) -> Species:

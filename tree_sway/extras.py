@@ -1,0 +1,88 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Parts of the package that are installed on request: which module is in which, and how to get it.
+
+No advice is made from the name of a module, which may be that of a different project.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib.metadata import distribution, PackageNotFoundError
+from importlib.util import find_spec
+import json
+from pathlib import Path
+import re
+import sys
+from urllib.parse import unquote, urlparse
+
+from tree_sway.errors import MissingDependencyError
+
+EXTRAS = {
+    **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
+    **dict.fromkeys(('cryptography', 'dask', 'distributed'), 'study'),
+    **{'numba': 'fast', 'rosbags': 'bag', 'serial': 'serial', 'tqdm': 'progress'},
+    **{'imageio_ffmpeg': 'film', 'pyarrow': 'parquet'},
+}
+"""Extra of the package with a module."""
+
+PACKAGE = 'tree_sway_ros'
+"""Name of the distribution."""
+_STAMP = 'tree_sway_ros.stamp'
+_OF_ROS = re.compile(r'rclpy|\w+_msgs|\w+_srvs|builtin_interfaces|ament_\w+|rosidl\w*|launch\w*')
+
+
+def refuse_missing(modules: Iterable[str], command: str) -> None:
+    """
+    Raise a `MissingDependencyError` for the first module that is not installed.
+
+    ``command`` is the rest of the command line that needs them, for the cure.
+    """
+    for module in modules:
+        if find_spec(module) is None:
+            raise MissingDependencyError(
+                f"No module named '{module}'", cure=cure_of_missing(module, command)
+            )
+
+
+def cure_of_missing(module: str, command: str = '...') -> str:
+    """Return how to install a missing module, for ``tree-sway`` of a command."""
+    package = module.partition('.')[0]
+    of_ros = _OF_ROS.fullmatch(package) is not None
+    if not of_ros and package not in EXTRAS:
+        return f'the installation is incomplete: install {PACKAGE} again'
+    if line := line_in_venv(command):
+        return f'install it and run this: {line}'
+    folder = _folder()
+    extra = 'ros' if of_ros else EXTRAS[package]
+    install = f'pip install "{folder or PACKAGE}[{extra}]"'
+    if of_ros:
+        return f'it needs ROS: source a ROS 2 installation, or {install}'
+    return f'install it: {install}'
+
+
+def line_in_venv(command: str) -> str:
+    """
+    Return the line that installs what a command of ``tree-sway`` needs, and runs it.
+
+    It is empty outside of the environment that ``.ci/in_venv.py`` makes in a checkout.
+    """
+    folder = _folder()
+    if folder is None or not (Path(sys.prefix) / _STAMP).is_file():
+        return ''
+    script = Path('.ci', 'in_venv.py')
+    # A path that can be typed where the user is.
+    shown = script if Path.cwd() == folder else folder / script
+    return f'python3 {shown} tree-sway {command}'
+
+
+def _folder() -> Path | None:
+    """Folder that the package was installed from; None if it was not from a folder."""
+    try:
+        text = distribution(PACKAGE).read_text('direct_url.json')
+    except PackageNotFoundError:
+        return None
+    url = urlparse(json.loads(text).get('url', '') if text else '')
+    folder = Path(unquote(url.path))
+    return folder if url.scheme == 'file' and (folder / 'setup.py').is_file() else None
