@@ -43,11 +43,12 @@ STOREYS = {
 CORE_LIBRARIES = {'numpy', 'scipy', 'numba', 'tree_sway'}
 NOT_IN_CORE = {
     'asyncio', 'datetime', 'glob', 'io', 'logging', 'multiprocessing', 'os', 'pathlib', 'random',
-    'shutil', 'socket', 'subprocess', 'sys', 'tempfile', 'threading', 'time', 'urllib',
+    'shutil', 'socket', 'subprocess', 'sys', 'tempfile', 'time', 'urllib',
 }  # fmt: skip
-#: The same for calls, as numpy's global generator and files need no import.
+#: The same for calls, as numpy's global generator and files need no import. The core starts no
+#: thread; locks keep the threads of its callers apart.
 NOT_CALLED_IN_CORE = re.compile(
-    r'\bnp\.random\.(?!Generator|default_rng\b)|\bdefault_rng\(\s*\)|\bopen\(|\bprint\('
+    r'\bnp\.random\.(?!Generator|default_rng\b)|\bdefault_rng\(\s*\)|\bopen\(|\bprint\(|\bThread\('
 )
 
 

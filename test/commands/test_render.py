@@ -116,7 +116,7 @@ def test_a_film_that_cannot_be_is_refused_before_the_tree_is_opened(
 ) -> None:
     monkeypatch.setitem(sys.modules, 'imageio_ffmpeg', None)
     assert main(['render', 'no such tree', '-o', str(tmp_path / 'sway.mp4')]) == 2
-    assert 'pip install "tree_sway_ros[film]"' in capsys.readouterr().err
+    assert 'python3 .ci/in_venv.py tree-sway render' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -121,7 +121,7 @@ def fuzz(wind, solver, n, seed):
 
     rng, clock, sender, planes = np.random.default_rng(seed), Clock(), Sender(), []
     wind._clock = solver._clock = clock
-    wind._filtered, wind._plane = Outlet(solver._receive), Outlet(planes.append)
+    wind._filtered, wind._plane = Outlet(lambda each: solver._receive(each, {})), Outlet(planes.append)
     solver._tick(Tick(clock.nanoseconds // PERIOD * PERIOD, 1, True))
     poses = np.empty((BLOCK // PER_FRAME, *solver.simulator.place().shape))
     for block in range(n // BLOCK):
@@ -133,7 +133,7 @@ def fuzz(wind, solver, n, seed):
             zip(sender.block(rng, times), times.tolist(), strict=True), start=1
         ):
             clock.nanoseconds = time
-            wind._receive(message)
+            wind._receive(message, {})
             if k % PER_FRAME == 0:
                 index = time // PERIOD
                 solver._tick(Tick(index * PERIOD, min(index - before, 30), restarted))

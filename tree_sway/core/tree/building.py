@@ -118,7 +118,7 @@ def tree_from_segments(
 def _numbers(what: str, values: ArrayLike) -> Floats:
     """Return a copy of values as an array; a `TreeError` if they are no array of numbers."""
     try:
-        numbers = np.array(values, dtype=np.float64, ndmin=1)
+        numbers = np.array(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         cure = 'give an array of numbers, a row for each segment'
         raise TreeError('not an array of numbers', where=what, cure=cure) from None
