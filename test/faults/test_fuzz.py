@@ -121,7 +121,8 @@ def fuzz(wind, solver, n, seed):
 
     rng, clock, sender, planes = np.random.default_rng(seed), Clock(), Sender(), []
     wind._clock = solver._clock = clock
-    wind._filtered, wind._plane = Outlet(lambda each: solver._receive(each, {})), Outlet(planes.append)
+    wind._filtered = Outlet(lambda each: solver._receive(each, {}))
+    wind._plane = Outlet(planes.append)
     solver._tick(Tick(clock.nanoseconds // PERIOD * PERIOD, 1, True))
     poses = np.empty((BLOCK // PER_FRAME, *solver.simulator.place().shape))
     for block in range(n // BLOCK):

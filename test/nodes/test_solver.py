@@ -233,7 +233,7 @@ def test_changes_that_buckle_the_tree_together_are_refused_before_the_first_is_a
     pole.write_text(POLE)
     solver = compose(solver={'tree': str(pole), 'model': 2})['solver']
     waiting = []
-    monkeypatch.setattr(solver._run, 'request', waiting.append)
+    monkeypatch.setattr(solver._run, 'request', lambda action, refused: waiting.append(action))
     softer, heavier = (
         solver.set_parameters([Parameter(name, value=value)])[0]
         for name, value in (('stiffness_factor', 0.5), ('gravity', 19.6))
