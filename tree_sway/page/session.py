@@ -224,8 +224,10 @@ class Session:
     def _build_wanted(self, wanted: Choices) -> None:
         """Build what is requested; viewers get the reason of a refusal or a failure."""
         try:
-            self._next = self._made(wanted)
+            made = self._made(wanted)
+            # First, as the next step takes what is made and announces the choices.
             self.choices = wanted
+            self._next = made
             return
         except TreeSwayError as error:
             refused = {'name': '', 'reason': str(error)}

@@ -64,6 +64,8 @@ def test_it_shows_fewer_coordinates_until_it_is_reset(fork, model):
     assert sim.counts.reduced == 1
     sim.set_state(state)
     assert sim.n_shown == shown
+    if model == 'auto':
+        assert sim.review().n_coordinates <= fewer(most)
 
 
 def test_a_storm_beyond_the_table_and_a_pull_take_no_coordinates(fork):

@@ -114,8 +114,6 @@ class AdaptiveSimulator(SwaySimulator):
             8.0, rate=20.0, duration=60.0, rng=np.random.default_rng(0), intensity=0.2
         )
         self._expected_wind = WindClimate.of_samples(breeze, 20.0)
-        self._most = self.bank.oscillators.shapes.shape[1]
-        """Largest number of coordinates on which steps of this tree did not stay clamped."""
         self._shares, self._begun = np.zeros((2, self.bank.oscillators.shapes.shape[1]))
         self._left = np.zeros(1)
         self._expect()
@@ -189,16 +187,14 @@ class AdaptiveSimulator(SwaySimulator):
     def reset(self) -> None:
         """Return to rest, with the number of coordinates for the expected wind."""
         super().reset()
-        self._most = self.bank.oscillators.shapes.shape[1]
         self._expect()
         self._show()
 
     def show_at_most(self, count: int) -> None:
         """Choose among the numbers up to a count from now on, until `reset`."""
-        self._most = count
+        dialled(self.bank).keep_only(count)
         self.review()
         self._shares[count:], self._begun[:] = 0.0, 0.0
-        dialled(self.bank).keep_only(count)
         self._show()
 
     def _expect(self) -> None:
@@ -247,9 +243,9 @@ class AdaptiveSimulator(SwaySimulator):
 
     def _affordable(self, estimates: list[Estimate]) -> list[Estimate]:
         """Find the numbers within the budget, or the cheapest one."""
-        sound = [e for e in estimates if e.n_coordinates <= self._most]
-        within = [e for e in sound if self.cost_scale * e.cost <= self.budget]
-        return (within or sound[:1]) if self.budget > 0.0 else sound
+        solved = [e for e in estimates if e.n_coordinates <= dialled(self.bank).n_solved]
+        within = [e for e in solved if self.cost_scale * e.cost <= self.budget]
+        return (within or solved[:1]) if self.budget > 0.0 else solved
 
     def _choose(
         self, estimates: list[Estimate], current: Estimate | None = None, *, at_best: bool = False

@@ -107,6 +107,10 @@ class Dialled(Oscillators, Protocol):
     def air_damping(self) -> Floats:
         """Damping of each coordinate by the air per drag and speed, at least, (m,)."""
 
+    @property
+    def n_solved(self) -> int:
+        """Return the number of coordinates that are solved, shown or not."""
+
     swing: tuple[Floats, ...]
     """Displacement, rate and force of each coordinate, (m,)."""
 

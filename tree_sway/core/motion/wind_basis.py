@@ -92,6 +92,11 @@ class WindBasisBank:
         """Return the number of coordinates that are shown."""
         return self.shapes.shape[1] - int(self.instance['left_out'][0])
 
+    @property
+    def n_solved(self) -> int:
+        """Return the number of coordinates that are solved, shown or not."""
+        return self.shapes.shape[1] - int(self._n_dropped[0])
+
     def keep_only(self, count: int) -> None:
         """Solve the first coordinates only, from rest on, until `reset`."""
         come_to_rest(self.instance)
@@ -113,7 +118,7 @@ class WindBasisBank:
         self.modal.set_step(dt)
         fill_time_step(self.time_step[0], propagators_of(self.modal), dt)
         if self._n_dropped[0]:
-            drop(self.time_step[0], self.shapes.shape[1] - int(self._n_dropped[0]))
+            drop(self.time_step[0], self.n_solved)
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `ModalBank.advance`."""

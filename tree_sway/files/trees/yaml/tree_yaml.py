@@ -26,7 +26,7 @@ from pathlib import Path
 
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import FormatError, SpeciesError
-from tree_sway.files.text_file import path_of, read_text
+from tree_sway.files.text_file import is_file, path_of, read_text
 from tree_sway.files.trees.assembly import built_tree
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.yaml.branches import branch_segments
@@ -61,7 +61,7 @@ def parse_yaml_tree(text: str, source: str = 'text', default_name: str = 'tree')
 
 def is_species_file(name: str) -> bool:
     """Whether a text names a file with a species, and not a species of the table."""
-    return Path(name).suffix.lower() in YAML_SUFFIXES or path_of(name).is_file()
+    return Path(name).suffix.lower() in YAML_SUFFIXES or is_file(path_of(name))
 
 
 def read_species(path: str | Path) -> Species:
