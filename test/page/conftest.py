@@ -1,11 +1,15 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A browser for tests of the page."""
+"""A browser, and JavaScript without one, for tests of the page."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 import functools
+import json
+import shutil
+import subprocess
+from typing import Any
 
 import pytest
 from tree_sway_lab.browser import Browser, Chromium, chromium
@@ -24,6 +28,24 @@ def one_chromium() -> Iterator[Chromium]:
     made = Chromium()
     yield made
     made.close()
+
+
+@pytest.fixture(scope='session')
+def javascript() -> Callable[..., Any]:
+    """Run a JavaScript module in node, with a text on its input, and read the JSON it prints."""
+    node = shutil.which('node')
+    if node is None:
+        pytest.skip('node is not installed here')
+
+    def run(program: str, given: str = '') -> Any:
+        command = [node, '--input-type=module', '-e', program]
+        done = subprocess.run(
+            command, input=given, capture_output=True, text=True, check=False, timeout=120
+        )
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    return run
 
 
 class SlowScreen(Browser):

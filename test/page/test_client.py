@@ -13,6 +13,7 @@ import subprocess
 import sys
 import threading
 import time
+from typing import Any
 
 import numpy as np
 import pytest
@@ -301,10 +302,9 @@ def arrivals() -> list[dict[str, object]]:
 
 
 @pytest.mark.parametrize('delay', [0.17, None])
-def test_javascript_plays_out_the_same(delay: float | None) -> None:
-    node = shutil.which('node')
-    if node is None:
-        pytest.skip('node is not installed here')
+def test_javascript_plays_out_the_same(
+    delay: float | None, javascript: Callable[..., Any]
+) -> None:
     arrived = arrivals()
     program = f"""
       import {{ Playout }} from "{(STATIC / 'playout.js').as_uri()}";
@@ -321,11 +321,7 @@ def test_javascript_plays_out_the_same(delay: float | None) -> None:
       }}
       console.log(JSON.stringify({{ out, late: playout.late, received: playout.received }}));
     """
-    done = subprocess.run(
-        [node, '--input-type=module', '-e', program], input=json.dumps(arrived), text=True,
-        capture_output=True, check=True, timeout=60,
-    )  # fmt: skip
-    theirs = json.loads(done.stdout)
+    theirs = javascript(program, json.dumps(arrived))
     playout, ours = Playout(delay), []
     for each in arrived:
         values = np.array(each['values'])

@@ -4,11 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-import json
+from collections.abc import Callable, Iterator
 from pathlib import Path
 import resource
-import shutil
 import subprocess
 import sys
 from typing import Any
@@ -118,11 +116,10 @@ SOUND = {'trees that do not move': of_still_trees()}
 
 
 @pytest.fixture(scope='module')
-def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+def answers(
+    javascript: Callable[..., Any], tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, str]:
     """Return what JavaScript says of each."""
-    node = shutil.which('node')
-    if node is None:
-        pytest.skip('node is not installed here')
     folder = tmp_path_factory.mktemp('damaged')
     for number, data in enumerate([*DAMAGES.values(), *SOUND.values()]):
         (folder / f'{number}.bin').write_bytes(data)
@@ -141,11 +138,7 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
       }}
       console.log(JSON.stringify(answers));
     """
-    done = subprocess.run(
-        [node, '--input-type=module', '-e', program],
-        capture_output=True, text=True, check=True, timeout=60,
-    )  # fmt: skip
-    return dict(zip([*DAMAGES, *SOUND], json.loads(done.stdout), strict=True))
+    return dict(zip([*DAMAGES, *SOUND], javascript(program), strict=True))
 
 
 def is_read(data: bytes) -> bool:

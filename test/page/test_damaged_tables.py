@@ -5,10 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-import json
 from pathlib import Path
-import shutil
-import subprocess
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -168,11 +165,8 @@ def solved(data: bytes) -> ReceivedScene:
     return scene
 
 
-def by_javascript(tables: list[bytes], folder: Path) -> list[str]:
+def refusals(javascript: Callable[..., Any], tables: list[bytes], folder: Path) -> list[str]:
     """Return the reason for which JavaScript refuses each of some tables; empty if it does not."""
-    node = shutil.which('node')
-    if node is None:
-        pytest.skip('node is not installed here')
     (folder / 'description.bin').write_bytes(SOUND.description)
     for number, data in enumerate(tables):
         (folder / f'{number}.bin').write_bytes(data)
@@ -198,18 +192,16 @@ def by_javascript(tables: list[bytes], folder: Path) -> list[str]:
       }}
       console.log(JSON.stringify(answers));
     """
-    done = subprocess.run(
-        [node, '--input-type=module', '-e', program],
-        capture_output=True, text=True, check=True, timeout=120,
-    )  # fmt: skip
-    answers: list[str] = json.loads(done.stdout)
+    answers: list[str] = javascript(program)
     return answers
 
 
 @pytest.fixture(scope='module')
-def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+def answers(
+    javascript: Callable[..., Any], tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, str]:
     """Return what JavaScript says of each damage."""
-    found = by_javascript(list(DAMAGES.values()), tmp_path_factory.mktemp('damaged'))
+    found = refusals(javascript, list(DAMAGES.values()), tmp_path_factory.mktemp('damaged'))
     return dict(zip(DAMAGES, found, strict=True))
 
 
@@ -231,17 +223,19 @@ def test_every_array_has_a_form() -> None:
         assert set(arrays) == set(check_tables._FORMS)
 
 
-def test_sound_tables_are_solved_in_both(tmp_path: Path) -> None:
+def test_sound_tables_are_solved_in_both(javascript: Callable[..., Any], tmp_path: Path) -> None:
     changes: list[dict[str, Any]] = [
         {}, {'anemometer': [0.0, 1.0, 2]}, {'convection_ratio': 1.8}, {'convection_ratio': None}
     ]  # fmt: skip
     tables = [SOUND.changed(header) for header in changes]
     for data in tables:
         assert np.isfinite(solved(data).state()).all()
-    assert by_javascript(tables, tmp_path) == [''] * len(tables)
+    assert refusals(javascript, tables, tmp_path) == [''] * len(tables)
 
 
-def test_random_numbers_are_refused_or_solved_in_both(tmp_path: Path) -> None:
+def test_random_numbers_are_refused_or_solved_in_both(
+    javascript: Callable[..., Any], tmp_path: Path
+) -> None:
     rng = np.random.default_rng(4)
     names = list(SOUND.tables.arrays)
     fuzzed = []
@@ -258,7 +252,7 @@ def test_random_numbers_are_refused_or_solved_in_both(tmp_path: Path) -> None:
             refused.append(False)
         except FormatError:
             refused.append(True)
-    found = by_javascript(fuzzed, tmp_path)
+    found = refusals(javascript, fuzzed, tmp_path)
     assert not [reason for reason in found if reason.startswith('raw')]
     assert [bool(reason) for reason in found] == refused
     assert 0 < sum(refused) < FUZZED
