@@ -18,7 +18,7 @@ from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene  # n
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
-from tree_sway.page import check_tables  # noqa: E402
+from tree_sway.stream import check_tables  # noqa: E402
 from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
     decode_tables,

@@ -9,7 +9,7 @@ import pytest
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.validation.truth import FINE, SETTINGS, true_frequencies, WOOD
 
-from tree_sway.core.beams import branch_model as branch_model
+from tree_sway.core.beams import branch_model
 from tree_sway.core.beams.beam import Attachments, BranchBeam, RotationField
 from tree_sway.core.beams.shape_functions import bent_by_weight, SubtreeSums
 from tree_sway.core.setup.reductions import TreeReductions

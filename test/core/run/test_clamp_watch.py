@@ -99,10 +99,10 @@ def test_a_tree_of_a_scene_shows_fewer_and_the_others_do_not(fork):
 
 
 def test_a_simulation_says_so(fork, monkeypatch):
-    from tree_sway.core.setup import load_table as wind_basis_table
+    from tree_sway.core.setup import load_table
 
     wind = np.tile(WIND, (200, 1))
     assert simulate(fork(), wind, model=12, cache=None).notes == ()
-    monkeypatch.setattr(wind_basis_table, '_MOST_ENERGY', 1e-9)
+    monkeypatch.setattr(load_table, '_MOST_ENERGY', 1e-9)
     record = simulate(fork(), wind, model=12, cache=None)
     assert 'stayed clamped' in record.notes[0]

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tree_sway.core.run import table_model as wind_basis
+from tree_sway.core.run import table_model
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.run.table_model import fill_time_step, propagators_of
 from tree_sway.core.tree.building import tree_from_segments
@@ -107,7 +107,7 @@ def test_where_the_table_fails_in_a_gale_it_shows_fewer_coordinates(sapling, mon
         time_step['half'][[2, 5], :m] += law.half.T[[3, 7]]
 
     right = sway(simulator(sapling, 'full'), 12.0)
-    monkeypatch.setattr(wind_basis, 'fill_time_step', without_care)
+    monkeypatch.setattr(table_model, 'fill_time_step', without_care)
     usual = simulator(sapling, 60)
     shown = sway(usual, 12.0)
     assert usual.counts.reduced > 0

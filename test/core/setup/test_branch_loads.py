@@ -13,14 +13,14 @@ from tree_sway.core.kernel import fused
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.rotation import turned
 from tree_sway.core.run.assembly import assembled
-from tree_sway.core.setup import branch_loads as tree_passes
+from tree_sway.core.setup import branch_loads
 from tree_sway.core.setup.fill_records import load_records
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import species_named
 
 # Parts of kernels, each made one for itself.
 bent_loads, outward_pass, set_air, wind_forces = (
-    fused(getattr(tree_passes, name))
+    fused(getattr(branch_loads, name))
     for name in ('bent_loads', 'outward_pass', 'set_air', 'wind_forces')
 )
 
