@@ -148,7 +148,9 @@ def shoots(tree: Tree, look: Look | None = None) -> tuple[Floats, Floats]:
 
 def test_shoots_stand_and_hang_as_their_species() -> None:
     tree = builtin_tree('broadleaf')
-    (away, along), (hanging, _) = (shoots(tree, Look(droop=d, shoot_angle=0.5)) for d in (0.0, 2.0))
+    (away, along), (hanging, _) = (
+        shoots(tree, Look(droop=d, shoot_angle=0.5)) for d in (0.0, 2.0)
+    )
     angle = np.arccos(np.einsum('ij,ij->i', away, along))
     assert angle.mean() == pytest.approx(0.5, abs=0.03)
     assert hanging[:, 2].mean() < -0.8 < away[:, 2].mean()

@@ -17,6 +17,9 @@ from tree_sway.core.tree.tree import Tree
 SIDES = 6
 """Number of sides of a cone, even; its volume is 0.827 of the round one's."""
 
+BARK_HEIGHT = 1.2
+"""Height of a picture of bark on a stem [m]."""
+
 _CORNERS = np.array([[0.0, -0.5], [1.0, -0.5], [1.0, 0.5], [0.0, 0.5]])
 _ROLL, _YAW, _BOW = 0.3, 0.35, 0.1
 """How far cards of clusters differ [rad], and how low a card ends over its length [-]."""
@@ -28,7 +31,7 @@ class TreeMesh:
     Triangles whose vertices move with one segment each.
 
     Points [m] and normals, (v, 3), are in the frame of the segment: its start, x along it. Texture
-    coordinates, (v, 2), are within 0 .. 1. Triangles, (t, 3), are counter-clockwise seen from
+    coordinates, (v, 2), go on beyond 1. Triangles, (t, 3), are counter-clockwise seen from
     outside.
     """
 
@@ -48,7 +51,8 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     """
     Return a closed cone per segment, round in its normals, of a ring of vertices at each end.
 
-    Texture coordinates go around and back, without a seam, and along the whole branch.
+    Texture coordinates go around and back, without a seam, and on along the branch: the picture is
+    as high as `BARK_HEIGHT`, less on small trees.
     """
     n = tree.n_segments
     angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
@@ -63,7 +67,7 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     end = np.cumsum(tree.length)
     before = (end - tree.length)[tree.branch_first[:-1]][tree.branch_of_segment]
     ends = np.stack([end - tree.length - before, end - before], axis=1)
-    texture[..., 1] = (ends / tree.branch_length[tree.branch_of_segment, None])[:, :, None]
+    texture[..., 1] = (ends / min(BARK_HEIGHT, 0.12 * tree.height))[:, :, None]
     i = np.arange(SIDES)
     j = (i + 1) % SIDES
     fan = np.arange(1, SIDES - 1)
@@ -79,7 +83,7 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     return TreeMesh(
         rings.reshape(-1, 3),
         np.stack([outward, outward], axis=1).reshape(-1, 3),
-        np.clip(texture.reshape(-1, 2), 0.0, 1.0),
+        texture.reshape(-1, 2),
         np.repeat(np.arange(n), 2 * SIDES),
         (2 * SIDES * np.arange(n)[:, None, None] + triangles).reshape(-1, 3),
     )
@@ -100,7 +104,7 @@ def leaf_mesh(leaves: LeafClusters, spray: Spray, cards: int = 2) -> TreeMesh:
     return TreeMesh(
         points,
         normals,
-        np.tile(_CORNERS + [0.0, 0.5], (n, 1)),
+        np.tile(_CORNERS + np.array([0.0, 0.5]), (n, 1)),
         np.tile(np.repeat(leaves.segment.astype(np.int64), 4), len(parts)),
         (4 * np.arange(n)[:, None, None] + two).reshape(-1, 3),
     )

@@ -92,6 +92,7 @@ const stream = new TreeStream(address.href, {
       controls = hello.controls;
       showPanel();
       element("panel").hidden = controls.length === 0;
+      fit();
       element("pull").hidden = hello.can_pull !== true;
       viewersToken = hello.viewers_token ?? "";
     }
@@ -186,6 +187,24 @@ function showFacts() {
   [bytes, frames, drawn, factsAt] = [0, 0, 0, now];
   showState();
   for (const trace of Object.values(traces)) trace.draw();
+}
+
+/** Where no card lies over the picture, see `Camera`. */
+function room() {
+  const [head, lines, form] = ["head", "traces", "panel"].map((id) => element(id).getBoundingClientRect());
+  const [width, height] = [canvas.clientWidth || 1, canvas.clientHeight || 1];
+  const isNarrow = head.right > 0.6 * width;
+  if (isNarrow) {
+    const lowest = [lines, form].filter((each) => each.height).map((each) => each.top);
+    return [0, head.bottom / height, 1, Math.min(height, ...lowest) / height];
+  }
+  const isOpen = /** @type {HTMLDetailsElement} */ (element("panel")).open && form.width > 0;
+  return [Math.max(head.right, lines.right) / width, 0, isOpen ? form.left / width : 1, 1];
+}
+
+/** See all of the scene between the cards, unless somebody looks at something of it. */
+function fit() {
+  if (scene.camera.isHome) scene.camera.home();
 }
 
 /** A model by its name, or by how many coordinates it has. @param {string} model */
@@ -355,7 +374,10 @@ if (settings.shown in QUANTITIES) shown.value = settings.shown;
 // A page that is a file is what its `.html` would be.
 for (const id of ["glb", "html"]) element(id).hidden = kept !== null;
 speak(language());
-/** @type {HTMLDetailsElement} */ (element("panel")).open = window.innerWidth > 700;
+/** @type {HTMLDetailsElement} */ (element("panel")).open = Math.min(window.innerWidth, window.innerHeight) > 560;
+scene.camera.room = room;
+element("panel").addEventListener("toggle", fit);
+window.addEventListener("resize", () => requestAnimationFrame(fit));
 scene.camera.listen(canvas);
 stream.open();
 requestAnimationFrame(draw);
