@@ -374,7 +374,7 @@ if (settings.shown in QUANTITIES) shown.value = settings.shown;
 // A page that is a file is what its `.html` would be.
 for (const id of ["glb", "html"]) element(id).hidden = kept !== null;
 speak(language());
-/** @type {HTMLDetailsElement} */ (element("panel")).open = Math.min(window.innerWidth, window.innerHeight) > 560;
+/** @type {HTMLDetailsElement} */ (element("panel")).open = window.innerWidth > 700 && window.innerHeight > 560;
 scene.camera.room = room;
 element("panel").addEventListener("toggle", fit);
 window.addEventListener("resize", () => requestAnimationFrame(fit));
