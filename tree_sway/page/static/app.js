@@ -191,15 +191,16 @@ function showFacts() {
 
 /** Where no card lies over the picture, see `Camera`. */
 function room() {
-  const [head, lines, form] = ["head", "traces", "panel"].map((id) => element(id).getBoundingClientRect());
+  const [head, lines, form, tools] = ["head", "traces", "panel", "tools"].map((id) => element(id).getBoundingClientRect());
   const [width, height] = [canvas.clientWidth || 1, canvas.clientHeight || 1];
   const isNarrow = head.right > 0.6 * width;
   if (isNarrow) {
     const lowest = [lines, form].filter((each) => each.height).map((each) => each.top);
     return [0, head.bottom / height, 1, Math.min(height, ...lowest) / height];
   }
-  const isOpen = /** @type {HTMLDetailsElement} */ (element("panel")).open && form.width > 0;
-  return [Math.max(head.right, lines.right) / width, 0, isOpen ? form.left / width : 1, 1];
+  const isWall = form.height > 0.3 * height || (form.height > 0 && height < 560);
+  const most = [isWall ? form.left / width : 1, tools.height ? tools.top / height : 1];
+  return [Math.max(head.right, lines.right) / width, 0, ...most];
 }
 
 /** See all of the scene between the cards, unless somebody looks at something of it. */
