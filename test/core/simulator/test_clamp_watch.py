@@ -14,8 +14,6 @@ from tree_sway.core.scene.simulate import simulate
 from tree_sway.core.simulator.clamp_watch import ClampWatch, fewer, FEWEST, LONGEST_CLAMPED
 from tree_sway.core.simulator.simulator import LOAD_CLAMPED
 
-pytestmark = pytest.mark.compiled
-
 DT = 1.0 / 60.0
 WIND = (9.0, 1.0, 0.0)
 
