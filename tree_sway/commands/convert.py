@@ -24,9 +24,9 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.commands.progress import waiting
 from tree_sway.core.leaves.foliage import LeafClusters
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
