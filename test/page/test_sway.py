@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
-pytest.importorskip('numba', reason='numba is not installed')
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES  # noqa: E402
 from tree_sway.core.model.records import time_step_layout  # noqa: E402
