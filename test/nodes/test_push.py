@@ -18,7 +18,7 @@ pytestmark = pytest.mark.ros
 
 from geometry_msgs.msg import WrenchStamped  # noqa: E402, I100
 
-from tree_sway_ros.process.topics import PUSH, SEGMENT_POSES  # noqa: E402
+from tree_sway_ros.process.topics import PUSH, SEGMENT_POSES, TF, TF_STATIC  # noqa: E402
 from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 
 
@@ -78,6 +78,28 @@ def test_a_push_that_cannot_be_is_refused_and_counted(
     observer.until(lambda: push.publish(wrong) or is_warned(statuses), 'a warning', poll=0.1)
     assert why in statuses('solver: push').message
     assert not solver.simulator.push_load.any()
+
+
+def test_a_pushed_segment_is_a_frame_of_tf(compose, observer, pushes, tree_file):
+    """And so is the tree, at its place; each moves as the poses say."""
+    pytest.importorskip('tf2_msgs', reason='tf2_msgs is not installed')
+    place = (3.0, 0.0, 0.0, 0.0)
+    compose(solver={'tree': tree_file, 'segment_frames': 'stem/1', 'pose': place})
+    static, moving = observer.listen(TF_STATIC), observer.listen(TF)
+    push, latest = pushes(), {}
+
+    def frames():
+        push.publish(wrench('tree/stem/2', y=1.0))
+        latest.update({each.child_frame_id: each for m in moving for each in m.transforms})
+        return set(latest)
+
+    observer.until(lambda: static and len(frames()) == 2, 'the frames')
+    (tree,) = static[0].transforms
+    assert (tree.header.frame_id, tree.child_frame_id) == ('map', 'tree')
+    assert tree.transform.translation.x == 3.0
+    assert set(latest) == {'tree/stem/1', 'tree/stem/2'}
+    at = latest['tree/stem/1'].transform.translation
+    np.testing.assert_allclose((at.x, at.y, at.z), (3.0, 0.0, 0.5), atol=0.02)
 
 
 def is_warned(statuses):
