@@ -12,7 +12,7 @@ from rclpy.serialization import deserialize_message  # noqa: E402, I100
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension  # noqa: E402
 
 from tree_sway.errors import FormatError  # noqa: E402
-from tree_sway.page.protocol import PAUSED, WIND_LOST  # noqa: E402
+from tree_sway.stream.protocol import PAUSED, WIND_LOST  # noqa: E402
 from tree_sway_ros.wire.tree_state import HEAD, ModalState, read_state, StateWriter  # noqa: E402
 
 STATE = ModalState(
