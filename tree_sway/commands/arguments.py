@@ -171,8 +171,8 @@ def add_wind_arguments(parser: argparse.ArgumentParser, record: str = '') -> Non
     add = parser.add_argument_group('wind').add_argument
     add('--wind', metavar='FILE', help=record or 'wind recording; without it wind is simulated')
     options = (
-        'option of its reader, such as topic=/mast/wind, yaw=1.57, direction_convention=from or '
-        'rate=20; repeatable'
+        'option of its reader, such as speed_unit=km/h, direction=270, topic=/mast/wind, '
+        'yaw=1.57, direction_convention=from or rate=20; repeatable'
     )
     add('--wind-option', action='append', default=[], metavar='NAME=VALUE', help=options)
     speed = 'mean speed of the simulated wind [m/s] (%(default)s)'
