@@ -24,6 +24,7 @@ EXTRAS = {
     **dict.fromkeys(('cryptography', 'dask', 'distributed'), 'study'),
     **{'numba': 'fast', 'rosbags': 'bag', 'serial': 'serial', 'tqdm': 'progress'},
     **{'imageio_ffmpeg': 'film', 'pyarrow': 'parquet'},
+    **{'netCDF4': 'netcdf', 'openpyxl': 'inventory', 'pyogrio': 'inventory'},
 }
 """Extra of the package with a module."""
 

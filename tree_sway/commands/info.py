@@ -22,10 +22,10 @@ from tree_sway.commands.mode_table import mode_table
 from tree_sway.commands.progress import bar
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.core.checks import within
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import Kind, PlacedTree
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.simulator.season import in_season
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.setup.season import in_season
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TreeError
@@ -44,11 +44,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_tree_arguments(parser, forests=True)
     add_exact_argument(parser)
     add_leaves_argument(parser)
-    add('--gravity', choices=('on', 'off'), default='on', help='weight of the tree (%(default)s)')
-    add('--count', type=int, default=10, metavar='N', help='number of frequencies (%(default)s)')
-    speed = 'mean of a gusty wind [m/s] for the used share of its strength'
+    add(
+        '--gravity', choices=('on', 'off'), default='on', help='effect of the weight (%(default)s)'
+    )
+    add(
+        '--count',
+        type=int,
+        default=10,
+        metavar='N',
+        help='number of natural frequencies (%(default)s)',
+    )
+    speed = 'report the fraction of the strength used in gusts of this mean wind [m/s]'
     add('--speed', type=float, metavar='U', help=speed)
-    add('--json', action='store_true', help='for programs, SI units')
+    add('--json', action='store_true', help='print JSON in SI units')
 
 
 def run(arguments: argparse.Namespace) -> int:

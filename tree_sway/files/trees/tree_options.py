@@ -13,7 +13,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
-from tree_sway.core.simulator.standing import standing_tree
+from tree_sway.core.setup.standing import standing_tree
 from tree_sway.core.tree.plausibility import refuse_implausible
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
