@@ -26,7 +26,7 @@ PACKAGES = {
 #: Layer of each room of the library; a room imports only from lower layers and from itself.
 LAYERS = {
     'errors': 0, 'tables': 0, 'kernel_folder': 0, 'extras': 0.2, 'kernel_cache': 0.5,
-    'set_up_files': 0.7, 'core': 1, 'files': 2, 'parameters': 2.5,
+    'worker': 0.5, 'set_up_files': 0.7, 'core': 1, 'files': 2, 'parameters': 2.5, 'sensors': 2.7,
     'page': 3, 'pictures': 3, 'studies': 5, 'commands': 4,
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
