@@ -116,7 +116,7 @@ def setup_words() -> dict[str, Any]:
 
 def test_setup_finds_its_files_from_any_folder(setup_words: dict[str, Any]) -> None:
     assert setup_words['version'] == tree_sway.__version__
-    assert 'tree_sway.core.motion' in setup_words['packages']
+    assert 'tree_sway.core.run' in setup_words['packages']
     assert setup_words['long_description'].startswith('# ')
     shared = [name for _, names in setup_words['data_files'] for name in names]
     assert {'package.xml', 'launch/sway.launch.py', 'config/solver.yaml'} <= set(shared)

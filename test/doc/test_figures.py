@@ -13,16 +13,17 @@ from types import SimpleNamespace
 
 import pytest
 
+from tree_sway.cache.model_cache import MOST
 from tree_sway.commands import cli
-from tree_sway.core.simulator.settings import USUAL
+from tree_sway.core.model.settings import USUAL
 from tree_sway.core.strength.strength_use import ROOT_BAND, WOOD_BAND
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
 from tree_sway.files.scenes import stand_table
 from tree_sway.files.trees.tree_file import TREE_FORMATS
 from tree_sway.files.wind.wind_file import WIND_FORMATS
-from tree_sway.page import check_description, client, playout, protocol, server
-from tree_sway.set_up_files import MOST
+from tree_sway.page import server
+from tree_sway.stream import check_description, client, playout, protocol
 
 pages = SimpleNamespace(**runpy.run_path(str(Path(__file__).with_name('test_pages.py'))))
 ROOT: Path = pages.ROOT

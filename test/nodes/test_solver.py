@@ -16,7 +16,7 @@ from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.serialization import deserialize_message  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
-from tree_sway.core.simulator.simulator import SwaySimulator  # noqa: E402
+from tree_sway.core.run.simulator import SwaySimulator  # noqa: E402
 from tree_sway.core.wind.averaging import WindAverage  # noqa: E402
 from tree_sway.errors import ParameterError, TreeSwayError  # noqa: E402, E501
 from tree_sway.files.trees.source import open_tree  # noqa: E402

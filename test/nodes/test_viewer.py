@@ -14,8 +14,8 @@ pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytestmark = pytest.mark.ros
 
-from tree_sway.page.placer import Placer  # noqa: E402
-from tree_sway.page.protocol import (  # noqa: E402
+from tree_sway.stream.placing import Placer  # noqa: E402
+from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
     decode_frame,
     PAUSED,

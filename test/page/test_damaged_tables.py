@@ -18,8 +18,8 @@ from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene  # n
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
-from tree_sway.page import check_tables  # noqa: E402
-from tree_sway.page.protocol import (  # noqa: E402
+from tree_sway.stream import check_tables  # noqa: E402
+from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
     decode_tables,
     Description,
@@ -28,7 +28,7 @@ from tree_sway.page.protocol import (  # noqa: E402
     TABLES,
     Tables,
 )
-from tree_sway.page.scene_state import SceneState  # noqa: E402
+from tree_sway.stream.scene_state import SceneState  # noqa: E402
 
 HERE = Path(__file__).parent
 STATIC = HERE.parents[1] / 'tree_sway' / 'page' / 'static'

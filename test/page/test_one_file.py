@@ -24,11 +24,11 @@ Image = pytest.importorskip('PIL.Image', reason='Pillow is not installed')
 
 from tree_sway_lab.bench.bench_tree import bench_tree  # noqa: E402
 
+from tree_sway.cache.kernel_cache import PLAIN_VARIABLE  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.core.simulator.settings import Settings  # noqa: E402
-from tree_sway.core.simulator.simulator import SwaySimulator  # noqa: E402
+from tree_sway.core.model.settings import Settings  # noqa: E402
+from tree_sway.core.run.simulator import SwaySimulator  # noqa: E402
 from tree_sway.errors import MissingDependencyError, ParameterError  # noqa: E402
-from tree_sway.kernel_cache import PLAIN_VARIABLE  # noqa: E402
 from tree_sway.page.one_file import page_of_scene  # noqa: E402
 
 Browser = Any

@@ -18,18 +18,18 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 pytest.importorskip('numba', reason='numba is not installed')
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES  # noqa: E402
-from tree_sway.core.motion.records import time_step_layout  # noqa: E402
-from tree_sway.core.motion.wind_basis import fill_time_step, Propagators  # noqa: E402
+from tree_sway.core.model.records import time_step_layout  # noqa: E402
+from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.oscillators.propagator import propagator  # noqa: E402
+from tree_sway.core.run.table_model import fill_time_step, Propagators  # noqa: E402
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.scene.scene_simulator import Simulator  # noqa: E402
-from tree_sway.core.simulator.settings import Settings  # noqa: E402
 from tree_sway.errors import FormatError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
-from tree_sway.page.protocol import decode_description, decode_tables  # noqa: E402
-from tree_sway.page.scene_state import SceneState  # noqa: E402
-from tree_sway.page.tables import tables_of  # noqa: E402
+from tree_sway.stream.protocol import decode_description, decode_tables  # noqa: E402
+from tree_sway.stream.scene_state import SceneState  # noqa: E402
+from tree_sway.stream.tables import tables_of  # noqa: E402
 
 HERE = Path(__file__).parent
 SCAN = HERE.parent / 'files' / 'data'

@@ -12,9 +12,9 @@ from typing import Any
 
 from tree_sway.commands.progress import waiting
 from tree_sway.core.leaves.foliage import LeafClusters
+from tree_sway.core.model.settings import model_of, Settings
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.simulator.season import LEAVES
-from tree_sway.core.simulator.settings import model_of, Settings
+from tree_sway.core.setup.season import LEAVES
 from tree_sway.core.tree.species import Species, species_keys, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, SpeciesError

@@ -23,8 +23,8 @@ from tree_sway.core.checks import within
 from tree_sway.core.identification.calibration import calibrate, Calibration
 from tree_sway.core.identification.free_decay import FreeDecay
 from tree_sway.core.identification.measured_sway import estimate_sway
-from tree_sway.core.simulator.season import is_in_leaf
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.core.tree.plausibility import sway_oddity
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import inside, ParameterError, TransportError

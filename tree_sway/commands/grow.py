@@ -17,8 +17,8 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.core.checks import within
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.simulator.reductions import TreeReductions
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.grown_tree import rooted
 from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import ParameterError, TreeError

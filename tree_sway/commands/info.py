@@ -23,10 +23,10 @@ from tree_sway.commands.mode_table import mode_table
 from tree_sway.commands.progress import bar
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.core.checks import within
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import Kind, PlacedTree
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.simulator.season import in_season
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.setup.season import in_season
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TreeError

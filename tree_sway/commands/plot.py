@@ -25,9 +25,9 @@ from tree_sway.commands.progress import bar, waiting
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.simulator.settings import Settings
 from tree_sway.errors import FormatError, ParameterError, TreeError
 from tree_sway.files.text_file import is_file, path_of
 from tree_sway.page.wind_source import RecordedWind

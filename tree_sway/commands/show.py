@@ -22,17 +22,17 @@ from tree_sway.commands.page_arguments import add_page_arguments, page_settings,
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
+from tree_sway.core.model.settings import MODELS, Settings, USUAL
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.simulator.settings import MODELS, Settings, USUAL
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
-from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET
 from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, Session
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway.parameters.sway_parameters import SWAY
+from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET
 
 _SPACING = 1.2
 """Distance of the trees of a stand over the greater of height and spread of one."""

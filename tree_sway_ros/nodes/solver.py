@@ -14,20 +14,20 @@ from typing import Any
 from scipy.spatial.transform import Rotation
 from std_srvs.srv import SetBool, Trigger
 
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.tuning import LIVE
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.shard import shard_of
-from tree_sway.core.simulator.live_tuning import LIVE
-from tree_sway.core.simulator.season import LEAVES
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.setup.season import LEAVES
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
-from tree_sway.page.controls import ControlPanel, Refused
+from tree_sway.stream.controls import ControlPanel, Refused
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import CAMERA, PULL, PUSH, SEGMENT_POSES, WIND_FILTERED

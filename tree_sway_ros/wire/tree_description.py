@@ -13,7 +13,7 @@ import json
 
 from tree_sway.core.leaves.flutter import leaf_list
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.state.tree_state import digest_of
+from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.tree.tree import Tree
 
 VERSION = 1

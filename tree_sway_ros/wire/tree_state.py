@@ -17,7 +17,7 @@ from sensor_msgs.msg import JointState
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
-from tree_sway.page.protocol import PAUSED, WIND_LOST
+from tree_sway.stream.protocol import PAUSED, WIND_LOST
 from tree_sway_ros.wire.cdr import block_mark, CdrTemplate, mark_stamp
 
 WIND_NAMES = ('wind/x', 'wind/y', 'wind/z')

@@ -9,16 +9,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.scene.placed_tree import PlacedTree
-from tree_sway.core.scene.scene import Scene
-from tree_sway.core.scene.scene_simulator import SceneSimulator
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import (
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.simulator import (
     LOAD_CLAMPED,
     RESTARTED,
     SwaySimulator,
     WIND_REFUSED,
 )
+from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.scene_simulator import SceneSimulator
 from tree_sway.errors import ParameterError
 
 DT = 1.0 / 60.0

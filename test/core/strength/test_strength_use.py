@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.simulate import Rig
-from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.strength.strength_use import ROOT_MOMENT, WOOD_BAND
 from tree_sway.core.strength.wood_strain import WoodStrain
 from tree_sway.core.tree.species import species_named

@@ -16,12 +16,12 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.simulator import Counts, SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.sway_record import SwayRecord
-from tree_sway.core.simulator.reductions import TreeReductions
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import Counts, SwaySimulator
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
 from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.tree import tips_of_poses, Tree

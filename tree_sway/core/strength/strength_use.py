@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.reductions import TreeReductions
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.strength.wood_strain import WoodStrain
 
 WOOD_BAND = (0.85 * (1.0 - 0.16), 1.0 + 0.16)
