@@ -53,6 +53,8 @@ NEEDS = {
             'ros',
             'film',
             'parquet',
+            'netcdf',
+            'inventory',
             'test',
             'lab',
             'docs',
@@ -63,7 +65,10 @@ NEEDS = {
     'sphinx-build': ('docs',),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
-NEEDS_OF_FILES = {'.parquet': 'parquet'}
+NEEDS_OF_FILES = {
+    **{'.parquet': 'parquet', '.nc': 'netcdf'},
+    **dict.fromkeys(('.xlsx', '.gpkg', '.shp'), 'inventory'),
+}
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
     'AMENT_PREFIX_PATH',

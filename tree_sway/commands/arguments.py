@@ -171,7 +171,8 @@ def add_wind_arguments(parser: argparse.ArgumentParser, record: str = '') -> Non
     record = record or 'a wind record; simulated if left out'
     parser.add_argument('--wind', metavar='FILE', help=record)
     options = (
-        'how to read it, such as topic=/mast/wind, yaw=1.57, direction_convention=from or rate=20'
+        'how to read it, such as speed_unit=km/h, direction=270, topic=/mast/wind, yaw=1.57, '
+        'direction_convention=from or rate=20'
     )
     parser.add_argument(
         '--wind-option', action='append', default=[], metavar='NAME=VALUE', help=options
