@@ -45,11 +45,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_tree_arguments(parser, forests=True)
     add_exact_argument(parser)
     add_leaves_argument(parser)
-    add('--gravity', choices=('on', 'off'), default='on', help='weight of the tree (%(default)s)')
-    add('--count', type=int, default=10, metavar='N', help='number of frequencies (%(default)s)')
-    speed = 'mean of a gusty wind [m/s] for the used share of its strength'
+    add(
+        '--gravity', choices=('on', 'off'), default='on', help='effect of the weight (%(default)s)'
+    )
+    add(
+        '--count',
+        type=int,
+        default=10,
+        metavar='N',
+        help='number of natural frequencies (%(default)s)',
+    )
+    speed = 'report the fraction of the strength used in gusts of this mean wind [m/s]'
     add('--speed', type=float, metavar='U', help=speed)
-    add('--json', action='store_true', help='for programs, SI units')
+    add('--json', action='store_true', help='print JSON in SI units')
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -48,13 +48,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--portrait',
         action='store_true',
-        help='draw the tree in a steady westerly, with its shape at rest behind it',
+        help='draw the tree in a steady west wind, with its shape at rest behind it',
     )
-    strength = 'draw the share of their strength that trees use, up to --speed (30 m/s)'
+    strength = 'draw the fraction of the strength in use over wind speed, up to --speed (30 m/s)'
     parser.add_argument('--strength', action='store_true', help=strength)
     parser.set_defaults(speed=None)
     parser.add_argument(
-        '--seconds', type=float, default=60.0, metavar='N', help='how long (%(default)s)'
+        '--seconds', type=float, default=60.0, metavar='N', help='duration [s] (%(default)s)'
     )
     add_output_arguments(parser, 'picture to write, .png or .pdf')
 

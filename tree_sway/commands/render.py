@@ -31,9 +31,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add_sway_arguments(parser)
-    add('--seconds', type=float, default=8.0, metavar='N', help='of the film (%(default)s)')
+    add(
+        '--seconds',
+        type=float,
+        default=8.0,
+        metavar='N',
+        help='duration of the film [s] (%(default)s)',
+    )
     add('--rate', type=float, default=20.0, help='pictures per second [Hz] (%(default)s)')
-    add('--pixels', type=int, default=480, help='height of the picture (%(default)s)')
+    add('--pixels', type=int, default=480, help='height of the picture in pixels (%(default)s)')
     add_output_arguments(parser, 'film to write: .gif or .mp4')
 
 
