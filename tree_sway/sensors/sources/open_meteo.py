@@ -14,7 +14,7 @@ from dataclasses import replace
 import re
 from urllib.parse import urlencode
 
-from tree_sway.files.time_stamps import seconds_of_stamps
+from tree_sway.files.time_stamps import dates
 from tree_sway.sensors.readers.json_path import JsonPath, parse_json
 from tree_sway.sensors.readers.named_values import WindNames
 from tree_sway.sensors.readers.values import number, speed_factor
@@ -51,10 +51,10 @@ def _dated(reading: Reading, current: dict[str, object]) -> Reading:
     """Return a reading with its time, which is in UTC, and its interval."""
     if not isinstance(reading, WindReading):
         return reading
-    seconds, epoch = seconds_of_stamps([str(current.get('time', ''))])
-    is_dated = bool(seconds[0] == 0.0)
+    times = dates([str(current.get('time', ''))[:40]])
+    is_dated = bool(times.seconds[0] == 0.0)
     interval = number(current.get('interval')) or _INTERVAL
-    return replace(reading, time=epoch if is_dated else None, interval=interval)
+    return replace(reading, time=times.epoch if is_dated else None, interval=interval)
 
 
 def open_open_meteo(address: SourceAddress) -> Source:
