@@ -55,7 +55,7 @@ if 'bdist_wheel' in sys.argv:
 
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
 extras = {
-    # Compiled kernels; without numba a tree runs on numpy, slower (doc/faq.md).
+    # Compiled kernels; without numba the same model runs on numpy, slower (doc/faq.md).
     'fast': ['numba>=0.59'],
     # Bars for long waits; without tqdm a line is printed now and then.
     'progress': ['tqdm>=4.60'],
@@ -64,6 +64,8 @@ extras = {
         f'ros-jazzy-rclpy[fastrtps]==7.1.6{LINUX}',
         f'ros-jazzy-common-interfaces==5.3.6{LINUX}',
     ],
+    # Instruments on a serial port, with Modbus, and topics of MQTT.
+    'sensors': ['pyserial>=3.5', 'pymodbus>=3.10', 'paho-mqtt>=2.0'],
     'serial': ['pyserial>=3.5'],
     'bag': ['rosbags>=0.11'],
     'plot': ['matplotlib>=3.6'],
