@@ -55,7 +55,7 @@ if 'bdist_wheel' in sys.argv:
 
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
 extras = {
-    # Compiled kernels; without numba a tree runs on numpy, slower (doc/faq.md).
+    # Compiled kernels; without numba the same model runs on numpy, slower (doc/faq.md).
     'fast': ['numba>=0.59'],
     # Bars for long waits; without tqdm a line is printed now and then.
     'progress': ['tqdm>=4.60'],
