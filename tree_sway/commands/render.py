@@ -20,7 +20,6 @@ from tree_sway.commands.arguments import (
 from tree_sway.commands.progress import waiting
 from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
-from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.page.film import browser, page_pictures
 
 _LEAVES = 2800
@@ -87,4 +86,4 @@ def _why_not_the_page(arguments: argparse.Namespace) -> str:
         return 'there is no Chromium'
     if not isinstance(arguments.model, int):
         return 'the page draws a --model with a number of coordinates'
-    return WHY_PLAIN
+    return ''
