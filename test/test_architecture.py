@@ -37,7 +37,7 @@ STOREYS = {
     'motion': 4,
     'state': 5,
     'simulator': 6,
-    'fidelity': 7, 'identification': 7, 'strength': 7,
+    'fidelity': 7, 'identification': 7, 'observe': 7, 'strength': 7,
     'scene': 8,
 }  # fmt: skip
 CORE_LIBRARIES = {'numpy', 'scipy', 'numba', 'tree_sway'}
