@@ -23,11 +23,11 @@ from hypothesis import settings  # noqa: E402
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
 
+from tree_sway.cache.model_cache import SET_UPS  # noqa: E402
 from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
 from tree_sway.errors import MissingDependencyError  # noqa: E402
-from tree_sway.set_up_files import SET_UPS  # noqa: E402
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)

@@ -5,7 +5,7 @@
 Count the code: tokens, tokens per line, short names, public names, modules that a step loads.
 
     python3 .ci/count.py
-    python3 .ci/count.py --names tree_sway/core/motion --modules
+    python3 .ci/count.py --names tree_sway/core/run --modules
 
 Counted are Python's tokens without comments, docstrings, imports and line ends; a line counts if a
 counted token begins on it. A room is a folder with modules; its figures are those of its own
@@ -32,7 +32,7 @@ import tokenize
 
 ROOT = Path(__file__).resolve().parent.parent
 LIBRARY, NODES = 'tree_sway', 'tree_sway_ros'
-NAMED = 'tree_sway/run'
+NAMED = 'tree_sway/core/run'
 """Folder whose short names are counted by default, if it is there; all folders are listed."""
 
 LAYOUT = {

@@ -25,18 +25,17 @@ PACKAGES = {
 
 #: Layer of each room of the library; a room imports only from lower layers and from itself.
 LAYERS = {
-    'errors': 0, 'tables': 0, 'kernel_folder': 0, 'extras': 0.2, 'kernel_cache': 0.5,
-    'set_up_files': 0.7, 'core': 1, 'files': 2, 'parameters': 2.5,
-    'page': 3, 'pictures': 3, 'studies': 5, 'commands': 4,
+    'errors': 0, 'tables': 0, 'extras': 1, 'cache': 1, 'worker': 1, 'core': 2, 'files': 3,
+    'parameters': 4, 'sensors': 5, 'stream': 5, 'page': 6, 'pictures': 6,
+    'commands': 7, 'studies': 8,
 }  # fmt: skip
 #: Storey of each room of the core: imports point to lower storeys or stay in the room.
 STOREYS = {
     'arrays': 0, 'kernel': 1, 'checks': 1, 'tree': 1,
-    'rotation': 2, 'wind': 2, 'branch': 2, 'oscillators': 2,
-    'growth': 3, 'leaves': 3, 'reduction': 3,
-    'motion': 4,
-    'state': 5,
-    'simulator': 6,
+    'rotation': 2, 'wind': 2, 'beams': 2, 'oscillators': 2,
+    'growth': 3, 'leaves': 3, 'numpy_rotation': 3, 'model': 3,
+    'setup': 4,
+    'run': 5,
     'fidelity': 7, 'identification': 7, 'observe': 7, 'strength': 7,
     'scene': 8,
 }  # fmt: skip

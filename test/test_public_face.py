@@ -72,12 +72,12 @@ def test_importing_it_imports_nothing_else() -> None:
 def test_a_simulator_loads_few_modules_and_no_laboratory() -> None:
     """Modules with code are counted, not their packages."""
     program = (
-        'import sys; import tree_sway.core.simulator.simulator;'
+        'import sys; import tree_sway.core.run.simulator;'
         "ours = [m for n, m in sys.modules.items() if n.startswith('tree_sway.')];"
         "print(*sorted(m.__name__ for m in ours if not hasattr(m, '__path__')))"
     )
     loaded = in_a_fresh_interpreter(program).split()
-    assert 'tree_sway.core.simulator.simulator' in loaded
+    assert 'tree_sway.core.run.simulator' in loaded
     assert len(loaded) <= 35, ' '.join(loaded)
     for room in ('studies', 'files', 'commands', 'core.growth', 'core.fidelity'):
         assert not [name for name in loaded if name.startswith(f'tree_sway.{room}.')]
@@ -93,7 +93,7 @@ def test_from_a_tree_to_a_record_of_its_sway() -> None:
 
 def test_one_default_model_behind_every_door() -> None:
     from tree_sway.commands.cli import _parser, _table
-    from tree_sway.core.simulator.simulator import SwaySimulator
+    from tree_sway.core.run.simulator import SwaySimulator
     from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 
     default = tree_sway.Settings().model

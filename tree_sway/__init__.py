@@ -22,13 +22,13 @@ from typing import Any, TYPE_CHECKING
 if TYPE_CHECKING:
     from tree_sway.core.growth.grow import grow as grow
     from tree_sway.core.identification.calibration import calibrate as calibrate
+    from tree_sway.core.model.settings import Settings as Settings
     from tree_sway.core.scene.make import make_simulator as make_simulator
     from tree_sway.core.scene.placed_tree import PlacedTree as PlacedTree
     from tree_sway.core.scene.scene import Scene as Scene
     from tree_sway.core.scene.scene_simulator import Simulator as Simulator
     from tree_sway.core.scene.simulate import simulate as simulate
     from tree_sway.core.scene.sway_record import SwayRecord as SwayRecord
-    from tree_sway.core.simulator.settings import Settings as Settings
     from tree_sway.core.tree.building import tree_from_segments as tree_from_segments
     from tree_sway.core.tree.species import species_named as species_named
     from tree_sway.core.tree.tree import Tree as Tree
@@ -40,14 +40,14 @@ if TYPE_CHECKING:
     from tree_sway.files.trees.source import open_scene as open_scene
     from tree_sway.files.trees.source import open_tree as open_tree
     from tree_sway.files.wind.wind_file import read_wind as read_wind
-    from tree_sway.page.client import StreamClient as StreamClient
+    from tree_sway.stream.client import StreamClient as StreamClient
 
 __version__ = '0.1.0'
 
 _HOMES = {
     'PlacedTree': 'core.scene.placed_tree', 'Scene': 'core.scene.scene',
-    'Settings': 'core.simulator.settings', 'Simulator': 'core.scene.scene_simulator',
-    'Species': 'core.tree.wood', 'StreamClient': 'page.client',
+    'Settings': 'core.model.settings', 'Simulator': 'core.scene.scene_simulator',
+    'Species': 'core.tree.wood', 'StreamClient': 'stream.client',
     'SwayRecord': 'core.scene.sway_record', 'Tree': 'core.tree.tree', 'TreeSwayError': 'errors',
     'WindAverage': 'core.wind.averaging', 'calibrate': 'core.identification.calibration',
     'grow': 'core.growth.grow', 'make_simulator': 'core.scene.make',

@@ -11,7 +11,7 @@ import pytest
 from tree_sway_lab.resegment import MOST_SEGMENTS, resegment
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 from tree_sway.errors import ParameterError

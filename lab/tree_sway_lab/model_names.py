@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tree_sway.commands import cli
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.files.trees.source import open_tree
 
 TREE = """

@@ -18,9 +18,9 @@ aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.core.simulator.settings import model_of, USUAL  # noqa: E402
-from tree_sway.page.protocol import decode_description, decode_frame  # noqa: E402
+from tree_sway.core.model.settings import model_of, USUAL  # noqa: E402
 from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
+from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEDLING = ROOT / 'test' / 'files' / 'data' / 'seedling.yaml'

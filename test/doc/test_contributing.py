@@ -87,8 +87,8 @@ CHANGES = {
         '0.5',
     ),
     'air': (
-        'tree_sway/core/motion/drag.py', 'AIR_DENSITY = 1.225', 'AIR_DENSITY = 1.0',
-        'from tree_sway.core.motion.drag import AIR_DENSITY; print(AIR_DENSITY)', '1.0',
+        'tree_sway/core/model/drag_law.py', 'AIR_DENSITY = 1.225', 'AIR_DENSITY = 1.0',
+        'from tree_sway.core.model.drag_law import AIR_DENSITY; print(AIR_DENSITY)', '1.0',
     ),
     'unit': (
         'tree_sway/files/columns.json', '"mph": 0.44704,', '"mph": 0.44704, "yd/s": 0.9144,',

@@ -13,16 +13,17 @@ from types import SimpleNamespace
 
 import pytest
 
+from tree_sway.cache.model_cache import MOST
 from tree_sway.commands import cli
-from tree_sway.core.simulator.settings import USUAL
+from tree_sway.core.model.settings import USUAL
 from tree_sway.core.strength.strength_use import ROOT_BAND, WOOD_BAND
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
 from tree_sway.files.scenes import stand_table
 from tree_sway.files.trees.tree_file import TREE_FORMATS
 from tree_sway.files.wind.wind_file import WIND_FORMATS
-from tree_sway.page import check_description, client, playout, protocol, server
-from tree_sway.set_up_files import MOST
+from tree_sway.page import server
+from tree_sway.stream import check_description, client, playout, protocol
 
 pages = SimpleNamespace(**runpy.run_path(str(Path(__file__).with_name('test_pages.py'))))
 ROOT: Path = pages.ROOT
@@ -94,11 +95,12 @@ NAMED = {
     'TreeQSM': 'treeqsm-text', 'SimpleForest': 'simpleforest', 'aRchi': 'archi', 'MTG': 'mtg',
     'SWC': 'swc', 'RayCloudTools': 'treefile', 'PyTLidar': 'treeqsm-text', 'TOA5': 'toa5',
     'NMEA': 'nmea', 'METAR': 'metar', 'rosbag2': 'bag', 'Gill': 'sonic',
+    'netCDF': 'netcdf',
 }  # fmt: skip
 """Formats that pages name, and the program's name of each."""
 NOT_HERE = re.compile(
-    r'\b(OBJ|FBX|PLY|LAS|LAZ|STL|DXF|IFC|HDF5|NetCDF|GRIB2?|Alembic|Excel|xlsx|GeoJSON|KML|GPX|'
-    r'Collada|URDF|AVI|WebM|E57|VTK|Feather|ORC|shapefile|GeoPackage)\b',
+    r'\b(OBJ|FBX|PLY|LAS|LAZ|STL|DXF|IFC|HDF5|GRIB2?|Alembic|KML|GPX|'
+    r'Collada|URDF|AVI|WebM|E57|VTK|Feather|ORC|shapefile)\b',
     re.IGNORECASE,
 )
 """Formats of trees, winds, scenes, tables and films that the program neither reads nor writes."""

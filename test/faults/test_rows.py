@@ -81,7 +81,7 @@ ROWS = {
             'nodes/test_anemometer.py',
             'test_a_live_change_that_overlaps_faults_is_refused_with_an_answer',
         ),
-        ('core/simulator/test_live_tuning.py', 'test_no_pose_jumps'),
+        ('core/run/test_tuning.py', 'test_no_pose_jumps'),
     ],
     "hostile input on the page's socket": [
         ('page/test_server.py', 'test_what_is_no_request_is_closed'),

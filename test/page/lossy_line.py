@@ -90,8 +90,8 @@ def _carry(*given: Any) -> None:
 
 def serve(seconds: float) -> None:
     """Publish a state 60 times per second."""
-    from tree_sway.page.protocol import decode_description, encode_frame, Frame
     from tree_sway.page.server import PageServer, PageSettings
+    from tree_sway.stream.protocol import decode_description, encode_frame, Frame
 
     data = (VECTORS / 'description.bin').read_bytes()
     description = decode_description(data)
@@ -110,7 +110,7 @@ def serve(seconds: float) -> None:
 
 def listen(seconds: float) -> dict[str, Any]:
     """Count the states that are there when they are to be shown."""
-    from tree_sway.page.client import StreamClient
+    from tree_sway.stream.client import StreamClient
 
     seen: list[tuple[float, float]] = []
     with StreamClient(

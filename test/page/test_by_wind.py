@@ -17,24 +17,23 @@ import numpy as np
 import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
-pytest.importorskip('numba', reason='numba is not installed')
 
+from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
-from tree_sway.core.simulator.settings import Settings  # noqa: E402
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.errors import TransportError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
-from tree_sway.page.by_wind import ByWind, STEP  # noqa: E402
-from tree_sway.page.client import StreamClient  # noqa: E402
-from tree_sway.page.protocol import (  # noqa: E402
+from tree_sway.page.server import _Client, MOST_IN_STATE, PageServer, PageSettings  # noqa: E402
+from tree_sway.stream.by_wind import ByWind, STEP  # noqa: E402
+from tree_sway.stream.client import StreamClient  # noqa: E402
+from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
     decode_frame,
     decode_tables,
     FRAME_SIZE,
     part_of_frame,
 )
-from tree_sway.page.scene_state import SceneState  # noqa: E402
-from tree_sway.page.server import _Client, MOST_IN_STATE, PageServer, PageSettings  # noqa: E402
+from tree_sway.stream.scene_state import SceneState  # noqa: E402
 
 HERE = Path(__file__).parent
 MINUTES = 10

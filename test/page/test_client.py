@@ -22,20 +22,20 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 
 from tree_sway.core.arrays import Floats  # noqa: E402
-from tree_sway.core.state.state_basis import FULL_SCALE  # noqa: E402
+from tree_sway.core.model.state_basis import FULL_SCALE  # noqa: E402
 from tree_sway.errors import ParameterError, TransportError  # noqa: E402
-from tree_sway.page.client import StreamClient  # noqa: E402
-from tree_sway.page.controls import Control, ControlPanel  # noqa: E402
-from tree_sway.page.placer import Placer  # noqa: E402
-from tree_sway.page.playout import ClockOffset, Moment, Playout  # noqa: E402
-from tree_sway.page.protocol import (  # noqa: E402
+from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.stream.client import StreamClient  # noqa: E402
+from tree_sway.stream.controls import Control, ControlPanel  # noqa: E402
+from tree_sway.stream.placing import Placer  # noqa: E402
+from tree_sway.stream.playout import ClockOffset, Moment, Playout  # noqa: E402
+from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
     encode_description,
     encode_frame,
     Frame,
     RESTARTED,
 )
-from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
 
 DEADLINE = 60.0
 HERE = Path(__file__).parent
@@ -224,7 +224,7 @@ def certificate(folder: Path, name: str) -> tuple[str, str]:
 WAITING = """
 import sys
 from tree_sway.errors import TransportError
-from tree_sway.page.client import StreamClient
+from tree_sway.stream.client import StreamClient
 with StreamClient(sys.argv[1]) as client:
     try:
         client.wait(60.0)

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tree_sway.core.motion import fill_records
+from tree_sway.core.setup import fill_records
 from tree_sway.errors import FormatError
-from tree_sway.page import placer
-from tree_sway.page.placer import Placer
-from tree_sway.page.protocol import decode_description, encode_description
+from tree_sway.stream import placing as placer
+from tree_sway.stream.placing import Placer
+from tree_sway.stream.protocol import decode_description, encode_description
 
 HERE = Path(__file__).parent
 STATIC = HERE.parents[1] / 'tree_sway' / 'page' / 'static'

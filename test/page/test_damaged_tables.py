@@ -11,15 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-pytest.importorskip('numba', reason='numba is not installed')
-
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_tree  # noqa: E402
-from tree_sway.page import check_tables  # noqa: E402
-from tree_sway.page.protocol import (  # noqa: E402
+from tree_sway.stream import check_tables  # noqa: E402
+from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
     decode_tables,
     Description,
@@ -28,7 +26,7 @@ from tree_sway.page.protocol import (  # noqa: E402
     TABLES,
     Tables,
 )
-from tree_sway.page.scene_state import SceneState  # noqa: E402
+from tree_sway.stream.scene_state import SceneState  # noqa: E402
 
 HERE = Path(__file__).parent
 STATIC = HERE.parents[1] / 'tree_sway' / 'page' / 'static'

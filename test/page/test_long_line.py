@@ -26,13 +26,13 @@ import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway.page.protocol import (  # noqa: E402
+from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
     decode_frame,
     encode_frame,
     Frame,
 )
-from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
 
 HERE = Path(__file__).parent
 DESCRIPTION = (HERE / 'vectors' / 'description.bin').read_bytes()

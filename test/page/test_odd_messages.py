@@ -19,9 +19,9 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from aiohttp import web  # noqa: E402
 
-from tree_sway.page import client as client_module  # noqa: E402
-from tree_sway.page.client import StreamClient  # noqa: E402
-from tree_sway.page.protocol import (  # noqa: E402
+from tree_sway.stream import client as client_module  # noqa: E402
+from tree_sway.stream.client import StreamClient  # noqa: E402
+from tree_sway.stream.protocol import (  # noqa: E402
     decode_frame,
     encode_frame,
     LARGEST_DESCRIPTION,

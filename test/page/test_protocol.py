@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.state.state_basis import MARGIN
+from tree_sway.core.model.state_basis import MARGIN
 from tree_sway.errors import FormatError
-from tree_sway.page.placer import Placer
-from tree_sway.page.protocol import (
+from tree_sway.stream.placing import Placer
+from tree_sway.stream.protocol import (
     BEYOND_SCALE,
     decode_description,
     decode_frame,

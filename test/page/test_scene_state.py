@@ -24,10 +24,10 @@ from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import FormatError
 from tree_sway.files.trees.source import open_scene, open_tree
-from tree_sway.page import check_description
-from tree_sway.page.placer import Placer
-from tree_sway.page.protocol import decode_description, decode_frame
-from tree_sway.page.scene_state import SceneState
+from tree_sway.stream import check_description
+from tree_sway.stream.placing import Placer
+from tree_sway.stream.protocol import decode_description, decode_frame
+from tree_sway.stream.scene_state import SceneState
 
 HERE = Path(__file__).parent
 REBUILD = """

@@ -22,8 +22,8 @@ from tree_sway.errors import ParameterError, TransportError  # noqa: E402
 from tree_sway.page import doorkeeper  # noqa: E402
 from tree_sway.page import server as server_module  # noqa: E402
 from tree_sway.page.access import is_loopback, refusal, require_token  # noqa: E402
-from tree_sway.page.controls import Control, ControlPanel  # noqa: E402
 from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.stream.controls import Control, ControlPanel  # noqa: E402
 
 DEADLINE = 60.0
 DESCRIPTION = b'TSWD' + bytes(96)

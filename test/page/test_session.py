@@ -15,16 +15,16 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.scene.run import Run  # noqa: E402
-from tree_sway.core.simulator.settings import Settings  # noqa: E402
 from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.page import wind_source  # noqa: E402
-from tree_sway.page.controls import ControlPanel  # noqa: E402
 from tree_sway.page.newest import Newest  # noqa: E402
-from tree_sway.page.protocol import decode_description, decode_frame, PAUSED  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
 from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind  # noqa: E402
+from tree_sway.stream.controls import ControlPanel  # noqa: E402
+from tree_sway.stream.protocol import decode_description, decode_frame, PAUSED  # noqa: E402
 
 SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
 DEADLINE = 30.0

@@ -9,7 +9,7 @@ import tracemalloc
 
 import pytest
 
-from tree_sway import kernel_cache
+from tree_sway.cache import kernel_cache
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.studies import plan
 from tree_sway.studies.compute import _wind

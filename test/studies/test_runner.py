@@ -18,7 +18,7 @@ from urllib.request import urlopen
 import pytest
 
 from tree_sway.commands import cli
-from tree_sway.core.simulator.settings import USUAL
+from tree_sway.core.model.settings import USUAL
 from tree_sway.errors import FormatError, TreeSwayError
 from tree_sway.studies import runner
 from tree_sway.studies.compute import compute

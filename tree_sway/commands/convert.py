@@ -24,9 +24,9 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.commands.progress import waiting
 from tree_sway.core.leaves.foliage import LeafClusters
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
@@ -62,10 +62,6 @@ def run(arguments: argparse.Namespace) -> int:
         raise FormatError(what, where=output, cure=f'use {names}')
     if arguments.sway is not None and suffix != '.glb':
         raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
-    if suffix == '.html':
-        from tree_sway.page.tables import refuse_without_compiler
-
-        refuse_without_compiler()
     scene = opened_scene(arguments)
     for note in scene.notes:
         print(f'note: {note}', file=sys.stderr)

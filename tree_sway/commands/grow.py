@@ -17,8 +17,8 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.core.checks import within
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.simulator.reductions import TreeReductions
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.grown_tree import rooted
 from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import ParameterError, TreeError
@@ -29,15 +29,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add('kind', metavar='SPECIES', nargs='?', help=f'one of {", ".join(species_keys())}')
-    add('--species', metavar='SPECIES', help='the same as an option')
-    add('--height', type=float, required=True, metavar='M', help='height [m]')
+    add('--species', metavar='SPECIES', help='the species as an option')
+    add('--height', type=float, required=True, metavar='M', help='height of the tree [m]')
     add(
         '--diameter',
         type=float,
         metavar='M',
-        help='at breast height [m]; from the height if left out',
+        help='stem diameter at breast height [m]; without it, typical for the height',
     )
-    add('--seed', type=int, default=0, help='seed of the tree (%(default)s)')
+    add('--seed', type=int, default=0, help='random seed (%(default)s)')
     add_output_arguments(parser, OUTPUT_HELP)
 
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.simulator.assembly import assembled
-from tree_sway.core.simulator.reductions import TreeReductions
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.assembly import assembled
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 

@@ -22,17 +22,17 @@ from tree_sway.commands.page_arguments import add_page_arguments, page_settings,
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
+from tree_sway.core.model.settings import MODELS, Settings, USUAL
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.core.simulator.settings import MODELS, Settings, USUAL
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
-from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET
 from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, Session
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway.parameters.sway_parameters import SWAY
+from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET
 
 _SPACING = 1.2
 """Distance of the trees of a stand over the greater of height and spread of one."""
@@ -49,12 +49,16 @@ _LABELS = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_sway_arguments(parser, 'a wind record, repeated; simulated if left out')
+    add_sway_arguments(parser, 'wind recording, played in a loop; without it wind is simulated')
     parser.add_argument(
-        '--stand', type=int, default=1, metavar='N', help='number of trees (%(default)s)'
+        '--stand',
+        type=int,
+        default=1,
+        metavar='N',
+        help='show this many trees as a stand (%(default)s)',
     )
     parser.add_argument(
-        '--seconds', type=float, metavar='N', help='end after this time [s]; else by Ctrl-C'
+        '--seconds', type=float, metavar='N', help='end after this time [s]; without it, at Ctrl-C'
     )
     parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
     add_page_arguments(parser)

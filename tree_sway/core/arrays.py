@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Ints = NDArray[np.int64]
 
-#: Arrays of structured records, whose fields `core.motion.records` lists.
+#: Arrays of structured records, whose fields `core.model.records` lists.
 Records = NDArray[np.void]
 
 

@@ -14,7 +14,7 @@ import gc
 import threading
 from typing import Any, cast, TypeVar
 
-from tree_sway.kernel_cache import KernelCache, why_no_compiler
+from tree_sway.cache.kernel_cache import KernelCache, why_no_compiler
 
 _F = TypeVar('_F', bound=Callable[..., Any])
 

@@ -43,9 +43,9 @@ from tree_sway.page.access import (
     viewers_token,
     WRONG_TOKEN,
 )
-from tree_sway.page.controls import ControlPanel, Value
 from tree_sway.page.doorkeeper import Doorkeeper
-from tree_sway.page.protocol import FRAME_SIZE, part_of_frame
+from tree_sway.stream.controls import ControlPanel, Value
+from tree_sway.stream.protocol import FRAME_SIZE, part_of_frame
 
 LARGEST_MESSAGE = 4096
 """Longest message of a client in [bytes]."""

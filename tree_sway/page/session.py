@@ -15,21 +15,21 @@ import logging
 import threading
 import time
 
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.demand import set_demand
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
-from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.files.export.gltf_tree import morphing_tree
-from tree_sway.page.controls import Refused, Value
 from tree_sway.page.newest import Newest
 from tree_sway.page.one_file import page_of_scene
-from tree_sway.page.scene_state import SceneState
 from tree_sway.page.server import PageServer
 from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, WindSource
+from tree_sway.stream.controls import Refused, Value
+from tree_sway.stream.scene_state import SceneState
 
 _LOGGER = logging.getLogger('tree_sway.page')
 _MOST_LATE = 0.25

@@ -20,12 +20,12 @@ import math
 from pathlib import Path
 from typing import Any
 
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.cache.kernel_cache import ROOT, source_digest
+from tree_sway.core.model.settings import Settings
 from tree_sway.errors import FormatError, nearest, ParameterError
 from tree_sway.files.text_file import is_file, path_of, read_bytes, read_text
 from tree_sway.files.wind.wind_file import EXAMPLES
 from tree_sway.files.yaml_document import read_yaml
-from tree_sway.kernel_cache import ROOT, source_digest
 
 Plain = dict[str, Any]
 

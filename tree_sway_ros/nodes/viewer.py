@@ -17,10 +17,10 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.page.access import read_token, require_token
-from tree_sway.page.controls import Control, ControlPanel, PAUSE_AND_RESET, Refused
-from tree_sway.page.protocol import decode_description, Description, encode_state
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.parameters.sway_parameters import SWAY
+from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET, Refused
+from tree_sway.stream.protocol import decode_description, Description, encode_state
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import (
     PULL,
@@ -32,7 +32,6 @@ from tree_sway_ros.process.topics import (
 )
 from tree_sway_ros.reports.diagnostics import OK, Status
 from tree_sway_ros.wire.tree_state import read_state, read_state_entry
-from tree_sway_ros.wire.wind_messages import stamp_to_ns
 
 _CHECK_PERIOD = 0.5
 _LIVE = {
@@ -146,12 +145,11 @@ class ViewerNode(TreeSwayNode):
         description, server = self._description, self.server
         if description is None or server is None:
             return
-        wind, coordinates, flags = read_state(message)
+        stamp, wind, flags, coordinates = read_state(message)
         count = len(description.scale)
         if len(coordinates) < count or (len(coordinates) - count) % 2:
             what = f'{len(coordinates)} coordinates of a tree with {count}'
             raise FormatError(what, where='tree_state')
-        stamp = stamp_to_ns(message.header.stamp)
         frame = encode_state(description, self._sequence, stamp, wind, coordinates, flags)
         self._sequence += 1
         server.publish(frame)

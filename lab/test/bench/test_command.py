@@ -13,7 +13,7 @@ from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.commands import cli
-from tree_sway.core.motion.plain.numpy_placing import NumpyPlacing
+from tree_sway.core.run.numpy_placing import NumpyPlacing
 from tree_sway.errors import TreeSwayError
 
 

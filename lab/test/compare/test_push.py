@@ -10,8 +10,8 @@ from tree_sway_lab.example_trees import forked_tree
 from tree_sway_lab.kinds.kinds import kind_called
 
 from tree_sway.core.identification.free_decay import free_decay
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import Species
 
 WOOD = Species('example', 'example', 8.0e9, 900.0)

@@ -13,8 +13,8 @@ from pathlib import Path
 import platform
 from typing import Any
 
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.scene_simulator import SceneSimulator
-from tree_sway.core.simulator.settings import Settings
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene, open_tree
 from tree_sway_lab.bench.bench_tree import bench_tree, SEGMENTS_A_BRANCH

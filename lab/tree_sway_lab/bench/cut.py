@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.bench.step import gusts
 from tree_sway_lab.resegment import resegment

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway_lab.bench.bench_tree import bench_tree

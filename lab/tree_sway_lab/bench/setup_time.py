@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import time
 
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway_lab.bench.bench_tree import bench_tree
 

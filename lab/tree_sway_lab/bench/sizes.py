@@ -17,8 +17,8 @@ import numpy as np
 from tree_sway.commands.progress import bar
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import fused
-from tree_sway.core.motion.wind_basis import step_instance, WindBasisBank
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.run.table_model import step_instance, WindBasisBank
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError

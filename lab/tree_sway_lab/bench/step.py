@@ -17,7 +17,7 @@ import time
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TreeSwayError
 

@@ -24,7 +24,7 @@ from scipy.sparse.linalg import eigsh, LinearOperator
 
 from tree_sway.commands.progress import bar
 from tree_sway.core.arrays import Floats
-from tree_sway.core.motion.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
+from tree_sway.core.model.drag_law import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import MissingDependencyError

@@ -19,7 +19,7 @@ import numpy as np
 
 from tree_sway.commands.progress import bar, waiting
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway_lab.bench.frame_time import frame_times

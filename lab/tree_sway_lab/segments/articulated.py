@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_fill, one_of_each
 from tree_sway.core.kernel import WHY_PLAIN
-from tree_sway.core.motion.drag import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
+from tree_sway.core.model.drag_law import AIR_DENSITY, STREAMLINING_FROM, STREAMLINING_TO
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import MissingDependencyError
 from tree_sway_lab.segments.articulated_bodies import articulated_bodies

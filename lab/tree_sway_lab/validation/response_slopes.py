@@ -24,8 +24,8 @@ from scipy.signal import welch
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.simulate import Rig
-from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 

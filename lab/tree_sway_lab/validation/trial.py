@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.model_names import simulator_called

@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.motion.drag import AIR_DENSITY
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.drag_law import AIR_DENSITY
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.files.whole_file import whole_file

@@ -9,7 +9,7 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator, LEAVE_IN, REVIEW
-from tree_sway.core.simulator.simulator import RESTARTED, SwaySimulator
+from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence

@@ -12,7 +12,7 @@ from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway.core.fidelity.estimate import ErrorEstimator, frame_cost
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence

@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.simulator.reductions import TreeReductions
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import species_named
 
 FEW = {('spruce', 10.0), ('pine', 30.0), ('fir', 20.0), ('larch', 20.0)}

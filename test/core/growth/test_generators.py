@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from tree_sway_lab.example_trees import branch_order
 
-from tree_sway.core.branch.greenhill import greenhill_length
+from tree_sway.core.beams.greenhill import greenhill_length
 from tree_sway.core.growth.benjamina import grow_benjamina
 from tree_sway.core.growth.broadleaf import grow_broadleaf
 from tree_sway.core.growth.conifer import grow_conifer

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tree_sway.core.identification.calibration import calibrate
-from tree_sway.core.simulator.reductions import TreeReductions
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import species_named
 from tree_sway.errors import ParameterError, TreeError
 

@@ -18,7 +18,7 @@ from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.observer import LATE_STEPS
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.observe.simulated_sensor import SensedMotion, SimulatedSensor
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import tips_of_poses

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.observe.sensor_place import place_motion, place_on, turn_between
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.errors import ParameterError
 

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.simulate import simulate
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import RESTARTED, SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import species_named
 from tree_sway.errors import ParameterError, TreeError

@@ -7,10 +7,10 @@ from __future__ import annotations
 import pytest
 
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.species import species_named
 
 OAK = species_named('oak')

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from tree_sway_lab.example_trees import tapered_stem
 
+from tree_sway.core.model.settings import MODELS, Settings
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.simulator.settings import MODELS, Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import ParameterError
 

@@ -9,11 +9,11 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.validation.truth import WOOD
 
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.pushes import MOST_PUSHES, Spring
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.touch import MOST_PUSHES, Spring
 from tree_sway.errors import ParameterError
 
 DT, YAW = 1.0 / 60.0, 0.7
@@ -38,7 +38,6 @@ def stand_of(tree, scale=1.0, model=20):
     return Scene(trees).simulator(Settings(model=model))
 
 
-@pytest.mark.compiled  # without the compiler a turned tree has a basis of its own
 @pytest.mark.parametrize('kind', ['force', 'spring'])
 @pytest.mark.parametrize('scale', [1.0, 1.3])
 def test_a_tree_of_a_stand_moves_as_it_would_alone(tree, scale, kind):
@@ -107,7 +106,6 @@ def test_what_cannot_be_is_refused_and_counted(tree, segment, force, why):
     np.testing.assert_array_equal(stand.place(), before)
 
 
-@pytest.mark.compiled  # without the compiler each tree has its own
 def test_pushes_on_too_many_trees_are_refused(tree):
     trees = [PlacedTree(f't{k}', tree, 3.0 * k, 0.0, species=WOOD) for k in range(MOST_PUSHES + 1)]
     stand = Scene(trees).simulator(Settings(model=6))

@@ -9,8 +9,8 @@ import time
 import numpy as np
 import pytest
 
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.run import LONGEST_JUMP, Run
-from tree_sway.core.simulator.simulator import SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.wind.averaging import WindAverage
 from tree_sway.core.wind.gate import WindGate

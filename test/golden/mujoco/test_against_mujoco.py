@@ -10,8 +10,8 @@ from tree_sway_lab.example_trees import forked_tree
 from tree_sway_lab.segments.articulated import ArticulatedTree
 from tree_sway_lab.tip_error import record_tips, tip_error
 
-from tree_sway.core.motion.drag import AIR_DENSITY
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.model.drag_law import AIR_DENSITY
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import Species
 
 FRAME, DAMPING = 1.0 / 60.0, 0.05

@@ -23,7 +23,7 @@ import sys
 import numpy as np
 
 from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
 FOLDER = Path(__file__).resolve().parent

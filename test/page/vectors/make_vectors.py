@@ -24,13 +24,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.leaves.foliage import leaf_clusters
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import Tree
-from tree_sway.page.description import describe_scene
-from tree_sway.page.protocol import (
+from tree_sway.stream.description import describe_scene
+from tree_sway.stream.protocol import (
     decode_description,
     encode_frame,
     Frame,

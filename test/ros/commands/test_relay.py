@@ -19,13 +19,13 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.page.protocol import (  # noqa: E402
+from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
     encode_state,
     PAUSED,
     WIND_LOST,
 )
-from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
 from tree_sway_ros.process.composition import Composition  # noqa: E402
 from tree_sway_ros.process.listener import Listener  # noqa: E402
 from tree_sway_ros.process.topics import (  # noqa: E402

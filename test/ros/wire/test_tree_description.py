@@ -8,8 +8,8 @@ from jsonschema import Draft202012Validator
 import numpy as np
 
 from tree_sway.core.leaves.foliage import leaf_clusters
+from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.scene.placed_tree import joined, PlacedTree
-from tree_sway.core.state.tree_state import digest_of
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway_ros.wire.tree_description import describe, VERSION
 
@@ -28,7 +28,9 @@ def test_it_fits_its_schema():
 
 
 def test_leaves_are_part_of_it():
-    description = describe(TREE, 'map', leaf_clusters(TREE, np.random.default_rng(0), count=12))
+    description = describe(
+        TREE, 'map', leaves=leaf_clusters(TREE, np.random.default_rng(0), count=12)
+    )
     SCHEMA.validate(json.loads(description))
     assert len(json.loads(description)['leaves']['segment']) == 12
 

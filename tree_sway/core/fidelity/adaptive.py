@@ -30,22 +30,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import three_numbers
 from tree_sway.core.fidelity.estimate import dialled, ErrorEstimator, Estimate
-from tree_sway.core.simulator.settings import Settings, settings_with, USUAL
-from tree_sway.core.simulator.simulator import SwaySimulator
-from tree_sway.core.state.tree_state import TreeState
+from tree_sway.core.model.settings import Settings, settings_with, USUAL
+from tree_sway.core.model.tree_state import TreeState
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import ClimateTracker, WindClimate
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.set_up_files import SET_UPS, SetUpFiles
 
 if TYPE_CHECKING:
-    from tree_sway.core.simulator.touch import Spring
+    from tree_sway.core.run.pushes import Spring
 
 LEAVE_IN = 1.0
 """Time in [s] in which coordinates that are left out fade."""

@@ -21,10 +21,10 @@ from typing import cast, Protocol
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.motion.drag import DragLaw, pressure
-from tree_sway.core.motion.response import branch_rotations, tip_motion
-from tree_sway.core.motion.static_responses import WindMoments
-from tree_sway.core.simulator.bank import Bank, Oscillators
+from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.run.bank import Bank, Oscillators
+from tree_sway.core.setup.static_responses import WindMoments
+from tree_sway.core.setup.tree_motion import branch_rotations, tip_motion
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import WindClimate
 

@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from tree_sway.core.branch.greenhill import greenhill_length
+from tree_sway.core.beams.greenhill import greenhill_length
 from tree_sway.core.growth.benjamina import grow_benjamina
 from tree_sway.core.growth.broadleaf import grow_broadleaf
 from tree_sway.core.growth.conifer import grow_conifer

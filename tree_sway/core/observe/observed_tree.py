@@ -22,24 +22,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import three_numbers, within
+from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.observe.sensor_track import SensorTrack
 from tree_sway.core.observe.tree_fit import TreeFit
-from tree_sway.core.simulator.crown_gusts import delays_of
-from tree_sway.core.simulator.settings import Settings, settings_with
-from tree_sway.core.simulator.simulator import RESTARTED, SwaySimulator
+from tree_sway.core.run.crown_gusts import delays_of
+from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
 from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.crown_wind import CrownWind, USUAL_COHERENCE
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import ParameterError
-from tree_sway.set_up_files import SET_UPS, SetUpFiles
 
 _STORM = 36.0
 """Wind in [m/s] whose static deflection bounds the energy of the corrected motion."""

@@ -37,7 +37,7 @@ from tree_sway.core.observe.steady_filter import (
 from tree_sway.core.observe.tree_fit import fits, Spectrum, TreeFit
 
 if TYPE_CHECKING:
-    from tree_sway.core.simulator.simulator import SwaySimulator
+    from tree_sway.core.run.simulator import SwaySimulator
 
 MOST_COORDINATES = 32
 """Largest number of coordinates that sensors correct."""

@@ -20,7 +20,7 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import nearest, ParameterError
 
 if TYPE_CHECKING:
-    from tree_sway.core.simulator.simulator import SwaySimulator
+    from tree_sway.core.run.simulator import SwaySimulator
 
 _TURN = 1e-4
 """Largest key rotation in [rad] of the difference quotients."""

@@ -26,7 +26,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.oscillators.propagator import propagator
-from tree_sway.core.reduction.one_thread import one_thread
+from tree_sway.core.setup.one_thread import one_thread
 
 _MOST_DOUBLINGS, _ENOUGH = 60, 1e-10
 

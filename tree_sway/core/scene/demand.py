@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 
 
 def set_demand(

@@ -6,12 +6,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from tree_sway.core.simulator.settings import Settings, settings_with
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
+from tree_sway.core.model.settings import Settings, settings_with
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.set_up_files import SET_UPS, SetUpFiles
 
 
 def make_simulator(

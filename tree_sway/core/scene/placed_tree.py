@@ -13,8 +13,8 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
-from tree_sway.core.simulator.season import is_in_leaf
-from tree_sway.core.simulator.settings import model_of, Settings
+from tree_sway.core.model.settings import model_of, Settings
+from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.core.tree.grown_tree import tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree

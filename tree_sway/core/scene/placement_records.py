@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.motion.stand import PLACEMENT
+from tree_sway.core.run.stand import PLACEMENT
 
 _FINEST_SCALE = 0.01
 """Largest relative difference of scales of trees with the same time step."""

@@ -198,7 +198,7 @@ class Run:
             Function called with the reason of a refusal, from the thread of the steps.
 
         """
-        from tree_sway.core.simulator.touch import Spring
+        from tree_sway.core.run.pushes import Spring
 
         def push() -> None:
             force = Spring(to, stiffness) if stiffness else (0.0, 0.0, 0.0)

@@ -11,16 +11,16 @@ from typing import Any
 
 import numpy as np
 
+from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
 from tree_sway.core.leaves.foliage import foliage_of, joined_clusters, leaf_clusters, LeafClusters
+from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import Kind
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
-from tree_sway.core.simulator.settings import Settings, settings_with
 from tree_sway.core.tree.plausibility import oddities, refuse_implausible
 from tree_sway.core.tree.species import Species
 from tree_sway.errors import inside
-from tree_sway.set_up_files import SET_UPS, SetUpFiles
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +44,8 @@ class Scene(PlacedTrees):
     convection_ratio
         Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
         everywhere.
+    faults
+        Changes by the importer of what no tree can have, one sentence each.
 
     Raises
     ------
@@ -77,8 +79,8 @@ class Scene(PlacedTrees):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Implausible values of the trees, one sentence per kind each."""
-        found = []
+        """Faults of the trees, and implausible values, one sentence per kind each."""
+        found = list(self.faults)
         for label, kind in self._labelled():
             found += [f'{label}{oddity}' for oddity in oddities(kind.tree, kind.species)]
         return tuple(found)

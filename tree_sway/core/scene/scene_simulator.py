@@ -21,27 +21,15 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
 from tree_sway.core.kernel import WHY_PLAIN
-from tree_sway.core.motion.placing import GIVEN, place
-from tree_sway.core.motion.records import instance_layout, time_step_layout, zeros_in_lines
-from tree_sway.core.motion.stand import place_stand, PLACEMENT, step_stand
-from tree_sway.core.motion.wind_basis import (
-    bent_too_far,
-    come_to_rest,
-    drop,
-    fill_time_step,
-    propagators_of,
-    WindBasisBank,
-)
-from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.scene.placed_trees import PlacedTrees
-from tree_sway.core.scene.placement_records import own_steps, placement_records
-from tree_sway.core.simulator.clamp_watch import ClampWatch, fewer
-from tree_sway.core.simulator.live_tuning import Tuning
-from tree_sway.core.simulator.settings import Settings
-from tree_sway.core.simulator.simulator import (
+from tree_sway.core.model.records import instance_layout, time_step_layout, zeros_in_lines
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.run.clamp_watch import ClampWatch, fewer
+from tree_sway.core.run.placing_by_keys import placing_by_keys
+from tree_sway.core.run.simulator import (
     Counts,
     LOAD_CLAMPED,
     OK,
@@ -49,15 +37,31 @@ from tree_sway.core.simulator.simulator import (
     SwaySimulator,
     WIND_REFUSED,
 )
+from tree_sway.core.run.stand import place_stand, PLACEMENT
+from tree_sway.core.run.table_model import (
+    bent_too_far,
+    come_to_rest,
+    drop,
+    fill_time_step,
+    propagators_of,
+    WindBasisBank,
+)
+from tree_sway.core.run.tuning import Tuning
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.placed_trees import PlacedTrees
+from tree_sway.core.scene.placement_records import own_steps, placement_records
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import inside, nearest, ParameterError
-from tree_sway.set_up_files import SET_UPS, SetUpFiles
 
+if WHY_PLAIN:
+    from tree_sway.core.run.numpy_stand import step_stand
+else:
+    from tree_sway.core.run.stand import step_stand
 if TYPE_CHECKING:
-    from tree_sway.core.simulator.touch import Spring
+    from tree_sway.core.run.pushes import Spring
 
 _NO_TABLES: Records = np.zeros(0, dtype=PLACEMENT)
 _CROWN = 0.7
@@ -98,8 +102,8 @@ class SceneSimulator:
         models = [settings.model if each.model is None else each.model for each in trees]
         kind = scene.kind_numbers
         counts = np.array([each if isinstance(each, int) else -1 for each in models])
-        # Without a compiler there are no tables, and winds of limbs are those of one tree.
-        is_own = (counts < 0) | bool(WHY_PLAIN) | (settings.crown_coherence < 1.0)
+        # Winds of limbs are those of one tree.
+        is_own = (counts < 0) | (settings.crown_coherence < 1.0)
         used = np.unique(kind[~is_own]).tolist()
         self._models: list[SwaySimulator] = []
         for k in used:
@@ -259,7 +263,7 @@ class SceneSimulator:
         self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
     ) -> None:
         """Push or pull at a segment by its row in the pose block, as `SwaySimulator.push`."""
-        from tree_sway.core.simulator.touch import MOST_PUSHES, row_of
+        from tree_sway.core.run.pushes import MOST_PUSHES, row_of
 
         try:
             row = row_of(segment, int(self._ends[-1]))
@@ -291,7 +295,7 @@ class SceneSimulator:
         A tree scaled by k moves k times as far by the same angles, against k^3 times the
         stiffness: a force is scaled by 1 / k^2, the stiffness of a spring by 1 / k.
         """
-        from tree_sway.core.simulator.touch import Spring
+        from tree_sway.core.run.pushes import Spring
 
         one, k = self.scene.trees[number], float(self._placed['scale'][number])
         c, s = math.cos(one.yaw), math.sin(one.yaw)
@@ -360,6 +364,10 @@ class SceneSimulator:
             blocks[:] = model.bank.blocks
             block, bases = np.zeros((model.tree.n_segments, 7)), np.zeros_like(model.bank.bases)
             self._scratch.append((blocks, bases, bank.room_for_rotations(), block))
+        self._by_keys = [
+            placing_by_keys(model.bank.branches, model.bank.segments, blocks)
+            for model, (blocks, *_) in zip(self._models, self._scratch, strict=True)
+        ]
 
     def _show(self) -> None:
         """Hide the coordinates of the table that a tree does not have."""
@@ -384,16 +392,21 @@ class SceneSimulator:
         """Place trees of one table: their numbers and first rows in a pose block, (w, 2)."""
         records, bank = self._models[kind].bank, self._banks[kind]
         blocks, bases, x, block = self._scratch[kind]
-        place_stand(
-            self._placed, self._instances, rows, bank.laid_shapes, records.segments, blocks,
-            bases, x, block, out,
-        )  # fmt: skip
-        for number, first in rows.tolist() if self.pushed else ():
+        if not WHY_PLAIN:
+            place_stand(
+                self._placed, self._instances, rows, bank.laid_shapes, records.segments, blocks,
+                bases, x, block, out,
+            )  # fmt: skip
+        for number, first in rows.tolist() if WHY_PLAIN or self.pushed else ():
             if number in self.pushed:
-                at, keys = self._placed[number], self.pushed[number].rotations()
-                turned = at['cosine'], at['sine'], at['scale'], x, keys, at['at']
-                bent = *GIVEN, records.segments, blocks, bases, *turned
-                place(*bent, out[first : first + len(block)])
+                keys = self.pushed[number].rotations()
+            elif WHY_PLAIN:
+                keys = bank.rotations_of(self._instances[number : number + 1])
+            else:
+                continue
+            at, own = self._placed[number], out[first : first + len(block)]
+            turned = float(at['cosine']), float(at['sine']), float(at['scale'])
+            self._by_keys[kind].place(keys, at['at'], own, *turned)
 
     @cached_property
     def _highest(self) -> tuple[int, Tree]:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.simulator.reductions import TreeReductions
+from tree_sway.core.setup.reductions import TreeReductions
 
 
 class WoodStrain:

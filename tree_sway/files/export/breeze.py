@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
 RATE = 15

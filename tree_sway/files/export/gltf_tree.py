@@ -20,9 +20,9 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.simulator.find_basis import state_basis
-from tree_sway.core.simulator.simulator import SwaySimulator
-from tree_sway.core.state.state_basis import MARGIN, StateBasis
+from tree_sway.core.model.state_basis import MARGIN, StateBasis
+from tree_sway.core.run.find_basis import state_basis
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import bark_color, leaf_traits
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError

@@ -22,7 +22,7 @@ from scipy.sparse.linalg import eigsh, LinearOperator, splu
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
 
 _MARGIN, _FASTEST_TO = 0.95, 1e-3

@@ -16,7 +16,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway.files.export.hinged_tree import hinged_tree, HingedTree
 

@@ -18,7 +18,7 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.leaves.foliage import LeafClusters
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import bark_color, leaf_traits
 from tree_sway.core.tree.tree import Tree
 from tree_sway.files.export.breeze import in_breeze, RATE

@@ -9,7 +9,7 @@ const MOST_STEPS = 60;
 const NEWEST = 0.05;
 
 /** Solves a stand by the wind of each frame, and follows the states among them; a frame that is lost is
- * bridged by a wind between the two that came. tree_sway/page/by_wind.py does the same. */
+ * bridged by a wind between the two that came. tree_sway/stream/by_wind.py does the same. */
 export class ByWind {
   /** @param {import("./sway.js").Stand} stand */
   constructor(stand) {

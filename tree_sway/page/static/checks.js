@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** What a description must hold before it is used, as tree_sway/page/check_description.py asks. */
+/** What a description must hold before it is used, as tree_sway/stream/check_description.py asks. */
 
 import { textOf } from "./files.js";
 
@@ -109,7 +109,7 @@ export function checkTrees(header, kinds, own) {
 }
 
 /** Sizes of the axes of the arrays of a table; refuses numbers or arrays that are inconsistent, as
- * tree_sway/page/check_tables.py does. @param {Record<string, any>} numbers @param {Arrays} parts */
+ * tree_sway/stream/check_tables.py does. @param {Record<string, any>} numbers @param {Arrays} parts */
 export function checkTable(numbers, parts) {
   const size = sizesOf(parts, FORMS.tables);
   const { m } = size;

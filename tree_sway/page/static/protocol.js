@@ -1,7 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
 /** The binary form of a swaying tree (doc/streaming.md): a description sent once, then frames that need no
- * other frame. Reads what tree_sway/page/protocol.py writes. */
+ * other frame. Reads what tree_sway/stream/protocol.py writes. */
 
 import { checkedKind, checkTrees, ProtocolError, need, TYPES } from "./checks.js";
 

@@ -4,7 +4,7 @@
  *
  * A tree is m coordinates; a table has what every even wind does to them; each goes on by its exact
  * propagator. Outside of the table the load of its edge is used, which `Stand.outside` counts. The law is
- * that of tree_sway/core/motion/wind_basis.py and gust_travel.py, and vectors of these hold it;
+ * that of tree_sway/core/run/table_model.py and gust_travel.py, and vectors of these hold it;
  * doc/tree_as_a_file.md is for its users. */
 
 import { checkTable, checkTablesHeader, FORMS, need, ProtocolError } from "./checks.js";
@@ -289,7 +289,7 @@ const NORMS = [0, 1, 2, 3, 4, 5].map((degree) => {
   });
 });
 
-/** Real spherical harmonics of odd degree, as of tree_sway/core/motion/harmonics.py.
+/** Real spherical harmonics of odd degree, as of tree_sway/core/model/spherical_harmonics.py.
  * @param {number} x @param {number} y @param {number} z a unit vector
  * @param {Float64Array} out */
 function fillHarmonics(x, y, z, out) {

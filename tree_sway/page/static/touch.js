@@ -1,6 +1,6 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** Pushes and springs on trees that are solved here, as of tree_sway/core/simulator/touch.py: a force f at
+/** Pushes and springs on trees that are solved here, as of tree_sway/core/run/pushes.py: a force f at
  * a place p does (dp/dc)^T f to the coordinates c of the description, found by differences. What these leave of
  * the wood follows the force on the branches to the root, within SETTLES. */
 
@@ -102,7 +102,7 @@ export class Touch {
   }
 
   /** Find how a segment moves with each coordinate, and what these leave of the wood: the compliance of each branch
-   * less what the coordinates have of it (tree_sway/core/motion/modal.py). @param {number} segment
+   * less what the coordinates have of it (tree_sway/core/run/modal.py). @param {number} segment
    * @param {Pushed} push @param {import("./sway.js").Table} table @param {Float64Array} coordinates */
   _renew(segment, push, { m, n, nKeys, arrays }, coordinates) {
     const { basis_matrix: basis, branch_coordinate: first, branch_keys: count } = this.kind.arrays;

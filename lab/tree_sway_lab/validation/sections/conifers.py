@@ -10,8 +10,8 @@ import numpy as np
 
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.growth.thickness import BREAST_HEIGHT
-from tree_sway.core.simulator.reductions import TreeReductions
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section

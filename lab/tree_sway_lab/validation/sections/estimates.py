@@ -12,7 +12,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator, REVIEW
 from tree_sway.core.fidelity.estimate import dialled
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
 from tree_sway.files.wind.wind_file import read_wind

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_lab.validation.sections.models import SEEDS

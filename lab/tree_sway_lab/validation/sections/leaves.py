@@ -9,9 +9,9 @@ from functools import partial
 import numpy as np
 
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.motion.drag import pressure
-from tree_sway.core.simulator.reductions import TreeReductions
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import species_named
 from tree_sway_lab.validation.response_slopes import SPECIES
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section

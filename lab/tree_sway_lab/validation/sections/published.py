@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.growth.grow import grow
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.simulate import simulate
-from tree_sway.core.simulator.settings import Settings
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence

@@ -7,8 +7,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from tree_sway.core.simulator.reductions import TreeReductions
-from tree_sway.core.simulator.settings import Settings
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.errors import TreeError
 from tree_sway.files.trees.source import open_tree
 from tree_sway_lab.frame.frame import frame_model

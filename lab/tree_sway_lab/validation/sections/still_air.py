@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.motion.drag import AIR_DENSITY
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.model.drag_law import AIR_DENSITY
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import species_named
 from tree_sway_lab.example_trees import tapered_stem
 from tree_sway_lab.validation.section import Check, Effort, Section

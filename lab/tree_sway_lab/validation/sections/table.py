@@ -11,8 +11,8 @@ import numpy as np
 
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway.core.growth.builtin import BUILTIN_TREES
-from tree_sway.core.simulator.settings import USUAL
-from tree_sway.core.simulator.simulator import SwaySimulator
+from tree_sway.core.model.settings import USUAL
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import WindClimate

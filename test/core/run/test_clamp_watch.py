@@ -1,0 +1,106 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A tree whose steps stay clamped shows fewer coordinates, which is counted and said."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway.core.run.clamp_watch import ClampWatch, fewer, FEWEST, LONGEST_CLAMPED
+from tree_sway.core.run.simulator import LOAD_CLAMPED
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.placed_tree import PlacedTree
+from tree_sway.core.scene.scene import Scene
+from tree_sway.core.scene.simulate import simulate
+
+DT = 1.0 / 60.0
+WIND = (9.0, 1.0, 0.0)
+
+
+def clamp_always(simulator, number=0):
+    """Make a table in which no energy is allowed, as of a tree that swings up by itself."""
+    tables = getattr(simulator, '_tables', None)
+    record = simulator.bank.oscillators.record if tables is None else tables
+    record['most_energy'][number] = 1e-12
+
+
+def test_a_gust_at_the_limit_is_no_tree_that_is_stuck():
+    watch, n = ClampWatch(), round(LONGEST_CLAMPED / DT)
+    assert not any(watch.is_stuck(4 * k, DT) for k in range(1, 20 * n))
+    assert [watch.is_stuck(10**6 + k, DT) for k in range(n + 1)].count(True) == 1
+
+
+def test_numbers_end_at_the_fewest():
+    count, numbers = 60, []
+    while not numbers or numbers[-1] != count:
+        numbers.append(count)
+        count = fewer(count)
+    assert numbers[:4] == [60, 40, 26, 17]
+    assert count == FEWEST
+    assert fewer(2) == 2
+
+
+@pytest.mark.parametrize('model', [12, 'auto'])
+def test_it_shows_fewer_coordinates_until_it_is_reset(fork, model):
+    sim = make_simulator(fork(), model=model)
+    most = sim.bank.oscillators.shapes.shape[1]
+    clamp_always(sim)
+    for _ in range(round(0.9 / DT)):
+        assert sim.step(WIND, DT) == LOAD_CLAMPED
+    assert sim.counts.reduced == 0
+    for _ in range(round(0.2 / DT)):
+        sim.step(WIND, DT)
+    assert sim.counts.reduced == 1
+    assert sim.n_shown <= fewer(most)
+    if model == 'auto':
+        assert sim.choice.n_coordinates <= sim.n_shown
+        assert sim.review().n_coordinates <= fewer(most)
+    state, shown = sim.state(), sim.n_shown
+    sim.reset()
+    assert sim.n_shown > shown or model == 'auto'
+    assert sim.counts.reduced == 1
+    sim.set_state(state)
+    assert sim.n_shown == shown
+    if model == 'auto':
+        assert sim.review().n_coordinates <= fewer(most)
+
+
+def test_a_storm_beyond_the_table_and_a_pull_take_no_coordinates(fork):
+    sim = make_simulator(fork(), model=12)
+    for _ in range(200):
+        sim.step((80.0, 0.0, 0.0), DT)
+    assert sim.counts.clamped > 0
+    clamp_always(sim)
+    for _ in range(200):
+        sim.push(0, (5.0, 0.0, 0.0), 1.0)
+        sim.step(WIND, DT)
+    assert sim.counts.reduced == 0
+    assert sim.n_shown == sim.bank.oscillators.shapes.shape[1]
+
+
+def test_a_tree_of_a_scene_shows_fewer_and_the_others_do_not(fork):
+    tree = fork()
+    other = fork(2)
+    scene = Scene([PlacedTree('a', tree), PlacedTree('b', tree, 3.0), PlacedTree('c', other, 6.0)])
+    sim = scene.simulator(model=12)
+    kind = int(sim._placed['kind'][2])
+    clamp_always(sim, kind)
+    for _ in range(90):
+        assert sim.step(WIND, DT) == LOAD_CLAMPED
+    shown = sim._numbers.tolist()
+    assert shown[:2] == [12, 12]
+    assert shown[2] == fewer(min(12, sim._banks[kind].shapes.shape[1]))
+    assert sim.counts.reduced == 1
+    sim.reset()
+    assert sim._numbers.tolist() == [12, 12, 12]
+
+
+def test_a_simulation_says_so(fork, monkeypatch):
+    from tree_sway.core.setup import load_table
+
+    wind = np.tile(WIND, (200, 1))
+    assert simulate(fork(), wind, model=12, cache=None).notes == ()
+    monkeypatch.setattr(load_table, '_MOST_ENERGY', 1e-9)
+    record = simulate(fork(), wind, model=12, cache=None)
+    assert 'stayed clamped' in record.notes[0]

@@ -1,0 +1,117 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A sapling whose light leaves have more drag than inertia: stiff coordinates in a table."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tree_sway.core.run import table_model
+from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.run.table_model import fill_time_step, propagators_of
+from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.tree.tree import tips_of_poses
+from tree_sway.core.tree.wood import Species
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+
+DT = 1.0 / 60.0
+WOOD = Species('sapling', 'sapling', modulus=9.0e9, density=900.0)
+N_LEAVES, LEAF_MASS, LEAF_AREA = 12, 0.0009, 0.0060
+
+
+@pytest.fixture(scope='module')
+def sapling():
+    """Return a stem of 1.6 m with leaves of 0.9 g on petioles of 9 cm by 1.8 mm."""
+    start, end, diameter, parent, branch = [], [], [], [], []
+    nodes = 1.6 * np.arange(13) / 12.0
+    thickness = np.interp(nodes, [0.0, 1.6], [0.012, 0.004])
+    for k in range(12):
+        start.append([0.0, 0.0, nodes[k]])
+        end.append([0.0, 0.0, nodes[k + 1]])
+        diameter.append([thickness[k], thickness[k + 1]])
+        parent.append(k - 1)
+        branch.append(0)
+    for leaf in range(N_LEAVES):
+        turn = 2.4 * leaf  # about the golden angle
+        away = np.array([np.cos(turn), np.sin(turn), 0.5])
+        away *= 0.03 / np.linalg.norm(away)
+        on = 3 + 9 * leaf // N_LEAVES
+        base, before = np.array(end[on]), on
+        for piece in range(3):
+            start.append(list(base + piece * away))
+            end.append(list(base + (piece + 1) * away))
+            diameter.append([0.0018, 0.0018])
+            parent.append(before)
+            branch.append(leaf + 1)
+            before = len(start) - 1
+    return tree_from_segments(start, end, diameter, parent=parent, branch=branch)
+
+
+def simulator(tree, model):
+    on_petioles = np.ones(tree.n_branches)
+    on_petioles[0] = 0.0
+    return SwaySimulator(
+        tree, WOOD, model=model, in_leaf=True, cache=None,
+        leaf_mass=LEAF_MASS * on_petioles, leaf_area=LEAF_AREA * on_petioles,
+    )  # fmt: skip
+
+
+def sway(sim, speed, seconds=12.0):
+    """Tips over time from rest on, (t, b, 3)."""
+    rng = np.random.default_rng(3)
+    wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=rng)
+    sim.reset()
+    rest, tips = tips_of_poses(sim.tree, sim.place()), []
+    for each in wind:
+        sim.step(each, DT)
+        tips.append(tips_of_poses(sim.tree, sim.place()) - rest)
+    return np.array(tips)
+
+
+@pytest.mark.parametrize('speed', [3.0, 8.0, 12.0, 16.0])
+def test_the_default_sways_as_all_coordinates_with_the_load_of_every_branch(sapling, speed):
+    usual, full = simulator(sapling, 60), simulator(sapling, 'full')
+    assert usual.bank.oscillators.shapes.shape[1] < 60  # its stiffest are in the table
+    shown, right = sway(usual, speed), sway(full, speed)
+    assert usual.counts.clamped == usual.counts.restarted == 0
+    error = np.linalg.norm(shown - right) / np.linalg.norm(right)
+    assert error < 0.1, error
+
+
+@pytest.mark.parametrize('dt', [1.0 / 240.0, 1.0 / 60.0, 1.0 / 25.0, 0.2])
+def test_the_rate_at_the_middle_of_a_step_follows_the_force(sapling, dt):
+    bank = simulator(sapling, 60).bank.oscillators
+    bank.set_step(dt)
+    m = len(bank.modal.stiffness)
+    assert (bank.time_step['half'][0, 5, :m] > 0.0).all()
+
+
+def test_a_coordinate_that_is_resolved_gets_to_the_middle_exactly(sapling):
+    bank = simulator(sapling, 12).bank.oscillators
+    bank.modal.set_time_step(1e-3)
+    fill_time_step(bank.time_step[0], propagators_of(bank.modal), 1e-3)
+    m, exact = len(bank.modal.stiffness), bank.modal.half.T
+    half = bank.time_step['half'][0, :, :m]
+    assert (half[[0, 1, 3, 4]] == exact[[0, 1, 4, 5]]).all()
+    assert (half[[2, 5]] == exact[[2, 6]] + exact[[3, 7]]).all()
+
+
+def test_where_the_table_fails_in_a_gale_it_shows_fewer_coordinates(sapling, monkeypatch):
+    def without_care(time_step, law, dt):
+        fill_time_step(time_step, law, dt)
+        m = len(law.stiffness)
+        time_step['half'][:, :m] = law.half.T[[0, 1, 2, 4, 5, 6]]
+        time_step['half'][[2, 5], :m] += law.half.T[[3, 7]]
+
+    right = sway(simulator(sapling, 'full'), 12.0)
+    monkeypatch.setattr(table_model, 'fill_time_step', without_care)
+    usual = simulator(sapling, 60)
+    shown = sway(usual, 12.0)
+    assert usual.counts.reduced > 0
+    assert usual.counts.clamped < 0.3 * usual.counts.steps
+    late = len(right) // 2  # it no longer stands still, though fewer coordinates bend it less
+    error = np.linalg.norm(shown[late:] - right[late:]) / np.linalg.norm(right[late:])
+    assert error < 0.5
+    swing, right_swing = (np.linalg.norm(each[late:].std(axis=0)) for each in (shown, right))
+    assert swing > 0.5 * right_swing

@@ -1,0 +1,53 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Slopes of the wind load against differences of the load itself."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tree_sway_lab.kinds.kinds import kind_called
+
+from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.setup.static_responses import WindMoments
+
+pytestmark = pytest.mark.compiled
+
+
+@pytest.fixture
+def bent():
+    """Return the loads of a crooked tree, some of its modes, and a pose far from rest."""
+    simulator = SwaySimulator(kind_called('crooked 8'), model=12)
+    modal = simulator.bank.oscillators.modal
+    load = WindMoments(modal.branches)
+    rng = np.random.default_rng(2)
+    return load, modal.shapes, 0.03 * rng.normal(size=load.n)
+
+
+@pytest.mark.parametrize('wind', [(0.8, 0.6, 0.0), (-0.3, 0.5, 0.81), (0.0, 0.0, 1.0)])
+def test_slopes_are_those_of_the_load(bent, wind):
+    load, shapes, x = bent
+    wind, still, size = np.array(wind), np.zeros(load.n), 1e-6
+    turning, damping = load.slopes(shapes)(x, wind)
+    moved, swung = np.zeros((2, *turning.shape))
+    for k, shape in enumerate(shapes.T):
+        step = size / np.abs(shape).max()
+        moved[k] = (load(x + step * shape, still, wind) - load(x - step * shape, still, wind)) @ (
+            shapes / (2.0 * step)
+        )
+        swung[k] = (load(x, step * shape, wind) - load(x, -step * shape, wind)) @ (
+            shapes / (2.0 * step)
+        )
+    assert turning == pytest.approx(moved, abs=1e-3 * np.abs(moved).max())
+    assert damping == pytest.approx(swung, abs=1e-5 * np.abs(swung).max())
+
+
+def test_a_tree_at_rest_has_slopes_right_to_single_precision(bent):
+    load, shapes, _ = bent
+    still, wind, size = np.zeros(load.n), np.array([0.6, -0.8, 0.0]), 1e-6
+    turning, _ = load.slopes(shapes)(still, wind)
+    shape = shapes[:, 0]
+    step = size / np.abs(shape).max() * shape
+    moved = (load(step, still, wind) - load(-step, still, wind)) @ shapes
+    moved /= 2.0 * size / np.abs(shape).max()
+    assert turning[0] == pytest.approx(moved, abs=1e-5 * np.abs(moved).max())

@@ -1,0 +1,100 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Set-ups of trees on disk, so that a solver restarts faster.
+
+They are beside the compiled kernels, in numpy's own format, which is read without pickles. A file
+is found by a digest of the tree, its species and settings, of the source of the core, of the
+versions of numpy and scipy, and of the machine; an unreadable file is made again, and failures to
+write are ignored.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+import hashlib
+import io
+import os
+from pathlib import Path
+import platform
+from typing import Any
+
+import numpy as np
+import scipy
+
+from tree_sway.cache.kernel_cache import ROOT, source_digest
+from tree_sway.cache.kernel_folder import kernel_folder, write_own
+
+MOST = 32
+"""Largest number of set-ups on disk; those not read for longest are removed first."""
+
+MOST_BYTES = 1 << 29
+"""Largest size of all set-ups on disk [bytes], some forty large trees."""
+
+LARGEST = 1 << 27
+"""Largest size of a set-up on disk [bytes]: all modes of a large tree are more."""
+
+_SUFFIX = '.set_up.npz'
+
+
+class SetUpFiles:
+    """
+    Set-ups as the ``cache`` of simulators.
+
+    Parameters
+    ----------
+    folder
+        Folder of the files; that of the kernels if None.
+    most
+        Largest number of set-ups in it.
+
+    """
+
+    def __init__(self, folder: Path | None = None, most: int = MOST) -> None:
+        self.folder = folder
+        self.most = most
+
+    def read(self, digest: str) -> dict[str, Any] | None:
+        """Return the arrays by name that were written under a digest; None if there are none."""
+        if (folder := self.folder or kernel_folder()) is None:
+            return None
+        key = _key(digest)
+        try:
+            path = folder / f'{key}{_SUFFIX}'
+            with np.load(path) as file:
+                arrays = dict(file)
+            if str(arrays.pop('key')) != key:
+                return None
+        except Exception:  # any error of numpy for a damaged file
+            return None
+        with suppress(OSError):
+            os.utime(path)  # it is in use
+        return arrays
+
+    def write(self, digest: str, arrays: Mapping[str, Any]) -> None:
+        """Write arrays atomically, and remove those not read for longest."""
+        size = sum(each.nbytes for each in arrays.values())
+        if (folder := self.folder or kernel_folder()) is None or size > LARGEST:
+            return
+        key, content = _key(digest), io.BytesIO()
+        np.savez(content, key=np.array(key), **arrays)
+        with suppress(OSError):
+            write_own(folder / f'{key}{_SUFFIX}', content.getvalue())
+            found = [(each, each.stat()) for each in folder.glob(f'*{_SUFFIX}')]
+            found.sort(key=lambda one: -one[1].st_mtime)
+            sizes = np.cumsum([state.st_size for _, state in found])
+            for number, (path, _) in enumerate(found):
+                if number >= self.most or sizes[number] > MOST_BYTES:
+                    path.unlink()
+
+
+SET_UPS = SetUpFiles()
+"""Default place of set-ups."""
+
+
+def _key(digest: str) -> str:
+    """Name of a set-up, which is stored inside as well."""
+    versions = np.__version__, scipy.__version__
+    parts = digest, source_digest(ROOT / 'core'), platform.node(), *versions
+    return hashlib.blake2b('\0'.join(parts).encode(), digest_size=16).hexdigest()

@@ -1,0 +1,113 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Export of the table of a tree, for receivers that solve the tree themselves.
+
+Over azimuths and levels the slopes of the load have a low rank: they are exported as factors,
+``slopes = sqrt(k_i k_j) rows @ shapes``, weighted with the stiffness k of the coordinates, so that
+the error is that of the bending of the tree. Shapes are integers of one step. `table_of` makes the
+exported arrays a table again, which every receiver solves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats, Records, Singles
+from tree_sway.core.model.records import table_layout
+
+LEFT_OUT = 1e-2
+"""
+Share of the slopes that their factors leave out, root mean square.
+
+This is a ten thousandth of the motion of benjamina at 14 m/s, as the equilibria in the table are
+exact.
+"""
+
+SLOPES = ('turning', 'damping', 'lean', 'steep_turning', 'steep_damping')
+"""Fields of a table that are exported as factors."""
+
+PLAIN = ('stiffness', 'limit', 'levels', 'motion', 'harmonics', 'equilibrium', 'amount', 'load',
+         'cross_damping')  # fmt: skip
+"""Fields that are exported as they are, in single precision."""
+
+NUMBERS = ('most_pressure', 'most_energy')
+
+_ROUNDED = {'equilibrium': 8, 'load': 8, 'rows': 8, 'cross_damping': 16}
+"""Number of last bits that are left out of some fields: to 1.5e-5, and a bound to 0.4 %."""
+
+_LARGEST_STEP = 32767
+_QUANTISED = 12.0**-0.5
+"""Root mean square rounding error, over its step."""
+
+
+def exported_table(
+    record: Records, damping: Floats
+) -> tuple[dict[str, float], dict[str, NDArray[Any]]]:
+    """
+    Return numbers by name, and arrays of float32 and int16, of a table (1,) and its damping (m,).
+
+    Beside the `PLAIN` fields of m coordinates, as `table_layout` lists them, there are
+    ``own_damping`` (m,) and of each field of `SLOPES` its ``_rows`` and ``_shapes``.
+    """
+    table, m = record[0], len(damping)
+    numbers = {name: float(table[name]) for name in NUMBERS}
+    width = len(table['stiffness'])
+    arrays = {
+        name: np.asarray(table[name][..., :m] if table[name].shape[-1] == width else table[name])
+        for name in PLAIN
+    }
+    arrays = {name: rounded(array, _ROUNDED.get(name, 0)) for name, array in arrays.items()}
+    arrays['own_damping'] = damping.astype(np.float32)
+    root = np.sqrt(arrays['stiffness'].astype(np.float64))
+    for name in SLOPES:
+        slopes = table[name][..., :m, :m] / (root[:, None] * root)
+        arrays[f'{name}_rows'], arrays[f'{name}_shapes'] = _factors(slopes.reshape(-1, m * m))
+    return numbers, arrays
+
+
+def table_of(
+    numbers: Mapping[str, float], arrays: Mapping[str, NDArray[Any]], room: int = 0
+) -> Records:
+    """Return the record of `table_layout`, (1,), of an exported table, with room for more."""
+    m = len(arrays['stiffness'])
+    record = np.zeros(1, dtype=table_layout(max(m, room)))
+    table = record[0]
+    table['n_modes'], table['stiffness'] = m, 1.0
+    for name in NUMBERS:
+        table[name] = numbers[name]
+    for name in PLAIN:
+        values = arrays[name]
+        table[name][tuple(map(slice, values.shape))] = values
+    root = np.sqrt(arrays['stiffness'].astype(np.float64))
+    for name in SLOPES:
+        rows, shapes = arrays[f'{name}_rows'], arrays[f'{name}_shapes']
+        slopes = np.zeros((len(rows), m * m))
+        # One product after another, as receivers in other languages add them up.
+        for row, shape in zip(rows.T.astype(np.float64), shapes, strict=True):
+            slopes += row[:, None] * shape
+        slopes *= (root[:, None] * root).ravel()
+        table[name][..., :m, :m] = slopes.reshape(*table[name].shape[:-2], m, m)
+    return record
+
+
+def rounded(values: Floats, bits: int) -> Singles:
+    """Round to single precision without its last bits, at most 16, which then compress away."""
+    single = values.astype(np.float32).view(np.uint32).astype(np.uint64)
+    single += (1 << bits) >> 1
+    return (single >> bits << bits).astype(np.uint32).view(np.float32)
+
+
+def _factors(slopes: Floats) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return rows (k, r) and shapes (r, m^2) with the product slopes (k, m^2) up to `LEFT_OUT`."""
+    rows, sizes, shapes = np.linalg.svd(slopes, full_matrices=False)
+    left = np.sqrt(np.maximum(1.0 - np.cumsum(sizes**2) / max(np.sum(sizes**2), 1e-300), 0.0))
+    rank = int(np.argmax(left < LEFT_OUT / 2.0)) + 1
+    scaled = sizes[:rank, None] * shapes[:rank]
+    step = LEFT_OUT / 2.0 * float(np.linalg.norm(sizes)) / (_QUANTISED * scaled.size**0.5)
+    step = max(step, float(np.abs(scaled).max()) / _LARGEST_STEP, 1e-300)
+    return rounded(step * rows[:, :rank], _ROUNDED['rows']), np.rint(scaled / step).astype('<i2')

@@ -1,0 +1,185 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""How a tree is modelled: every setting of a simulator, in one place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+import math
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import one_of, within
+from tree_sway.core.model.tree_state import digest_of
+from tree_sway.core.wind.height_profile import WindProfile
+from tree_sway.core.wind.limits import FASTEST_WIND
+from tree_sway.errors import nearest, ParameterError
+
+USUAL = 60
+"""Default number of coordinates."""
+
+MODELS = ('auto', 'branch', 'full')
+"""Models with a name; other models are numbers of coordinates."""
+
+MOST = 1000
+"""Largest number of coordinates."""
+_MOST_DIGITS = 9
+
+STIFFEST = 1e7
+"""Largest stiffness in [N/m] of a spring at a segment."""
+
+ENRICHED = ('none', 'stem', 'needed', 'carriers', 'all')
+"""Choices of branches with further shapes."""
+
+_RANGES = {
+    'volume_stiffness': (0.0, 1e9, 'N m/rad/m^3', False),
+    'volume_damping': (0.0, 1e9, 'N m s/rad/m^3', True),
+    'damping_ratio': (0.0, 1e3, '', False),
+    'gravity': (0.0, 1e3, 'm/s^2', False),
+    'crown_coherence': (0.0, 1.0, '', False),
+    'root_stiffness': (0.0, math.inf, 'N m/rad', True),
+    'max_wind': (0.0, FASTEST_WIND, 'm/s', True),
+}
+"""Smallest and largest value, unit, and whether the smallest itself is refused."""
+
+
+@dataclass(frozen=True, eq=False)
+class Settings:
+    """
+    How a tree is modelled; its material is that of its species.
+
+    Parameters
+    ----------
+    model
+        Number of coordinates of the tree, or all if there are fewer; 0 does not move. Or
+        ``branch``, the paper's, isolated branches; ``full``, all coordinates and the load of every
+        branch; or ``auto``, the smallest number that suffices for the scene.
+    volume_stiffness, volume_damping
+        The two constants of the paper's rule for the model ``branch``, stiffness and damping of a
+        branch over its volume in [N m/rad/m^3] and [N m s/rad/m^3]; a stiffness of 0 for that of
+        its beam.
+    damping_ratio
+        Damping ratio of every oscillator in [-]; that of the species if None.
+    in_leaf
+        Whether the tree bears leaves; if None, evergreen species do.
+    gravity
+        Gravity in [m/s^2]; 0 leaves weight out.
+    profile
+        Profile of the wind over height.
+    crown_coherence
+        Share of a gust in [-] that reaches the whole crown at once; the rest reaches each limb
+        after its own delay (`crown_wind`). 1 is one wind for the whole crown.
+    enrich
+        Branches with further shapes and twists, on all models but ``branch``: ``none``, the
+        ``stem``, those ``needed`` (`TreeBeams.enriched`), all ``carriers`` of others, or ``all``.
+    root_stiffness
+        Stiffness of the roots against tilting in [N m/rad], infinite if they are rigid; the tree's
+        own if None.
+    leaf_mass, leaf_area
+        Leaves of each branch in [kg] and [m^2], (b,); those of the species in leaf if both are
+        None.
+    max_wind
+        Wind speed in [m/s] above which a sample is refused.
+
+    """
+
+    model: int | str = USUAL
+    volume_stiffness: float = 0.0
+    volume_damping: float = 2.0e3
+    damping_ratio: float | None = None
+    in_leaf: bool | None = None
+    gravity: float = 9.81
+    profile: WindProfile = field(default_factory=WindProfile)
+    crown_coherence: float = 1.0
+    enrich: str = 'needed'
+    root_stiffness: float | None = None
+    leaf_mass: Floats | None = None
+    leaf_area: Floats | None = None
+    max_wind: float = FASTEST_WIND
+
+    def __post_init__(self) -> None:
+        """Raise a `ParameterError` for a value out of its range."""
+        object.__setattr__(self, 'model', model_of(self.model))
+        for name, (low, high, unit, above) in _RANGES.items():
+            value = getattr(self, name)
+            if value is not None:
+                within(name, value, low, high, unit, above=above)
+        one_of('enrich', self.enrich, ENRICHED)
+        if self.volume_stiffness and self.model != 'branch':
+            raise ParameterError(
+                f"the volume rule on model '{self.model}'",
+                where='volume_stiffness',
+                cure="use it on model 'branch', or 0 for the stiffness of beams",
+            )
+        if self.in_leaf is False and (self.leaf_mass is not None or self.leaf_area is not None):
+            raise ParameterError(
+                'leaves on a bare tree', where='in_leaf', cure='leave in_leaf out, or the leaves'
+            )
+
+    def __repr__(self) -> str:
+        """Return the model and the fields that are not the default on one line."""
+        shown = []
+        for each in fields(self):
+            value = getattr(self, each.name)
+            default = WindProfile() if each.name == 'profile' else each.default
+            if isinstance(value, np.ndarray):
+                shown.append(f'{each.name}=<{value.size} numbers>')
+            elif each.name == 'model' or value != default:
+                shown.append(f'{each.name}={value!r:.80}')
+        return f'Settings({", ".join(shown)})'
+
+    def __eq__(self, other: object) -> bool:
+        """Compare every field, arrays by their numbers."""
+        return isinstance(other, Settings) and digest_of(self) == digest_of(other)
+
+    def __hash__(self) -> int:
+        """Hash the fields that `__eq__` compares."""
+        return hash(digest_of(self))
+
+
+def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Settings:
+    """
+    Return settings, the defaults if None, with some fields changed.
+
+    A `ParameterError` names an object that is not settings, an unknown field, or a value out of
+    its range.
+    """
+    if not isinstance(settings, Settings | None):
+        raise ParameterError(
+            f'a {type(settings).__name__}, where Settings are expected',
+            where='settings',
+            cure='give Settings(...), or its fields as keywords',
+        )
+    known = Settings.__dataclass_fields__
+    for name in changes:
+        if name not in known:
+            cure = nearest(name, known) or f'there are: {", ".join(known)}'
+            raise ParameterError(f"unknown setting '{name}'", cure=cure)
+    return replace(settings or Settings(), **changes)
+
+
+def model_of(given: object) -> int | str:
+    """
+    Return a model as a field of `Settings`: one of `MODELS` or a number, also from text.
+
+    A `ParameterError` lists the models.
+    """
+    if isinstance(given, str) and given in MODELS:
+        return given
+    number = given
+    if isinstance(given, str) and given.isdecimal() and len(given) <= _MOST_DIGITS:
+        number = int(given)
+    if isinstance(number, float) and number.is_integer():
+        number = int(number)  # files of numbers have floats
+    if isinstance(number, int) and not isinstance(number, bool) and 0 <= number <= MOST:
+        return number
+    near = nearest(str(given), MODELS)
+    raise ParameterError(
+        f"unknown model '{given}'",
+        where='model',
+        cure=f'{near + ", or " if near else ""}use one of: {", ".join(MODELS)}, or a number of '
+        f'coordinates from 0 to {MOST}',
+    )

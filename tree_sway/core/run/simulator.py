@@ -1,0 +1,499 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The simulator of a tree: the order of work of a step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+import math
+from typing import Any, TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.checks import (
+    array_to_fill,
+    array_to_read,
+    refuse_time_step,
+    three_numbers,
+    within,
+)
+from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.model.settings import Settings, settings_with
+from tree_sway.core.model.tree_state import digest_of, TreeState
+from tree_sway.core.run.assembly import assembled
+from tree_sway.core.run.bank import Bank
+from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
+from tree_sway.core.tree.segment_frame import ends_of_poses
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.limits import is_wind
+from tree_sway.errors import ParameterError, StateError
+
+if TYPE_CHECKING:
+    from tree_sway.core.run.clamp_watch import ClampWatch
+    from tree_sway.core.run.crown_gusts import CrownGusts
+    from tree_sway.core.run.pushes import Spring, Touch
+    from tree_sway.core.run.tuning import LiveTuning, Tuning
+    from tree_sway.core.wind.gust_travel import GustHistory
+
+_MOST_FREQUENCIES = 1e6
+
+OK, WIND_REFUSED, LOAD_CLAMPED, RESTARTED = 0, 1, 2, 4
+"""Bits of the result of `SwaySimulator.step`."""
+
+
+@dataclass
+class Counts:
+    """
+    Counts of the steps since the start.
+
+    ``refused``: the wind was not finite or faster than the limit, and the last one was used;
+    ``clamped``: loads at the limit of the model; ``restarted``: the motion was not finite, and the
+    tree continued from rest; ``refused_pushes``: calls of `SwaySimulator.push` that were refused;
+    ``reduced``: times that a tree whose steps stayed clamped continued from rest on fewer
+    coordinates (`clamp_watch`).
+    """
+
+    steps: int = 0
+    refused: int = 0
+    clamped: int = 0
+    restarted: int = 0
+    refused_pushes: int = 0
+    reduced: int = 0
+
+
+class SwaySimulator:
+    """
+    A tree that sways.
+
+    Parameters
+    ----------
+    tree
+        Tree, with or without its species.
+    species
+        Species for wood, damping and drag; the tree's own if None.
+    settings
+        Settings, on any model but ``auto``; `make_simulator` makes that too.
+    cache
+        Cache of set-ups, on disk by default; no cache if None.
+    plain
+        Whether to run in numpy, as where numba is missing.
+    **changes
+        Fields of the settings, as keywords: ``SwaySimulator(tree, model="branch")``.
+
+    Raises
+    ------
+    ParameterError
+        A setting out of its range.
+    SpeciesError
+        An unknown species.
+    TreeError
+        A tree that buckles under its own weight.
+
+    Examples
+    --------
+    >>> sim = SwaySimulator(tree, model="branch")
+    >>> for wind in record:
+    ...     sim.step(wind, 1 / 60)
+    ...     poses = sim.place()
+
+    """
+
+    gusts: GustHistory | None = None
+    """No gusts travel within a tree."""
+
+    def __init__(
+        self,
+        tree: Tree | GrownTree,
+        species: Species | None = None,
+        settings: Settings | None = None,
+        *,
+        cache: SetUpFiles | None = SET_UPS,
+        plain: bool = False,
+        **changes: Any,
+    ) -> None:
+        """Reduce the tree; the first step only compiles."""
+        self.tree, self.species = tree, species = tree_and_species(tree, species)
+        chosen = settings_with(settings, changes)
+        self.reductions = TreeReductions(tree, species, chosen, plain=plain)
+        self.settings = self.reductions.settings
+        self.counts = Counts()
+        self.bank: Bank = assembled(self.reductions, cache=cache)
+        self.mass = self.bank.mass
+        """Mass of wood and leaves in [kg]."""
+        self.joints: Records = self.bank.branches
+        """Records of `Branch`, whose coordinates are the key rotations, (b,)."""
+        self.drag_law = self.reductions.drag_law
+        self._advance = self.bank.oscillators.advance
+        self._in_one_call: Callable[[float, float, float], int] | None = None
+        self._max_wind = self.settings.max_wind
+        self._gusts: CrownGusts | None = None
+        if self.settings.crown_coherence < 1.0:
+            from tree_sway.core.run import crown_gusts
+
+            self._gusts = crown_gusts.CrownGusts(self.reductions, self.bank.oscillators)
+        self._tuning: LiveTuning | None = None
+        self.touch: Touch | None = None
+        """Pushes, until their effect is gone."""
+        self._dt = math.nan
+        self._watch: ClampWatch | None = None
+        self._wind = np.zeros(3)
+        self._expected = (int(self.bank.branches['n_coordinates'].sum()),)
+        self._poses = np.zeros((tree.n_segments, 7))
+        self._filled = self._poses
+        self._origin = tree.start[0].copy()
+        self._highest = int(np.argmax(tree.end[:, 2]))
+
+    def __repr__(self) -> str:
+        """Return tree, model and number of steps on one line."""
+        kind = type(self).__name__
+        return f'{kind} of {self.tree.name}, model {self.model}: {self.counts.steps} steps'
+
+    @property
+    def model(self) -> str:
+        """Model in use: its name, or its number of coordinates."""
+        return str(self.settings.model)
+
+    @property
+    def simulators(self) -> tuple[SwaySimulator, ...]:
+        """Return the simulator of each tree: this one."""
+        return (self,)
+
+    @property
+    def wind(self) -> Floats:
+        """Wind of the last step in [m/s], (3,)."""
+        return self._wind.copy()
+
+    def frequencies(self, count: int = 10) -> Floats:
+        """
+        Lowest natural frequencies of the tree in [Hz], without air, (count,) or fewer.
+
+        On the model ``branch`` they are those of the isolated branches. A `ParameterError` refuses
+        a count below 1.
+        """
+        count = int(within('count', count, 1, 1e9))
+        if self.settings.model == 'branch':
+            tunable = self.bank.oscillators.tunable
+            circular = np.sort(np.sqrt(tunable.stiffness / tunable.inertia))[:count]
+            return np.asarray(circular / (2.0 * np.pi))
+        return self.reductions.natural_frequencies(count)
+
+    def digest(self) -> str:
+        """Digest of tree, species, settings and tuning."""
+        tuned = () if self._tuning is None else self._tuning.changes
+        return digest_of(self.tree, self.species, self.settings, *tuned)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of the state, the wind of the last step first."""
+        crown = () if self._gusts is None else self._gusts.wind.memory()
+        return self._wind, *self.bank.oscillators.memory(), *crown
+
+    def state(self) -> TreeState:
+        """Return a copy of the state."""
+        values = np.concatenate([np.ravel(array) for array in self.memory()])
+        return TreeState(self.tree.name, self.digest(), self.model, values)
+
+    def set_state(self, state: TreeState) -> None:
+        """
+        Continue from a state.
+
+        Raises a `StateError` for a different tree or model, or a state that is not finite, and
+        keeps the present state.
+        """
+        arrays = self.memory()
+        n_values = sum(array.size for array in arrays)
+        for what, theirs, own in (
+            ('tree', state.tree, self.tree.name),
+            ('model', state.model, self.model),
+            ('settings', state.digest, self.digest()),
+            ('number of values', len(state.values), n_values),
+        ):
+            if theirs != own:
+                raise StateError(
+                    f"a state of {what} '{theirs}', and this is '{own}'",
+                    where=self.tree.name,
+                    cure='set a state of the same tree with the same species, settings and model',
+                )
+        if not np.isfinite(state.values).all():
+            raise StateError('a state that is not finite', where=self.tree.name)
+        first = 0
+        for array in arrays:
+            array[...] = state.values[first : first + array.size].reshape(array.shape)
+            first += array.size
+        self._dt = math.nan  # the state determines which coordinates the step solves
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,), in the order of `joints`; valid until the next step."""
+        shown = self.bank.oscillators.rotations()
+        return shown if self.touch is None else shown + self.touch.residual
+
+    def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
+        """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
+        out = self._to_fill(out)
+        read = array_to_read('rotations', rotations, self._expected)
+        self.bank.place(read, self._origin, out)
+        return out
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """
+        Advance one step.
+
+        Parameters
+        ----------
+        wind_mean
+            Mean of the wind over the step at the anemometer's height, the way the air goes, in
+            [m/s], (3,).
+        dt
+            Length of the step in [s].
+
+        Returns
+        -------
+        int
+            0, or the sum of `WIND_REFUSED` (not finite or too fast: the last wind was used),
+            `LOAD_CLAMPED` (a load beyond the limit of the model was clamped) and `RESTARTED` (the
+            motion was not finite: the tree continued from rest).
+
+        Raises
+        ------
+        ParameterError
+            A step that is not above 0 or not finite.
+
+        """
+        counts = self.counts
+        x, y, z = three_numbers('wind', wind_mean)
+        is_changed = dt != self._dt
+        if is_changed:
+            refuse_time_step(dt)
+        # A transition advances with every step, also where the length of the step varies.
+        if self._tuning is not None and self.glide(dt):
+            is_changed = True
+        if is_changed:
+            self._set_step(dt)
+        counts.steps += 1
+        call = self._in_one_call
+        if call is not None:
+            outcome = call(x, y, z)
+            if outcome == 0 and self.touch is None:
+                return OK
+            counts.refused += outcome & 1
+            clamped = self.bank.oscillators.step_outside() if outcome & 2 else 0
+            if clamped > 0:
+                self._watch_clamped(dt)
+            return (WIND_REFUSED if outcome & 1 else OK) | self._count(clamped) | self.touched(dt)
+        status = OK
+        if is_wind(x, y, z, self._max_wind):
+            self._wind[:] = x, y, z
+        else:
+            status = WIND_REFUSED
+            counts.refused += 1
+        wx, wy, wz = self._wind.tolist()
+        load = pressure(math.hypot(wx, wy, wz), *self.drag_law)
+        if self._gusts is None:
+            outcome = self._advance(wx, wy, wz, load)
+        else:
+            outcome = self._gusts.advance(wx, wy, wz, load, dt)
+        if outcome > 0:
+            self._watch_clamped(dt)
+        return status | self._count(outcome) | self.touched(dt)
+
+    def push(
+        self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
+    ) -> None:
+        """
+        Push or pull at a segment while the tree sways.
+
+        The force moves with the tree and keeps its direction. A new force on the same segment
+        replaces the one before, so that dragging a branch is a series of calls; after the last one
+        the tree swings freely. A state has no pushes.
+
+        Parameters
+        ----------
+        segment
+            Number of the segment.
+        force
+            Force in [N], (3,), or a `Spring` to a place.
+        seconds
+            Duration of the force from the next step on in [s].
+        along
+            Place on the segment, as a share of its length from the root side.
+
+        Raises
+        ------
+        ParameterError
+            A segment that does not exist, a force that is not finite, a time that is not above 0,
+            or the model ``branch``; it is counted as `Counts.refused_pushes`, and nothing changes.
+
+        """
+        from tree_sway.core.run.pushes import Touch
+
+        try:
+            touch = self.touch or Touch(self.tree, self.bank)
+            touch.add(segment, force, seconds, along)
+        except ParameterError:
+            self.counts.refused_pushes += 1
+            raise
+        self.touch = touch
+
+    @property
+    def push_load(self) -> Floats:
+        """Force [N] and moment about the root node [N m] of the last step's pushes, (6,)."""
+        return np.zeros(6) if self.touch is None else self.touch.load.copy()
+
+    @property
+    def pushed(self) -> dict[int, SwaySimulator]:
+        """This tree under the number 0 while a push has an effect."""
+        return {} if self.touch is None else {0: self}
+
+    def touched(self, dt: float) -> int:
+        """Add the effect of pushes over the last step [s]; returns bits as `step`."""
+        if self.touch is None or self.touch.is_gone:
+            self.touch = None
+            return OK
+        return self._count(self.touch.step(lambda: self.place(self._poses), self._origin, dt))
+
+    def _count(self, clamped: int) -> int:
+        """Count the result of `advance`; returns bits as `step`."""
+        if clamped > 0:
+            self.counts.clamped += clamped
+            return LOAD_CLAMPED
+        if clamped < 0:
+            self.bank.oscillators.reset()
+            self.counts.restarted += 1
+            return RESTARTED
+        return OK
+
+    def _watch_clamped(self, dt: float) -> None:
+        """Show fewer coordinates if the steps of the tree stay clamped, and no push bends it."""
+        oscillators = self.bank.oscillators
+        if self.touch is not None or not getattr(oscillators, 'is_bent_too_far', False):
+            return
+        from tree_sway.core.run.clamp_watch import ClampWatch, fewer
+
+        if self._watch is None:
+            self._watch = ClampWatch()
+        if self._watch.is_stuck(self.counts.steps, dt):
+            count = fewer(self.n_shown)
+            if count < self.n_shown:
+                self.show_at_most(count)
+                self.counts.reduced += 1
+
+    @property
+    def n_shown(self) -> int:
+        """Number of coordinates that move; on the models ``branch`` and ``full`` all."""
+        oscillators: Any = self.bank.oscillators
+        return int(getattr(oscillators, 'n_shown', oscillators.shapes.shape[1]))
+
+    def show_at_most(self, count: int) -> None:
+        """Go on from rest without the coordinates of a table beyond a count, until `reset`."""
+        keep_only = getattr(self.bank.oscillators, 'keep_only', None)
+        if keep_only is not None and count < self.n_shown:
+            keep_only(count)
+
+    def place(self, out: Floats | None = None) -> Floats:
+        """
+        Place every segment.
+
+        Parameters
+        ----------
+        out
+            Array to write to, (n, 7) float64, for speed; a new array if None.
+
+        Returns
+        -------
+        Floats
+            Pose block: x y z of each segment's root-side node in [m], quaternion x y z w, x axis
+            along the segment.
+
+        Raises
+        ------
+        ParameterError
+            An array of a wrong shape or type.
+
+        """
+        out = self._to_fill(out)
+        if self.touch is None:
+            self.bank.place_now(self._origin, out)
+            return out
+        return self.place_rotations(self.rotations(), out)
+
+    def _to_fill(self, out: Floats | None) -> Floats:
+        if out is None:
+            return np.empty(self._poses.shape)
+        if out is not self._filled:
+            self._filled = array_to_fill('out', out, self._poses.shape)
+        return out
+
+    @property
+    def tip_displacement(self) -> Floats:
+        """Displacement of the highest tip from rest in [m], (3,)."""
+        top = slice(self._highest, self._highest + 1)
+        tip = ends_of_poses(self.place(self._poses)[top], self.tree.length[top])[1][0]
+        return np.asarray(tip - self.tree.end[self._highest])
+
+    @property
+    def base_moment(self) -> Floats:
+        """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
+        coupling, force = self.bank.branches['coupling'], self.bank.oscillators.forces()
+        return np.asarray(np.einsum('bij,bj->i', coupling, force))
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s] in the model in use, both (N,)."""
+        return self.bank.oscillators.motion()
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Continue from key rotations and rates, (N,), instead of from rest."""
+        self.bank.oscillators.take_over(x, v)
+
+    def check_tuning(self, **changes: float) -> Tuning:
+        """Check changes as `tune`; returns all values after the changes."""
+        from tree_sway.core.run.tuning import LiveTuning
+
+        if self._tuning is None:
+            tunable, ratio = self.bank.oscillators.tunable, self.reductions.damping_ratio
+            self._tuning = LiveTuning(tunable, self.settings, ratio)
+        return self._tuning.changed(**changes)
+
+    def tune(self, **changes: float) -> None:
+        """
+        Change the tree while it sways; the change takes half a second.
+
+        Parameters
+        ----------
+        **changes
+            Fields of `Tuning`: ``damping_ratio``, ``stiffness_factor`` or ``gravity``. Others
+            stay.
+
+        Raises
+        ------
+        ParameterError
+            A value that is out of range or impossible for this tree; nothing changes.
+
+        """
+        goal = self.check_tuning(**changes)
+        if self._tuning is not None:
+            self._tuning.go_to(goal)
+
+    def glide(self, dt: float) -> bool:
+        """Continue a transition of `tune`; returns whether the coefficients have changed."""
+        return self._tuning is not None and self._tuning.step(dt)
+
+    def reset(self) -> None:
+        """Return to rest, with no wind; the counts stay."""
+        self.bank.oscillators.reset()
+        if self._gusts is not None:
+            self._gusts.wind.reset()
+        self.touch = self._watch = None
+        self._dt = math.nan
+        self._wind[:] = 0.0
+
+    def _set_step(self, dt: float) -> None:
+        self.bank.oscillators.set_step(dt)
+        self._dt = dt
+        if self._in_one_call is None and self._gusts is None:
+            stepping = self.bank.oscillators.stepping
+            self._in_one_call = stepping(self._wind, self._max_wind, self.drag_law)

@@ -1,0 +1,147 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Kernels of a stand: many trees on few tables, solved in one call and placed kind by kind.
+
+A tree of a stand is its kind rotated about the vertical, scaled, and moved to its place. A tree
+scaled by k bends by the same angles in the same wind, and swings k times slower: its inertia is
+proportional to the fifth power of its size, its stiffness and the wind's moment to the third. So
+it is stepped as its kind, by 1/k of the time. (Gravity and the profile of the wind are those of
+the kind, with the wind speed at the height of the tree.)
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+import numpy as np
+
+from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf, Singles
+from tree_sway.core.kernel import fused
+from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.model.records import Blocks, Instances, Segments, Tables, TimeSteps
+from tree_sway.core.run.placing import NONE, place
+from tree_sway.core.run.simd import settle, write_past_caches
+from tree_sway.core.run.table_model import step_instance
+
+
+class Placement:
+    """Place and kind of a tree of a stand."""
+
+    kind: int  # row of its table
+    time_step: int  # row of its time step
+    is_still: int  # 1 where it is not solved
+    is_clamped: int  # 1 where its last wind was clamped to the limit of the table
+    scale: float  # height over that of its kind
+    speed: float  # wind at its height over that at its kind's height
+    cosine: float  # cosine of half its rotation about the vertical
+    sine: float
+    at: Annotated[Floats, 3]  # root node [m]
+
+
+Placements = RecordsOf[Placement]
+PLACEMENT = np.dtype(fields_of(Placement))
+
+_CACHED = 1 << 21
+"""Largest pose block in numbers that is written to the caches: 16 MB, half of a large cache."""
+
+
+@fused
+def step_stand(
+    tables: Tables,
+    time_steps: TimeSteps,
+    placements: Placements,
+    instances: Instances,
+    drag_laws: Floats,
+    winds: Floats,
+) -> tuple[int, int]:
+    """
+    Step every tree that is not still, in its mean wind over the step in [m/s], (t, 3).
+
+    Records are of `table_layout` (k,), `time_step_layout` (p,), `PLACEMENT` and
+    `instance_layout` (t,); C, N and C0 of the `DragLaw` of each kind (k, 3).
+
+    Returns
+    -------
+    tuple
+        Trees whose wind or lean was clamped to the limit of their table, and trees whose motion
+        was not finite and that continue from rest.
+
+    """
+    clamped, restarted = 0, 0
+    for t in range(len(placements)):
+        here = placements[t]
+        if here.is_still:
+            continue
+        table, instance = tables[here.kind], instances[t]
+        c = here.cosine * here.cosine - here.sine * here.sine
+        s = 2.0 * here.cosine * here.sine
+        x = here.speed * (c * winds[t, 0] + s * winds[t, 1])
+        y = here.speed * (c * winds[t, 1] - s * winds[t, 0])
+        z = here.speed * winds[t, 2]
+        speed = math.sqrt(x * x + y * y + z * z)
+        is_clamped = False
+        law = drag_laws[here.kind]
+        load = pressure(speed, law[0], law[1], law[2])
+        if load * speed * speed > table.most_pressure:
+            is_clamped = True
+            share = math.sqrt(table.most_pressure / load) / speed
+            x, y, z = share * x, share * y, share * z
+        here.is_clamped = is_clamped
+        outside = step_instance(table, time_steps[here.time_step], instance, True, x, y, z, load)
+        clamped += 1 if is_clamped else outside
+        total = 0.0
+        for i in range(len(instance.eta)):
+            total += 0.0 * instance.eta[i] + 0.0 * instance.rate[i]
+        if total != 0.0:
+            restarted += 1
+            for i in range(len(instance.eta)):
+                instance.eta[i] = instance.rate[i] = instance.force[i] = 0.0
+                instance.middle[i] = instance.middle_rate[i] = 0.0
+    return clamped, restarted
+
+
+@fused
+def place_stand(
+    placements: Placements, instances: Instances, which: Ints, shapes: Singles,
+    segments: Segments, blocks: Blocks, bases: Floats, x: Floats, poses: Floats,
+    out: Floats,
+) -> None:  # fmt: skip
+    """
+    Place trees of one kind.
+
+    Each is placed in memory that stays in the cache, then written in one run, which is faster than
+    to write single branches to other memory.
+
+    Parameters
+    ----------
+    placements, instances
+        Records, as in `step_stand`.
+    which
+        Trees and their first rows in the pose block, (w, 2).
+    shapes
+        Shapes of the kind, as in `placing.expand`.
+    segments, blocks, bases
+        Records and bases of the kind, as in `placing.place`.
+    x, poses
+        Scratch memory, (N,) and (m, 7).
+    out
+        Pose block of the stand, (n, 7), rows of these trees written.
+
+    """
+    block, whole = poses.reshape(-1), out.reshape(-1)
+    for row in range(len(which)):
+        t, first = which[row, 0], which[row, 1]
+        here = placements[t]
+        place(
+            instances[t : t + 1], shapes, segments, blocks, bases,
+            here.cosine, here.sine, here.scale, x, NONE, here.at[:], poses,
+        )  # fmt: skip
+        into = whole[7 * first : 7 * first + len(block)]
+        if len(whole) > _CACHED:
+            write_past_caches(block, into)
+        else:
+            for i in range(len(block)):
+                into[i] = block[i]
+    settle()

@@ -1,0 +1,395 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Model `wind_basis`: a tree as a few oscillators, driven by a table of all uniform winds.
+
+The cost of a step does not depend on the size of the tree. The coordinates cover most of the
+motion in steady winds and gusts (`setup.modes.leading_modes`); each has its inertia, so that
+none follows a wind at once. The load is that of the state at the middle of the step. It comes from
+a table (`load_table`) and not from the branches. A wind or a lean beyond the table is
+clamped to its limit, and counted as ``outside``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property, partial
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats, Records, Singles
+from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.records import (
+    Instance,
+    instance_layout,
+    Instances,
+    Table,
+    table_layout,
+    Tables,
+    time_step_layout,
+    TimeStep,
+    TimeSteps,
+    zeros_in_lines,
+)
+from tree_sway.core.run.modal import ModalBank
+from tree_sway.core.run.placing import expand, room_for
+from tree_sway.core.run.simd import shapes_together, TOGETHER
+from tree_sway.core.run.table_load import wind_force
+from tree_sway.core.setup.load_table import WindBasisTable
+
+STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside', 'left_out')
+"""Fields of an instance that are its state."""
+
+
+class WindBasisBank:
+    """
+    Oscillators of a tree in uniform winds, loaded by a table.
+
+    ``modal`` are the same modes on the loads of all branches.
+    """
+
+    loads: Records | None = None
+
+    def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
+        """Begin at rest."""
+        self.modal, self.table = modal, table
+        self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
+        self.compliance, self.limit = modal.compliance, modal.limit
+        self.tunable, self.air_damping = modal.tunable, modal.air_damping
+        # Rounded everywhere, as kernels read them in single precision.
+        self.all_shapes = modal.shapes.T.astype(np.float32).astype(np.float64)
+        self.lay_out(modal.shapes.shape[1])
+        self._filled_x = self.room_for_rotations()
+        self._x = self._filled_x[: len(modal.shapes)]
+        self._n_dropped = np.zeros(1, dtype=np.int64)
+        self.n_outside = 0
+        """Steps whose wind was clamped to the limit of the table."""
+
+    def lay_out(self, n_modes: int) -> None:
+        """Lay the table out for a number of coordinates, that of the largest tree of a stand."""
+        for compiled in ('_step', '_expand'):
+            self.__dict__.pop(compiled, None)
+        table_record = self.table.record
+        self.record = zeros_in_lines(1, table_layout(n_modes))
+        for name in table_record.dtype.names or ():
+            values = table_record[name]
+            self.record[name][tuple(map(slice, values.shape))] = values
+        self.time_step = np.zeros(1, dtype=time_step_layout(n_modes))
+        self.instance = np.zeros(1, dtype=instance_layout(n_modes))
+        self.laid_shapes = shapes_together(self.all_shapes)
+
+    def show(self, hidden: Floats, count: int) -> None:
+        """Show and load the first coordinates only, without a hidden part of each, (m,)."""
+        self.instance['hidden'][0, : len(hidden)] = hidden
+        self.instance['left_out'] = len(hidden) - count
+
+    @property
+    def n_shown(self) -> int:
+        """Return the number of coordinates that are shown."""
+        return self.shapes.shape[1] - int(self.instance['left_out'][0])
+
+    @property
+    def n_solved(self) -> int:
+        """Return the number of coordinates that are solved, shown or not."""
+        return self.shapes.shape[1] - int(self._n_dropped[0])
+
+    def keep_only(self, count: int) -> None:
+        """Solve the first coordinates only, from rest on, until `reset`."""
+        come_to_rest(self.instance)
+        self._n_dropped[0] = self.shapes.shape[1] - count
+        self.instance['left_out'] = self._n_dropped[0]
+        drop(self.time_step[0], count)
+
+    @property
+    def is_bent_too_far(self) -> bool:
+        """Whether the last step clamped the tree in a wind that cannot bend it so far."""
+        return bool(bent_too_far(self.instance, self.record['most_pressure'])[0])
+
+    def room_for_rotations(self) -> Floats:
+        """Return zeros for `expand` to write key rotations to, (N,) and some more."""
+        return room_for(len(self.laid_shapes) * TOGETHER)
+
+    def set_step(self, dt: float) -> None:
+        """Refill the coefficients for a time step [s]."""
+        self.modal.set_step(dt)
+        fill_time_step(self.time_step[0], propagators_of(self.modal), dt)
+        if self._n_dropped[0]:
+            drop(self.time_step[0], self.n_solved)
+
+    def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
+        """Advance one step, as `ModalBank.advance`."""
+        return self.step_outside() if self._step(wx, wy, wz, per_speed_squared) else 0
+
+    def step_outside(self) -> int:
+        """Count a step beyond the table, clamped to its limit; -1 if the motion is not finite."""
+        self.n_outside += 1
+        return 1 if np.isfinite(self.instance['eta']).all() else -1
+
+    @property
+    def swing(self) -> tuple[Floats, ...]:
+        """Displacement, rate and force of each coordinate, (m,)."""
+        m = self.modal.shapes.shape[1]
+        return tuple(self.instance[name][0, :m] for name in STATE_FIELDS[:3])
+
+    @property
+    def whole(self) -> Floats:
+        """Coefficients of a force that is added to a step, (m, 8), as in `fill_propagator`."""
+        time_step, m = self.time_step[0], self.modal.shapes.shape[1]
+        # The step was implicit in the damping of each coordinate.
+        implicit = 1.0 - self.instance['diagonal'][0, :m] * time_step['half'][5, :m]
+        return np.asarray((time_step['whole'][:, :m] / implicit).T)
+
+    @cached_property
+    def _step(self) -> Callable[..., int]:
+        arrays = self.record, self.time_step, self.instance
+        return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
+
+    def stepping(
+        self, wind: Floats, max_wind: float, law: DragLaw
+    ) -> Callable[[float, float, float], int]:
+        """Return a step as one compiled call: `step_in_wind` of a wind's components in [m/s]."""
+        arrays = self.record, self.time_step, self.instance, np.array([max_wind, *law]), wind
+        return partial(entry_of(step_in_wind, *arrays, 0.0, 0.0, 0.0), *arrays)
+
+    @property
+    def to_place(self) -> tuple[Records, Singles, Floats]:
+        """Return instance, shapes and memory of the key rotations for `place`."""
+        return self.instance, self.laid_shapes, self._filled_x
+
+    @cached_property
+    def _expand(self) -> Callable[[], None]:
+        return partial(entry_of(expand, *self.to_place), *self.to_place)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of the state."""
+        return *(self.instance[name] for name in STATE_FIELDS), self._n_dropped
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,)."""
+        self._expand()
+        return self._x
+
+    def rotations_of(self, instances: Records) -> Floats:
+        """Key rotations in [rad], (N,), of a tree of this kind; valid until the next call."""
+        expand(instances, self.laid_shapes, self._filled_x)
+        return self._x
+
+    def forces(self) -> Floats:
+        """Force of the last step's wind on each branch [N], (b, 3); a pass over all branches."""
+        step_branches(self.instance[0], self.modal)
+        return self.modal.forces()
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
+        m = self.modal.shapes.shape[1]
+        return self.rotations().copy(), self.modal.shapes @ self.instance[0]['rate'][:m]
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Continue from key rotations and rates, (N,), projected on the modes."""
+        self.reset()
+        self.modal.take_over(x, v)
+        m = self.modal.shapes.shape[1]
+        self.instance['eta'][0, :m], self.instance['rate'][0, :m] = self.modal.modal[:2]
+
+    def reset(self) -> None:
+        """Return to rest."""
+        for array in self.memory():
+            array[...] = 0.0
+        self.modal.reset()
+
+
+def bent_too_far(instances: Records, most_pressure: Floats) -> NDArray[np.bool_]:
+    """
+    Whether the last step clamped each instance in a wind that cannot bend it so far, (t,).
+
+    A table allows more energy than that of any of its winds: in half of their largest dynamic
+    pressure [kg/m/s^2], (t,), a tree does not reach it but by growing motion, or by a pull.
+    """
+    wind = instances['wind']
+    dynamic_pressure = instances['pressure'] * np.einsum('ti,ti->t', wind, wind)
+    return (instances['outside'] == 1) & (dynamic_pressure < 0.5 * most_pressure)
+
+
+def come_to_rest(instances: Records) -> None:
+    """Bring instances to rest: the motion and the force of a tree that is stuck are no state."""
+    for name in ('eta', 'rate', 'force'):
+        instances[name] = 0.0
+
+
+def drop(time_step: np.void, count: int) -> None:
+    """Write a step into a `time_step_layout` that puts all coordinates beyond a count to rest."""
+    for name in ('whole', 'half'):
+        time_step[name][:, count:] = 0.0
+
+
+class Propagators(NamedTuple):
+    """
+    Damping [1/s] and stiffness [1/s^2] of coordinates, (m,), and their propagators.
+
+    ``whole`` is over a step, ``half`` over half of it, (m, 8).
+    """
+
+    damping: Floats
+    stiffness: Floats
+    whole: Floats
+    half: Floats
+
+
+def propagators_of(modal: ModalBank) -> Propagators:
+    """Return the propagators of a bank over its time step."""
+    return Propagators(modal.damping, modal.stiffness, modal.whole, modal.half)
+
+
+def fill_time_step(time_step: np.void, law: Propagators, dt: float) -> None:
+    """
+    Write the coefficients of a step of dt [s] and of half a step into a `time_step_layout`.
+
+    A step moves each coordinate exactly. The load is taken from the middle of the step, where the
+    rate of a coordinate that swings nearly once a step or more may be opposite to its force.
+    Strong drag, whose implicit part needs a rate that follows the force, would then feed the
+    motion. The middle state of such coordinates is that of an implicit Euler step, whose rate
+    always follows the force.
+    """
+    m = len(law.stiffness)
+    half = law.half.T[[0, 1, 2, 4, 5, 6]]
+    half[[2, 5]] += law.half.T[[3, 7]]
+    euler = _implicit_euler(law.damping, law.stiffness, 0.5 * dt)
+    time_step['whole'], time_step['half'] = 0.0, 0.0
+    time_step['whole'][:, :m] = law.whole.T
+    time_step['half'][:, :m] = np.where(half[5] < euler[5], euler, half)
+
+
+def _implicit_euler(damping: Floats, stiffness: Floats, h: float) -> Floats:
+    """Displacement, then rate, after a step h [s] by displacement, rate and force, (6, m)."""
+    share = 1.0 / (1.0 + h * damping + h * h * stiffness)
+    rate = np.stack([-h * stiffness * share, share, h * share])
+    displacement = h * rate
+    displacement[0] += 1.0
+    return np.concatenate([displacement, rate])
+
+
+def step_branches(instance: np.void, modal: ModalBank) -> int:
+    """Step the modes from the state of an instance, in its wind, on the loads of all branches."""
+    m = modal.shapes.shape[1]
+    eta, rate, force = (instance[name][:m] for name in ('eta', 'rate', 'force'))
+    modal.take(eta, rate, force)
+    wx, wy, wz = instance['wind'].tolist()
+    return modal.advance(wx, wy, wz, float(instance['pressure']))
+
+
+@part
+def step_instance(
+    table: Table, time_step: TimeStep, instance: Instance, is_clamped: bool,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> int:  # fmt: skip
+    """
+    Step one tree on its table.
+
+    Parameters
+    ----------
+    table, time_step, instance
+        Records of `table_layout`, `time_step_layout` and `instance_layout`.
+    is_clamped
+        Whether the wind was clamped to the limit of the table before.
+    wx, wy, wz
+        Mean wind over the step in [m/s].
+    per_speed_squared
+        `drag_law.pressure` in [kg/m^3].
+
+    Returns
+    -------
+    int
+        1 where the wind or the lean was clamped to the limit of the table, 0 elsewhere; a wind
+        that was clamped before does not count.
+
+    """
+    speed = math.sqrt(wx * wx + wy * wy + wz * wz)
+    x, y, z = 1.0, 0.0, 0.0
+    if speed > 0.0:
+        x, y, z = wx / speed, wy / speed, wz / speed
+    dynamic_pressure = per_speed_squared * speed * speed
+    instance.outside = 0 if is_clamped or dynamic_pressure <= table.most_pressure else 1
+    dynamic_pressure = min(dynamic_pressure, table.most_pressure)
+    eta, rate, force = instance.eta, instance.rate, instance.force
+    half, whole = time_step.half, time_step.whole
+    middle, middle_rate, wanted = instance.middle, instance.middle_rate, instance.wanted
+    before = 0.0
+    for i in range(len(eta)):
+        q, v, f = eta[i], rate[i], force[i]
+        before += table.stiffness[i] * q * q + v * v
+        middle[i] = half[0, i] * q + half[1, i] * v + half[2, i] * f
+        middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
+    diagonal = instance.diagonal
+    wind_force(
+        table, x, y, z, dynamic_pressure, per_speed_squared, middle, middle_rate, instance.values,
+        instance.scratch, wanted, diagonal, table.n_modes - instance.left_out,
+    )  # fmt: skip
+    instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
+    instance.pressure = per_speed_squared
+    energy = 0.0
+    for i in range(len(eta)):
+        # Implicit in all damping, with equal rates of the others: stable for any wind and step.
+        own = diagonal[i] * half[5, i]
+        f = (wanted[i] - own * force[i]) / (1.0 - own)
+        q, v = eta[i], rate[i]
+        eta[i] = whole[0, i] * q + whole[1, i] * v + (whole[2, i] + whole[3, i]) * f
+        rate[i] = whole[4, i] * q + whole[5, i] * v + (whole[6, i] + whole[7, i]) * f
+        force[i] = f
+        energy += table.stiffness[i] * eta[i] * eta[i] + rate[i] * rate[i]
+    most = max(before, table.most_energy)
+    if not energy <= most:
+        # A pull may bend it more than any wind; no wind adds to that.
+        share = math.sqrt(most / energy)
+        for i in range(len(eta)):
+            eta[i], rate[i] = share * eta[i], share * rate[i]
+        instance.outside = 1
+    return int(instance.outside)
+
+
+@fused
+def _advance(
+    tables: Tables, time_steps: TimeSteps, instances: Instances,
+    wx: float, wy: float, wz: float, per_speed_squared: float,
+) -> int:  # fmt: skip
+    return step_instance(
+        tables[0], time_steps[0], instances[0], False, wx, wy, wz, per_speed_squared
+    )
+
+
+@fused
+def step_in_wind(
+    tables: Tables, time_steps: TimeSteps, instances: Instances, limits: Floats, stored: Floats,
+    x: float, y: float, z: float,
+) -> int:  # fmt: skip
+    """
+    Check a wind and step the first record of each array.
+
+    Parameters
+    ----------
+    tables, time_steps, instances
+        Records, as in `step_instance`.
+    limits
+        Speed above which a wind is refused in [m/s], then C, N and C0 of a `DragLaw`, (4,).
+    stored
+        The wind of the last step in [m/s], (3,); written unless the new one is refused.
+    x, y, z
+        Components of the wind in [m/s].
+
+    Returns
+    -------
+    int
+        Sum of 1 if the wind was refused, and 2 if it was clamped to the limit of the table.
+
+    """
+    refused = 1
+    if math.sqrt(x * x + y * y + z * z) <= limits[0]:
+        refused, stored[0], stored[1], stored[2] = 0, x, y, z
+    x, y, z = stored[0], stored[1], stored[2]
+    load = pressure(math.sqrt(x * x + y * y + z * z), limits[1], limits[2], limits[3])
+    return refused + 2 * step_instance(
+        tables[0], time_steps[0], instances[0], False, x, y, z, load
+    )

@@ -1,0 +1,95 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Response of a tree to gusts: linear motion of its modes in turbulence, damped by the air.
+
+Branches of similar frequency are driven together, and the air couples them, so that a few patterns
+describe the motion of many modes. Static responses cover slower and faster winds
+(`static_responses`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.setup.modes import Modes
+from tree_sway.core.setup.tree_motion import base_motion, own_motion
+
+_SPEEDS = (3.0, 12.0)
+_AZIMUTHS = (0.3, 0.3 + np.pi / 2.0)
+"""The opposite ones have the same slopes."""
+
+_COUNT, _BEYOND = 20, 1.5
+"""Number of frequencies, and their range beyond those of the modes."""
+
+
+def gust_responses(
+    branches: Records, modes: Modes, tips: Floats, damping_ratio: Floats, law: DragLaw
+) -> Floats:
+    """
+    Find the response to turbulence of several speeds and directions, of unit motion of the tips.
+
+    Parameters
+    ----------
+    branches
+        Records of the branches.
+    modes, tips, damping_ratio
+        Natural modes, the motion of the tips by each, (any, m), and the damping ratio of the wood
+        in each, (m,).
+    law
+        Drag law of the whole tree.
+
+    Returns
+    -------
+    numpy.ndarray
+        Amounts of the modes, (m, k): the real and imaginary parts at each frequency.
+
+    """
+    circular = modes.circular
+    swept = np.geomspace(circular[0] / _BEYOND, _BEYOND * circular[-1], _COUNT)[:, None]
+    # Root of the spectrum w^(-5/3) over bands of width w, constant below the slowest mode.
+    gusts = np.maximum(swept, circular[0])[:, :, None] ** (-1.0 / 3.0)
+    free = circular**2 - swept**2 + 2j * damping_ratio * circular * swept
+    winds = (np.array([np.cos(azimuth), np.sin(azimuth), 0.0]) for azimuth in _AZIMUTHS)
+    found = []
+    for load, air in gust_slopes(branches, modes.shapes, *winds):
+        for speed in _SPEEDS:
+            system = 1j * swept[:, :, None] * (pressure(speed, *law) * speed * air)
+            system += free[:, :, None] * np.eye(len(circular))
+            responses = gusts * np.linalg.solve(system, load)
+            parts = np.concatenate([responses.real, responses.imag]).swapaxes(0, 1)
+            flat = parts.reshape(len(circular), -1)
+            found.append(flat / np.linalg.norm(tips @ flat))
+    return np.hstack(found)
+
+
+def gust_slopes(
+    branches: Records, shapes: Floats, *winds: Floats
+) -> Iterator[tuple[Floats, Floats]]:
+    """
+    Slopes of the load on shapes (N, m) in each wind (3,) of 1 kg/m^3, the tree at rest.
+
+    Yielded are slopes by the wind, (m, 3), and, with the opposite sign, by the rates of the
+    shapes, (m, m).
+    """
+    m, bases = shapes.shape[1], base_motion(branches, shapes)
+    at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
+    pushed = (at + own_motion(branches, 'load_mode', shapes)).reshape(-1, m).T
+    at += own_motion(branches, 'damping_mode', shapes)
+    for ahead in winds:
+        slope = _drag_slopes(branches, ahead)
+        load = pushed @ (branches['speed'][:, None, None] * slope).reshape(-1, 3)
+        yield load, pushed @ (slope @ at).reshape(-1, m)
+
+
+def _drag_slopes(branches: Records, ahead: Floats) -> Floats:
+    """Slopes of drag by the velocity of the air in a wind of 1 kg/m^3, (b, 3, 3)."""
+    projector = branches['projector'][:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+    across = projector @ ahead
+    speed = np.sqrt(np.maximum(across @ ahead, 1e-12))[:, None, None]
+    slope = speed * projector + across[:, :, None] * across[:, None, :] / speed
+    return np.asarray((branches['area'] * branches['speed'])[:, None, None] * slope)

@@ -1,0 +1,294 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Table of the model `wind_basis`: loads of all uniform winds on the coordinates of a tree.
+
+In a uniform wind U = |U| d all branches have one wind direction d, and the load is ``Q = s L(d)``
+with the dynamic pressure ``s = p(|U|) |U|^2``. L is a smooth function on the sphere, and so is
+each projection of it on a mode (Diener, Rodriguez, Baboud & Reveret 2009, *Wind projection basis
+for real-time animation of trees*, Computer Graphics Forum 28(2), 533-540). Here it is a sum of
+harmonics Y, and the effect of the tree's own motion is added.
+
+ In steady winds of an azimuth, calm to storm, a
+tree has equilibria e, each with more lean than the one before; its lean, a mean of its
+coordinates, is between those of two of them. The table has the load there, its slope by the
+coordinates (the load rotates with the tree) and by their rates (aerodynamic damping):
+
+    F = s [Y C + load + turning (eta - e) + d_z lean eta] + p W damping eta'
+
+with W the root mean square of wind and velocity of the branches. For steep winds the slopes are
+blended with those of vertical winds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS, table_layout
+from tree_sway.core.model.spherical_harmonics import fill_harmonics, N_HARMONICS
+from tree_sway.core.setup.bent_inertia import inertia_change
+from tree_sway.core.setup.static_responses import WindMoments
+
+SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
+"""Steady winds in [m/s] at the levels of the table."""
+
+BEYOND = 1.1
+"""Largest dynamic pressure of the table, over that of the last of `SPEEDS`."""
+
+_AZIMUTHS = 2.0 * np.pi * np.arange(N_AZIMUTHS) / N_AZIMUTHS
+_ELEVATIONS = np.deg2rad([-90.0, -60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0, 90.0])
+_ELEVATION_SPREAD = 0.25
+_SLOPE_AT = 0.35
+_MOST_ENERGY = 1.5
+_STEPS, _FARTHEST, _AT_REST, _NEAR_REST = 20, 0.3, 0.01, 0.05
+
+_BREEZE, _STORM, _FLUTTER = 6.0, 25.0, (0.6, 3.0)
+"""
+Largest ratio of energy that slopes add to a sway over energy that damping takes, in winds between
+the two speeds [m/s] and above: eigenvalues of tables of trees with hanging twigs show flutter from
+some three on, and the equilibria of storms depend on smaller ones.
+
+"""
+
+_LARGE = 2000
+"""Branches of a tree above which fewer azimuths suffice."""
+
+
+class Coordinates(Protocol):
+    """Coordinates of a tree that a table loads."""
+
+    shapes: Floats
+    """Key rotations per unit of each coordinate, (N, m)."""
+    stiffness: Floats
+    damping: Floats
+    inertia_slopes: Floats
+
+    @property
+    def mean_square_motion(self) -> Floats:
+        """Mean square motion of the loaded pieces, per unit of each coordinate, (m,)."""
+
+
+class WindBasisTable:
+    """
+    Loads of all uniform winds on a tree, computed once.
+
+    Parameters
+    ----------
+    bank
+        Bank of the coordinates of the tree.
+    wind_moments
+        Loads of the tree.
+    drag_law
+        C and N of the species.
+
+    Attributes
+    ----------
+    record
+        Record of `table_layout`, (1,).
+
+    """
+
+    @classmethod
+    def of_arrays(cls, stored: Mapping[str, Any]) -> WindBasisTable:
+        """Return the table whose ``record`` is among stored arrays."""
+        made = object.__new__(cls)
+        made.record = stored['table']
+        return made
+
+    def __init__(self, bank: Coordinates, wind_moments: WindMoments, drag_law: DragLaw) -> None:
+        """Find the loads of the tree in all winds."""
+        self._shapes, self._moments = bank.shapes, wind_moments
+        self._inertia_slopes = bank.inertia_slopes
+        self._slopes = wind_moments.slopes(bank.shapes)
+        n, m = bank.shapes.shape
+        self._root, self._damping = np.sqrt(bank.stiffness), bank.damping
+        self._still = np.zeros(n)
+        self.record = np.zeros(1, dtype=table_layout(m))
+        table = self.record[0]
+        # Equilibria and slopes are found at some azimuths and interpolated, for they are smooth.
+        each = 2 if len(wind_moments.branches) <= _LARGE else 3
+        self._azimuths = _AZIMUTHS[::each]
+        table['n_modes'] = m
+        table['stiffness'] = 1.0
+        table['stiffness'][:m] = bank.stiffness
+        table['motion'][:m] = bank.mean_square_motion
+        fitted, table['limit'][:m] = fit_harmonics(wind_moments, bank.shapes)
+        table['harmonics'][:, :m] = fitted
+        pressures = [pressure(each, *drag_law) * each**2 for each in SPEEDS]
+        self._fill_standing(table, pressures)
+        self._fill_aslant(table)
+        table['most_pressure'] = BEYOND * pressures[-1]
+        energy = table['equilibrium'][:, -1] ** 2 @ table['stiffness']
+        table['most_energy'] = _MOST_ENERGY * float(energy.max())
+
+    def _fill_standing(self, table: np.void, pressures: list[float]) -> None:
+        """Find loads and their slopes at the equilibria in winds of each speed."""
+        shapes, m = self._shapes, int(table['n_modes'])
+        stiffness = table['stiffness'][:m]
+        equilibrium = np.zeros((len(self._azimuths), N_LEVELS, m))
+        amount = np.zeros((len(self._azimuths), m))
+        turning, damping = np.zeros((2, *equilibrium.shape, m))
+        winds = direction(self._azimuths, 0.0)
+        at_rest = self._moments.at_rest(winds, shapes)
+        for k, (ahead, upright) in enumerate(zip(winds, at_rest, strict=True)):
+            amount[k] = upright / max(float(upright @ (upright / stiffness)), 1e-300)
+            at = np.zeros(m)
+            for j, s in enumerate(pressures):
+                weaker = at
+                at = self._equilibrium(at, s, ahead, turning[k, j - 1]) if j > 0 else at
+                x = shapes @ at
+                equilibrium[k, j] = at
+                if j > 0 and at is weaker:
+                    turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
+                    continue
+                if j == 0 and (other := k - len(winds) // 2) >= 0:  # the opposite of this wind
+                    turning[k, 0], damping[k, 0] = -turning[other, 0], damping[other, 0]
+                    continue
+                turning[k, j], damping[k, j] = self._slopes(x, ahead)
+                if SPEEDS[j] > _BREEZE:
+                    air = self._damping - s / SPEEDS[j] * np.diag(damping[k, j])
+                    most = _FLUTTER[SPEEDS[j] > _STORM]
+                    turning[k, j] -= self._feeding(s * turning[k, j], air, most) / max(s, 1e-300)
+        calm = int(np.searchsorted(SPEEDS, _STORM))
+        for k, poses in enumerate(equilibrium):
+            for j in range(1, calm):
+                self._turn_inertia(poses[j], pressures[j], turning[k, j], damping[k, j])
+        table['equilibrium'][..., :m] = equilibrium = _between(equilibrium)
+        table['amount'][..., :m] = _between(amount)
+        # Loads in storms are those of the springs; up to a gale poses in between are none at rest.
+        load = stiffness * equilibrium / np.maximum(pressures, 1e-300)[:, None]
+        for poses, ahead, loads in zip(equilibrium, direction(_AZIMUTHS, 0.0), load, strict=True):
+            moments = [self._moments(x, self._still, ahead) for x in poses[:calm] @ shapes.T]
+            loads[:calm] = moments @ shapes
+        np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
+        table['load'][..., :m] = load - load[:, :1]
+        table['turning'][..., :m, :m] = _between(turning)
+        table['damping'][..., :m, :m] = _between(damping)
+        table['cross_damping'] = np.abs(table['damping']).sum(axis=2)
+        table['cross_damping'] -= np.abs(np.einsum('ajii->aji', table['damping']))
+        levels = np.einsum('ajm,am->aj', table['equilibrium'], table['amount'])
+        # Levels rise, also those of a tree without any load.
+        largest = float(np.abs(levels).max()) or 1.0
+        least = 1e-6 * largest * np.arange(N_LEVELS)
+        table['levels'] = np.maximum.accumulate(levels, axis=1) + least
+
+    def _turn_inertia(self, at: Floats, s: float, turning: Floats, damping: Floats) -> None:
+        """
+        Apply the inertia at an equilibrium to the slopes there, both (m, m), in place.
+
+        Loads and springs accelerate the tree by the inverse inertia A. What that changes in the
+        springs, ``K - A K``, is zero at the equilibrium with the load, and is taken per dynamic
+        pressure [kg/m/s^2].
+        """
+        q = len(self._inertia_slopes)
+        inverse = np.linalg.inv(np.eye(q) + inertia_change(self._inertia_slopes, at))
+        stiffness = np.square(self._root[:q, None])
+        for slopes in (turning, damping):
+            slopes[:, :q] = slopes[:, :q] @ inverse
+        turning[:q, :q] += stiffness * (np.eye(q) - inverse) / max(s, 1e-300)
+
+    def _feeding(self, slopes: Floats, damping: Floats, most: float) -> Floats:
+        """
+        Find the part of slopes (m, m) [1/s^2] that adds more energy than damping (m,) [1/s] takes.
+
+        The antisymmetric part of slopes adds energy to a sway of two coordinates, and damping
+        takes energy from both. Without this bound, hanging twigs flutter in gales.
+        """
+        circulating = 0.5 * (slopes - slopes.T)
+        scale = 1.0 / np.sqrt(np.maximum(damping, 1e-6 * self._root) * self._root)
+        scaled = circulating * scale * scale[:, None]
+        if float(np.linalg.norm(scaled)) <= most:  # at least the spectral norm
+            return np.zeros_like(slopes)
+        return circulating * max(0.0, 1.0 - most / float(np.linalg.norm(scaled, 2)))
+
+    def _equilibrium(self, at: Floats, s: float, ahead: Floats, turning: Floats) -> Floats:
+        """
+        Find the coordinates (m,) of a tree at rest under a dynamic pressure [kg/m/s^2].
+
+        It is found from the last equilibrium, by Broyden's method (Broyden 1965, Mathematics of
+        Computation 19, 577-593) with the slopes there, or new ones where these do not converge.
+        Where a branch flips, the path of equilibria ends: slopes follow the motion of a tree
+        without inertia (Kelley & Keyes 1998, SIAM Journal on Numerical Analysis 35, 508-523).
+        Where that ends far from any equilibrium, the pose of the weaker wind is repeated.
+        """
+        start, nearest, least, before, step, rest = at, at, np.inf, np.inf, at, at
+        inverse: Floats = np.eye(len(at))
+        for turn in range(_STEPS):
+            load = s * (self._moments(self._shapes @ at, self._still, ahead) @ self._shapes)
+            load, missed = load / self._root, rest
+            rest = self._root * at - load
+            size = float(np.linalg.norm(rest)) / max(float(np.linalg.norm(load)), 1e-300)
+            nearest, least = (at, size) if size < least else (nearest, least)
+            if size < _AT_REST:
+                break
+            if size < before < np.inf:
+                change = inverse @ (rest - missed)
+                inverse += np.outer(step - change, step @ inverse) / float(step @ change)
+            else:
+                changes = self._slopes(self._shapes @ at, ahead)[0] if turn else turning
+                slope = np.eye(len(at)) - s * (changes / self._root / self._root[:, None]).T
+                lowest = float(np.linalg.eigvalsh(0.5 * (slope + slope.T))[0])
+                inverse[:] = np.linalg.inv(slope + max(0.0, 0.1 - 1.5 * lowest) * np.eye(len(at)))
+            before, step = size, -inverse @ rest
+            far = float(np.abs(self._shapes @ (step / self._root)).max())
+            step *= min(1.0, _FARTHEST / max(far, 1e-12))
+            at = at + step / self._root
+        return nearest if least < _NEAR_REST else start
+
+    def _fill_aslant(self, table: np.void) -> None:
+        """Fill the change of slopes by oblique winds at rest, and slopes of steep winds."""
+        m, azimuths = int(table['n_modes']), self._azimuths
+        rising = [self._slopes(self._still, direction(a, _SLOPE_AT))[0] for a in azimuths]
+        # A falling wind is the opposite of one that rises from the other side.
+        falling = -np.roll(rising, len(azimuths) // 2, axis=0)
+        risen = np.array(rising) - falling
+        table['lean'][:, :m, :m] = _between(risen / (2.0 * np.sin(_SLOPE_AT)))
+        turning, damping = self._slopes(self._still, direction(0.0, np.pi / 2.0))
+        table['steep_turning'][:, :m, :m] = -turning, turning
+        table['steep_damping'][:, :m, :m] = damping
+
+
+def fit_harmonics(moments: WindMoments, shapes: Floats) -> tuple[Floats, Floats]:
+    """
+    Fit the load on shapes (N, m) at rest in all winds, horizontal ones with most weight.
+
+    Returns harmonics, (h, m), and the largest loads, (m,), both at 1 kg/m/s^2.
+    """
+    elevation, azimuth = np.meshgrid(_ELEVATIONS, _AZIMUTHS, indexing='ij')
+    directions = direction(azimuth.ravel(), elevation.ravel())
+    weight = np.sqrt(np.exp(-0.5 * (elevation.ravel() / _ELEVATION_SPREAD) ** 2) + 0.02)
+    weight *= np.sqrt(np.maximum(np.cos(elevation.ravel()), 1.0 / N_AZIMUTHS))
+    loads = moments.at_rest(directions, shapes)
+    values = harmonics_at(directions) * weight[:, None]
+    fitted = np.linalg.lstsq(values, loads * weight[:, None], rcond=None)[0]
+    return np.asarray(fitted), np.abs(loads).max(axis=0)
+
+
+def _between(values: Floats) -> Floats:
+    """Interpolate values at every other azimuth, the first axis, to `N_AZIMUTHS`."""
+    waves = np.fft.rfft(values, axis=0)
+    waves[-1] *= 0.5
+    return np.asarray(np.fft.irfft(waves, N_AZIMUTHS, axis=0) * (N_AZIMUTHS / len(values)))
+
+
+def direction(azimuth: ArrayLike, elevation: ArrayLike) -> Floats:
+    """Return unit vectors, (..., 3)."""
+    azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
+    x, y = np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth)
+    return np.asarray(np.stack([x, y, np.sin(elevation)], axis=-1))
+
+
+def harmonics_at(directions: Floats) -> Floats:
+    """Harmonics of unit vectors (k, 3), (k, h)."""
+    out = np.zeros((N_HARMONICS, len(directions)))
+    _fill_harmonics(*directions.T, out)
+    return out.T
+
+
+_fill_harmonics = fill_harmonics.py_func  # type: ignore[attr-defined]  # whole arrays at once

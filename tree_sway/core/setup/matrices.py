@@ -1,0 +1,290 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The reduced tree: mass, stiffness and load levers of the key rotations of all branches.
+
+A child moves with its parent: a unit of a parent's coordinate moves the subtree of the child as
+one rigid body, by a twist (v, w) about the root of the tree. With H_j, the momentum (linear,
+angular) of a unit rate of coordinate j with its subtree, the entries for an ancestor's coordinate
+i are
+
+    M_ij = (v, w)_i . H_j          mass
+    Kg_ij = g e_z . (w_i x p_j)     gravity, p_j the linear part of H_j
+
+and depth-first order makes the j of one i a contiguous slice. Elastic stiffness couples only the
+shapes of one branch, and those are made orthogonal, so it is diagonal. Gravity acts about the rest
+shape, which is the loaded one, and only its geometric stiffness enters.
+
+Symbols: N coordinates, in the order of branches, shapes, axes; T the twists of the parent's
+coordinates on each child. SI units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.beams.beam import cross, energies, many_of, products
+from tree_sway.core.beams.branch_model import BranchModel
+from tree_sway.core.beams.shape_functions import MAX_COORDINATES
+from tree_sway.core.tree.tree import Tree
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """
+    Matrices of the key rotations.
+
+    Parameters
+    ----------
+    first
+        First coordinate of each branch, and N at the end, (b + 1,).
+    twist
+        Motion (v, w) of each branch's base per unit of its parent's coordinates, about the root,
+        (b, 9, 6).
+    compliance
+        Inverse of ``branchwise``, the block of its branch in each row, (N, 9) in [rad/(N m)].
+    mass, gravity
+        Symmetric sparse matrices (N, N) in [kg m^2] and [N m/rad].
+    elastic
+        Stiffness of bending and twist, symmetric sparse (N, N) in [N m/rad]; it couples the
+        coordinates of one branch.
+    branchwise
+        Stiffness of the isolated branches, symmetric sparse (N, N).
+
+    """
+
+    first: Ints
+    twist: Floats
+    compliance: Floats
+    mass: Any
+    gravity: Any
+    elastic: Any
+    branchwise: Any
+
+    @property
+    def n_coordinates(self) -> int:
+        """Number of coordinates, N."""
+        return int(self.first[-1])
+
+    @property
+    def stiffness(self) -> Any:
+        """Elastic and geometric stiffness, sparse (N, N), in [N m/rad]."""
+        return (self.elastic + self.gravity).tocsc()
+
+    @cached_property
+    def factors(self) -> Factors:
+        """Factors of the stiffness, found once."""
+        return Factors(self.stiffness)
+
+
+class Factors:
+    """
+    Factors of a sparse symmetric matrix of coordinates, parents before children.
+
+    Eliminated from the twigs to the stem, they have no more entries than the matrix itself.
+    """
+
+    def __init__(self, matrix: Any) -> None:
+        """Factorise; a singular matrix raises `RuntimeError`."""
+        from scipy.sparse.linalg import splu
+
+        self._factors = splu(
+            matrix.tocsc()[::-1, ::-1], permc_spec='NATURAL', diag_pivot_thresh=0.0,
+            options={'SymmetricMode': True},
+        )  # fmt: skip
+
+    @property
+    def is_positive(self) -> bool:
+        """Whether the matrix is positive definite: as many pivots are (Sylvester's law)."""
+        return bool((self._factors.U.diagonal() > 0.0).all())
+
+    def solve(self, right: Floats) -> Floats:
+        """Solve for one right side, (N,), or some, (N, k)."""
+        return np.asarray(self._factors.solve(right[::-1])[::-1])
+
+
+def reduce_tree(
+    tree: Tree, models: list[BranchModel], modulus: float, shear_modulus: float, gravity: float,
+    *, subtrees: bool = True,
+) -> Reduction:  # fmt: skip
+    """
+    Assemble the matrices of the key rotations.
+
+    Parameters
+    ----------
+    tree
+        Tree to be reduced.
+    models
+        Models of its branches.
+    modulus, shear_modulus
+        E and G of the wood in [Pa].
+    gravity
+        Gravity in [m/s^2]; 0 leaves weight out.
+    subtrees
+        Whether children move with their parents and load them; if not, every branch is isolated.
+
+    Returns
+    -------
+    Reduction
+        Mass, gravity and stiffness.
+
+    """
+    n_branches = tree.n_branches
+    first = np.concatenate([[0], np.cumsum([len(m.fields) for m in models])]).astype(np.int64)
+    momentum = np.zeros((first[-1], 6))
+    twist = np.zeros((n_branches, MAX_COORDINATES, 6))
+    body = np.zeros((n_branches, 6, 6))
+    compliance = np.zeros((first[-1], MAX_COORDINATES))
+    mass, weight, elastic, apart = _Blocks(), _Blocks(), _Blocks(), _Blocks()
+    for branches, model in _together(models):
+        own = first[branches][..., None] + np.arange(len(model.fields))
+        fields = np.stack([one.points for one in model.fields], axis=-4)
+        moved = (model.mass * model.beam.weight)[..., None, :, :, None] * fields
+        slopes = np.stack([one.slope for one in model.fields], axis=-4)
+        spins = _spins(model, slopes)
+        own_mass = products(moved, fields, 3) + products(spins, slopes, 3)
+        turning = cross(model.beam.point[..., None, :, :, :], moved) + spins
+        momentum[own] = np.concatenate([moved, turning], axis=-1).sum(axis=(-3, -2))
+        children = model.children
+        own_weight = gravity * _own_geometric(model, body[children])
+        base_twists = _base_twists(model)
+        if len(children):
+            twist[children, : len(model.fields)] = base_twists
+        if len(children) and subtrees:
+            carried = base_twists @ body[children]
+            own_mass += (carried @ base_twists.swapaxes(-1, -2)).sum(axis=0)
+            momentum[own] += carried.sum(axis=0)
+            ends = first[tree.subtree_end[children]]
+            below = np.arange(first[children[0]], ends[-1])
+            moves = base_twists.repeat(ends - first[children], axis=0)
+            lift = momentum[below]
+            mass.add(own, below, (moves @ lift[..., None])[..., 0].T)
+            tilt = moves[:, :, 3] * lift[:, 1:2] - moves[:, :, 4] * lift[:, :1]
+            weight.add(own, below, gravity * tilt.T)
+        mass.add(own, own, own_mass)
+        weight.add(own, own, own_weight)
+        bent = energies(model.fields, modulus, shear_modulus)
+        elastic.add(own, own, bent)
+        apart.add(own, own, bent + own_weight)
+        compliance[own, : len(model.fields)] = np.linalg.inv(bent + own_weight)
+        if subtrees:
+            body[branches] = _spatial_inertia(model) + body[children].sum(axis=0)
+    shape = (int(first[-1]), int(first[-1]))
+    matrices = (each.symmetric(shape) for each in (mass, weight, elastic, apart))
+    return Reduction(first, twist, compliance, *matrices)
+
+
+class _Blocks:
+    """Dense blocks of a sparse symmetric matrix, each above or on the diagonal."""
+
+    def __init__(self) -> None:
+        self.rows: list[Ints] = []
+        self.columns: list[Ints] = []
+        self.values: list[Floats] = []
+
+    def add(self, rows: Ints, columns: Ints, values: Floats) -> None:
+        """Add blocks (..., k, c) at rows (..., k) and columns (..., c), and their transposes."""
+        both = rows[..., None], columns[..., None, :]
+        r, c = (np.broadcast_to(each, values.shape).ravel() for each in both)
+        for places in ((r, c),) if rows is columns else ((r, c), (c, r)):
+            self.rows.append(places[0])
+            self.columns.append(places[1])
+            self.values.append(values.ravel())
+
+    def symmetric(self, shape: tuple[int, int]) -> Any:
+        from scipy import sparse  # it takes long to load, and a stored set-up does not need it
+
+        entries = np.concatenate(self.values)
+        where = np.concatenate(self.rows), np.concatenate(self.columns)
+        return sparse.coo_matrix((entries, where), shape=shape).tocsc()
+
+
+def _together(models: list[BranchModel]) -> Iterator[tuple[int | Ints, BranchModel]]:
+    """Yield branches and their models, children first: twigs that are alike as one model."""
+    twigs: dict[tuple[int, int], list[int]] = {}
+    for branch, model in enumerate(models):
+        if not len(model.children):
+            twigs.setdefault((len(model.beam.length), len(model.fields)), []).append(branch)
+    for alike in twigs.values():
+        ones = [models[branch] for branch in alike]
+        beam = many_of([one.beam for one in ones])
+        fields = zip(*(one.fields for one in ones), strict=True)
+        many = tuple(many_of(each, beam=beam) for each in fields)
+        mass = np.array([one.mass for one in ones])
+        yield np.array(alike), replace(ones[0], beam=beam, mass=mass, fields=many)
+    for branch in range(len(models) - 1, -1, -1):
+        if len(models[branch].children):
+            yield branch, models[branch]
+
+
+def _base_twists(model: BranchModel) -> Floats:
+    """Twist on each child of each coordinate, (c, k, 6)."""
+    places = model.beam.child_point
+    parts = [
+        np.concatenate([one.children - cross(one.child_slope, places), one.child_slope], axis=-1)
+        for one in model.fields
+    ]
+    return np.stack(parts, axis=-2)
+
+
+def _spins(model: BranchModel, slopes: Floats) -> Floats:
+    """Spin of cross-sections that rotate by slopes, (..., k, p, 5, 3) both (Rayleigh, 1877)."""
+    beam = model.beam
+    about = (beam.second_moment / beam.area * model.mass * beam.weight)[..., None, :, :, None]
+    tangent = beam.tangent[..., None, :, None, :]
+    return np.asarray(about * (slopes + (slopes * tangent).sum(-1, keepdims=True) * tangent))
+
+
+def _spatial_inertia(model: BranchModel) -> Floats:
+    """Inertia (6, 6) of a branch as a rigid body about the root: momentum of a twist (v, w)."""
+    turning = cross(np.eye(3)[:, None, None], model.beam.point[..., None, :, :, :])
+    moving = np.broadcast_to(np.eye(3)[:, None, None], turning.shape)
+    moves = np.concatenate([moving, turning], axis=-4)
+    inertia = products((model.mass * model.beam.weight)[..., None, :, :, None] * moves, moves, 3)
+    inertia[..., 3:, 3:] += products(_spins(model, moving), moving, 3)
+    return inertia
+
+
+def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
+    """
+    Return the second-order lift of a branch and its subtrees per unit of gravity, (k, k).
+
+    Every piece ds rotates the mass beyond it: with m that mass, the entry is the integral of psi_i
+    psi_j m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each child's
+    subtree about its base takes the place of m t for the child.
+
+    Rotations about different axes do not add up: bending followed by twist adds half of their
+    cross product, and the weight, whose moment the branch bears at rest, does work on that (as in
+    lateral buckling of beams: Timoshenko & Gere, 1961).
+    """
+    beam = model.beam
+    own, nodes, _ = beam.from_base(model.mass)
+    masses = bodies[:, 0, 0]
+    moment = np.stack([bodies[:, 5, 1], bodies[:, 3, 2], bodies[:, 4, 0]], axis=-1)
+    hanging = moment - masses[:, None] * beam.child_point
+    beyond = nodes[..., -1:, None] - own
+    if len(masses):
+        beyond = beyond + beam.child_lever[1] @ masses
+    lever = beyond[..., None] * beam.tangent[..., None, :]
+    outer = beam.from_base(lever)
+    hung = outer[1][..., -1:, None, :] - outer[0]
+    if len(masses):
+        hung += beam.child_lever[1] @ hanging
+    weight, shape = beam.weight[..., None], (*beam.chord.shape[:-1], -1, 3)
+    arms = np.concatenate([(weight * lever).reshape(shape), hanging], axis=-2)[..., None, :, :]
+    turns = np.stack(
+        [np.concatenate([f.slope.reshape(shape), f.child_slope], axis=-2) for f in model.fields],
+        axis=-3,
+    )
+    once = turns[..., 2] @ (turns * arms).sum(axis=-1).swapaxes(-1, -2)
+    both = products(turns * arms[..., 2:], turns, 2)
+    borne = weight * np.stack([hung[..., 1], -hung[..., 0], 0.0 * hung[..., 0]], axis=-1)
+    about = np.stack([cross(borne, one.slope) for one in model.fields], axis=-4)
+    once += products(about, np.stack([one.curvature for one in model.fields], axis=-4), 3)
+    return np.asarray(0.5 * (once + once.swapaxes(-1, -2)) - both)

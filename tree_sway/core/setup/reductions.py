@@ -1,0 +1,244 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Reductions of a tree, shared by its models: beams, key segments, matrices, modes.
+
+Models differ in two ways of reduction: with subtrees, where a branch moves with its subtree, or
+isolated (the paper's).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.beams.branch_model import BranchModel, TreeBeams
+from tree_sway.core.beams.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
+from tree_sway.core.checks import one_of_each
+from tree_sway.core.kernel import WHY_PLAIN
+from tree_sway.core.model.drag_law import crown_drag, DragLaw, pressure
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.fill_records import branch_records, Places, places_of, segment_records
+from tree_sway.core.setup.matrices import reduce_tree, Reduction
+from tree_sway.core.setup.modes import leading_modes, Modes, natural_modes, solvable
+from tree_sway.core.setup.one_thread import one_thread
+from tree_sway.core.setup.season import in_season
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+
+if TYPE_CHECKING:
+    from tree_sway.core.setup.static_responses import WindMoments
+
+CUT_FOR = 15.0
+"""Wind in [m/s] for whose rotations branches are cut."""
+
+_STEADY = 2.0
+"""
+Weight of steady responses over gust responses, root mean square, as for a turbulence intensity of
+some 0.25.
+"""
+
+_CANDIDATES = 120
+"""Number of natural modes by which responses to gusts are computed."""
+
+
+@dataclass(frozen=True)
+class ReducedTree:
+    """
+    A tree reduced in one of the two ways.
+
+    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,), and
+    ``row`` has the given tree's number of each segment, (n,); each segment has its ``mass`` [kg],
+    with leaves, (n,).
+    """
+
+    tree: Tree
+    branch: Ints
+    row: Ints
+    models: list[BranchModel]
+    reduction: Reduction
+    branches: Records
+    segments: Records
+    places: Places
+    mass: Floats
+
+
+class TreeReductions:
+    """
+    The reductions of a tree of a species, each made at its first use.
+
+    With ``plain`` nothing is compiled.
+    """
+
+    def __init__(
+        self, tree: Tree, species: Species, settings: Settings, *, plain: bool = False
+    ) -> None:
+        if settings.root_stiffness is not None:
+            species = replace(species, root_stiffness=settings.root_stiffness)
+        self.tree, self.species = tree, species
+        self.settings = in_season(tree, species, settings)
+        self.plain = plain or bool(WHY_PLAIN)
+        self.drag_law, self.leaf_load_area = _crown_drag(tree, species, self.settings)
+        """
+        Law of the whole tree; equivalent area of bare wood of the leaves of each branch in [m^2],
+        (b,).
+        """
+        self.circular = np.zeros(0)
+        """Lowest known natural circular frequencies in [rad/s]."""
+        self._slowest: Modes | None = None
+
+    @property
+    def damping_ratio(self) -> float:
+        """Damping ratio of every oscillator in [-]."""
+        if self.settings.damping_ratio is not None:
+            return self.settings.damping_ratio
+        return self.species.damping(bool(self.settings.in_leaf))
+
+    def natural_modes(self, count: int | None = None) -> Modes:
+        """Return the slowest natural modes of the tree, or all, found once."""
+        wanted = self.with_subtrees.reduction.n_coordinates if count is None else count
+        if self._slowest is None or len(self._slowest.circular) < wanted:
+            with solvable(self.tree):
+                reduced = self.with_subtrees
+                self._slowest = natural_modes(reduced.tree, reduced.reduction, count)
+            self.circular = self._slowest.circular
+        return self._slowest.slowest(wanted)
+
+    def natural_frequencies(self, count: int) -> Floats:
+        """Lowest natural frequencies in [Hz], (count,) or fewer."""
+        if count > len(self.circular):
+            self.natural_modes(min(count, self.with_subtrees.reduction.n_coordinates))
+        return np.asarray(self.circular[:count] / (2.0 * np.pi))
+
+    def modes(self, model: int | str) -> Modes:
+        """Return all modes, or the leading ones in winds."""
+        reduction = self.with_subtrees.reduction
+        n = reduction.n_coordinates
+        count = n if isinstance(model, str) else min(model, n)
+        if count in (0, n):
+            return self.natural_modes(1 if count == 0 else None).slowest(count)
+        from tree_sway.core.setup.gust_responses import gust_responses
+        from tree_sway.core.setup.tree_motion import tip_motion
+
+        candidates = min(n, _CANDIDATES)
+        natural = self.natural_modes(None if candidates == n else candidates)
+        branches = self.with_subtrees.branches
+
+        def moved(rotations: Floats) -> Floats:
+            return np.asarray(tip_motion(branches, rotations).reshape(-1, rotations.shape[1]))
+
+        loss, tips = self.damping_ratio * np.ones(candidates), moved(natural.shapes)
+        gusts = gust_responses(branches, natural, tips, loss, self.drag_law)
+        squares, mixes = np.linalg.eigh(gusts @ gusts.T)
+        mixes *= np.sqrt(np.maximum(squares, 0.0))
+        steady = self._static_responses()
+        tips, moved_steadily = tips @ mixes, moved(steady)
+        weight = _STEADY * np.linalg.norm(tips) / np.linalg.norm(moved_steadily)
+        answers = np.hstack([natural.shapes @ mixes, weight * steady])
+        return leading_modes(reduction, answers, np.hstack([tips, weight * moved_steadily]), count)
+
+    def _static_responses(self) -> Floats:
+        """Responses of the tree to winds as key rotations, per pressure of 1 kg/m/s^2."""
+        from tree_sway.core.setup.static_responses import static_responses
+
+        law, solve = self.drag_law, self.with_subtrees.reduction.factors.solve
+        return static_responses(self.wind_moments, solve, lambda u: pressure(u, *law) * u * u)
+
+    @cached_property
+    def wind_moments(self) -> WindMoments:
+        """Return the loads of the tree that is reduced with its subtrees."""
+        from tree_sway.core.setup.static_responses import WindMoments
+
+        return WindMoments(self.with_subtrees.branches, plain=self.plain)
+
+    def reduced(self, model: int | str) -> ReducedTree:
+        """Return the reduction for a model."""
+        return self.isolated if model == 'branch' else self.with_subtrees
+
+    @cached_property
+    def isolated(self) -> ReducedTree:
+        """Reduction of isolated branches."""
+        whole = whole_tree(self.tree)
+        return self._reduced(whole, self._beams.models(subtrees=False), subtrees=False)
+
+    @cached_property
+    def with_subtrees(self) -> ReducedTree:
+        """
+        Reduction with subtrees, enriched branches with further shapes.
+
+        Branches that rotate far are cut into key segments.
+        """
+        dynamic_pressure = pressure(CUT_FOR, *self.drag_law) * CUT_FOR**2
+        turns = dynamic_pressure * self._beams.turns(self.species.modulus)
+        cut, beams = cut_tree(self.tree, pieces_by_turn(self.tree, turns)), self._beams
+        if cut.tree.n_branches > self.tree.n_branches:
+            beams = self._beams_of(cut)
+        enriched = beams.enriched(self.settings.enrich)
+        models = beams.models(subtrees=True, enriched=enriched)
+        return self._reduced(cut, models, subtrees=True)
+
+    @cached_property
+    def _speed(self) -> Floats:
+        """Wind at each segment's middle over that at the anemometer, (n,)."""
+        middle = 0.5 * (self.tree.start[:, 2] + self.tree.end[:, 2])
+        return self.settings.profile.over_anemometer(middle)
+
+    @cached_property
+    def _beams(self) -> TreeBeams:
+        """Return the beams of whole branches."""
+        return self._beams_of(whole_tree(self.tree))
+
+    def _beams_of(self, cut: CutTree) -> TreeBeams:
+        species, leaf_mass = self.species, np.zeros(self.tree.n_branches)
+        if self.settings.leaf_mass is not None:
+            leaf_mass = one_of_each(
+                'leaf_mass', self.settings.leaf_mass, self.tree.n_branches, 'branch'
+            )
+        return TreeBeams(
+            cut.tree,
+            species.density,
+            shear_ratio=species.shear_ratio,
+            speed_profile=self._speed[cut.row],
+            leaf_mass=cut.share * leaf_mass[cut.branch],
+            leaf_area=cut.share * self.leaf_load_area[cut.branch],
+            root_compliance=species.modulus / species.root_stiffness,
+            gravity=self.settings.gravity / species.modulus,
+        )
+
+    @one_thread()
+    def _reduced(self, cut: CutTree, models: list[BranchModel], *, subtrees: bool) -> ReducedTree:
+        tree, species = cut.tree, self.species
+        shear = species.shear_ratio * species.modulus
+        reduction = reduce_tree(
+            tree, models, species.modulus, shear, self.settings.gravity, subtrees=subtrees
+        )
+        places = places_of(tree, models, reduction)
+        records = branch_records(tree, models, reduction, places, self._speed[cut.row])
+        # Poses are those of the segments of whole branches.
+        row, on = cut.row[records['first']], records['base_segment']
+        records['end'] += row - records['first']
+        records['first'], records['base_segment'] = row, np.where(on < 0, -1, cut.row[on])
+        mass = np.concatenate([
+            model.beam.over_segments(model.mass) * model.beam.segment_length for model in models
+        ])  # fmt: skip
+        segments = segment_records(places)
+        return ReducedTree(
+            tree, cut.branch, cut.row, models, reduction, records, segments, places, mass
+        )
+
+
+def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:
+    """Find the drag law of wood and leaves, and the equivalent area of leaves by branch, (b,)."""
+    if not settings.in_leaf or settings.leaf_area is None:
+        law = DragLaw(*species.drag_law(bool(settings.in_leaf)))
+        return law, np.zeros(tree.n_branches)
+    from tree_sway.core.leaves.foliage import clad_wood
+
+    area = one_of_each('leaf_area', settings.leaf_area, tree.n_branches, 'branch')
+    wood = float(tree.length @ (tree.base_diameter + tree.tip_diameter)) / 2.0
+    laws = species.drag_law(in_leaf=False)[0], species.drag_law(in_leaf=True)
+    return crown_drag(wood, area, clad_wood(tree, species.leaves), *laws)
