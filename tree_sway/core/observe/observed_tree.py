@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 import math
 from typing import Any
 
@@ -34,6 +34,7 @@ from tree_sway.core.observe.sensor_track import SensorTrack
 from tree_sway.core.observe.tree_fit import TreeFit
 from tree_sway.core.run.crown_gusts import delays_of
 from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
+from tree_sway.core.setup.tree_motion import tip_motion
 from tree_sway.core.tree.grown_tree import GrownTree
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
@@ -44,8 +45,23 @@ from tree_sway.errors import ParameterError
 _STORM = 36.0
 """Wind in [m/s] whose static deflection bounds the energy of the corrected motion."""
 
+_KNOWN_AHEAD = 0.5
+"""Time in [s] by which samples of records are known ahead of a step."""
+
+_QUANTILE = 1.2816
+"""Standard deviations within which 80 % of a normal distribution lie."""
+
 _DYNAMIC = 4.0
 """Energy of the motion in a storm over that of the static deflection."""
+
+
+@dataclass
+class _Record:
+    """Times [s], (n,), rows of each quantity, and the next one to be offered."""
+
+    time: Floats
+    rows: dict[str, Floats]
+    next: int = 0
 
 
 class ObservedTree(SwaySimulator):
@@ -103,16 +119,12 @@ class ObservedTree(SwaySimulator):
                 where='model',
                 cure='use a number of coordinates, such as 60',
             )
-        self._rate = within('rate', rate, 1.0, 10_000.0, 'Hz')
-        dt = 1.0 / self._rate
-        frequency = float(self.frequencies(1)[0])
-        self.sensors = {
-            name: MotionSensor(name, place_on(self.tree, where)) for name, where in at.items()
-        }
+        self._places = {name: place_on(self.tree, where) for name, where in at.items()}
+        self._is_smoothed, self._rate = is_smoothed, 0.0
+        self.sensors: dict[str, MotionSensor] = {}
         """Sensors by their names."""
-        tracks = [SensorTrack(each, frequency, dt) for each in self.sensors.values()]
-        self.observer = Observer(self, tracks, dt, is_smoothed=is_smoothed)
-        """What the sensors tell."""
+        self._records: dict[str, _Record] = {}
+        self.set_rate(rate)
         delays = delays_of(self.tree, self.reductions.leaf_load_area)
         self._share = delays.share
         self._crown = CrownWind(delays.spread, coherence)
@@ -122,8 +134,24 @@ class ObservedTree(SwaySimulator):
         """Time of the end of the last step in [s], on the clock of the sensors."""
         self._given: float | None = None
         self._known: TreeFit | None = None
+        self._tips: Floats | None = None
         self.learns = learns
         """Whether stiffness and damping follow the sensors."""
+
+    def set_rate(self, rate: float) -> None:
+        """
+        Set the steps per second in [Hz]; the sensors begin anew if it changes.
+
+        A `ParameterError` refuses a rate beyond 1 to 10,000 Hz.
+        """
+        if within('rate', rate, 1.0, 10_000.0, 'Hz') == self._rate:
+            return
+        self._rate = rate
+        frequency = float(self.frequencies(1)[0])
+        self.sensors = {name: MotionSensor(name, place) for name, place in self._places.items()}
+        tracks = [SensorTrack(each, frequency, 1.0 / rate) for each in self.sensors.values()]
+        self.observer = Observer(self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed)
+        """What the sensors tell."""
 
     def _swing(self) -> tuple[Floats, ...]:
         """Return views of displacement, rate and force of each coordinate, (m,)."""
@@ -156,6 +184,34 @@ class ObservedTree(SwaySimulator):
             time, acceleration=acceleration, rate=rate, orientation=orientation
         )
 
+    def replay(
+        self,
+        name: str,
+        time: Floats,
+        *,
+        acceleration: Floats | None = None,
+        rate: Floats | None = None,
+        orientation: Floats | None = None,
+    ) -> None:
+        """
+        Offer a record of a sensor, sample by sample as the steps reach its times.
+
+        Times are in [s] after `reset`, (n,); the quantities, (n, 3) and (n, 4), are those of
+        `offer`.
+        """
+        order = np.argsort(time, kind='stable')
+        given = {'acceleration': acceleration, 'rate': rate, 'orientation': orientation}
+        rows = {key: each[order] for key, each in given.items() if each is not None}
+        self._records[name] = _Record(np.asarray(time, dtype=np.float64)[order], rows)
+
+    def _offer_records(self, until: float) -> None:
+        """Offer the samples of all records up to a time in [s]."""
+        for name, record in self._records.items():
+            while record.next < len(record.time) and record.time[record.next] <= until:
+                row = {key: each[record.next] for key, each in record.rows.items()}
+                self.offer(name, record.time[record.next], **row)
+                record.next += 1
+
     def set_time(self, time: float) -> None:
         """Set the time in [s] at which the next step ends; else it goes on by its length."""
         self._given = time
@@ -177,6 +233,7 @@ class ObservedTree(SwaySimulator):
             self.observer.reset()
         self.now = self.now + dt if self._given is None else self._given
         self._given = None
+        self._offer_records(self.now + _KNOWN_AHEAD)
         swing = self._swing()
         n_periods = max(round(dt * self._rate), 1)
         correction = self.observer.step(self.now, math.hypot(x, y, z), swing, n_periods)
@@ -217,6 +274,9 @@ class ObservedTree(SwaySimulator):
         self._crown.reset()
         self._added[:] = 0.0
         self.observer.reset()
+        self.now, self._given = 0.0, None
+        for record in self._records.values():
+            record.next = 0
 
     def glide(self, dt: float) -> bool:
         """Continue a transition of `tune`, and observe the changed tree."""
@@ -229,6 +289,21 @@ class ObservedTree(SwaySimulator):
     def smoothed(self) -> Floats:
         """Key rotations in [rad] of `LATE_STEPS` ago by what was measured since, (N,)."""
         return np.asarray(self.bank.oscillators.shapes @ self.observer.smoothed)
+
+    def band(self) -> Floats:
+        """
+        Half the width of the band that holds 80 % of the true motion of each tip [m], (b, 3).
+
+        It comes from the covariance of the correction, or of the unknown forces where no sensor is
+        in use, and from how large the innovations have been of late.
+        """
+        if self._tips is None:
+            shapes = np.ascontiguousarray(self.bank.oscillators.shapes)
+            last = np.searchsorted(self.joints['end'], self.tree.branch_first[1:])
+            motion = tip_motion(self.joints, shapes)[last]
+            self._tips = motion.reshape(-1, shapes.shape[1])
+        deviation = self.observer.tip_deviation(self._tips)
+        return np.asarray(_QUANTILE * deviation.reshape(-1, 3))
 
     @property
     def problems(self) -> list[str]:
