@@ -24,6 +24,7 @@ from tree_sway.commands.arguments import (
 from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
 from tree_sway.commands.motion_arguments import add_motion_arguments, placed_motion
 from tree_sway.commands.progress import waiting
+from tree_sway.commands.sensor_arguments import add_sensor_argument, live_record
 from tree_sway.core.scene.simulate import simulate, WindSamples
 from tree_sway.core.wind.exposure import Exposure
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
@@ -36,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add_tree_arguments(parser)
     add_wind_arguments(parser)
+    add_sensor_argument(parser)
     add_exposure_arguments(parser)
     add_model_argument(parser)
     add_leaves_argument(parser)
@@ -83,7 +85,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _wind(arguments: argparse.Namespace, exposure: Exposure) -> WindSamples | np.ndarray:
-    """Return the given record, or simulated wind."""
+    """Return the given record, the wind of a live source from now on, or simulated wind."""
+    if arguments.sensor is not None:
+        return live_record(arguments, arguments.seconds or 60.0)
     if arguments.wind is None:
         rng, seconds = np.random.default_rng(0), arguments.seconds or 60.0
         return simulate_turbulence(
