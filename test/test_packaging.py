@@ -88,6 +88,8 @@ OPTIONAL = {
     'mpmath',
     'mujoco',
     'dartpy',
+    'netCDF4',
+    'openpyxl',
     'numba',
     'pyarrow',
     'rosbags',
