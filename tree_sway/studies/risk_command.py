@@ -36,8 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('inventory', metavar='INVENTORY', help='trees: species, height or dbh')
     parser.add_argument(
-        '-o', '--output', default='risk.csv', metavar='FILE.csv',
-        help='table, a row per tree; rows are written as they are computed (%(default)s)',
+        '-o', '--output', default='risk.csv', metavar='FILE',
+        help='table, .csv, a row per tree; written as it is computed (%(default)s)',
     )  # fmt: skip
     parser.add_argument(
         '--workers', type=int, metavar='N', help='processes; one per core if left out'
