@@ -11,7 +11,6 @@ from tree_sway_lab.example_trees import branch_order
 from tree_sway.core.growth import forms
 from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.tree.species import SPECIES
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
