@@ -452,6 +452,36 @@ def test_it_speaks_languages(visit: Visit) -> None:
     visit(script)
 
 
+@pytest.mark.parametrize(
+    ('source', 'text'),
+    [
+        ({'name': 'Berlin, open-meteo', 'state': 'live', 'speed': 6.4, 'wind': [6.4, 0.0],
+          'age': 180.0, 'is_mean': True},
+         'Live: Berlin, open-meteo, 6.4 m/s from W (270°), 3 min ago, gusts simulated about its '
+         'mean'),
+        ({'name': 'Mast', 'state': 'live', 'speed': 6.44, 'wind': [0.0, -6.4], 'age': 0.1},
+         'Live: Mast, 6.4 m/s from N (0°)'),
+        ({'name': 'cup', 'state': 'stale', 'speed': 5.0, 'wind': [5.0, 0.0], 'age': 40.0,
+          'lacks_direction': True},
+         'Live: cup, 5.0 m/s from W (270°), 40 s ago, direction assumed, too old'),
+        ({'name': 'EDDB', 'state': 'live', 'speed': 0.0, 'wind': [0.0, 0.0], 'age': 7300.0},
+         'Live: EDDB, 0.0 m/s, 2 h ago'),
+        ({'name': 'udp://:1', 'state': 'waiting'}, 'Live: udp://:1, no wind yet'),
+        ({'name': 'udp://:1', 'state': 'unknown'}, 'Live: udp://:1, messages not understood'),
+        ({'name': 'wind', 'rate': 19.9}, 'Live: wind, 20 Hz'),
+    ],
+)  # fmt: skip
+def test_the_head_names_the_live_wind_its_speed_and_its_age(
+    visit: Visit, source: dict[str, Any], text: str
+) -> None:
+    async def script(browser: Browser) -> None:
+        described = json.dumps({'kind': 'live', **source})
+        said = f"import('/static/words.js').then((m) => m.windSource({described}))"
+        assert await browser.run(said) == text
+
+    visit(script)
+
+
 def test_text_contrasts_with_its_ground(visit: Visit) -> None:
     """By 4.5 to 1, as WCAG 2 asks."""
 
