@@ -482,6 +482,47 @@ def test_the_head_names_the_live_wind_its_speed_and_its_age(
     visit(script)
 
 
+def test_trees_are_coloured_by_a_storm(live: Live, browser_class: Any) -> None:
+    """Goldcrest's band is 20 to 30 m/s: a storm is below, within or above it."""
+    server = PageServer(
+        PageSettings(), ControlPanel(), live.session.status, critical_winds={'goldcrest': (20, 30)}
+    )
+
+    async def look() -> None:
+        async with browser_class() as browser:
+            await browser.open(server.url)
+            await browser.until("window.treeSway && treeSway.state === 'live'")
+            await browser.until("!document.getElementById('risk').hidden")
+            counts, pictures = {}, {}
+            for storm in (10, 25, 40):
+                await browser.run(
+                    f'document.getElementById("storm").value = {storm};'
+                    'document.getElementById("storm").dispatchEvent(new Event("input")); 1'
+                )
+                counts[storm] = await browser.run(
+                    '[...document.querySelectorAll("#risk-counts li:not([hidden])")]'
+                    '.map((each) => parseInt(each.textContent))'
+                )
+                await browser.run('new Promise((done) => setTimeout(() => done(1), 500))')
+                pictures[storm] = picture(await browser.screenshot())
+            assert counts == {10: [1, 0, 0], 25: [0, 1, 0], 40: [0, 0, 1]}
+            painted = np.abs(pictures[40] - pictures[10]).max(axis=2) > 60
+            assert painted.mean() > 0.01
+            colors = {storm: each[painted].mean(axis=0) for storm, each in pictures.items()}
+            assert np.argmax(colors[10]) == 2
+            assert colors[25][0] > colors[25][1] > 1.5 * colors[25][2]
+            assert colors[40][0] > 1.5 * colors[40][1]
+            assert 'afe' not in await browser.run('document.getElementById("risk").innerText')
+            assert browser.console == []
+
+    with server:
+        live.session.serve(server)
+        try:
+            asyncio.run(look())
+        finally:
+            live.session.serve(live.server)
+
+
 def test_text_contrasts_with_its_ground(visit: Visit) -> None:
     """By 4.5 to 1, as WCAG 2 asks."""
 
