@@ -8,8 +8,8 @@ Gazebo (Harmonic) in our wind: its world's wind, and a tree that follows `segmen
     python examples/python/gazebo.py
 
 Each segment is a static model, a cylinder without physics, that `set_pose_vector` moves; links of
-other models with <enable_wind> feel the wind. **It has not been run with Gazebo**: topics, services
-and messages are named as in the sources of gz-sim 8.
+other models with <enable_wind> feel the wind. **It has not been run with Gazebo**: topics,
+services and messages are named as in the sources of gz-sim 8.
 """
 
 from __future__ import annotations
