@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from functools import partial
 import json
+import math
 
 import numpy as np
 import pytest
@@ -178,17 +179,15 @@ def test_a_change_out_of_range_is_refused_with_the_reason(compose, observer, tre
     assert len({*groups}) == len(groups)  # none of four has two, however late
 
 
-def test_the_description_comes_again_for_whoever_lost_it(compose, observer, tree_file):
+def test_a_late_joiner_gets_the_whole_description_once(compose, observer, tree_file):
     compose(solver={'tree': tree_file})
-    described = observer.listen(TREE_DESCRIPTION)
-    contents = lambda: [each.data for each in described]  # noqa: E731
-    observer.until(
-        lambda: described and len(contents()) > len(set(contents())),
-        'the description, again',
-        deadline=60.0,
-    )
-    first, *others = [json.loads(text) for text in dict.fromkeys(contents())]
-    assert [set(other) - set(first) for other in others] in ([], [{'state'}])
+    early = observer.listen(TREE_DESCRIPTION)
+    is_whole = lambda: any('state' in json.loads(each.data) for each in early)  # noqa: E731
+    observer.until(is_whole, 'the state in the description')
+    late, frames = observer.listen(TREE_DESCRIPTION), observer.listen(SEGMENT_POSES)
+    observer.until(lambda: len(frames) > 60, 'a second of frames')
+    assert len(early) <= 2
+    assert [each.data for each in late] == [early[-1].data]
 
 
 def test_the_tree_is_tuned_while_it_sways(compose, observer, tree_file):
@@ -315,3 +314,42 @@ def test_two_trees_stand_in_one_frame_each_in_its_place(compose, observer, tree_
     np.testing.assert_allclose(block(elm[0])[0, :3], (0.0, -2.0, 0.0), atol=1e-12)
     assert elm[0].header.frame_id == 'map'
     assert json.loads(described[0].data)['frame_id'] == 'map'
+
+
+def test_it_answers_what_the_wind_at_a_place_is(compose, observer, statuses, tree_file):
+    from geometry_msgs.msg import PointStamped
+
+    from tree_sway_ros.process.topics import WIND_AT, WIND_THERE
+
+    nodes = compose(
+        solver={'tree': tree_file, 'model': '4', 'profile': 'log'},
+        anemometer={'mean_speed': 8.0, 'intensity': 0.0},
+        wind={},
+    )
+    answers = observer.listen(WIND_THERE, name='solver/wind_there')
+    ask = observer.publisher(WIND_AT, name='solver/wind_at')
+    frames = observer.listen(WIND_FILTERED)
+    observer.until(lambda: len(frames) > 20, 'wind')
+    question = PointStamped()
+    question.header.stamp.sec = 7
+
+    def is_answered(height):
+        question.point.z, question.header.stamp.nanosec = float(height), height
+        ask.publish(question)
+        return any(each.header.stamp.nanosec == height for each in answers)
+
+    for height in (10, 2):
+        observer.until(partial(is_answered, height), 'an answer', poll=0.1)
+    speeds = {each.header.stamp.nanosec: each.vector for each in answers}
+    assert {each.header.stamp.sec for each in answers} == {7}
+    ratio = math.log(2.0 / 0.03) / math.log(10.0 / 0.03)
+    high = math.hypot(speeds[10].x, speeds[10].y)
+    assert high == pytest.approx(8.0, rel=0.2)
+    assert math.hypot(speeds[2].x, speeds[2].y) / high == pytest.approx(ratio, rel=0.1)
+    question.header.frame_id = 'moon'
+    observer.until(
+        lambda: ask.publish(question)
+        or ((status := statuses('solver: wind_at')) and status.level[0] == WARN),
+        'a warning', poll=0.1,
+    )  # fmt: skip
+    assert nodes['solver'].is_active

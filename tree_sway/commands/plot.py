@@ -7,8 +7,6 @@ from __future__ import annotations
 import argparse
 import csv
 from pathlib import Path
-import sys
-from typing import Any
 
 import numpy as np
 
@@ -21,6 +19,7 @@ from tree_sway.commands.arguments import (
     opened_wind,
     output_path,
 )
+from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
 from tree_sway.commands.progress import bar, waiting
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.commands.swaying import swaying
@@ -28,7 +27,7 @@ from tree_sway.core.checks import within
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.errors import FormatError, ParameterError, TreeError
+from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.text_file import is_file, path_of
 from tree_sway.page.wind_source import RecordedWind
 from tree_sway.parameters.sway_parameters import SWAY
@@ -48,13 +47,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--portrait',
         action='store_true',
-        help='draw the tree in a steady westerly, with its shape at rest behind it',
+        help='draw the tree in a steady west wind, with its shape at rest behind it',
     )
-    strength = 'draw the share of their strength that trees use, up to --speed (30 m/s)'
+    strength = 'draw the fraction of the strength in use over wind speed, up to --speed (30 m/s)'
     parser.add_argument('--strength', action='store_true', help=strength)
+    add_exposure_arguments(parser)
     parser.set_defaults(speed=None)
     parser.add_argument(
-        '--seconds', type=float, default=60.0, metavar='N', help='how long (%(default)s)'
+        '--seconds', type=float, default=60.0, metavar='N', help='duration [s] (%(default)s)'
     )
     add_output_arguments(parser, 'picture to write, .png or .pdf')
 
@@ -110,27 +110,25 @@ def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
 
 
 def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
-    """Simulate the motion to draw; a noisy scan that buckles has no weight."""
-    model: dict[str, Any] = {'model': arguments.model, 'in_leaf': chosen_leaves(arguments)}
-    try:
-        with waiting('setting up the tree'):
-            return scene.simulator(**model)
-    except TreeError as error:
-        light = scene.simulator(**model, gravity=0.0)
-        print(f'note: without its own weight, as it buckles: {error}', file=sys.stderr)
-        return light
+    with waiting('setting up the tree'):
+        return scene.simulator(model=arguments.model, in_leaf=chosen_leaves(arguments))
 
 
 def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     """Draw the strength that the tallest tree of each kind uses over wind speed; print it."""
     tallest = tallest_of_kinds(scene)
-    settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
     speeds, used = np.linspace(0.0, SWAY['mean_speed'].checked(arguments.speed), 7)[1:], {}
     for each in bar(tallest.values(), 'loading trees'):
-        rig = strength_rig(each, settings)
-        used[each.name] = rig.strength_curve(speeds, rng=np.random.default_rng(0))
+        placed = each.placed()
+        exposure = chosen_exposure(arguments, placed, each.species)
+        settings = Settings(
+            model=arguments.model, in_leaf=chosen_leaves(arguments),
+            profile=exposure.profile(float(placed.start[0, 2])),
+        )  # fmt: skip
+        rig, rng = strength_rig(each, settings), np.random.default_rng(0)
+        used[each.name] = rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))
         for speed, use in zip(speeds, used[each.name], strict=True):
-            print(f'{each.name} in gusts of a mean wind of {speed:.3g} m/s, {use}')
+            print(f'{each.name} {exposure}, of {speed:.3g} m/s: {use}')
     plot_strength(speeds, used, output)
 
 

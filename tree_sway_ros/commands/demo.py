@@ -18,13 +18,15 @@ import webbrowser
 from tree_sway.commands.arguments import add_sway_arguments, opened_scene
 from tree_sway.commands.ending import Ending, LONGEST
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
+from tree_sway.commands.sensor_arguments import add_sensor_argument
 from tree_sway.core.scene.scene import Scene
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.parameters.parameter import Value
+from tree_sway_ros.commands.duration import add_seconds, seconds_of
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
-from tree_sway_ros.commands.watch import add_seconds, seconds_of, watch
+from tree_sway_ros.commands.watch import watch
 from tree_sway_ros.process.composition import Composition
 
 
@@ -32,13 +34,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add_sway_arguments(parser)
-    add('--start', type=float, default=0.0, metavar='T', help='skipped time of the record [s]')
-    kinds = 'serial:/dev/ttyUSB0:4800, tcp://host:port, udp://:port'
-    add('--sensor', metavar='ADDRESS', help=f'anemometer in place of both: {kinds}')
+    add(
+        '--start',
+        type=float,
+        default=0.0,
+        metavar='T',
+        help='start at this time of the recording [s]',
+    )
+    add_sensor_argument(parser)
     add_seconds(parser)
     add('--rate', type=float, default=60.0, help='poses per second [Hz] (%(default)s)')
-    add('--gravity', choices=('on', 'off'), default='on', help='weight of the tree (%(default)s)')
-    add('--no-page', action='store_true', help='serve no page')
+    add(
+        '--gravity', choices=('on', 'off'), default='on', help='effect of the weight (%(default)s)'
+    )
+    add('--no-page', action='store_true', help='do not serve the page')
     add_page_arguments(parser)
 
 

@@ -26,6 +26,7 @@ from tree_sway.errors import ParameterError
 if TYPE_CHECKING:
     from tree_sway.cache.model_cache import SetUpFiles
     from tree_sway.core.run.modal import ModalBank
+    from tree_sway.core.run.table_model import WindBasisBank
     from tree_sway.core.setup.load_table import WindBasisTable
 
 EVENLY_DAMPED = 40
@@ -85,19 +86,28 @@ def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFil
         kind = NumpyModalBank
     modal = kind(branches, made_of, reductions.damping_ratio)
     oscillators: Oscillators = modal
-    if model != 'full' and model != 0 and not reductions.plain:
-        from tree_sway.core.run.table_model import WindBasisBank
+    if model != 'full' and model != 0:
         from tree_sway.core.setup.load_table import WindBasisTable
 
         table = _table(reductions, modal) if found is None else WindBasisTable.of_arrays(found)
         made_of['table'] = table.record
-        oscillators = WindBasisBank(modal, table)
+        oscillators = _bank_of_table(modal, table, reductions.plain)
     if found is None and cache is not None:
         cache.write(digest, made_of)
     segments = made_of['segments'] if found is None else in_lines(made_of['segments'])
     return _laid_out(
         oscillators, branches, segments, float(made_of['tree_mass']), reductions.plain
     )
+
+
+def _bank_of_table(modal: ModalBank, table: WindBasisTable, plain: bool) -> WindBasisBank:
+    if plain:
+        from tree_sway.core.run.numpy_table import NumpyTableBank
+
+        return NumpyTableBank(modal, table)
+    from tree_sway.core.run.table_model import WindBasisBank
+
+    return WindBasisBank(modal, table)
 
 
 @one_thread()

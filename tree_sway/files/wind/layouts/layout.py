@@ -1,0 +1,23 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A layout of a table of wind: how it is recognised, and how it is read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from tree_sway.files.table_file import TextTable
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """
+    A layout of a table of wind.
+
+    ``recognise`` gets the first lines of a file, ``read`` all of them and the name of the file.
+    """
+
+    name: str
+    recognise: Callable[[Sequence[str]], bool]
+    read: Callable[[list[str], str], TextTable]
