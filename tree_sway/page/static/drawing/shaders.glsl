@@ -127,7 +127,7 @@ void main() {
   vec3 n = normalize(normal);
   vec3 base = mix(twigColor, barkColor * texture(relief, at * vec2(1.0, 0.5)).rgb, tone.x);
   base = mix(base, paint.rgb, paint.a);
-  float open = 0.3 + 0.7 * tone.y;
+  float open = 0.5 + 0.5 * tone.y;
   vec3 lit = open * sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0);
   base = mix(base * lit, vec3(1.0, 0.45, 0.1), 0.75 * mark);
   color = vec4(mix(horizon, base, tone.z), 1.0);
