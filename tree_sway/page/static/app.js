@@ -105,6 +105,7 @@ const stream = new TreeStream(address.href, {
       panel.update(values, Boolean(refused));
     }
     status = newStatus ?? status;
+    if (newStatus) hideIdle();
     if (Number.isFinite(status.record_time)) panel.update({ record_time: status.record_time });
   },
 }, { kept, byWind: query.has("solve") });
@@ -146,10 +147,16 @@ function showState() {
   else if (!connection.description) notice(text, word("seeking"));
 }
 
-/** Show the controls, except the tolerance where it has no effect. */
+/** Show the controls. */
 function showPanel() {
   panel.build(controls);
+  hideIdle();
+}
+
+/** Hide the controls that have no effect. */
+function hideIdle() {
   panel.hide("tolerance", !connection.description?.kinds.some(({ model }) => model === "auto"));
+  for (const name of ["height", "individual"]) panel.hide(name, !status.is_grown);
 }
 
 /** @param {string} title @param {string} text @param {boolean} [canRetry] */
