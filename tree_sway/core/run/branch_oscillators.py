@@ -41,7 +41,7 @@ from tree_sway.core.setup.branch_loads import own_loads, set_air, wind_forces
 from tree_sway.core.setup.fill_records import load_records
 
 
-class UncoupledBank(Branchwise):
+class BranchOscillators(Branchwise):
     """Oscillators of all branches, in [kg m^2], [N m s/rad] and [N m/rad], (b,)."""
 
     shapes = np.zeros((0, 0))
