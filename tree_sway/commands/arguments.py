@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 import dataclasses
 from pathlib import Path
 import sys
@@ -22,6 +23,7 @@ from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.reader_options import reader_options
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, open_tree
+from tree_sway.files.trees.tree_options import same
 from tree_sway.files.trees.yaml.tree_yaml import is_species_file, read_species
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.wind_file import read_wind
@@ -68,11 +70,9 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     Raises a `TreeSwayError` for no such tree or species, a file that cannot be read, a modulus or
     density that is not positive.
     """
-    given = _species(arguments)
+    wood = _wood_of(arguments)
     with waiting(f'opening {arguments.tree}'):
-        opened = open_tree(arguments.tree, arguments.seed, **_options(arguments))
-    species = given or opened.species
-    return opened.of_species(dataclasses.replace(species, **_wood(arguments))).checked()
+        return open_tree(arguments.tree, arguments.seed, wood=wood, **_options(arguments))
 
 
 def opened_scene(arguments: argparse.Namespace) -> Scene:
@@ -81,25 +81,30 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
 
     Errors are those of `opened_tree`, and values of one tree for several.
     """
-    given = _species(arguments)
+    wood = _wood_of(arguments)
     with waiting(f'opening {arguments.tree}'):
         scene = open_scene(
             arguments.tree,
             arguments.seed,
             exact=getattr(arguments, 'exact', False),
+            wood=wood,
             **_options(arguments),
         )
-    wood = _wood(arguments)
-    if wood and not scene.is_one_tree:
+    if _wood(arguments) and not scene.is_one_tree:
         raise ParameterError(
             'modulus or density for a whole forest',
             where=scene.source,
             cure='use --species, or files of trees with their own wood',
         )
-    if not wood and given is None:
-        return scene
-    species = given or scene.trees[0].species
-    return scene.of_species(dataclasses.replace(species, **wood)).checked()
+    return scene
+
+
+def _wood_of(arguments: argparse.Namespace) -> Callable[[Species], Species]:
+    """Return the species of the arguments for that of a file."""
+    given, changed = _species(arguments), _wood(arguments)
+    if given is None and not changed:
+        return same
+    return lambda found: dataclasses.replace(given or found, **changed)
 
 
 def _species(arguments: argparse.Namespace) -> Species | None:

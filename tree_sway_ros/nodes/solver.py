@@ -81,9 +81,10 @@ class SolverNode(TreeSwayNode):
         self._state.start()
 
     def _open(self) -> Any:
-        source = open_scene(self.values['tree'])
-        if self.values['species']:
-            source = source.of_species(species_named(self.values['species'])).checked()
+        named = self.values['species']
+        source = open_scene(
+            self.values['tree'], wood=lambda found: species_named(named) if named else found
+        )
         x, y, z, yaw = self.values['pose']
         moved = source.moved(x=x, y=y, z=z, yaw=yaw)
         return shard_of(moved, self.values['shard.index'], self.values['shard.count'])

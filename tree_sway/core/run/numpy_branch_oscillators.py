@@ -3,8 +3,8 @@
 """
 The model `branch` in plain numpy, for machines without a compiler.
 
-It has the state of `BranchOscillators`, in the same arrays, so that stored states are exchangeable;
-they agree to rounding. It is the oracle of the kernels as well.
+It has the state of `BranchOscillators`, in the same arrays, so that stored states are
+exchangeable; they agree to rounding. It is the oracle of the kernels as well.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.numpy_rotation import two_axis_moment, within_guard
-from tree_sway.core.run.branch_oscillators import BranchOscillators
+from tree_sway.core.run.branch_oscillators import BranchOscillators, NOT_FINITE
 from tree_sway.core.setup.numpy_branch_loads import Bases, into_slots, NumpyPasses, of_slots
 
 
@@ -81,5 +81,5 @@ class NumpyBranchOscillators(BranchOscillators):
         )
         x[:], v[:] = ahead_x + c[:, 3] * then, ahead_v + c[:, 7] * then
         if not (np.isfinite(x).all() and np.isfinite(v).all()):
-            return -1
+            return NOT_FINITE
         return int(clamped.sum())

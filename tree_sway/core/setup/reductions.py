@@ -51,12 +51,14 @@ class ReducedTree:
     """
     A tree reduced in one of the two ways.
 
-    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,); each
-    segment has its ``mass`` [kg], with leaves, (n,).
+    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,), and
+    ``row`` has the given tree's number of each segment, (n,); each segment has its ``mass`` [kg],
+    with leaves, (n,).
     """
 
     tree: Tree
     branch: Ints
+    row: Ints
     models: list[BranchModel]
     reduction: Reduction
     branches: Records
@@ -224,7 +226,9 @@ class TreeReductions:
             model.beam.over_segments(model.mass) * model.beam.segment_length for model in models
         ])  # fmt: skip
         segments = segment_records(places)
-        return ReducedTree(tree, cut.branch, models, reduction, records, segments, places, mass)
+        return ReducedTree(
+            tree, cut.branch, cut.row, models, reduction, records, segments, places, mass
+        )
 
 
 def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:

@@ -62,7 +62,7 @@ class WindMoments:
         return moments
 
     def forces(self, x: Floats, v: Floats, wind: Floats) -> Floats:
-        """Forces on the branches, (b, 3), by a wind as in a call, in the frame of the tree."""
+        """Find the forces on the branches, (b, 3), by a wind as in a call, in the tree's frame."""
         self(x, v, wind)
         return np.asarray(self._records[1]['force'])
 
