@@ -66,8 +66,9 @@ NEEDS = {
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
 NEEDS_OF_FILES = {
-    **{'.parquet': 'parquet', '.nc': 'netcdf'},
-    **dict.fromkeys(('.xlsx', '.gpkg', '.shp'), 'inventory'),
+    '.parquet': 'parquet',
+    '.nc': 'netcdf',
+    '.xlsx': 'inventory',
 }
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
