@@ -123,7 +123,7 @@ def test_the_example_of_a_command_is_one_of_it(command: str) -> None:
 
 CURES = [
     ('numba', 'fast'),
-    ('serial.tools', 'serial'),
+    ('serial.tools', 'sensors'),
     ('PIL', 'plot'),
     ('pyarrow', 'parquet'),
     ('geometry_msgs.msg', 'ros'),
