@@ -12,11 +12,11 @@ import pytest
 
 from tree_sway import installed_models as module
 from tree_sway.commands.cli import main
-from tree_sway.core.model.settings import MODELS, Settings
+from tree_sway.core.model.settings import MODELS, OF_LAB, Settings
 from tree_sway.core.run.assembly import assembled
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.errors import MissingDependencyError, ParameterError
-from tree_sway.installed_models import GROUP, installed_models, OF_LAB
+from tree_sway.installed_models import GROUP, installed_models
 from tree_sway.parameters.sway_parameters import SWAY
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -27,7 +27,6 @@ def installed(monkeypatch: pytest.MonkeyPatch) -> dict[str, EntryPoint]:
     """Replace the installed models, none at first, for a test."""
     points: dict[str, EntryPoint] = {}
     monkeypatch.setattr(module, 'installed_models', lambda: points)
-    monkeypatch.setattr('tree_sway.core.model.settings.installed_models', lambda: points)
     return points
 
 

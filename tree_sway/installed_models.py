@@ -16,11 +16,8 @@ from importlib.metadata import entry_points, EntryPoint
 from typing import Any
 
 from tree_sway.errors import MissingDependencyError
-from tree_sway.extras import line_in_venv
 
 GROUP = 'tree_sway.models'
-OF_LAB = ('full',)
-"""Models of the laboratory, which is a project of its own."""
 
 
 @cache
@@ -39,6 +36,8 @@ def maker_of(model: str) -> Callable[..., Any]:
 def refuse_missing_model(model: str) -> None:
     """Raise a `MissingDependencyError` that says how to install a model of the laboratory."""
     if model not in installed_models():
+        from tree_sway.extras import line_in_venv
+
         install = line_in_venv('lab') or 'pip install ./lab in the checkout'
         raise MissingDependencyError(
             f"model '{model}' belongs to the laboratory, which is not installed",

@@ -17,10 +17,12 @@ from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.errors import nearest, ParameterError
-from tree_sway.installed_models import installed_models, OF_LAB, refuse_missing_model
 
 USUAL = 60
 """Default number of coordinates."""
+
+OF_LAB = ('full',)
+"""Models of the laboratory, which is a project of its own."""
 
 MODELS = ('auto', 'branch', *OF_LAB)
 """Models with a name; others are numbers of coordinates, or come from further packages."""
@@ -171,6 +173,8 @@ def model_of(given: object) -> int | str:
     """
     if isinstance(given, str) and given in MODELS:
         if given in OF_LAB:
+            from tree_sway.installed_models import refuse_missing_model
+
             refuse_missing_model(given)
         return given
     number = given
@@ -180,8 +184,11 @@ def model_of(given: object) -> int | str:
         number = int(number)  # files of numbers have floats
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number <= MOST:
         return number
-    if isinstance(given, str) and given in installed_models():
-        return given
+    if isinstance(given, str):
+        from tree_sway.installed_models import installed_models
+
+        if given in installed_models():
+            return given
     near = nearest(str(given), MODELS)
     raise ParameterError(
         f"unknown model '{given}'",

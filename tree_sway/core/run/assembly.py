@@ -24,7 +24,6 @@ from tree_sway.core.setup.modes import refuse_buckling, solvable
 from tree_sway.core.setup.one_thread import one_thread
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.errors import ParameterError
-from tree_sway.installed_models import maker_of
 
 if TYPE_CHECKING:
     from tree_sway.cache.model_cache import SetUpFiles
@@ -68,6 +67,8 @@ def assembled(
         if model == 'branch':
             return _bank_of_branches(reductions)
         if isinstance(model, str):
+            from tree_sway.installed_models import maker_of
+
             return maker_of(model)(reductions, cache)
         if model == 0:
             return _rigid_bank(reductions, cache)
