@@ -7,8 +7,9 @@ Grow what a scan could not see, and weigh the crown against others of its specie
    t, by forks that keep the cross-section (pipe model: Shinozaki et al. 1964; Leonardo's rule).
    From a diameter to its tips there are 21 d^0.92 m (4,824 scanned branches), so the wood beyond
    has the volume pi/4 d^2 times the length to go, and an area, diameter times length of all pipes,
-   of 19.32 d^2 (t^-0.08 - d^-0.08) / 0.08 m^2. Equal twigs of that volume and area, as long as
-   the length to go, stand for it.
+   of 19.32 d^2 (t^-0.08 - d^-0.08) / 0.08 m^2. Beyond the end of a scan that was cut at a diameter
+   c all pipes are thinner than c, else they were scanned: there c replaces d in both brackets.
+   Equal twigs of that volume and area, as long as the length to go, stand for it.
 2. **Prior.** How much of a crown a scanner sees is partly chance; stem and height say as well how
    large it is (`crown_size`). The total area of its wood is drawn to that of the allometry in
    proportion to the variances of their logarithms: 0.30 for what was scanned, a factor of two for
@@ -47,7 +48,7 @@ differ by 0.3 in the wood of their branches (Demol et al. 2022, Methods in Ecolo
 _LENGTH, _POWER = 21.0, 0.92
 _CLIPPED = 0.3
 """Share of the ends of one thickness from which a fit has a lower bound [-]."""
-_MOST_TWIGS, _MOST_AT_AN_END = 3000, 4
+_MOST_TWIGS, _MOST_AT_AN_END = 3000, 40
 _MOST_GROWN = 4.0
 """Largest number of times that the prior multiplies what is grown [-]."""
 _THINNEST = 0.3
@@ -129,7 +130,8 @@ def grown_beyond(tree: Tree, twig: float, trusted: float) -> tuple[Tree, Beyond 
         return tree, None
     cut, ends = is_cut(tree), last[open_ends]
     d = tree.tip_diameter[ends]
-    length, volume, area = _beyond(d, twig)
+    pipe = np.minimum(d, float(np.percentile(d, 2.0))) if cut else d
+    length, volume, area = _beyond(d, pipe, twig)
     seen = _crown_area(tree)
     factor, thinner = _prior(tree, seen, float(area.sum()), trusted)
     grown = _with_twigs(thinner, ends, d, length, factor * volume, factor * area)
@@ -145,11 +147,11 @@ def _crown_area(tree: Tree) -> float:
     return float(wide[tree.branch_first[1] :].sum())
 
 
-def _beyond(d: Floats, twig: float) -> tuple[Floats, Floats, Floats]:
-    """Length to go [m], volume [m^3] and area [m^2] beyond ends of diameters d [m]."""
-    length = _LENGTH * (d**_POWER - twig**_POWER)
+def _beyond(d: Floats, pipe: Floats, twig: float) -> tuple[Floats, Floats, Floats]:
+    """Length to go [m], volume [m^3] and area [m^2] beyond ends d [m], of pipes [m]."""
+    length = _LENGTH * (pipe**_POWER - twig**_POWER)
     rest = 1.0 - _POWER
-    area = _LENGTH * _POWER * d**2 * (twig**-rest - d**-rest) / rest
+    area = _LENGTH * _POWER * d**2 * (twig**-rest - pipe**-rest) / rest
     return length, 0.25 * math.pi * d**2 * length, area
 
 
@@ -203,9 +205,10 @@ def _with_twigs(
     count = np.clip(np.rint(area / (thick * length)), 1, _MOST_AT_AN_END)
     if count.sum() > _MOST_TWIGS:
         count = np.maximum(np.floor(count * _MOST_TWIGS / count.sum()), 1)
-    count = count.astype(np.int64)
+    # Fewer twigs are longer, up to twice; what is then left is in their thickness.
     reach = np.minimum(area / (thick * count), 2.0 * length)
     thick = area / (reach * count)
+    count = count.astype(np.int64)
     at = np.repeat(np.arange(len(ends)), count)
     number = np.arange(len(at)) - np.repeat(np.cumsum(count) - count, count)
     along = tree.direction[ends][at]
