@@ -22,7 +22,9 @@ from tree_sway.commands.arguments import (
     output_path,
 )
 from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
+from tree_sway.commands.motion_arguments import add_motion_arguments, placed_motion
 from tree_sway.commands.progress import waiting
+from tree_sway.commands.sensor_arguments import add_sensor_argument, live_record
 from tree_sway.core.scene.simulate import simulate, WindSamples
 from tree_sway.core.wind.exposure import Exposure
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
@@ -35,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add_tree_arguments(parser)
     add_wind_arguments(parser)
+    add_sensor_argument(parser)
     add_exposure_arguments(parser)
     add_model_argument(parser)
     add_leaves_argument(parser)
@@ -47,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='N',
         help='duration [s]; without it, all of a recording, or 60 s',
     )
+    add_motion_arguments(parser)
     add_output_arguments(parser, 'table to write: .csv, .parquet or .json')
 
 
@@ -62,12 +66,14 @@ def run(arguments: argparse.Namespace) -> int:
             raise ParameterError(f"no branch '{name}'", where='--branch', cure=cure)
     exposure = chosen_exposure(arguments, tree_file.tree, tree_file.species)
     ground = float(tree_file.tree.start[0, 2])
+    wind = _wind(arguments, exposure)
+    motion = placed_motion(arguments, tree_file.tree, getattr(wind, 'epoch', None))
     with waiting('simulating'):
         record = simulate(
-            tree_file, _wind(arguments, exposure), rate=arguments.rate, seconds=arguments.seconds,
+            tree_file, wind, rate=arguments.rate, seconds=arguments.seconds,
             branches=[names.index(name) for name in arguments.branch] or None,
             model=arguments.model, in_leaf=chosen_leaves(arguments),
-            profile=exposure.profile(ground),
+            profile=exposure.profile(ground), motion=motion,
         )  # fmt: skip
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     for note in record.notes:
@@ -79,7 +85,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _wind(arguments: argparse.Namespace, exposure: Exposure) -> WindSamples | np.ndarray:
-    """Return the given record, or simulated wind."""
+    """Return the given record, the wind of a live source from now on, or simulated wind."""
+    if arguments.sensor is not None:
+        return live_record(arguments, arguments.seconds or 60.0)
     if arguments.wind is None:
         rng, seconds = np.random.default_rng(0), arguments.seconds or 60.0
         return simulate_turbulence(
