@@ -214,12 +214,27 @@ def test_ctrl_c_ends_at_once_and_frees_the_workers(apart: Apart, tmp_path: Path)
         until(lambda: any(watching.processing().values()))
         began = time.monotonic()
         os.killpg(process.pid, signal.SIGINT)
-        process.wait(15.0)
+        said = process.communicate(timeout=DEADLINE)[1]
+        assert process.returncode == 130, said
         assert time.monotonic() - began < 15.0
-        assert process.stderr is not None
-        assert b'Traceback' not in process.stderr.read()
-        assert process.returncode == 130
+        assert b'Traceback' not in said
         until(lambda: not any(watching.processing().values()))
+
+
+def swallow_once(waited: threading.Event) -> None:
+    """Drop the first interrupt, as a finalizer does, and wait for what never happens."""
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+    waited.wait(DEADLINE)
+
+
+def test_ctrl_c_that_a_finalizer_swallows_is_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, '_REPEAT', 0.1)
+    handler = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt), cluster.repeated_interrupt():
+        swallow_once(threading.Event())
+    assert signal.getsignal(signal.SIGINT) is handler
+    until(lambda: not any(isinstance(each, threading.Timer) for each in threading.enumerate()))
 
 
 def until(is_so) -> None:

@@ -9,6 +9,7 @@ must have the same version of this package, which is checked, as others may comp
 
 from __future__ import annotations
 
+from _thread import interrupt_main
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, ExitStack, suppress
 from functools import cache
@@ -19,6 +20,7 @@ import os
 import signal
 import sys
 import threading
+from types import FrameType
 from typing import Any
 
 from tree_sway.cache.kernel_cache import ROOT, source_digest
@@ -32,6 +34,8 @@ ROOMS = 'core', 'files', 'studies'
 """Rooms whose source and tables determine the results."""
 _PATIENCE = 15.0
 """Longest wait for a scheduler and for its first worker [s]."""
+_REPEAT = 2.0
+"""Time after which Ctrl-C that had no effect is repeated [s]."""
 _SCHEMES = ('tcp://', 'tls://')
 _LIBRARIES = ('numpy', 'scipy', 'numba')
 
@@ -62,12 +66,37 @@ def cluster(workers: int, scheduler: str | None = None) -> Iterator[tuple[Any, A
         No scheduler or no worker there, or workers of another version.
 
     """
-    if scheduler is None:
-        with _processes_here(workers) as both:
+    with _processes_here(workers) if scheduler is None else _elsewhere(scheduler) as both:
+        with repeated_interrupt():
             yield both
-    else:
-        with _elsewhere(scheduler) as both:
-            yield both
+
+
+@contextmanager
+def repeated_interrupt() -> Iterator[None]:
+    """
+    Repeat Ctrl-C until it ends the block.
+
+    Python drops a KeyboardInterrupt that is raised in a finalizer or in the callback of a weak
+    reference, of which Dask has many: the study would go on as if nobody had pressed anything.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    timers: list[threading.Timer] = []
+
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        timers.append(threading.Timer(_REPEAT, _interrupt_again))
+        timers[-1].daemon = True
+        timers[-1].start()
+        raise KeyboardInterrupt
+
+    usual = signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, usual)
+        for timer in timers:
+            timer.cancel()
 
 
 def refuse_wrong_address(scheduler: str) -> None:
@@ -77,6 +106,15 @@ def refuse_wrong_address(scheduler: str) -> None:
     if scheme is None or not host or not port.isdigit() or not 0 < int(port) < 65536:
         what = f"'{scheduler[:80]}' is no address of a scheduler"
         raise ParameterError(what, where='--scheduler', cure='write tcp://host:8786 or tls://...')
+
+
+def _interrupt_again() -> None:
+    """Interrupt the main thread, even while it waits for a lock."""
+    main = threading.main_thread().ident
+    if hasattr(signal, 'pthread_kill') and main is not None:
+        signal.pthread_kill(main, signal.SIGINT)
+    else:
+        interrupt_main()
 
 
 @contextmanager

@@ -18,6 +18,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow, stem_range
 from tree_sway.core.growth.thickness import BREAST_HEIGHT
 from tree_sway.core.scene.simulate import Rig
+from tree_sway.core.setup.standing import standing_tree
 from tree_sway.core.strength.critical_wind import largest_expected, ShareCurve
 from tree_sway.core.tree.grown_tree import rooted
 from tree_sway.core.tree.species import species_named
@@ -88,6 +89,10 @@ def _computed(kind: RiskKind) -> KindResult:
             note = f'a stem of {wanted:.3g} m would buckle: of {diameter:.3g} m, scaled'
     rng = np.random.default_rng(kind.seed)
     tree = grow(kind.species, kind.height, diameter, rng=rng)
+    tree, thickening = standing_tree(tree, species)
+    if thickening is not None:
+        limbs = 'grown limbs that could not carry themselves are thickened'
+        note = f'{note}; {limbs}' if note else limbs
     whole = TreeFile(tree, rooted(tree, species), kind.species)
     seasons = (True,) if species.leaves.is_evergreen else (True, False)
     curves = tuple(_season(whole, kind.seed, in_leaf) for in_leaf in seasons)
