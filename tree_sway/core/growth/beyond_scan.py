@@ -96,11 +96,10 @@ class Beyond:
 def is_cut(tree: Tree) -> bool:
     """Whether a scan ends at a thickness; else its thinnest wood are its twigs."""
     ends = tree.tip_diameter[tree.branch_first[1:] - 1]
-    bases = tree.base_diameter[tree.branch_first[1:-1]]
     thinnest = float(np.percentile(ends, 2.0))
     if (np.abs(ends - thinnest) < 1e-3 * thinnest).mean() > _CLIPPED:
         return False
-    return thinnest >= CUT_AT or (len(bases) > 0 and float(bases.min()) >= CUT_AT)
+    return float(np.median(ends)) >= CUT_AT
 
 
 def grown_beyond(tree: Tree, twig: float, trusted: float) -> tuple[Tree, Beyond | None]:
@@ -130,7 +129,7 @@ def grown_beyond(tree: Tree, twig: float, trusted: float) -> tuple[Tree, Beyond 
         return tree, None
     cut, ends = is_cut(tree), last[open_ends]
     d = tree.tip_diameter[ends]
-    pipe = np.minimum(d, float(np.percentile(d, 2.0))) if cut else d
+    pipe = np.minimum(d, float(np.percentile(d, 25.0))) if cut else d
     length, volume, area = _beyond(d, pipe, twig)
     seen = _crown_area(tree)
     factor, thinner = _prior(tree, seen, float(area.sum()), trusted)
