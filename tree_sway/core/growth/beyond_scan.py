@@ -17,9 +17,9 @@ Grow what a scan could not see, and weigh the crown against others of its specie
    more or less is grown beyond its ends, and if the scan alone has more, wood thinner than is
    trusted is thinned. Only of broadleaves of at least 7 cm and 5 m: the allometry has no others.
 
-A scan has been cut, and its thinnest wood is no twig seen too thick, where even the bases of its
-branches, or else its ends, are thicker than 15 mm, three times the laser spot, without being of
-one thickness, as a lower bound of the fit makes them.
+A scan has been cut, and its thinnest wood is no twig seen too thick, where half of its ends are
+thicker than 15 mm, three times the laser spot, without being of one thickness, as a lower bound of
+the fit makes them. The lower quartile of its ends is then the diameter c.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import Tree
 
 CUT_AT = 0.015
-"""Thinnest wood from which on a scan has been cut in [m]."""
+"""Median diameter of the ends from which on a scan has been cut in [m]."""
 
 SCAN_SPREAD, GROWN_SPREAD = 0.30, math.log(2.0)
 """
@@ -95,9 +95,11 @@ class Beyond:
 
 def is_cut(tree: Tree) -> bool:
     """Whether a scan ends at a thickness; else its thinnest wood are its twigs."""
-    ends = tree.tip_diameter[tree.branch_first[1:] - 1]
+    last = tree.branch_first[1:] - 1
+    ends = tree.tip_diameter[last]
     thinnest = float(np.percentile(ends, 2.0))
-    if (np.abs(ends - thinnest) < 1e-3 * thinnest).mean() > _CLIPPED:
+    widest = np.maximum(tree.base_diameter[last], ends)
+    if (np.abs(widest - thinnest) < 1e-3 * thinnest).mean() > _CLIPPED:
         return False
     return float(np.median(ends)) >= CUT_AT
 
@@ -123,12 +125,12 @@ def grown_beyond(tree: Tree, twig: float, trusted: float) -> tuple[Tree, Beyond 
 
     """
     last = tree.branch_first[1:] - 1
-    diameter = tree.tip_diameter[last]
+    diameter = _open_diameter(tree, last)
     open_ends = np.flatnonzero(diameter > 2.0 * twig)
     if len(open_ends) == 0 or twig <= 0.0:
         return tree, None
     cut, ends = is_cut(tree), last[open_ends]
-    d = tree.tip_diameter[ends]
+    d = diameter[open_ends]
     pipe = np.minimum(d, float(np.percentile(d, 25.0))) if cut else d
     length, volume, area = _beyond(d, pipe, twig)
     seen = _crown_area(tree)
@@ -138,6 +140,17 @@ def grown_beyond(tree: Tree, twig: float, trusted: float) -> tuple[Tree, Beyond 
     share = 1.0 - _crown_area(thinner) / now
     drawn = now / (seen + float(area.sum()))
     return grown, Beyond(float(np.median(d)), share, drawn, cut)
+
+
+def _open_diameter(tree: Tree, last: Ints) -> Floats:
+    """Diameter at the end of each branch in [m], less the section of branches that begin there."""
+    section = tree.tip_diameter**2
+    first = tree.branch_first[1:-1]
+    above = tree.segment_parent[first]
+    gap = np.linalg.norm(tree.start[first] - tree.end[above], axis=1)
+    continues = gap <= 0.1 * tree.length[above]
+    np.subtract.at(section, above[continues], tree.base_diameter[first[continues]] ** 2)
+    return np.sqrt(np.maximum(section[last], 0.0))
 
 
 def _crown_area(tree: Tree) -> float:

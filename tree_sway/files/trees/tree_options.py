@@ -31,7 +31,7 @@ _RANGES = {
 }  # fmt: skip
 
 
-MEASURED = {'twig_diameter': 0.0, 'beyond_scan': 'none'}
+MEASURED = {'twig_diameter': 0.0}
 """Defaults of forms whose twigs have their true diameter."""
 
 AS_IT_IS = {'to_origin': False, **MEASURED}
@@ -61,7 +61,8 @@ class TreeOptions:
         Axis of the file that points up, ``z`` or ``y``.
     twig_diameter
         Diameter in [m] of the last twigs, which are too thick in the file (`corrected_twigs`);
-        that of the species if None, and 0 to leave all twigs as they are.
+        that of the species if None, unless the scan ends at a thickness (`is_cut`), and 0 to leave
+        all twigs as they are.
     trusted_diameter
         Diameter above which a scan is trusted in [m].
     beyond_scan
@@ -81,7 +82,7 @@ class TreeOptions:
     up: str = 'z'
     twig_diameter: float | None = None
     trusted_diameter: float = 0.05
-    beyond_scan: str = 'grow'
+    beyond_scan: str = 'none'
     thicken: bool = True
     to_origin: bool = True
     tree: int = 0
@@ -119,7 +120,7 @@ class TreeOptions:
         given = content.species if self.species is None else species_named(self.species)
         species, faults = wood(given), list(content.faults)
         twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter
-        if twig > 0.0 and not (self.beyond_scan == 'grow' and is_cut(tree)):
+        if twig > 0.0 and (self.twig_diameter is not None or not is_cut(tree)):
             tree = corrected_twigs(tree, twig, self.trusted_diameter)
         left = float(tree.volume.sum() / content.tree.volume.sum())
         if left < 1.0:
