@@ -636,7 +636,7 @@ def test_it_fits_a_phone(visit: Visit, size: tuple[int, int], is_open: bool) -> 
         (x0, y0), (x1, y1) = await browser.run(_CROWN)
         x, y = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
         assert all(not (b[0] < x < b[2] and b[1] < y < b[3]) for b in boxes)
-        assert all(not (b[0] < x1 < b[2] and b[1] < y1 < b[3]) for b in boxes)
+        assert all(not (b[0] < x1 < b[2] and b[1] < y1 < b[3]) for b in boxes), (x1, y1, boxes)
 
     visit(script, width=width, height=height, scale=1.0)
 

@@ -210,8 +210,9 @@ function room() {
     return [0, head.bottom / height, 1, Math.min(height, ...lowest) / height];
   }
   const isWall = form.height > 0.3 * height || (form.height > 0 && height < 560);
+  const top = !isWall && form.height > 0.12 * height ? form.bottom / height : 0;
   const most = [isWall ? form.left / width : 1, tools.height ? tools.top / height : 1];
-  return [Math.max(head.right, lines.right) / width, 0, ...most];
+  return [Math.max(head.right, lines.right) / width, top, ...most];
 }
 
 /** See all of the scene between the cards, unless somebody looks at something of it. */
