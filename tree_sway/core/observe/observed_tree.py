@@ -153,6 +153,11 @@ class ObservedTree(SwaySimulator):
         self.observer = Observer(self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed)
         """What the sensors tell."""
 
+    @property
+    def period(self) -> float:
+        """Time step in [s] of the sensors' gains."""
+        return 1.0 / self._rate
+
     def _swing(self) -> tuple[Floats, ...]:
         """Return views of displacement, rate and force of each coordinate, (m,)."""
         oscillators: Any = self.bank.oscillators

@@ -107,6 +107,7 @@ class SensorTrack:
     def noise(self) -> Floats:
         """Standard deviation of the noise at each step, (3,)."""
         known = _FLOOR if self.alignment is None else np.maximum(self.alignment.noise, _FLOOR)
+        known = np.maximum(known, self.sensor.stated_noise)
         period = self.sensor.period
         # Samples that are joined by lines have the same noise in several steps.
         held = 1.0 if math.isnan(period) else max(1.0, period / self._dt)
