@@ -51,7 +51,7 @@ FIGURES = {
             species_named('oak').modulus / 1e9, species_named('oak').density,
         ],
     },
-    'doc/faq.md': {r'the set-ups of the (\d+) trees': [MOST]},
+    'doc/faq.md': {r'prepared models of the last (\d+) trees': [MOST]},
     'doc/streaming.md': {
         r'Up to (\d+) MiB with a header of (\d+) MiB': [
             protocol.LARGEST_DESCRIPTION / MIB, protocol.LARGEST_HEADER / MIB,

@@ -124,6 +124,11 @@ class Session:
         if not self._thread.is_alive():
             self._thread.start()
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the trees."""
+        return self._scene.names
+
     def wait(self, seconds: float) -> None:
         """Wait some seconds [s], or until the session has failed."""
         self._thread.join(max(0.0, seconds))

@@ -36,7 +36,7 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
         index = columns.index_of(quantity)
         if index is None:
             continue
-        values, in_cells = columns.numbers(index)
+        values, in_cells = columns.numbers(index, stems=True)
         unit = columns.table.unit_of(index, quantity) or in_cells
         factor = unit_factor('length', unit) if unit else None
         if factor is None:
@@ -53,13 +53,15 @@ def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) ->
     """Choose the unit of diameters that have none, and say why if it is inches."""
     positive = values[values > 0.0]
     middle = float(np.median(positive)) if len(positive) else 30.0
-    if middle <= 3.0:
+    # Metres have fractions; a stem of 3 in whole numbers is a young tree's in inches or cm.
+    has_fractions = bool((positive != np.round(positive)).any())
+    if has_fractions and float(np.quantile(positive, 0.9)) <= 3.0:
         return 1.0, ''
     if middle > 250.0:
         return _MM, ''
     if is_in_states:
         return _INCH, ', as the trees stand in the United States'
-    index = columns.index_of('height')
+    index = _height_column(columns)
     if index is None:
         return _CM, ''
     height, in_cells = columns.numbers(index)
@@ -78,9 +80,16 @@ def _slenderness(height: Floats, diameter: Floats) -> float:
     return float(np.median(height[known] / diameter[known])) if known.any() else 0.0
 
 
+def _height_column(columns: InventoryColumns) -> int | None:
+    """Column of heights whose name comes first, of those that have a number."""
+    found = columns.find_all('height')
+    filled = (index for index in found if np.isfinite(columns.numbers(index)[0]).any())
+    return next(filled, found[0] if found else None)
+
+
 def heights_of(columns: InventoryColumns, diameter: Floats | None) -> Floats | None:
     """Heights [m], NaN without one; None if no column has them."""
-    index = columns.index_of('height')
+    index = _height_column(columns)
     if index is None:
         return None
     values, in_cells = columns.numbers(index)
