@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Motion sensors over ROS: topics by a parameter, covariances, and a report of each."""
 
+import time
+
 import numpy as np
 import pytest
 
@@ -12,8 +14,8 @@ from sensor_msgs.msg import Imu  # noqa: E402, I100
 
 from tree_sway.errors import ParameterError  # noqa: E402
 from tree_sway_ros.nodes.imu_intake import places_of  # noqa: E402
-from tree_sway_ros.process.topics import IMU, SEGMENT_POSES  # noqa: E402
-from tree_sway_ros.reports.diagnostics import OK, WARN  # noqa: E402
+from tree_sway_ros.process.topics import IMU  # noqa: E402
+from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 from tree_sway_ros.wire.imu_messages import motion_from_message  # noqa: E402
 
 
@@ -51,31 +53,46 @@ def test_covariances_say_what_is_measured_and_how_well():
     assert motion_from_message(message).rate is None
 
 
-def test_a_sensor_is_heard_and_reported(compose, observer, tree_file):
-    solver = compose(solver={'tree': tree_file, 'imu': 'tree/imu@segment:2'})['solver']
-    frames, publisher = observer.listen(SEGMENT_POSES), observer.publisher(IMU, name='tree/imu')
-    observer.until(lambda: frames, 'a frame')
-
-    def accepted():
-        now = observer.get_clock().now().nanoseconds * 1e-9
-        publisher.publish(imu(now))
-        bad = imu(now, up=float('nan'))
-        publisher.publish(bad)
-        counts = solver.simulator.sensors['tree/imu'].counts
-        return counts.accepted > 20 and counts.not_finite > 20
-
-    observer.until(accepted, 'samples')
-    status = next(each for each in solver._statuses() if each.name.startswith('imu '))
-    assert status.level == WARN
-    assert 'mounting' in status.message
-    assert solver.simulator.counts.restarted == 0
-    assert OK != WARN
+PARAMETERS = {'imu': 'tree/imu@segment:2'}
+REPORT = 'solver: imu tree/imu'
 
 
-def test_sensors_on_a_forest_are_refused(compose, tmp_path):
-    path = tmp_path / 'scene.yaml'
+def test_a_sensor_is_heard_and_reported(compose, observer, tree_file, statuses):
+    solver = compose(solver={'tree': tree_file, **PARAMETERS})['solver']
+    publisher = observer.publisher(IMU, name='tree/imu')
+
+    def is_counted():
+        now = time.time()
+        for message in (imu(now), imu(now, up=float('nan')), imu(now - 3600.0)):
+            publisher.publish(message)
+        if (report := statuses(REPORT)) is None:
+            return False
+        values = {each.key: each.value for each in report.values}
+        names = ('accepted', 'refused', 'refused for their stamps')
+        return all(int(values[name]) > 5 for name in names)
+
+    observer.until(is_counted, 'counts of each kind')
+    assert statuses(REPORT).level[0] == WARN
+    assert 'mounting' in statuses(REPORT).message
+    assert solver.guard.count == 0
+
+
+def test_a_clock_of_its_own_is_told_with_the_cure(compose, observer, tree_file, statuses):
+    compose(solver={'tree': tree_file, **PARAMETERS})
+    publisher = observer.publisher(IMU, name='tree/imu')
+
+    def is_told():
+        publisher.publish(imu(12.0))
+        report = statuses(REPORT)
+        return report is not None and 'synchronise the clocks' in report.message
+
+    observer.until(is_told, 'the cure')
+
+
+def test_sensors_on_a_forest_are_refused(compose, tmp_path, tree_file):
+    path = tmp_path / 'glade.yaml'
     path.write_text(
-        'trees:\n  - {tree: goldcrest, at: [0, 0]}\n  - {tree: goldcrest, at: [3, 0]}\n'
+        f'trees:\n- {{name: oak, tree: {tree_file}}}\n- {{name: elm, tree: {tree_file}, x: 3}}\n'
     )
     with pytest.raises(ParameterError, match='motion sensors on a scene of 2 trees'):
         compose(solver={'tree': str(path), 'imu': 'tree/imu@0.5'})

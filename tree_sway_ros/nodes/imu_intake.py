@@ -13,7 +13,10 @@ from tree_sway.errors import ParameterError
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import IMU
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
-from tree_sway_ros.wire.imu_messages import motion_from_message
+from tree_sway_ros.wire.imu_messages import ImuSample, motion_from_message
+
+_APART = 5_000_000_000
+"""Largest difference of a stamp from the node's clock in [ns]."""
 
 
 def places_of(text: str) -> dict[str, str]:
@@ -42,41 +45,53 @@ class ImuIntake:
 
     def __init__(self, node: TreeSwayNode, run: Run, twin: ObservedTree) -> None:
         self._node, self._run, self._twin = node, run, twin
+        self._clocks_apart: dict[str, tuple[int, float]] = {}
         for topic in twin.sensors:
             node.subscription(replace(IMU, name=topic), self._callback_of(topic))
 
     def _callback_of(self, topic: str) -> Any:
         def receive(message: Any) -> None:
             sample = motion_from_message(message)
-            stamp = sample.stamp or int(self._node.get_clock().now().nanoseconds)
-
-            def offer() -> None:
-                sensor = self._twin.sensors[topic]
-                sensor.stated_noise = sample.noise
-                sensor.offer(
-                    stamp * 1e-9,
-                    acceleration=sample.acceleration,
-                    rate=sample.rate,
-                    orientation=sample.orientation,
-                )
-
-            self._run.request(offer)
+            now = int(self._node.get_clock().now().nanoseconds)
+            stamp = sample.stamp or now
+            limits = self._node.stamp_limits
+            if not -_APART - limits['lag'] <= stamp - now <= _APART + limits['lead']:
+                count, _ = self._clocks_apart.get(topic, (0, 0.0))
+                self._clocks_apart[topic] = count + 1, (stamp - now) * 1e-9
+                return
+            self._run.request(lambda: self._offer(topic, stamp, sample))
 
         return receive
+
+    def _offer(self, topic: str, stamp: int, sample: ImuSample) -> None:
+        """Offer a sample, in the thread of the steps."""
+        sensor = self._twin.sensors[topic]
+        sensor.stated_noise = sample.noise
+        sensor.offer(
+            stamp * 1e-9,
+            acceleration=sample.acceleration,
+            rate=sample.rate,
+            orientation=sample.orientation,
+        )
 
     def statuses(self) -> list[Status]:
         """Report each sensor: in use or why not, and its counts."""
         found = []
         for track in self._twin.observer.tracks:
             sensor, problem = track.sensor, track.problem
+            apart, by = self._clocks_apart.get(sensor.name, (0, 0.0))
             values = {
                 'accepted': sensor.counts.accepted,
                 'refused': sensor.counts.refused,
+                'refused for their stamps': apart,
                 'silent': sensor.counts.silent,
                 'disagreed': sensor.counts.disagreed,
                 'late [s]': round(self._twin.observer.late * self._twin.period, 4),
                 'share of the motion beyond the wind': round(self._twin.observer.share, 3),
             }
+            if apart and not sensor.counts.accepted:
+                problem = f'{apart} refused: stamps differ from this clock by {by:.1f} s: '
+                problem += 'synchronise the clocks (chrony, or that of micro-ROS)'
             text = problem or 'the tree follows it'
             found.append(Status(f'imu {sensor.name}', WARN if problem else OK, text, values))
         return found
