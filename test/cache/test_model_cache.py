@@ -12,6 +12,7 @@ from tree_sway.cache import model_cache as set_up_files
 from tree_sway.cache.model_cache import SetUpFiles
 from tree_sway.core.run import assembly
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.setup.reductions import TreeReductions
 
 WIND = (6.0, 3.0, 0.5)
 
@@ -43,8 +44,8 @@ def none_is_made(monkeypatch):
     """Fail where a tree is reduced, or asked for its loads, after all."""
 
     def start():
-        for name in ('_modal_arrays', '_table'):
-            monkeypatch.setattr(assembly, name, lambda *_: pytest.fail('made again'))
+        for owner, name in ((TreeReductions, 'modes'), (assembly, '_table')):
+            monkeypatch.setattr(owner, name, lambda *_: pytest.fail('made again'))
 
     return start
 

@@ -3,17 +3,19 @@
 """
 From the reductions of a tree to the oscillators that step it, for every model.
 
-Modules of one model are imported where that model is made.
+A number of coordinates is stepped on a table of winds, the model ``branch`` branch by branch. The
+oscillators of other models come from installed packages (`installed_models`). Modules of one model
+are imported where that model is made.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TYPE_CHECKING
 
 import numpy as np
 
-from tree_sway.core.arrays import Records
 from tree_sway.core.model.records import in_lines
 from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.run.bank import Bank, Oscillators
@@ -25,7 +27,7 @@ from tree_sway.errors import ParameterError
 
 if TYPE_CHECKING:
     from tree_sway.cache.model_cache import SetUpFiles
-    from tree_sway.core.run.modal import ModalBank
+    from tree_sway.core.run.modal_coordinates import ModalCoordinates
     from tree_sway.core.run.table_model import WindBasisBank
     from tree_sway.core.setup.load_table import WindBasisTable
 
@@ -41,7 +43,7 @@ def assembled(
     reductions: TreeReductions, model: int | str | None = None, cache: SetUpFiles | None = None
 ) -> Bank:
     """
-    Build the oscillators of a model: a number of coordinates, ``branch`` or ``full``.
+    Build the oscillators of a model: a number of coordinates, ``branch`` or an installed one.
 
     The model is that of the settings if None. Set-ups of modes are read from the cache, and
     written there.
@@ -51,7 +53,7 @@ def assembled(
     TreeError
         A tree that buckles under its own weight, or a branch without mass.
     ParameterError
-        A model without oscillators.
+        A model without oscillators, or one that is not installed.
 
     """
     model = reductions.settings.model if model is None else model
@@ -64,55 +66,75 @@ def assembled(
     with solvable(reductions.tree):
         if model == 'branch':
             return _bank_of_branches(reductions)
-        return _bank_of_modes(reductions, model, cache)
+        if isinstance(model, str):
+            from tree_sway.installed_models import maker_of
+
+            return maker_of(model)(reductions, cache)
+        if model == 0:
+            return _rigid_bank(reductions, cache)
+        return _bank_of_table(reductions, model, cache)
 
 
-def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFiles | None) -> Bank:
-    """Read a set-up from the cache, or make one; both have the same bits."""
-    digest, found = '', None
-    if cache is not None:
-        settings = replace(reductions.settings, model=model)
-        digest = f'{digest_of(reductions.tree, reductions.species, settings)}-{reductions.plain}'
-        found = cache.read(digest)
-    made_of = _modal_arrays(reductions, model) if found is None else found
-    reductions.circular = made_of['natural']
-    branches = made_of['branches'].copy()
-    from tree_sway.core.run.modal import ModalBank
+def _bank_of_table(reductions: TreeReductions, model: int, cache: SetUpFiles | None) -> Bank:
+    """Make the coordinates and the table of their loads."""
+    from tree_sway.core.run.modal_coordinates import ModalCoordinates
+    from tree_sway.core.setup.load_table import WindBasisTable
 
-    kind: type[ModalBank] = ModalBank
-    if reductions.plain:
-        from tree_sway.core.run.numpy_banks import NumpyModalBank
+    def set_up() -> dict[str, Any]:
+        arrays = modal_arrays_of(reductions, model)
+        coordinates = ModalCoordinates(arrays['branches'], arrays, reductions.damping_ratio)
+        return {**arrays, 'table': _table(reductions, coordinates).record}
 
-        kind = NumpyModalBank
-    modal = kind(branches, made_of, reductions.damping_ratio)
-    oscillators: Oscillators = modal
-    if model != 'full' and model != 0:
-        from tree_sway.core.setup.load_table import WindBasisTable
-
-        table = _table(reductions, modal) if found is None else WindBasisTable.of_arrays(found)
-        made_of['table'] = table.record
-        oscillators = _bank_of_table(modal, table, reductions.plain)
-    if found is None and cache is not None:
-        cache.write(digest, made_of)
-    segments = made_of['segments'] if found is None else in_lines(made_of['segments'])
-    return _laid_out(
-        oscillators, branches, segments, float(made_of['tree_mass']), reductions.plain
-    )
+    made_of = stored_set_up(reductions, model, cache, set_up)
+    coordinates = ModalCoordinates(made_of['branches'].copy(), made_of, reductions.damping_ratio)
+    table = WindBasisTable.of_arrays(made_of)
+    return laid_out(_on_table(coordinates, table, reductions.plain), made_of, reductions.plain)
 
 
-def _bank_of_table(modal: ModalBank, table: WindBasisTable, plain: bool) -> WindBasisBank:
+def _on_table(coordinates: ModalCoordinates, table: WindBasisTable, plain: bool) -> WindBasisBank:
     if plain:
         from tree_sway.core.run.numpy_table import NumpyTableBank
 
-        return NumpyTableBank(modal, table)
+        return NumpyTableBank(coordinates, table)
     from tree_sway.core.run.table_model import WindBasisBank
 
-    return WindBasisBank(modal, table)
+    return WindBasisBank(coordinates, table)
+
+
+def _rigid_bank(reductions: TreeReductions, cache: SetUpFiles | None) -> Bank:
+    """Make a tree without coordinates."""
+    from tree_sway.core.run.rigid import RigidBank
+
+    made_of = stored_set_up(reductions, 0, cache, lambda: modal_arrays_of(reductions, 0))
+    bank = RigidBank(made_of['branches'].copy(), made_of, reductions.damping_ratio)
+    return laid_out(bank, made_of, reductions.plain)
+
+
+def stored_set_up(
+    reductions: TreeReductions,
+    model: int | str,
+    cache: SetUpFiles | None,
+    set_up: Callable[[], dict[str, Any]],
+) -> dict[str, Any]:
+    """Read the arrays of a model from the cache, or make and write them; both have equal bits."""
+    if cache is None:
+        made_of = set_up()
+    else:
+        settings = replace(reductions.settings, model=model)
+        digest = f'{digest_of(reductions.tree, reductions.species, settings)}-{reductions.plain}'
+        found = cache.read(digest)
+        if found is None:
+            made_of = set_up()
+            cache.write(digest, made_of)
+        else:
+            made_of = {**found, 'segments': in_lines(found['segments'])}
+    reductions.circular = made_of['natural']
+    return made_of
 
 
 @one_thread()
-def _modal_arrays(reductions: TreeReductions, model: int | str) -> dict[str, Any]:
-    """Find the arrays by which modes are stepped and placed."""
+def modal_arrays_of(reductions: TreeReductions, model: int | str) -> dict[str, Any]:
+    """Find the arrays by which a number of coordinates, or all, are stepped and placed."""
     from tree_sway.core.setup.bent_inertia import inertia_slopes
     from tree_sway.core.setup.modal_arrays import modal_arrays
 
@@ -133,16 +155,16 @@ def _modal_arrays(reductions: TreeReductions, model: int | str) -> dict[str, Any
 
 
 @one_thread()
-def _table(reductions: TreeReductions, modal: ModalBank) -> WindBasisTable:
+def _table(reductions: TreeReductions, coordinates: ModalCoordinates) -> WindBasisTable:
     from tree_sway.core.setup.load_table import WindBasisTable
 
-    return WindBasisTable(modal, reductions.wind_moments, reductions.drag_law)
+    return WindBasisTable(coordinates, reductions.wind_moments, reductions.drag_law)
 
 
 @one_thread()
 def _bank_of_branches(reductions: TreeReductions) -> Bank:
     """Each branch's own oscillator: the mean of its two axes."""
-    from tree_sway.core.run.branch_oscillators import UncoupledBank
+    from tree_sway.core.run.branch_oscillators import BranchOscillators
     from tree_sway.core.setup.subtree_inertia import subtree_inertia
 
     tree, settings, reduced = reductions.tree, reductions.settings, reductions.isolated
@@ -157,18 +179,18 @@ def _bank_of_branches(reductions: TreeReductions) -> Bank:
         volume = np.add.reduceat(tree.volume, tree.branch_first[:-1])
         rule = np.sqrt(volume * volume[np.maximum(tree.branch_parent, 0)])
         stiffness, damping = settings.volume_stiffness * rule, settings.volume_damping * rule
-    kind: type[UncoupledBank] = UncoupledBank
+    kind: type[BranchOscillators] = BranchOscillators
     if reductions.plain:
-        from tree_sway.core.run.numpy_banks import NumpyUncoupledBank
+        from tree_sway.core.run.numpy_branch_oscillators import NumpyBranchOscillators
 
-        kind = NumpyUncoupledBank
+        kind = NumpyBranchOscillators
     oscillators = kind(branches, inertia, damping, stiffness, weight)
-    mass = float(reduced.mass.sum())
-    return _laid_out(oscillators, branches, reduced.segments, mass, reductions.plain)
+    made_of = {'segments': reduced.segments, 'tree_mass': reduced.mass.sum()}
+    return laid_out(oscillators, made_of, reductions.plain)
 
 
-def _laid_out(
-    oscillators: Oscillators, branches: Records, segments: Records, mass: float, plain: bool
-) -> Bank:
+def laid_out(oscillators: Oscillators, made_of: dict[str, Any], plain: bool) -> Bank:
+    """Join oscillators with the records of the segments that they move."""
+    branches, segments = oscillators.branches, made_of['segments']
     blocks = block_records(branches, segments)
-    return Bank(oscillators, branches, segments, blocks, mass, plain)
+    return Bank(oscillators, branches, segments, blocks, float(made_of['tree_mass']), plain)

@@ -13,7 +13,7 @@ from tree_sway.core.setup.tree_motion import centre_motion
 
 
 def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[str, Floats]:
-    """Find the arrays of a `ModalBank`, which can be stored."""
+    """Find the arrays of `ModalCoordinates`, which can be stored."""
     # One mode after the other, so that loops over coordinates are vectorised.
     shapes = np.ascontiguousarray(modes.shapes.T)
     return {
