@@ -122,13 +122,13 @@ def twin_score(
         smoothed[k] = tips_of_poses(tree, twin.place_rotations(twin.smoothed, block))
         bands[k] = twin.band()
     error, roughness, stem = _compared(tips, true.tips, 0)
-    late = LATE_STEPS + twin.observer.late
-    late_error, late_roughness, _ = _compared(smoothed, true.tips, late)
+    late_error, late_roughness = error, roughness
+    if places:
+        late = LATE_STEPS + twin.observer.late
+        late_error, late_roughness, _ = _compared(smoothed, true.tips, late)
     notes = [*twin.problems]
     if (fit := twin.observer.fit) is not None:
         notes.append(f'stiffness {fit.stiffness:.3f}, damping {fit.damping:.2f}')
-    if not places:
-        late_error, late_roughness = error, roughness
     return Score(
         error, roughness, late_error, late_roughness, stem, _held(tips, true.tips, bands),
         1e6 * spent / len(tips), tuple(notes),
