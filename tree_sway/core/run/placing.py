@@ -64,7 +64,7 @@ def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
 @part
 def _expand(instances: Instances, shapes: Singles, x: Floats) -> None:
     instance = instances[0]
-    eta, hidden, shown = instance.eta, instance.hidden, instance.scratch[0]
+    eta, hidden, shown = instance.eta, instance.hidden, instance.shown
     for k in range(len(eta)):
         shown[k] = eta[k] - hidden[k]
     shown = shown[: shapes.shape[1] - instance.left_out]
