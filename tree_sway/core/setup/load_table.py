@@ -188,7 +188,8 @@ class WindBasisTable:
         self, pose: Floats, wind: Floats, level: int, pressure_there: float
     ) -> tuple[Floats, Floats]:
         """Find the slopes at an equilibrium, without what would feed a flutter of twigs there."""
-        turning, damping = self._slopes(self._shapes @ pose, wind)
+        slopes = self._slopes(self._shapes @ pose, wind)
+        turning, damping = (each.astype(np.float64) for each in slopes)
         speed = SPEEDS[level]
         if speed > _BREEZE:
             air = self._damping - pressure_there / speed * np.diag(damping)
