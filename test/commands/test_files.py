@@ -65,7 +65,7 @@ def test_plot_refuses_a_format_it_cannot_draw(
 
 @pytest.mark.parametrize(
     ('diameter', 'warning'),
-    [('0.18', 'buckles in leaf'), pytest.param('0.4', '', marks=pytest.mark.long)],
+    [('0.155', 'buckles in leaf'), pytest.param('0.4', '', marks=pytest.mark.long)],
 )
 def test_a_stem_that_its_crown_bends_over_is_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], diameter: str, warning: str
@@ -116,6 +116,15 @@ def test_a_tree_that_sways_by_a_skin_or_by_weights(tmp_path: Path) -> None:
         assert (b'"targetNames"' in path.read_bytes()) == (way == 'morph')
         assert (b'"animations"' in path.read_bytes()) == (way == 'morph')
         assert b'"leaves"' in path.read_bytes()
+
+
+def test_a_tree_as_glb_is_in_leaf_and_sways_unless_told_otherwise(tmp_path: Path) -> None:
+    path = tmp_path / 'tree.glb'
+    assert cli.main(['convert', SEEDLING, '-o', str(path)]) == 0
+    content = path.read_bytes()
+    assert all(word in content for word in (b'"animations"', b'"leaves"', b'\x89PNG'))
+    assert cli.main(['convert', SEEDLING, '--leaves', 'off', '--force', '-o', str(path)]) == 0
+    assert b'"leaves"' not in path.read_bytes()
 
 
 @pytest.mark.parametrize(

@@ -33,13 +33,15 @@ def grow_broadleaf(
     height: float = 8.0,
     diameter: float = 0.18,
     species: str = 'broadleaf',
+    form: BroadleafForm | None = None,
 ) -> Tree:
     """
     Grow a tree with a trunk, limbs, branches and twigs, as in `finished_tree`.
 
-    The same state of the source of randomness gives the same tree.
+    ``form`` is that of the species if None. The same state of the source of randomness gives the
+    same tree.
     """
-    growth = _Growth(rng, broadleaf_form(species), Skeleton())
+    growth = _Growth(rng, form or broadleaf_form(species), Skeleton())
     growth.add_trunk_and_limbs()
     law = {'exponent': growth.form.exponent, 'bole_taper': growth.form.taper}
     return finished_tree(growth.skeleton, height, diameter, species, **law)
