@@ -26,6 +26,7 @@ from tree_sway.commands.progress import waiting
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.scene import Scene
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
@@ -114,7 +115,7 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
         )
     settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
     with waiting('finding what sways'):
-        simulator = SwaySimulator(scene.tree, scene.species, settings)
+        simulator = make_simulator(scene.tree, scene.species, settings)
         leaves = drawn_leaves(scene, arguments)
         if suffix == '.glb':
             write_gltf(arguments.output, morphing_tree(simulator, leaves))

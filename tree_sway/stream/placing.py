@@ -11,6 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.model.fill_records import (
+    assign_slots,
+    block_records,
+    fill_places,
+    Places,
+    segment_records,
+)
 from tree_sway.core.model.records import (
     block_layout,
     branch_layout,
@@ -18,13 +25,6 @@ from tree_sway.core.model.records import (
     segment_layout,
 )
 from tree_sway.core.run.placing import GIVEN, place, room_for
-from tree_sway.core.setup.fill_records import (
-    assign_slots,
-    block_records,
-    fill_places,
-    Places,
-    segment_records,
-)
 from tree_sway.errors import FormatError
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import Description

@@ -15,6 +15,7 @@ from tree_sway.core.growth.grow import grow
 from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.files.models.disk_cache import use_disk_cache
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_tree
 from tree_sway.files.wind.record import WindRecord
@@ -64,6 +65,7 @@ def compute(case: Case) -> Plain:
 def _rig(asked: str) -> tuple[Rig, float]:
     """Set up a tree and its frequency in [Hz], cached as the next case often has the same."""
     tree, settings, _ = json.loads(asked)
+    use_disk_cache()  # in each process of a study
     rig = Rig(_tree(tree), **settings)
     return rig, float(rig.reductions.natural_frequencies(1)[0])
 

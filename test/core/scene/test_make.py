@@ -11,7 +11,6 @@ import pytest
 from tree_sway_lab.example_trees import tapered_stem
 
 from tree_sway.core.model.settings import MODELS, Settings
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import ParameterError
@@ -71,7 +70,7 @@ def test_a_tree_is_used_like_a_forest_of_one(stem, model):
 
 def test_a_simulator_of_one_number_is_not_auto(stem):
     with pytest.raises(ParameterError, match=r"model 'auto' .* make it by make_simulator"):
-        SwaySimulator(stem, WOOD, model='auto')
+        make_simulator(stem, WOOD, model='auto')
 
 
 def test_the_model_is_that_of_the_settings(stem):

@@ -9,7 +9,7 @@ import pytest
 from tree_sway_lab.bench.sizes import gusts_and_turns
 from tree_sway_lab.kinds.kinds import kind_called
 
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.gust_responses import gust_slopes
 from tree_sway.core.setup.tree_motion import tip_motion
 
@@ -19,7 +19,7 @@ DT = 1.0 / 60.0
 @pytest.fixture(scope='module')
 def spire():
     """Return all coordinates of a conifer whose whorls swing alike."""
-    return SwaySimulator(kind_called('spire'), model='full', damping_ratio=0.05)
+    return make_simulator(kind_called('spire'), model='full', damping_ratio=0.05)
 
 
 @pytest.mark.parametrize('azimuth', [0.3, 2.0])

@@ -17,7 +17,7 @@ on the key rotations, w circular frequencies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cached_property, partial
 import math
 
@@ -25,13 +25,14 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.model.fill_records import load_records
 from tree_sway.core.model.records import Branches, Loads, WIDTH, WORK, Works
+from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.oscillators.propagator import fill_propagator
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
 from tree_sway.core.run.branchwise import Branchwise, Tunable
 from tree_sway.core.setup.bent_inertia import MOST_CHANGE
 from tree_sway.core.setup.branch_loads import wind_moments
-from tree_sway.core.setup.fill_records import load_records
 
 MOST_TRIALS = 12
 """Largest number of iterations for the load of a step."""
@@ -51,32 +52,30 @@ class ModalBank(Branchwise):
     """
     Oscillators of the slowest or all natural modes of a tree, of one damping ratio.
 
-    ``made_of`` are the arrays of `setup.modal_arrays`.
+    ``branches`` are the records of a model.
     """
 
-    def __init__(
-        self, branches: Records, made_of: Mapping[str, Floats], damping_ratio: float
-    ) -> None:
-        """Make room for the coefficients and the state."""
-        self._shapes = made_of['shapes']
+    def __init__(self, branches: Records, model: SwayModel) -> None:
+        """Make room for the coefficients and the state; what a tuning changes is copied."""
+        self._shapes = np.ascontiguousarray(model.shapes.T)
         m, n = self._shapes.shape
         self.branches, self.shapes = branches, self._shapes.T
-        self.stiffness = made_of['circular'] ** 2
-        self.loss = made_of['loss']
+        self.stiffness = model.stiffness.copy()
+        self.loss = model.relative_damping
         """Damping ratio of each mode over that of the tree, (m,)."""
-        self.damping = 2.0 * damping_ratio * self.loss * made_of['circular']
-        self.limit = LOAD_MAX * made_of['diagonal']
-        self.weight = made_of['weight']
+        self.damping = model.own_damping.copy()
+        self.limit = model.key_limit.copy()
+        self.weight = model.weight
         """Stiffness by gravity of each mode in [1/s^2], (m,); negative where weight softens it."""
-        self.compliance = made_of['branch_compliance'], made_of['mode_compliance']
+        self.compliance = model.branch_compliance.copy(), model.shape_compliance.copy()
         """
         Compliance of every isolated branch, (N, 9), and of the modes of isolated branches, (m, m).
         """
-        self._momentum = made_of['momentum'].T
-        self.inertia_slopes = made_of['inertia_slopes']
+        self._momentum = model.projection
+        self.inertia_slopes = model.inertia_slopes
         """Slopes of the inertia by leading coordinates, (q, q, q), as `inertia_slopes`."""
         self._springs = np.zeros((5 + len(self.inertia_slopes), m))
-        self._participation = made_of['participation']
+        self._participation = model.participation
         self.work = np.zeros(len(branches), dtype=WORK)
         self.loads = load_records(branches)
         """Records of `load_layout`."""
@@ -87,12 +86,6 @@ class ModalBank(Branchwise):
         self.whole, self.half = np.zeros((2, m, 8))
         self._fastest = np.zeros(1)
         self._tried = np.zeros((2 + 2 * MOST_TRIALS, n))
-
-    @property
-    def mean_square_motion(self) -> Floats:
-        """Mean square motion of the loaded pieces, per unit of each mode, (m,)."""
-        area = self.branches['area']
-        return np.asarray(2.0 * area @ self._participation / max(float(area.sum()), 1e-300))
 
     def set_time_step(self, dt: float) -> None:
         """Refill the propagator of the modes for a time step [s]."""

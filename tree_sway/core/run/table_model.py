@@ -39,7 +39,6 @@ from tree_sway.core.run.modal import ModalBank
 from tree_sway.core.run.placing import expand, room_for
 from tree_sway.core.run.simd import shapes_together, TOGETHER
 from tree_sway.core.run.table_load import wind_force
-from tree_sway.core.setup.load_table import WindBasisTable
 
 STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside', 'left_out')
 """Fields of an instance that are its state."""
@@ -49,12 +48,12 @@ class WindBasisBank:
     """
     Oscillators of a tree in uniform winds, loaded by a table.
 
-    ``modal`` are the same modes on the loads of all branches.
+    ``modal`` are the same modes on the loads of all branches, ``table`` is a `table_record`, (1,).
     """
 
     loads: Records | None = None
 
-    def __init__(self, modal: ModalBank, table: WindBasisTable) -> None:
+    def __init__(self, modal: ModalBank, table: Records) -> None:
         """Begin at rest."""
         self.modal, self.table = modal, table
         self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
@@ -73,7 +72,7 @@ class WindBasisBank:
         """Lay the table out for a number of coordinates, that of the largest tree of a stand."""
         for compiled in ('_step', '_expand'):
             self.__dict__.pop(compiled, None)
-        table_record = self.table.record
+        table_record = self.table
         self.record = zeros_in_lines(1, table_layout(n_modes))
         for name in table_record.dtype.names or ():
             values = table_record[name]

@@ -16,14 +16,15 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.model.model_cache import PREPARED
+from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.run.simulator import Counts, SwaySimulator
-from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.make import simulator_of, solved
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
-from tree_sway.core.tree.grown_tree import GrownTree
+from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.tree import tips_of_poses, Tree
 from tree_sway.core.wind.averaging import LONGEST_HOLD, WindAverage
 from tree_sway.core.wind.gate import WindGate
@@ -104,8 +105,11 @@ class Rig:
         self, tree: Tree | GrownTree, settings: Settings | None = None, **changes: Any
     ) -> None:
         """Reduce the tree, once for the simulator and for its strain."""
-        self.simulator = make_simulator(tree, settings=settings, **changes)
-        self.tree, self.reductions = self.simulator.tree, self.simulator.reductions
+        bare, species = tree_and_species(tree)
+        chosen = settings_with(settings, changes)
+        self.tree, self.reductions = bare, TreeReductions(bare, species, solved(chosen))
+        auto = {'tolerance': 0.005} if chosen.model == 'auto' else {}
+        self.simulator = simulator_of(self.reductions, cache=PREPARED, **auto)
 
     def run(
         self,

@@ -21,8 +21,9 @@ from tree_sway.core.beams.cutting import cut_tree, CutTree, pieces_by_turn, whol
 from tree_sway.core.checks import one_of_each
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.drag_law import crown_drag, DragLaw, pressure
+from tree_sway.core.model.fill_records import Places
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.fill_records import branch_records, Places, places_of, segment_records
+from tree_sway.core.setup.branch_records import branch_records, places_of
 from tree_sway.core.setup.matrices import reduce_tree, Reduction
 from tree_sway.core.setup.modes import leading_modes, Modes, natural_modes, solvable
 from tree_sway.core.setup.one_thread import one_thread
@@ -60,9 +61,10 @@ class ReducedTree:
     models: list[BranchModel]
     reduction: Reduction
     branches: Records
-    segments: Records
     places: Places
     mass: Floats
+    row: Ints
+    """Row in the whole tree of each segment of the reduced one, (n,)."""
 
 
 class TreeReductions:
@@ -223,8 +225,7 @@ class TreeReductions:
         mass = np.concatenate([
             model.beam.over_segments(model.mass) * model.beam.segment_length for model in models
         ])  # fmt: skip
-        segments = segment_records(places)
-        return ReducedTree(tree, cut.branch, models, reduction, records, segments, places, mass)
+        return ReducedTree(tree, cut.branch, models, reduction, records, places, mass, cut.row)
 
 
 def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:
