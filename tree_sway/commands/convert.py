@@ -26,13 +26,16 @@ from tree_sway.commands.progress import waiting
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.make import make_simulator, solved
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
 from tree_sway.files.export.tree_export import SUFFIXES, write_gltf, write_tree
 from tree_sway.files.export.usd_tree import usd_of_tree
+from tree_sway.files.models.model_file import SUFFIX as MODEL_SUFFIX
+from tree_sway.files.models.model_file import write_model
 from tree_sway.files.whole_file import write_text_whole
 
 
@@ -42,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_exact_argument(parser)
     add_leaves_argument(parser)
     add_model_argument(parser)
-    add_output_arguments(parser, f'{OUTPUT_HELP}, .html, .usda, .xml (MJCF), .sdf')
+    add_output_arguments(parser, f'{OUTPUT_HELP}, .npz, .html, .usda, .xml (MJCF), .sdf')
     parser.add_argument(
         '--sway',
         nargs='?',
@@ -74,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(f'warning: {oddity}', file=sys.stderr)
     if suffix == '.html':
         _write_page(scene, arguments)
-    elif suffix in _OF_ONE_TREE or arguments.sway == 'morph':
+    elif suffix in _OF_ONE_TREE or suffix == MODEL_SUFFIX or arguments.sway == 'morph':
         _write_swaying(scene, arguments, suffix)
     else:
         species = scene.species if scene.is_one_tree else None
@@ -91,7 +94,7 @@ _OF_ONE_TREE: dict[str, Callable[[SwaySimulator, LeafClusters | None], str]] = {
 }
 
 
-_FORMATS = (*SUFFIXES, '.html', *_OF_ONE_TREE)
+_FORMATS = (*SUFFIXES, MODEL_SUFFIX, '.html', *_OF_ONE_TREE)
 
 
 def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
@@ -114,6 +117,10 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             cure='convert its trees one by one',
         )
     settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
+    if suffix == MODEL_SUFFIX:
+        with waiting('preparing the tree'):
+            write_model(arguments.output, prepare(scene.tree, scene.species, solved(settings)))
+        return
     with waiting('finding what sways'):
         simulator = make_simulator(scene.tree, scene.species, settings)
         leaves = drawn_leaves(scene, arguments)

@@ -18,6 +18,10 @@ Arrays = Mapping[str, NDArray[Any]]
 """Arrays of a `SwayModel` by name."""
 
 
+MOST_GIVEN = 32
+"""Largest number of models of files in memory."""
+
+
 class ModelCache(Protocol):
     """Arrays of models by digest."""
 
@@ -37,8 +41,11 @@ class PreparedModels:
         self._given: dict[str, Arrays] = {}
 
     def add(self, digest: str, arrays: Arrays) -> None:
-        """Add a model of a file; the newest of one digest counts."""
+        """Add a model of a file; of more than `MOST_GIVEN` the oldest is dropped."""
+        self._given.pop(digest, None)
         self._given[digest] = arrays
+        while len(self._given) > MOST_GIVEN:
+            self._given.pop(next(iter(self._given)))
 
     def read(self, digest: str) -> Arrays | None:
         """Return the arrays of a model; None if there are none."""

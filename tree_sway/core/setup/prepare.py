@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.model.sway_model import SwayModel
@@ -87,7 +88,7 @@ def prepared(
             cure='make it by make_simulator, or give a number of coordinates',
         )
     tree, species = reductions.tree, reductions.species
-    digest = f'{made_of_digest(tree, species, settings)}-{reductions.plain}'
+    digest = digest_of_source(tree, species, settings, plain=reductions.plain)
     found = None if cache is None else cache.read(digest)
     if found is not None:
         with suppress(FormatError):  # of an older version, or damaged: it is made again
@@ -103,9 +104,11 @@ def prepared(
     return made
 
 
-def made_of_digest(tree: Tree, species: Species, settings: Settings) -> str:
+def digest_of_source(
+    tree: Tree, species: Species, settings: Settings, *, plain: bool = bool(WHY_PLAIN)
+) -> str:
     """Digest of a tree, its species and settings, by which its model is found again."""
-    return digest_of(tree, species, settings)
+    return f'{digest_of(tree, species, settings)}-{plain}'
 
 
 @one_thread()
