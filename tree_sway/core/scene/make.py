@@ -9,16 +9,18 @@ from typing import Any
 
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with, USUAL
+from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.setup.prepare import prepared
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError
 
 
 def make_simulator(
-    tree: Tree | GrownTree,
+    tree: Tree | GrownTree | SwayModel,
     species: Species | None = None,
     settings: Settings | None = None,
     *,
@@ -34,7 +36,7 @@ def make_simulator(
     Parameters
     ----------
     tree
-        Tree, with or without its species.
+        Tree, with or without its species; or its prepared model, which has its own settings.
     species
         Species for wood, damping and drag; the tree's own if None.
     settings
@@ -59,6 +61,11 @@ def make_simulator(
         A tree that buckles under its own weight.
 
     """
+    if isinstance(tree, SwayModel):
+        if species is not None or settings is not None or changes:
+            what = 'a prepared model with another species or other settings'
+            raise ParameterError(what, where=tree.tree.name, cure='prepare the tree again')
+        return SwaySimulator(tree, plain=plain)
     bare, wood = tree_and_species(tree, species)
     chosen = settings_with(settings, changes)
     how = {'tolerance': tolerance, 'budget': budget} if chosen.model == 'auto' else {}
