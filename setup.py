@@ -55,7 +55,7 @@ if 'bdist_wheel' in sys.argv:
 
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
 extras = {
-    # Compiled kernels; without numba a tree runs on numpy, slower (doc/faq.md).
+    # Compiled kernels; without numba the same model runs on numpy, slower (doc/faq.md).
     'fast': ['numba>=0.59'],
     # Bars for long waits; without tqdm a line is printed now and then.
     'progress': ['tqdm>=4.60'],
@@ -64,6 +64,8 @@ extras = {
         f'ros-jazzy-rclpy[fastrtps]==7.1.6{LINUX}',
         f'ros-jazzy-common-interfaces==5.3.6{LINUX}',
     ],
+    # Instruments on a serial port, with Modbus, and topics of MQTT.
+    'sensors': ['pyserial>=3.5', 'pymodbus>=3.10', 'paho-mqtt>=2.0'],
     'serial': ['pyserial>=3.5'],
     'bag': ['rosbags>=0.11'],
     'plot': ['matplotlib>=3.6'],
@@ -89,6 +91,9 @@ extras = {
     # Studies on all cores or a cluster; tables as Parquet.
     'study': ['distributed>=2023.1', 'cryptography>=41'],
     'parquet': ['pyarrow>=12'],
+    # Wind of reanalyses; inventories of spreadsheets and of geographic information systems.
+    'netcdf': ['netCDF4>=1.6'],
+    'inventory': ['openpyxl>=3.1', 'pyogrio>=0.7'],
     'docs': ['sphinx>=7', 'myst-parser>=2'],
 }
 

@@ -36,7 +36,7 @@ HASHES = ROOT / '.ci' / 'hashes-ros-jazzy.txt'
 OLDEST, NEWEST_WITH_ROS = (3, 10), (3, 14)
 #: What is always installed: compiled kernels, bars for waits, and what the commands of the library
 #: use. Other parts are large: ROS, the encoder of MP4 (165 MB), Parquet (170 MB).
-ALWAYS = ('fast', 'progress', 'plot', 'study', 'bag')
+ALWAYS = ('fast', 'progress', 'plot', 'study', 'bag', 'sensors')
 #: Extras that a command needs beside those, by the program or by the command of `tree-sway`.
 NEEDS = {
     **dict.fromkeys(
@@ -51,9 +51,10 @@ NEEDS = {
         ('pytest', 'py.test'),
         (
             'ros',
-            'serial',
             'film',
             'parquet',
+            'netcdf',
+            'inventory',
             'test',
             'lab',
             'docs',
@@ -64,7 +65,10 @@ NEEDS = {
     'sphinx-build': ('docs',),
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
-NEEDS_OF_FILES = {'.parquet': 'parquet'}
+NEEDS_OF_FILES = {
+    **{'.parquet': 'parquet', '.nc': 'netcdf'},
+    **dict.fromkeys(('.xlsx', '.gpkg', '.shp'), 'inventory'),
+}
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
     'AMENT_PREFIX_PATH',

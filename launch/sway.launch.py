@@ -3,81 +3,101 @@
 """
 Launch a tree that sways: a source of wind, the wind node, the solver, and RViz if asked for.
 
-    ros2 launch tree_sway_ros sway.launch.py tree:=goldcrest source:=player file:=wind.csv
+    ros2 launch tree_sway_ros sway.launch.py tree:=oak wind_source:=player wind_file:=wind.csv
 
-Every name is relative: two launches with different ``namespace`` are two trees side by side. With
-``shards`` the trees of a stand are shared out among this number of solvers, on one host or on
-several.
+``params_file`` sets any parameter of any node; the other arguments are for the values that change
+from start to start, and override it. Every name is relative: two launches with different
+``namespace`` are two trees side by side. With ``shard_count`` the trees of a stand are shared out
+among this number of solvers, on one host or on several.
 """
 
 import os
 
 from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, OpaqueFunction
-from launch.substitutions import LaunchConfiguration
+from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction
 from launch_ros.actions import Node
 
 PACKAGE = 'tree_sway_ros'
 WIND = 'wind/filtered'
 SOURCES = {
-    'simulated': ['anemometer'],
-    'player': ['player'],
-    'sensor': ['sensor'],
-    'live': [],
-    'elsewhere': [],
+    'simulated': ['anemometer', 'wind'],
+    'player': ['player', 'wind'],
+    'sensor': ['sensor', 'wind'],
+    'topic': ['wind'],
+    'remote': [],
 }
+"""Nodes of each source of wind."""
+
 ARGUMENTS = (
-    ('tree', '', 'The solver opens this built-in tree, or file; as configured if empty.'),
-    ('source', 'simulated', 'The wind comes from here.', [*SOURCES]),
-    ('file', '', 'The player plays this wind record, for source:=player.'),
+    ('tree', '', 'Built-in tree, or file of a tree or a forest; as configured if empty.'),
+    (
+        'wind_source',
+        'simulated',
+        'Where the wind comes from: simulated, player (a record), sensor (an anemometer), topic '
+        '(of its driver), or remote (wind/filtered of another host).',
+    ),
+    ('wind_file', '', 'Wind record, for wind_source:=player.'),
     ('reader_options', '', "Options for the reader of the file: 'topic=/mast/wind yaw=1.57'."),
-    ('start', '', 'Time skipped at the beginning of the record [s].'),
+    ('playback_start', '', 'Skipped time at the beginning of the record [s].'),
     ('playback_rate', '', 'Playback rate of the record; as configured if empty.'),
-    ('loop', '', 'The record is played over and over; as configured if empty.'),
-    ('address', '', 'The instrument of source:=sensor is here, such as tcp://host:port.'),
-    ('wind_topic', 'wind', 'The wind of source:=live is on this topic.'),
-    ('rate', '', 'Frames per second of the solver; as configured if empty.'),
+    ('playback_loop', '', 'Repeat the record; as configured if empty.'),
+    ('sensor_address', '', 'The instrument of wind_source:=sensor, such as tcp://host:port.'),
+    ('wind_topic', 'wind', 'Topic of the driver, for wind_source:=topic.'),
+    ('solver_rate', '', 'Steps of the solver per second [Hz]; as configured if empty.'),
     ('pose', '', "Place of the tree in its frame: '3 0 0 1.57' for x y z [m] and yaw [rad]."),
-    ('frame_id', '', 'All that is published is in this frame; as configured if empty.'),
-    ('namespace', '', 'All nodes and topics are in this namespace: one per tree.'),
-    ('params_file', '', 'The values of this ROS parameter file override those of config/.'),
-    ('use_sim_time', '', 'Nodes follow /clock, which the player of source:=player publishes.'),
-    ('autostart', '', 'False leaves the start of nodes to a lifecycle manager.'),
-    ('shards', '1', "Number of solvers that share the trees of a stand, in 'shard<n>'."),
-    ('here', '', 'These shards run on this host, such as 0,1; all of them if empty.'),
-    ('page', 'false', 'The viewer serves a page for the browser.'),
-    ('rviz', 'false', 'RViz is started.'),
+    ('frame_id', '', 'Frame of all published messages; as configured if empty.'),
+    ('namespace', '', 'Namespace of all nodes and topics: one per tree.'),
+    ('params_file', '', 'ROS parameter file, whose values override those of config/.'),
+    ('use_sim_time', '', 'Follow /clock, which the player of wind_source:=player publishes.'),
+    ('autostart', '', 'false leaves the start of the nodes to a lifecycle manager.'),
+    ('shard_count', '1', "Number of solvers that share the trees of a stand, in 'shard<n>'."),
+    ('local_shards', '', 'Shards that run on this host, such as 0,1; all of them if empty.'),
+    ('use_viewer', 'false', 'Serve a page for the browser.'),
+    ('use_rviz', 'false', 'Start RViz.'),
 )
+
+FORMER_ARGUMENTS = {
+    'source': 'wind_source',
+    'file': 'wind_file',
+    'start': 'playback_start',
+    'loop': 'playback_loop',
+    'address': 'sensor_address',
+    'rate': 'solver_rate',
+    'shards': 'shard_count',
+    'here': 'local_shards',
+    'page': 'use_viewer',
+    'rviz': 'use_rviz',
+}
+FORMER_SOURCES = {'live': 'topic', 'elsewhere': 'remote'}
+"""Former names, which still work, and what they are called now."""
 
 
 def generate_launch_description():
     """Declare the arguments and start what they ask for."""
     declared = [
-        DeclareLaunchArgument(
-            name, default_value=default, description=text, choices=(more or [None])[0]
-        )
-        for name, default, text, *more in ARGUMENTS
+        DeclareLaunchArgument(name, default_value=default, description=text)
+        for name, default, text in ARGUMENTS
     ]
     return LaunchDescription([*declared, OpaqueFunction(function=start_nodes)])
 
 
 def start_nodes(context):
-    """Make the nodes that the arguments ask for."""
-    given = {name: LaunchConfiguration(name).perform(context) for name, *_ in ARGUMENTS}
+    """Make the nodes that the arguments ask for, and the warnings of former names."""
+    given, warnings = arguments_given(context.launch_configurations)
     config = os.path.join(get_package_share_directory(PACKAGE), 'config')
-    source = SOURCES[given['source']]
-    viewer = ['viewer'] if is_true('page', given['page']) else []
-    wind = ['wind'] if given['source'] != 'elsewhere' else []
-    nodes = [make_node(name, given, config) for name in (*source, *wind)]
-    if given['shards'] in ('', '1'):
+    viewer = ['viewer'] if is_true('use_viewer', given['use_viewer']) else []
+    nodes = [make_node(name, given, config) for name in SOURCES[given['wind_source']]]
+    if given['shard_count'] in ('', '1'):
         nodes += [make_node(name, given, config) for name in ('solver', *viewer)]
     elif viewer:
-        raise ValueError("launch argument 'page': start a viewer in the namespace of each shard")
+        raise ValueError(
+            "launch argument 'use_viewer': start a viewer in the namespace of each shard"
+        )
     else:
         around = context.launch_configurations.get('ros_namespace', '')
         nodes += [make_shard(shard, given, config, around) for shard in shards_here(given)]
-    if is_true('rviz', given['rviz']):
+    if is_true('use_rviz', given['use_rviz']):
         sim_time = {}
         if given['use_sim_time']:
             sim_time['use_sim_time'] = is_true('use_sim_time', given['use_sim_time'])
@@ -90,7 +110,26 @@ def start_nodes(context):
                 parameters=[sim_time],
             )
         )
-    return nodes
+    return [*(LogInfo(msg=f'warning: {text}') for text in warnings), *nodes]
+
+
+def arguments_given(configurations):
+    """Values of the arguments, under their present names, and a warning for each former name."""
+    given = {name: configurations.get(name, default) for name, default, _ in ARGUMENTS}
+    warnings = []
+    for former, name in FORMER_ARGUMENTS.items():
+        if former in configurations:
+            given[name] = configurations[former]
+            warnings.append(f"launch argument '{former}' is now called '{name}'")
+    source = given['wind_source']
+    if source in FORMER_SOURCES:
+        given['wind_source'] = FORMER_SOURCES[source]
+        warnings.append(f"wind_source '{source}' is now called '{FORMER_SOURCES[source]}'")
+    elif source not in SOURCES:
+        raise ValueError(
+            f"launch argument 'wind_source': '{source}' is none of {', '.join(SOURCES)}"
+        )
+    return given, warnings
 
 
 def is_true(name, text):
@@ -114,20 +153,20 @@ def overrides_of(name, given):
             overrides['publish_clock'] = with_clock
     if given['autostart']:
         overrides['autostart'] = is_true('autostart', given['autostart'])
-    if name == 'sensor' and given['address']:
-        overrides['address'] = given['address']
+    if name == 'sensor' and given['sensor_address']:
+        overrides['address'] = given['sensor_address']
     if name == 'player':
-        names = ('file', 'reader_options')
-        overrides.update({each: given[each] for each in names if given[each]})
-        numbers = {'start': 'start', 'rate': 'playback_rate'}
+        texts = {'file': 'wind_file', 'reader_options': 'reader_options'}
+        overrides.update({to: given[each] for to, each in texts.items() if given[each]})
+        numbers = {'start': 'playback_start', 'rate': 'playback_rate'}
         overrides.update({to: float(given[each]) for to, each in numbers.items() if given[each]})
-        if given['loop']:
-            overrides['loop'] = is_true('loop', given['loop'])
+        if given['playback_loop']:
+            overrides['loop'] = is_true('playback_loop', given['playback_loop'])
     if name == 'solver':
         if given['tree']:
             overrides['tree'] = given['tree']
-        if given['rate']:
-            overrides['rate'] = float(given['rate'])
+        if given['solver_rate']:
+            overrides['rate'] = float(given['solver_rate'])
         if given['pose']:
             overrides['pose'] = [float(number) for number in given['pose'].split()]
     return overrides
@@ -135,10 +174,10 @@ def overrides_of(name, given):
 
 def shards_here(given):
     """Return the numbers of the shards that run on this host."""
-    shards = int(given['shards'])
-    here = [int(each) for each in given['here'].split(',')] if given['here'] else range(shards)
-    if shards < 1 or not all(0 <= each < shards for each in here):
-        raise ValueError(f"launch argument 'here': '{given['here']}' of {shards} shards")
+    count, local = int(given['shard_count']), given['local_shards']
+    here = [int(each) for each in local.split(',')] if local else range(count)
+    if count < 1 or not all(0 <= each < count for each in here):
+        raise ValueError(f"launch argument 'local_shards': '{local}' of {count} shards")
     return list(here)
 
 
@@ -149,7 +188,7 @@ def make_shard(shard, given, config, around):
         'solver',
         {**given, 'namespace': '/'.join(filter(None, (given['namespace'], f'shard{shard}')))},
         config,
-        more={'shard.index': shard, 'shard.count': int(given['shards'])},
+        more={'shard.index': shard, 'shard.count': int(given['shard_count'])},
         remappings=[(WIND, wind)],
         respawn=True,
         respawn_delay=0.2,
@@ -161,13 +200,13 @@ def make_node(name, given, config, more=None, **options):
     files = [os.path.join(config, f'{name}.yaml')]
     if given['params_file']:
         files.append(given['params_file'])
-    is_live = name == 'wind' and given['source'] == 'live'
+    has_driver = name == 'wind' and given['wind_source'] == 'topic'
     return Node(
         package=PACKAGE,
         executable=name,
         name=name,
         namespace=given['namespace'],
         parameters=[*files, overrides_of(name, given) | (more or {})],
-        **{'remappings': [('wind', given['wind_topic'])] if is_live else []} | options,
+        **{'remappings': [('wind', given['wind_topic'])] if has_driver else []} | options,
         output='screen',
     )

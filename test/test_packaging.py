@@ -24,9 +24,9 @@ import tree_sway
 
 ROOT = Path(__file__).resolve().parent.parent
 NODES = ('anemometer', 'player', 'sensor', 'solver', 'viewer', 'wind')
-IMPORTED = {'yaml': 'python3-yaml'}
+IMPORTED = {'yaml': 'python3-yaml', 'tf2_ros': 'tf2_ros_py'}
 LOADED = {'rclpy.lifecycle': 'lifecycle_msgs', "import_module('serial')": 'python3-serial'}
-"""Packages that are loaded where the nodes' code has a text, without an import of their own."""
+"""Packages that are loaded where the code has a text, without an import of their own."""
 
 
 @pytest.fixture(scope='module')
@@ -67,8 +67,12 @@ def test_whatever_is_imported_is_depended_on(package: ElementTree.Element) -> No
         if not {name, f'python3-{name}', IMPORTED.get(name, name)} & depended
     }
     assert not missing
-    nodes = ''.join(path.read_text() for path in (ROOT / 'tree_sway_ros').rglob('*.py'))
-    assert all(text in nodes for text in LOADED)
+    code = ''.join(
+        path.read_text()
+        for folder in ('tree_sway', 'tree_sway_ros')
+        for path in (ROOT / folder).rglob('*.py')
+    )
+    assert all(text in code for text in LOADED)
     assert not {*LOADED.values()} - depended
 
 

@@ -22,8 +22,10 @@ from tree_sway.errors import MissingDependencyError
 EXTRAS = {
     **dict.fromkeys(('PIL', 'matplotlib', 'mpl_toolkits'), 'plot'),
     **dict.fromkeys(('cryptography', 'dask', 'distributed'), 'study'),
-    **{'numba': 'fast', 'rosbags': 'bag', 'serial': 'serial', 'tqdm': 'progress'},
+    **{'numba': 'fast', 'rosbags': 'bag', 'tqdm': 'progress'},
+    **dict.fromkeys(('paho', 'pymodbus', 'serial'), 'sensors'),
     **{'imageio_ffmpeg': 'film', 'pyarrow': 'parquet'},
+    **{'netCDF4': 'netcdf', 'openpyxl': 'inventory', 'pyogrio': 'inventory'},
 }
 """Extra of the package with a module."""
 

@@ -32,6 +32,7 @@ class Gripper:
     def __init__(self, node: rclpy.node.Node, segment: str, force: list[float], seconds: float):
         self._segment, self._force, self._seconds = segment, np.array(force), seconds
         self._row: int | None = None
+        self._frame_id = ''
         self._began = 0.0
         self.is_open = False
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -42,10 +43,12 @@ class Gripper:
         node.create_timer(1.0 / _RATE, self._pull)
 
     def _describe(self, message: String) -> None:
-        names = json.loads(message.data)['segments']['names']
+        description = json.loads(message.data)
+        names = description['segments']['names']
         if self._segment not in names:
             raise SystemExit(f"no segment '{self._segment}'; name one such as {names[-1]}")
         self._row = names.index(self._segment)
+        self._frame_id = f'{description["tree_frame"]}/{self._segment}'
 
     def _see(self, message: PoseArray) -> None:
         if self._row is not None:
@@ -60,7 +63,7 @@ class Gripper:
         share = (time.monotonic() - self._began) / self._seconds
         self.is_open = share > 1.0
         wrench = WrenchStamped()
-        wrench.header.frame_id = self._segment
+        wrench.header.frame_id = self._frame_id
         force = wrench.wrench.force
         now = self._axes.inv().apply(self._force * (0.0 if self.is_open else share))
         force.x, force.y, force.z = now.tolist()

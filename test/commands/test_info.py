@@ -77,9 +77,24 @@ def test_a_tree_that_cannot_stand_has_its_size_reported(
     path = write_pole(tmp_path / 'pole.yaml', 30.0, 0.02)
     found = facts(capsys, path)
     assert found['height'] == pytest.approx(30.0 / np.hypot(0.2, 1.0))
-    assert found['gravity'] == 0.0
-    assert 'buckles under its own weight' in found['notes'][-1]
-    assert found['frequencies'][:2] == pytest.approx([0.0098, 0.0098], rel=0.01)
+    assert 'buckles under its own weight' in found['warnings'][-1]
+    assert found['mass'] == pytest.approx(DENSITY * np.pi / 4 * 0.02**2 * 30.0)
+    assert found['frequencies'] == []
+
+
+def test_a_scan_that_cannot_stand_is_thickened_and_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [f'{i},{i - 1},0,0,{i},0,0,{i + 1},0.02' for i in range(12)]
+    path = tmp_path / 'pole.csv'
+    path.write_text('\n'.join(['segment,parent,x0,y0,z0,x1,y1,z1,d0', *rows]))
+    found = facts(capsys, str(path), '--leaves', 'on')
+    assert found['gravity'] > 0.0
+    assert found['frequencies'][0] > 0.01
+    assert '1 limb thickened' in found['warnings'][0]
+    as_it_is = facts(capsys, str(path), '--leaves', 'on', '--option', 'thicken=false')
+    assert as_it_is['base_diameter'] == pytest.approx(0.02)
+    assert as_it_is['frequencies'] == []
 
 
 def test_natural_modes_are_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

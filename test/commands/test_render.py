@@ -63,18 +63,6 @@ def test_a_browser_that_draws_nothing_is_named_and_ends(
     assert not target.exists()
 
 
-def test_without_a_compiler_a_film_is_drawn_plainly(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(render, 'browser', lambda: '/bin/true')
-    monkeypatch.setattr(render, 'WHY_PLAIN', 'numba is not installed')
-    target = tmp_path / 'sway.gif'
-    given = ['render', SEEDLING, '--seconds', '0.2', '--rate', '10', '--pixels', '100']
-    assert main([*given, '-o', str(target)]) == 0
-    assert 'drawn by matplotlib, as numba is not installed' in capsys.readouterr().err
-    assert Image.open(target).n_frames == 2
-
-
 @pytest.mark.usefixtures('plainly')
 def test_a_gif_of_a_recorded_wind_moves(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]

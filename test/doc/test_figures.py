@@ -95,11 +95,12 @@ NAMED = {
     'TreeQSM': 'treeqsm-text', 'SimpleForest': 'simpleforest', 'aRchi': 'archi', 'MTG': 'mtg',
     'SWC': 'swc', 'RayCloudTools': 'treefile', 'PyTLidar': 'treeqsm-text', 'TOA5': 'toa5',
     'NMEA': 'nmea', 'METAR': 'metar', 'rosbag2': 'bag', 'Gill': 'sonic',
+    'netCDF': 'netcdf',
 }  # fmt: skip
 """Formats that pages name, and the program's name of each."""
 NOT_HERE = re.compile(
-    r'\b(OBJ|FBX|PLY|LAS|LAZ|STL|DXF|IFC|HDF5|NetCDF|GRIB2?|Alembic|Excel|xlsx|GeoJSON|KML|GPX|'
-    r'Collada|URDF|AVI|WebM|E57|VTK|Feather|ORC|shapefile|GeoPackage)\b',
+    r'\b(OBJ|FBX|PLY|LAS|LAZ|STL|DXF|IFC|HDF5|GRIB2?|Alembic|KML|GPX|'
+    r'Collada|URDF|AVI|WebM|E57|VTK|Feather|ORC|shapefile)\b',
     re.IGNORECASE,
 )
 """Formats of trees, winds, scenes, tables and films that the program neither reads nor writes."""

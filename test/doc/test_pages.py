@@ -138,7 +138,7 @@ LAUNCHED = re.compile(r'sway\.launch\.py(.*)|launch_arguments=\{(.*?)\}')
 @pytest.mark.parametrize('page', [p for p in PAGES if LAUNCHED.search(p.read_text())], ids=name)
 def test_its_launch_arguments_are_arguments(page: Path) -> None:
     declared = (ROOT / 'launch' / 'sway.launch.py').read_text(encoding='utf-8')
-    known = set(re.findall(r"^    \('(\w+)', '", declared, re.MULTILINE))
+    known = set(re.findall(r"^    \(\s*'(\w+)',\s*'", declared, re.MULTILINE))
     assert {'tree', 'pose'} <= known
     for typed, included in LAUNCHED.findall(page.read_text(encoding='utf-8')):
         given = {*re.findall(r'(\w+):=', typed), *re.findall(r'"(\w+)":', included)}

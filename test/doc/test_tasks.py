@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The tasks of ``doc/tasks_timed.md`` do what the page says, as typed."""
+"""The tasks of ``doc/tasks.md`` do what the page says, as typed."""
 
 from __future__ import annotations
 

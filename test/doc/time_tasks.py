@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The tasks of ``doc/tasks_timed.md``, run as typed, and the table of their seconds and results.
+The tasks of ``doc/tasks.md``, run as typed, and the table of their seconds and results.
 
     python test/doc/time_tasks.py [NUMBER ...]
 
@@ -31,7 +31,7 @@ import time
 import tty
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / 'doc' / 'tasks_timed.md'
+PAGE = ROOT / 'doc' / 'tasks.md'
 FOLDERS = ('config', 'doc', 'examples', 'launch', 'test')
 DEADLINE = 300.0
 PROGRAMS = """
@@ -50,7 +50,7 @@ if ! command -v ros2 >/dev/null; then
 fi
 """
 TABLE = re.compile(r'(<!-- tasks -->\n).*?(<!-- end -->)', re.DOTALL)
-BLOCK = re.compile(r'^## (\d+)\. (.*?)$(.*?)^```shell\n(.*?)^```$', re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r'^### (\d+)\. (.*?)$(.*?)^```shell\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 
 RESULTS = {
     1: r'strength used: (wood .*)',

@@ -24,7 +24,7 @@ def assert_ended_well(said, names=NAMES):
 def test_while_it_sways_and_serves_its_page(launched, tmp_path):
     parameters = tmp_path / 'parameters.yaml'
     parameters.write_text('/**/viewer: {ros__parameters: {port: 0}}\n')
-    run = launched('sway.launch.py', tree='goldcrest', page='true', params_file=parameters)
+    run = launched('sway.launch.py', tree='goldcrest', use_viewer='true', params_file=parameters)
     page = run.until(r'the page is at (http://\S+)')[1]
     with urllib.request.urlopen(page, timeout=10.0) as answer:
         assert b'<canvas' in answer.read()

@@ -14,7 +14,6 @@ from tree_sway_ros.process.topics import (  # noqa: E402
     MARKERS,
     SEGMENT_POSES,
     TREE_DESCRIPTION,
-    TREE_STATE,
     WIND,
     WIND_FILTERED,
 )
@@ -26,7 +25,7 @@ def frames_of(message):
 
 
 def test_one_frame_is_named_everywhere(launched, observer, tree_file):
-    topics = (WIND, WIND_FILTERED, FORCE_PLANE, SEGMENT_POSES, MARKERS, TREE_STATE)
+    topics = (WIND, WIND_FILTERED, FORCE_PLANE, SEGMENT_POSES, MARKERS)
     heard = {topic.name: observer.listen(topic) for topic in topics}
     described = observer.listen(TREE_DESCRIPTION)
     run = launched('sway.launch.py', tree=tree_file, frame_id='site')

@@ -27,7 +27,12 @@ def generate_launch_description():
                 PushRosNamespace(name),
                 SetRemap('wind', '/mast/wind'),
                 IncludeLaunchDescription(
-                    sway, launch_arguments={**parameters, 'source': 'live', 'pose': pose}.items()
+                    sway,
+                    launch_arguments={
+                        **parameters,
+                        'wind_source': 'topic',
+                        'pose': pose,
+                    }.items(),
                 ),
             ]
         )

@@ -4,6 +4,8 @@ import ast
 import importlib.util
 from pathlib import Path
 import re
+import sys
+from unittest.mock import MagicMock
 from xml.etree import ElementTree
 
 import pytest
@@ -14,25 +16,33 @@ from tree_sway_ros.process.topics import TOPICS  # noqa: I100
 ROOT = Path(__file__).parents[2]
 ARGUMENTS = (
     'tree',
-    'address',
-    'file',
+    'sensor_address',
+    'wind_file',
     'reader_options',
-    'rate',
-    'start',
+    'solver_rate',
+    'playback_start',
     'playback_rate',
-    'loop',
+    'playback_loop',
     'pose',
     'frame_id',
     'use_sim_time',
     'autostart',
 )
 GIVEN = dict.fromkeys(ARGUMENTS, '')
+HAS_LAUNCH = importlib.util.find_spec('launch_ros') is not None
+
+
+def require_launch():
+    if not HAS_LAUNCH:
+        pytest.skip('launch_ros is not installed')
 
 
 @pytest.fixture
-def launch_file():
-    """Load the launch file as a module; only where ROS's launch is installed."""
-    pytest.importorskip('launch_ros', reason='launch_ros is not installed')
+def launch_file(monkeypatch):
+    """Load the launch file as a module; without ROS's launch, its functions of values alone."""
+    if not HAS_LAUNCH:
+        for name in ('launch', 'launch.actions', 'launch_ros', 'launch_ros.actions'):
+            monkeypatch.setitem(sys.modules, name, MagicMock())
     path = ROOT / 'launch' / 'sway.launch.py'
     spec = importlib.util.spec_from_file_location('sway_launch', path)
     module = importlib.util.module_from_spec(spec)
@@ -41,14 +51,14 @@ def launch_file():
 
 
 def start(launch_file, monkeypatch, **given):
+    require_launch()
     from launch import LaunchContext
 
     monkeypatch.setattr(launch_file, 'get_package_share_directory', lambda _: str(ROOT))
     context = LaunchContext()
-    context.launch_configurations.update(
-        {name: d for name, d, *_ in launch_file.ARGUMENTS} | given
-    )
-    return {node.node_executable: node for node in launch_file.start_nodes(context)}
+    context.launch_configurations.update({name: d for name, d, _ in launch_file.ARGUMENTS} | given)
+    actions = launch_file.start_nodes(context)
+    return {each.node_executable: each for each in actions if hasattr(each, 'node_executable')}
 
 
 @pytest.mark.parametrize(
@@ -56,42 +66,45 @@ def start(launch_file, monkeypatch, **given):
     [
         ('simulated', {'anemometer', 'wind', 'solver'}),
         ('player', {'player', 'wind', 'solver'}),
-        ('live', {'wind', 'solver'}),
+        ('topic', {'wind', 'solver'}),
         ('sensor', {'sensor', 'wind', 'solver'}),
-        ('elsewhere', {'solver'}),
+        ('remote', {'solver'}),
     ],
 )
 def test_the_source_chooses_the_nodes(launch_file, monkeypatch, source, executables):
-    assert set(start(launch_file, monkeypatch, source=source)) == executables
+    assert set(start(launch_file, monkeypatch, wind_source=source)) == executables
 
 
 def test_shards_hear_one_wind_and_speak_in_namespaces_of_their_own(launch_file):
-    given = {name: default for name, default, *_ in launch_file.ARGUMENTS}
-    given |= {'shards': '3', 'namespace': 'wood'}
+    given = {name: default for name, default, _ in launch_file.ARGUMENTS}
+    given |= {'shard_count': '3', 'namespace': 'wood'}
     assert launch_file.shards_here(given) == [0, 1, 2]
-    assert launch_file.shards_here(given | {'here': '2,0'}) == [2, 0]
+    assert launch_file.shards_here(given | {'local_shards': '2,0'}) == [2, 0]
+    for wrong in ({'local_shards': '3'}, {'local_shards': '-1'}, {'shard_count': '0'}):
+        with pytest.raises(ValueError, match="'local_shards'"):
+            launch_file.shards_here(given | wrong)
+    require_launch()
     node = launch_file.make_shard(2, given, str(ROOT / 'config'), '/north')
     assert node.expanded_node_namespace in ('wood/shard2', node.UNSPECIFIED_NODE_NAMESPACE)
-    for wrong in ({'here': '3'}, {'here': '-1'}, {'shards': '0'}):
-        with pytest.raises(ValueError, match="'here'"):
-            launch_file.shards_here(given | wrong)
 
 
 def test_a_host_that_hears_the_wind_of_another_starts_solvers_alone(launch_file, monkeypatch):
-    nodes = start(launch_file, monkeypatch, source='elsewhere', shards='2', here='1')
+    nodes = start(
+        launch_file, monkeypatch, wind_source='remote', shard_count='2', local_shards='1'
+    )
     assert set(nodes) == {'solver'}
-    with pytest.raises(ValueError, match='page'):
-        start(launch_file, monkeypatch, shards='2', page='true')
+    with pytest.raises(ValueError, match='use_viewer'):
+        start(launch_file, monkeypatch, shard_count='2', use_viewer='true')
 
 
 def test_page_and_rviz_are_started_if_asked_for(launch_file, monkeypatch):
-    assert 'viewer' in start(launch_file, monkeypatch, page='1')
-    assert 'rviz2' in start(launch_file, monkeypatch, rviz='true')
+    assert 'viewer' in start(launch_file, monkeypatch, use_viewer='1')
+    assert 'rviz2' in start(launch_file, monkeypatch, use_rviz='true')
 
 
 @pytest.mark.parametrize('word', ['True', 'true', '1'])
 def test_yes_is_yes_however_it_is_written(launch_file, monkeypatch, word):
-    nodes = start(launch_file, monkeypatch, use_sim_time=word, rviz=word, source='player')
+    nodes = start(launch_file, monkeypatch, use_sim_time=word, use_rviz=word, wind_source='player')
     assert 'rviz2' in nodes
     assert launch_file.overrides_of('solver', GIVEN | {'use_sim_time': word}) == {
         'use_sim_time': True
@@ -116,7 +129,7 @@ def test_arguments_that_are_not_given_override_nothing(launch_file):
 
 def test_the_player_learns_how_to_read_and_where_to_begin(launch_file):
     given = {'reader_options': 'topic=/mast/wind yaw=1.57'}
-    given |= {'start': '30', 'playback_rate': '2', 'loop': 'False'}
+    given |= {'playback_start': '30', 'playback_rate': '2', 'playback_loop': 'False'}
     overrides = launch_file.overrides_of('player', GIVEN | given)
     assert overrides == {
         'reader_options': 'topic=/mast/wind yaw=1.57',
@@ -131,7 +144,25 @@ def test_what_is_shipped_in_config_overrides_no_default():
         assert content == {f'/**/{name}': {'ros__parameters': {}}}
 
 
+def test_former_names_of_arguments_work_and_name_their_successors(launch_file):
+    typed = {'source': 'elsewhere', 'shards': '3', 'here': '1', 'tree': 'oak'}
+    given, warnings = launch_file.arguments_given(typed)
+    wanted = {'wind_source': 'remote', 'shard_count': '3', 'local_shards': '1', 'tree': 'oak'}
+    assert {name: given[name] for name in wanted} == wanted
+    assert given['wind_topic'] == 'wind'
+    assert len(warnings) == 4
+    assert "launch argument 'here' is now called 'local_shards'" in warnings
+    assert launch_file.arguments_given({'wind_source': 'topic'})[1] == []
+    assert set(launch_file.FORMER_ARGUMENTS.values()) <= set(given)
+
+
+def test_a_source_that_does_not_exist_is_refused(launch_file):
+    with pytest.raises(ValueError, match="'wind_source': 'mast' is none of simulated, player"):
+        launch_file.arguments_given({'wind_source': 'mast'})
+
+
 def test_every_argument_is_declared(launch_file):
+    require_launch()
     declared = {action.name for action in launch_file.generate_launch_description().entities[:-1]}
     assert declared == {name for name, *_ in launch_file.ARGUMENTS}
 
@@ -148,7 +179,7 @@ def test_the_pages_give_arguments_that_exist():
     given = re.findall(r'launch_arguments=\{(.*?)\}', pages, re.DOTALL)
     typed = re.findall(r'sway\.launch\.py((?: +\S+:=\S+)+)', pages)
     names = re.findall(r'"(\w+)":', ' '.join(given)) + re.findall(r'(\w+):=', ' '.join(typed))
-    assert {'source', 'pose'} <= {*names}
+    assert {'wind_source', 'pose'} <= {*names}
     assert {*names} <= declared
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A robot's wrench on a branch: taken in the segment's frame, refused with a reason."""
+"""A robot's wrench on a branch: taken in the segment's tf frame, refused with a reason."""
 
 from contextlib import suppress
 import os
@@ -18,13 +18,13 @@ pytestmark = pytest.mark.ros
 
 from geometry_msgs.msg import WrenchStamped  # noqa: E402, I100
 
-from tree_sway_ros.process.topics import PUSH, SEGMENT_POSES  # noqa: E402
+from tree_sway_ros.process.topics import PUSH, SEGMENT_POSES, TF, TF_STATIC  # noqa: E402
 from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 
 
-def wrench(segment, x=0.0, y=0.0, z=0.0):
+def wrench(frame_id, x=0.0, y=0.0, z=0.0):
     message = WrenchStamped()
-    message.header.frame_id = segment
+    message.header.frame_id = frame_id
     message.wrench.force.x, message.wrench.force.y, message.wrench.force.z = x, y, z
     return message
 
@@ -48,7 +48,7 @@ def test_a_wrench_bends_the_tree_and_lets_go(compose, observer, pushes, tree_fil
         return tip.x * level[0] + tip.y * level[1]
 
     rest = sway()
-    pull = wrench('stem/2', y=5.0)
+    pull = wrench('tree/stem/2', y=5.0)
     observer.until(lambda: push.publish(pull) or sway() > rest + 2e-3, 'a bend')
 
     def is_felt():  # it is read while the solver writes it
@@ -60,23 +60,46 @@ def test_a_wrench_bends_the_tree_and_lets_go(compose, observer, pushes, tree_fil
 
 
 @pytest.mark.parametrize(
-    ('segment', 'force', 'why'),
+    ('frame_id', 'force', 'why'),
     [
-        ('stem/99', 1.0, "no segment 'stem/99'"),
-        ('', 1.0, "no segment ''"),
-        ('stem/1', float('nan'), 'not finite'),
-        ('stem/1', 1e6, 'above 100000 N'),
+        ('tree/stem/99', 1.0, "'tree/stem/99' is the frame of no segment: one is 'tree/stem/0'"),
+        ('stem/1', 1.0, "'stem/1' is the frame of no segment"),
+        ('', 1.0, "'' is the frame of no segment"),
+        ('tree/stem/1', float('nan'), 'not finite'),
+        ('tree/stem/1', 1e6, 'above 100000 N'),
     ],
 )
 def test_a_push_that_cannot_be_is_refused_and_counted(
-    compose, observer, statuses, pushes, tree_file, segment, force, why
+    compose, observer, statuses, pushes, tree_file, frame_id, force, why
 ):
     solver = compose(solver={'tree': tree_file, 'model': '20'})['solver']
     push = pushes()
-    wrong = wrench(segment, x=force)
+    wrong = wrench(frame_id, x=force)
     observer.until(lambda: push.publish(wrong) or is_warned(statuses), 'a warning', poll=0.1)
     assert why in statuses('solver: push').message
     assert not solver.simulator.push_load.any()
+
+
+def test_a_pushed_segment_is_a_frame_of_tf(compose, observer, pushes, tree_file):
+    """And so is the tree, at its place; each moves as the poses say."""
+    pytest.importorskip('tf2_msgs', reason='tf2_msgs is not installed')
+    place = (3.0, 0.0, 0.0, 0.0)
+    compose(solver={'tree': tree_file, 'segment_frames': 'stem/1', 'pose': place})
+    static, moving = observer.listen(TF_STATIC), observer.listen(TF)
+    push, latest = pushes(), {}
+
+    def frames():
+        push.publish(wrench('tree/stem/2', y=1.0))
+        latest.update({each.child_frame_id: each for m in moving for each in m.transforms})
+        return set(latest)
+
+    observer.until(lambda: static and len(frames()) == 2, 'the frames')
+    (tree,) = static[0].transforms
+    assert (tree.header.frame_id, tree.child_frame_id) == ('map', 'tree')
+    assert tree.transform.translation.x == 3.0
+    assert set(latest) == {'tree/stem/1', 'tree/stem/2'}
+    at = latest['tree/stem/1'].transform.translation
+    np.testing.assert_allclose((at.x, at.y, at.z), (3.0, 0.0, 0.5), atol=0.02)
 
 
 def is_warned(statuses):
@@ -88,7 +111,7 @@ def test_branches_by_themselves_refuse_it(compose, observer, statuses, pushes, t
     compose(solver={'tree': tree_file, 'model': 'branch'})
     push = pushes()
     observer.until(
-        lambda: push.publish(wrench('stem/1', x=1.0)) or is_warned(statuses),
+        lambda: push.publish(wrench('tree/stem/1', x=1.0)) or is_warned(statuses),
         'a warning', poll=0.1,
     )  # fmt: skip
     assert 'branch' in statuses('solver: push').message

@@ -59,12 +59,13 @@ def test_a_recorded_state_can_be_drawn_again(
                 message = bag.deserialize(data, connection.msgtype)
                 found[connection.topic.lstrip('/')].append(message)
     states = found[TREE_STATE.name]
-    stamps = [each.header.stamp.sec + 1e-9 * each.header.stamp.nanosec for each in states]
+    read = [read_state(each) for each in states]
+    stamps = [1e-9 * each.stamp for each in read]
     assert len(states) >= 30
     assert (np.diff(stamps) > 0).all()
     entry = read_state_entry(json.loads(found[TREE_DESCRIPTION.name][-1].data))
     description = decode_description(entry)
-    moved = [np.ptp(column) for column in np.array([read_state(each)[1] for each in states]).T]
+    moved = [np.ptp(column) for column in np.array([each.coordinates for each in read]).T]
     assert max(moved) > 1e-6
     assert len(moved) == len(description.scale)
     assert Placer(description).n_segments == 7

@@ -78,8 +78,6 @@ def test_every_topic_may_be_said_by_somebody():
         'camera',
         '~/push',
         '~/pull',
-        '/tf',
-        '/tf_static',
     }  # of others
 
 

@@ -178,17 +178,15 @@ def test_a_change_out_of_range_is_refused_with_the_reason(compose, observer, tre
     assert len({*groups}) == len(groups)  # none of four has two, however late
 
 
-def test_the_description_comes_again_for_whoever_lost_it(compose, observer, tree_file):
+def test_a_late_joiner_gets_the_whole_description_once(compose, observer, tree_file):
     compose(solver={'tree': tree_file})
-    described = observer.listen(TREE_DESCRIPTION)
-    contents = lambda: [each.data for each in described]  # noqa: E731
-    observer.until(
-        lambda: described and len(contents()) > len(set(contents())),
-        'the description, again',
-        deadline=60.0,
-    )
-    first, *others = [json.loads(text) for text in dict.fromkeys(contents())]
-    assert [set(other) - set(first) for other in others] in ([], [{'state'}])
+    early = observer.listen(TREE_DESCRIPTION)
+    is_whole = lambda: any('state' in json.loads(each.data) for each in early)  # noqa: E731
+    observer.until(is_whole, 'the state in the description')
+    late, frames = observer.listen(TREE_DESCRIPTION), observer.listen(SEGMENT_POSES)
+    observer.until(lambda: len(frames) > 60, 'a second of frames')
+    assert len(early) <= 2
+    assert [each.data for each in late] == [early[-1].data]
 
 
 def test_the_tree_is_tuned_while_it_sways(compose, observer, tree_file):

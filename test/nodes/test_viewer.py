@@ -29,7 +29,7 @@ from tree_sway_ros.process.topics import (  # noqa: E402
     WIND,
 )
 from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
-from tree_sway_ros.wire.tree_state import read_state, read_state_entry, WIND_NAMES  # noqa: E402
+from tree_sway_ros.wire.tree_state import read_state, read_state_entry  # noqa: E402
 from tree_sway_ros.wire.wind_messages import stamp_to_ns  # noqa: E402
 
 DEADLINE = 60.0
@@ -43,13 +43,13 @@ def test_poses_are_rebuilt_from_state_and_description(compose, observer, tree_fi
     observer.until(lambda: len(states) > 20, 'states', DEADLINE)
     data = read_state_entry(json.loads(described[-1].data))
     description = decode_description(data)
-    assert states[-1].name[:3] == list(WIND_NAMES)
     by_stamp = {stamp_to_ns(each.header.stamp): each for each in poses}
-    state = next(each for each in states[::-1] if stamp_to_ns(each.header.stamp) in by_stamp)
-    solved = by_stamp[stamp_to_ns(state.header.stamp)].poses
+    read = [read_state(each) for each in states[::-1]]
+    state = next(each for each in read if each.stamp in by_stamp)
+    solved = by_stamp[state.stamp].poses
     exact = np.array([[p.position.x, p.position.y, p.position.z] for p in solved])
     placer = Placer(description)
-    rebuilt = placer.place(read_state(state)[1])
+    rebuilt = placer.place(state.coordinates)
     at_rest = placer.place(np.zeros(len(description.scale)))
     moved = np.linalg.norm(exact - at_rest[:, :3])
     assert moved > 1e-4

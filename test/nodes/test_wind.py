@@ -120,8 +120,9 @@ def transform(frame, parent, yaw, stamp=0):
 
 @pytest.fixture
 def tf(monkeypatch):
-    """Give what the wind node does with messages of /tf and /tf_static, if tf2_msgs lacks too."""
+    """Give the callbacks of /tf and /tf_static of the reader that needs no tf2_ros."""
     callbacks, subscribe = {}, WindNode.subscription
+    monkeypatch.setitem(sys.modules, 'tf2_ros', None)
 
     def listen(node, topic, callback, *more, **named):
         if topic not in (TF, TF_STATIC):
@@ -168,7 +169,8 @@ def test_wind_in_a_frame_that_nobody_knows_is_taken_as_it_is(
 
 
 def test_without_tf2_one_line_says_so(compose, observer, capfd, monkeypatch):
-    monkeypatch.setitem(sys.modules, 'tf2_msgs.msg', None)
+    for name in ('tf2_ros', 'tf2_msgs.msg'):
+        monkeypatch.setitem(sys.modules, name, None)
     compose(wind={})
     filtered = observer.listen(WIND_FILTERED)
     mast = Mast(observer)

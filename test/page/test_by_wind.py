@@ -17,7 +17,6 @@ import numpy as np
 import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
-pytest.importorskip('numba', reason='numba is not installed')
 
 from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402

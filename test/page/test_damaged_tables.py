@@ -11,8 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-pytest.importorskip('numba', reason='numba is not installed')
-
 from tree_sway.core.scene.placed_tree import PlacedTree  # noqa: E402
 from tree_sway.core.scene.received_scene import ReceivedKind, ReceivedScene  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402

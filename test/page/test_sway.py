@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
-pytest.importorskip('numba', reason='numba is not installed')
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES  # noqa: E402
+from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
 from tree_sway.core.model.records import time_step_layout  # noqa: E402
 from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.oscillators.propagator import propagator  # noqa: E402
@@ -32,6 +32,8 @@ from tree_sway.stream.scene_state import SceneState  # noqa: E402
 from tree_sway.stream.tables import tables_of  # noqa: E402
 
 HERE = Path(__file__).parent
+ROUNDING = 1e-8 if WHY_PLAIN else 1e-12
+"""JavaScript adds products of single precision up in the order of the kernels, numpy does not."""
 SCAN = HERE.parent / 'files' / 'data'
 DT, STEPS, EVERY = 1.0 / 60.0, 1200, 50
 
@@ -101,7 +103,7 @@ def compared(simulator: Simulator, folder: Path) -> dict[str, float]:
 def test_a_built_in_tree_sways_as_in_python(name: str, model: int, tmp_path: Path) -> None:
     simulator = open_scene(name).simulator(Settings(in_leaf=True), model=model)
     found = compared(simulator, tmp_path)
-    assert found['wrong'] <= 1e-12 * max(1.0, found['greatest'])
+    assert found['wrong'] <= ROUNDING * max(1.0, found['greatest'])
     assert found['outside'] > 0
 
 
@@ -113,7 +115,7 @@ def test_a_stand_sways_as_in_python(tmp_path: Path) -> None:
         for i in range(4)
     ]  # fmt: skip
     found = compared(Scene(trees, 'row').simulator(Settings(), model=20), tmp_path)
-    assert found['wrong'] <= 1e-12 * max(1.0, found['greatest'])
+    assert found['wrong'] <= ROUNDING * max(1.0, found['greatest'])
 
 
 def test_a_stiff_coordinate_gets_to_the_middle_of_a_step_as_in_python(
@@ -142,7 +144,7 @@ def test_a_stiff_coordinate_gets_to_the_middle_of_a_step_as_in_python(
 def test_a_scan_sways_as_in_python(tmp_path: Path) -> None:
     scan = open_scene(str(SCAN / 'fork.treeqsm24.txt'))
     found = compared(scan.simulator(Settings()), tmp_path)
-    assert found['wrong'] <= 1e-12 * max(1.0, found['greatest'])
+    assert found['wrong'] <= ROUNDING * max(1.0, found['greatest'])
 
 
 def test_what_the_factors_leave_out_is_not_seen(tmp_path: Path) -> None:

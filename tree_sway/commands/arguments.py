@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 import dataclasses
 from pathlib import Path
 import sys
@@ -15,21 +16,22 @@ from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.model.settings import model_of, Settings
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.setup.season import LEAVES
-from tree_sway.core.tree.species import Species, species_keys, species_named
+from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError, SpeciesError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.files.reader_options import reader_options
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, open_tree
+from tree_sway.files.trees.tree_options import same
 from tree_sway.files.trees.yaml.tree_yaml import is_species_file, read_species
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.wind_file import read_wind
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind
 from tree_sway.parameters.sway_parameters import SWAY
 
-OUTPUT_HELP = 'file to write; its suffix is that of the format: .yaml, .glb'
-_TREE = 'benjamina, goldcrest, broadleaf, or a file'
+OUTPUT_HELP = 'output file; its suffix chooses the format: .yaml, .glb'
+_TREE = 'a built-in tree (benjamina, goldcrest, broadleaf) or a tree file'
 _DRAWN = 1500
 
 
@@ -37,27 +39,27 @@ def add_tree_arguments(
     parser: argparse.ArgumentParser, *, forests: bool = False, default: str | None = None
 ) -> None:
     """Add TREE, or a forest, and its wood; TREE is required unless there is a default."""
-    add = parser.add_argument
-    kind = f'{_TREE}{" of a tree or a forest" * forests}'
+    kind = _TREE + ', forest or inventory' * forests
     if default is None:
-        add('tree', metavar='TREE', help=kind)
+        parser.add_argument('tree', metavar='TREE', help=kind)
     else:
-        add('tree', metavar='TREE', nargs='?', default=default, help=f'{kind} (%(default)s)')
-    add('--seed', type=int, default=0, help='seed of a built-in tree (%(default)s)')
+        text = f'{kind} (%(default)s)'
+        parser.add_argument('tree', metavar='TREE', nargs='?', default=default, help=text)
+    add = parser.add_argument_group('tree').add_argument
+    add('--seed', type=int, default=0, help='random seed of a built-in tree (%(default)s)')
     add(
         '--species',
-        help="its species, if not the tree's own: a YAML file with species and wood, or one of "
-        f'{", ".join(species_keys())}',
+        help="species, if it is not the tree's own: a name of `tree-sway grow --help`, or a YAML "
+        'file with a species and its wood',
     )
-    add('--modulus', type=float, metavar='PA', help="Young's modulus of green wood [Pa]")
-    add('--density', type=float, metavar='RHO', help='green density [kg/m^3]')
+    add('--modulus', type=float, metavar='PA', help="Young's modulus of the green wood [Pa]")
+    add('--density', type=float, metavar='RHO', help='density of the green wood [kg/m^3]')
     add(
         '--option',
         action='append',
         default=[],
         metavar='NAME=VALUE',
-        help='how to read its file, for example twig_diameter=0.004; may be repeated '
-        '(doc/trees.md)',
+        help='option of the file reader, such as twig_diameter=0.004; repeatable (doc/trees.md)',
     )
 
 
@@ -68,11 +70,9 @@ def opened_tree(arguments: argparse.Namespace) -> TreeFile:
     Raises a `TreeSwayError` for no such tree or species, a file that cannot be read, a modulus or
     density that is not positive.
     """
-    given = _species(arguments)
+    wood = _wood_of(arguments)
     with waiting(f'opening {arguments.tree}'):
-        opened = open_tree(arguments.tree, arguments.seed, **_options(arguments))
-    species = given or opened.species
-    return opened.of_species(dataclasses.replace(species, **_wood(arguments))).checked()
+        return open_tree(arguments.tree, arguments.seed, wood=wood, **_options(arguments))
 
 
 def opened_scene(arguments: argparse.Namespace) -> Scene:
@@ -81,25 +81,30 @@ def opened_scene(arguments: argparse.Namespace) -> Scene:
 
     Errors are those of `opened_tree`, and values of one tree for several.
     """
-    given = _species(arguments)
+    wood = _wood_of(arguments)
     with waiting(f'opening {arguments.tree}'):
         scene = open_scene(
             arguments.tree,
             arguments.seed,
             exact=getattr(arguments, 'exact', False),
+            wood=wood,
             **_options(arguments),
         )
-    wood = _wood(arguments)
-    if wood and not scene.is_one_tree:
+    if _wood(arguments) and not scene.is_one_tree:
         raise ParameterError(
             'modulus or density for a whole forest',
             where=scene.source,
             cure='use --species, or files of trees with their own wood',
         )
-    if not wood and given is None:
-        return scene
-    species = given or scene.trees[0].species
-    return scene.of_species(dataclasses.replace(species, **wood)).checked()
+    return scene
+
+
+def _wood_of(arguments: argparse.Namespace) -> Callable[[Species], Species]:
+    """Return the species of the arguments for that of a file."""
+    given, changed = _species(arguments), _wood(arguments)
+    if given is None and not changed:
+        return same
+    return lambda found: dataclasses.replace(given or found, **changed)
 
 
 def _species(arguments: argparse.Namespace) -> Species | None:
@@ -134,7 +139,7 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def add_exact_argument(parser: argparse.ArgumentParser) -> None:
     """Add the choice to grow each tree of an inventory."""
-    what = 'grow each tree of an inventory by itself, instead of scaling few'
+    what = 'grow every tree of an inventory individually, instead of scaling a few'
     parser.add_argument('--exact', action='store_true', help=what)
 
 
@@ -151,8 +156,8 @@ def add_leaves_argument(parser: argparse.ArgumentParser, default: str | None = '
         choices=tuple(LEAVES),
         const='on',
         default=default,
-        help='in leaf; auto is in leaf where the species is evergreen; in a forest, those trees '
-        f'whose leaves its file does not determine ({shown})',
+        help='whether trees bear leaves; auto: evergreen species do; a forest file may decide '
+        f'for its trees ({shown})',
     )
 
 
@@ -167,17 +172,16 @@ def drawn_leaves(scene: Scene, arguments: argparse.Namespace) -> LeafClusters | 
 
 
 def add_wind_arguments(parser: argparse.ArgumentParser, record: str = '') -> None:
-    """Add a wind record, and the speed of a simulated one; `record` is the help of the first."""
-    record = record or 'a wind record; simulated if left out'
-    parser.add_argument('--wind', metavar='FILE', help=record)
+    """Add a wind record, and the speed of a simulated one; `record` is help for the first."""
+    add = parser.add_argument_group('wind').add_argument
+    add('--wind', metavar='FILE', help=record or 'wind recording; without it wind is simulated')
     options = (
-        'how to read it, such as topic=/mast/wind, yaw=1.57, direction_convention=from or rate=20'
+        'option of its reader, such as speed_unit=km/h, direction=270, topic=/mast/wind, '
+        'yaw=1.57, direction_convention=from or rate=20; repeatable'
     )
-    parser.add_argument(
-        '--wind-option', action='append', default=[], metavar='NAME=VALUE', help=options
-    )
-    speed = 'mean of the simulated wind [m/s] (%(default)s)'
-    parser.add_argument('--speed', type=float, default=6.0, metavar='U', help=speed)
+    add('--wind-option', action='append', default=[], metavar='NAME=VALUE', help=options)
+    speed = 'mean speed of the simulated wind [m/s] (%(default)s)'
+    add('--speed', type=float, default=6.0, metavar='U', help=speed)
 
 
 def opened_record(arguments: argparse.Namespace) -> WindRecord:
@@ -215,14 +219,14 @@ def add_model_argument(parser: argparse.ArgumentParser) -> None:
         type=model_of,
         default=Settings().model,
         metavar='MODEL',
-        help='number of coordinates, auto, branch or full (%(default)s)',
+        help='number of coordinates, or auto, branch or full (doc/models.md) (%(default)s)',
     )
 
 
 def add_output_arguments(parser: argparse.ArgumentParser, what: str) -> None:
     """Add ``--output`` and ``--force``; `what` is the help of the first."""
     parser.add_argument('-o', '--output', required=True, metavar='FILE', help=what)
-    parser.add_argument('--force', action='store_true', help='write over an existing file')
+    parser.add_argument('--force', action='store_true', help='overwrite an existing file')
 
 
 def output_path(arguments: argparse.Namespace) -> str:

@@ -49,24 +49,32 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--damping',
         type=float,
         metavar='Z',
-        help="measured damping ratio [-]; wins over the record's",
+        help='measured damping ratio [-]; overrides the value from the record',
     )
     add(
         '--record',
         metavar='FILE',
-        help='CSV of the sway instead: time and x, y or tilt_x or ax ...; or http://... of a '
+        help='recorded sway: CSV with time and x, y or tilt_x or ax ...; or http://... of a '
         'phone that measures with phyphox',
     )
-    add('--seconds', type=float, default=0.0, metavar='N', help='duration, of a phone [s]')
     add(
-        '--branch', metavar='NAME', help='branch that was measured, such as stem; the slowest sway'
+        '--seconds',
+        type=float,
+        default=0.0,
+        metavar='N',
+        help='duration of the measurement by phone [s]',
+    )
+    add(
+        '--branch',
+        metavar='NAME',
+        help='measured branch, such as stem; else the slowest sway is fitted',
     )
     add(
         '--band',
         type=float,
         nargs=2,
         metavar=('LOW', 'HIGH'),
-        help="band of the record's spectrum in which to search the sway [Hz]",
+        help='frequency band of the record in which to search for the sway [Hz]',
     )
     add_output_arguments(parser, 'tree with the fitted wood to write: .yaml')
 

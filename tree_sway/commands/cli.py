@@ -161,7 +161,7 @@ def _parser(chosen: str, table: dict[str, Command], group: str) -> _OneLineParse
             description=f'{command.summary[0].upper()}{command.summary[1:]}.',
             epilog=f'example: {program} {command.example}',
         )
-        sub.add_argument('-q', '--quiet', action='store_true', help='no notes, only errors')
+        sub.add_argument('-q', '--quiet', action='store_true', help='print errors only')
         if name == chosen:
             _module(command).add_arguments(sub)
             parser.chosen = sub

@@ -66,10 +66,6 @@ def run(arguments: argparse.Namespace) -> int:
         raise FormatError(what, where=output, cure=f'use {names}')
     if arguments.sway is not None and suffix != '.glb':
         raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
-    if suffix == '.html':
-        from tree_sway.stream.tables import refuse_without_compiler
-
-        refuse_without_compiler()
     scene = opened_scene(arguments)
     for note in scene.notes:
         print(f'note: {note}', file=sys.stderr)

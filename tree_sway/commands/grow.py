@@ -29,15 +29,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add('kind', metavar='SPECIES', nargs='?', help=f'one of {", ".join(species_keys())}')
-    add('--species', metavar='SPECIES', help='the same as an option')
-    add('--height', type=float, required=True, metavar='M', help='height [m]')
+    add('--species', metavar='SPECIES', help='the species as an option')
+    add('--height', type=float, required=True, metavar='M', help='height of the tree [m]')
     add(
         '--diameter',
         type=float,
         metavar='M',
-        help='at breast height [m]; from the height if left out',
+        help='stem diameter at breast height [m]; without it, typical for the height',
     )
-    add('--seed', type=int, default=0, help='seed of the tree (%(default)s)')
+    add('--seed', type=int, default=0, help='random seed (%(default)s)')
     add_output_arguments(parser, OUTPUT_HELP)
 
 

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 import json
 import math
 from typing import Any
@@ -45,11 +44,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_tree_arguments(parser, forests=True)
     add_exact_argument(parser)
     add_leaves_argument(parser)
-    add('--gravity', choices=('on', 'off'), default='on', help='weight of the tree (%(default)s)')
-    add('--count', type=int, default=10, metavar='N', help='number of frequencies (%(default)s)')
-    speed = 'mean of a gusty wind [m/s] for the used share of its strength'
+    add(
+        '--gravity', choices=('on', 'off'), default='on', help='effect of the weight (%(default)s)'
+    )
+    add(
+        '--count',
+        type=int,
+        default=10,
+        metavar='N',
+        help='number of natural frequencies (%(default)s)',
+    )
+    speed = 'report the fraction of the strength used in gusts of this mean wind [m/s]'
     add('--speed', type=float, metavar='U', help=speed)
-    add('--json', action='store_true', help='for programs, SI units')
+    add('--json', action='store_true', help='print JSON in SI units')
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -70,6 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
         found[0] if scene.is_one_tree else _sums(scene, found)
     )
     facts['notes'] = [*scene.notes, *facts['notes']]
+    facts['warnings'] = [*scene.faults, *facts['warnings']]
     print(json.dumps(facts, indent=2) if arguments.json else _text(facts))
     return 0
 
@@ -82,16 +90,18 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
         in_leaf=chosen_leaves(arguments) if kind.leaf_on is None else kind.leaf_on,
     )
     settings = in_season(tree, species, settings)
-    notes = []
+    notes, modes = [], list[dict[str, Any]]()
     try:
         modes, mass = mode_table(tree, species, settings, count)
     except TreeError as error:
         if settings.gravity == 0.0:
             raise
-        # A noisy scan may buckle; its size is still of interest.
-        settings = replace(settings, gravity=0.0)
-        notes.append(f'modes without its own weight, as it buckles: {error}')
-        modes, mass = mode_table(tree, species, settings, count)
+        # Its size is still of interest.
+        leaf_mass = 0.0 if settings.leaf_mass is None else float(settings.leaf_mass.sum())
+        mass = species.density * float(tree.volume.sum()) + leaf_mass
+        doubt = f'no modes: {error}'
+    else:
+        doubt = sway_oddity(tree, species, min(mode['frequency'] for mode in modes))
     used = None
     if arguments.speed is not None:
         rng = np.random.default_rng(0)
@@ -103,11 +113,11 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
             f'{left_out}'
         )
     frequencies = [mode['frequency'] for mode in modes]
-    slow = sway_oddity(tree, species, min(frequencies)) if modes else None
     return {
         'name': tree.name, 'notes': notes,
-        'warnings': [*oddities(tree, species), *filter(None, [slow])], 'branches': tree.n_branches,
-        'segments': tree.n_segments, 'height': tree.height, 'length': float(tree.length.sum()),
+        'warnings': [*oddities(tree, species), *filter(None, [doubt])],
+        'branches': tree.n_branches, 'segments': tree.n_segments, 'height': tree.height,
+        'length': float(tree.length.sum()),
         'volume': float(tree.volume.sum()), 'base_diameter': float(tree.base_diameter[0]),
         'breast_height_diameter': _breast_height_diameter(tree), 'species': species.key,
         'wood': f'{species.title}{" (an estimate)" if species.is_estimate else ""}',

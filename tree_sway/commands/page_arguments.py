@@ -18,29 +18,29 @@ _PORT = 8765
 
 def add_page_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the page's server."""
-    add = parser.add_argument
-    add('--open', action='store_true', help='open the page in the browser')
-    add('--port', type=int, help=f'of the page ({_PORT}, or a free one if that is taken)')
+    add = parser.add_argument_group('page').add_argument
+    add('--open', action='store_true', help='open the page in a browser')
+    add('--port', type=int, help=f'TCP port of the web server ({_PORT}, or a free one)')
     add(
         '--address',
         default='127.0.0.1',
-        help="to bind to; any other than this machine's own needs a token (%(default)s)",
+        help='address to listen on; any but this machine itself needs a token (%(default)s)',
     )
     add(
         '--token-file',
         default='',
         metavar='FILE',
-        help='file with the token, which only its owner may read; made if it is missing',
+        help='file with the access token, readable by its owner alone; created if missing',
     )
-    add('--certificate', default='', metavar='PEM', help='for https')
+    add('--certificate', default='', metavar='PEM', help='TLS certificate (PEM), to serve https')
     add(
         '--origin',
         action='append',
         default=[],
         metavar='URL',
-        help='of other pages that may follow the stream, as http://127.0.0.1:8000',
+        help='another origin whose pages may connect, such as http://127.0.0.1:8000',
     )
-    add('--private-key', default='', metavar='PEM', help='of the certificate')
+    add('--private-key', default='', metavar='PEM', help='private key of the certificate (PEM)')
 
 
 def page_settings(arguments: argparse.Namespace) -> PageSettings:
@@ -67,7 +67,7 @@ def page_settings(arguments: argparse.Namespace) -> PageSettings:
 
 
 def print_address(server: PageServer, begin: str) -> None:
-    """Print how the page is opened: with a token, its links for control and to look only."""
+    """Print the address of the page; with a token, the links for control and for viewers."""
     if not server.viewers_token:
         print(f'{begin} {server.url}', flush=True)
         return

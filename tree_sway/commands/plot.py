@@ -7,8 +7,6 @@ from __future__ import annotations
 import argparse
 import csv
 from pathlib import Path
-import sys
-from typing import Any
 
 import numpy as np
 
@@ -28,7 +26,7 @@ from tree_sway.core.checks import within
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
-from tree_sway.errors import FormatError, ParameterError, TreeError
+from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.text_file import is_file, path_of
 from tree_sway.page.wind_source import RecordedWind
 from tree_sway.parameters.sway_parameters import SWAY
@@ -48,13 +46,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--portrait',
         action='store_true',
-        help='draw the tree in a steady westerly, with its shape at rest behind it',
+        help='draw the tree in a steady west wind, with its shape at rest behind it',
     )
-    strength = 'draw the share of their strength that trees use, up to --speed (30 m/s)'
+    strength = 'draw the fraction of the strength in use over wind speed, up to --speed (30 m/s)'
     parser.add_argument('--strength', action='store_true', help=strength)
     parser.set_defaults(speed=None)
     parser.add_argument(
-        '--seconds', type=float, default=60.0, metavar='N', help='how long (%(default)s)'
+        '--seconds', type=float, default=60.0, metavar='N', help='duration [s] (%(default)s)'
     )
     add_output_arguments(parser, 'picture to write, .png or .pdf')
 
@@ -110,15 +108,8 @@ def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
 
 
 def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
-    """Simulate the motion to draw; a noisy scan that buckles has no weight."""
-    model: dict[str, Any] = {'model': arguments.model, 'in_leaf': chosen_leaves(arguments)}
-    try:
-        with waiting('setting up the tree'):
-            return scene.simulator(**model)
-    except TreeError as error:
-        light = scene.simulator(**model, gravity=0.0)
-        print(f'note: without its own weight, as it buckles: {error}', file=sys.stderr)
-        return light
+    with waiting('setting up the tree'):
+        return scene.simulator(model=arguments.model, in_leaf=chosen_leaves(arguments))
 
 
 def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:

@@ -20,7 +20,6 @@ from tree_sway.commands.arguments import (
 from tree_sway.commands.progress import waiting
 from tree_sway.commands.swaying import swaying
 from tree_sway.core.checks import within
-from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.page.film import browser, page_pictures
 
 _LEAVES = 2800
@@ -31,9 +30,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add_sway_arguments(parser)
-    add('--seconds', type=float, default=8.0, metavar='N', help='of the film (%(default)s)')
+    add(
+        '--seconds',
+        type=float,
+        default=8.0,
+        metavar='N',
+        help='duration of the film [s] (%(default)s)',
+    )
     add('--rate', type=float, default=20.0, help='pictures per second [Hz] (%(default)s)')
-    add('--pixels', type=int, default=480, help='height of the picture (%(default)s)')
+    add('--pixels', type=int, default=480, help='height of the picture in pixels (%(default)s)')
     add_output_arguments(parser, 'film to write: .gif or .mp4')
 
 
@@ -81,4 +86,4 @@ def _why_not_the_page(arguments: argparse.Namespace) -> str:
         return 'there is no Chromium'
     if not isinstance(arguments.model, int):
         return 'the page draws a --model with a number of coordinates'
-    return WHY_PLAIN
+    return ''

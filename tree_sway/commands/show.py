@@ -49,12 +49,16 @@ _LABELS = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_sway_arguments(parser, 'a wind record, repeated; simulated if left out')
+    add_sway_arguments(parser, 'wind recording, played in a loop; without it wind is simulated')
     parser.add_argument(
-        '--stand', type=int, default=1, metavar='N', help='number of trees (%(default)s)'
+        '--stand',
+        type=int,
+        default=1,
+        metavar='N',
+        help='show this many trees as a stand (%(default)s)',
     )
     parser.add_argument(
-        '--seconds', type=float, metavar='N', help='end after this time [s]; else by Ctrl-C'
+        '--seconds', type=float, metavar='N', help='end after this time [s]; without it, at Ctrl-C'
     )
     parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
     add_page_arguments(parser)

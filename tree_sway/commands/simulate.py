@@ -35,10 +35,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_wind_arguments(parser)
     add_model_argument(parser)
     add_leaves_argument(parser)
-    which = 'branch whose tip is written, may be repeated; the one with the highest tip'
+    which = 'branch whose tip is written, repeatable; without it, the highest tip'
     add('--branch', action='append', default=[], metavar='NAME', help=which)
     add('--rate', type=float, default=60.0, metavar='HZ', help='rows per second (%(default)s)')
-    add('--seconds', type=float, metavar='N', help='length; all of a record, or 60')
+    add(
+        '--seconds',
+        type=float,
+        metavar='N',
+        help='duration [s]; without it, all of a recording, or 60 s',
+    )
     add_output_arguments(parser, 'table to write: .csv, .parquet or .json')
 
 

@@ -14,32 +14,26 @@ from collections.abc import Callable, Iterable, Sequence
 import csv
 from dataclasses import dataclass
 from functools import cached_property, partial
-from importlib.resources import files
-import json
 import re
-from typing import Any
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.errors import FormatError, TreeError
+from tree_sway.files.column_names import (
+    COLUMNS,
+    name_and_unit,
+    rank_of,
+    unit_factor,
+    unit_in_name,
+    UNITS,
+)
 from tree_sway.files.text_file import finite, why_no_number
-from tree_sway.files.time_stamps import seconds_of_stamps
 
 _MAX_COLUMNS = 10_000
 _MEND = 'correct the cell or remove the row'
 _POINT = re.compile(r'(?<![\d.])\d+\.\d+(?![\d.])')  # and no date such as 01.03.2024
 _UNIT = re.compile(r'\[(.*)\]|\((.*)\)|')
-_KNOWN = json.loads(files('tree_sway.files').joinpath('columns.json').read_text('utf-8'))
-
-UNITS: dict[str, dict[str, float]] = _KNOWN['units']
-"""Units of each kind of quantity, and their factors to SI."""
-
-COLUMNS: dict[str, dict[str, Any]] = _KNOWN['columns']
-"""Names of the column of a quantity, and its kind of unit."""
-
-MOTIONS = {quantity: re.compile(pattern) for quantity, pattern in _KNOWN['motions'].items()}
-"""Names of columns of a tree's motion; each quantity has its own kind of unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,28 +93,43 @@ class TextTable:
 
     def factor(self, index: int, kind: str, default: float = 1.0) -> float:
         """Factor of the unit of a column, a `FormatError` if it is not one of this kind."""
-        unit, units = self.headings[index][1].lower(), UNITS.get(kind, {})
-        if not unit or not units:
+        unit = self.headings[index][1]
+        if not unit or not UNITS.get(kind):
             return default
-        if unit not in units:
+        return self._known(kind, unit)
+
+    def _known(self, kind: str, unit: str) -> float:
+        """Factor of a unit to SI; a `FormatError` if it is not one of a kind."""
+        factor = unit_factor(kind, unit)
+        if factor is None:
             what = f"unknown unit '{unit[:20]}'"
-            cure = f'use {", ".join(units)}'
+            cure = f'use {", ".join(UNITS[kind])}'
             raise FormatError(what, where=f'{self.source}:{self.unit_line}', cure=cure)
-        return units[unit]
+        return factor
 
     def find(self, quantity: str) -> Column | None:
-        """Return the first column of a quantity of `COLUMNS`, or None."""
-        known = COLUMNS[quantity]
-        units = UNITS.get(known['unit'], {})
-        default = units.get(known.get('default', ''), 1.0)
-        for name in known['names']:
-            for index, (heading, _) in enumerate(self.headings):
-                suffix = heading.removeprefix(f'{name}_')
-                if heading == name:
-                    return Column(index, self.factor(index, known['unit'], default))
-                if suffix != heading and suffix in units:  # not another quantity, as u_std
-                    return Column(index, units[suffix])
-        return None
+        """Return the column of a quantity of `COLUMNS` whose name comes first there, or None."""
+        ranks = [(rank_of(column, quantity), index) for index, column in enumerate(self.columns)]
+        named = [(rank, index) for rank, index in ranks if rank is not None]
+        if not named:
+            return None
+        index = min(named)[1]
+        return Column(index, self.factor_of(index, quantity))
+
+    def factor_of(self, index: int, quantity: str) -> float:
+        """Factor to SI of a column of a quantity; a `FormatError` for an unknown unit."""
+        kind = COLUMNS[quantity]['unit']
+        default = unit_factor(kind, COLUMNS[quantity].get('default', ''))
+        unit = self.unit_of(index, quantity)
+        if not unit or not UNITS.get(kind):
+            return 1.0 if default is None else default
+        return self._known(kind, unit)
+
+    def unit_of(self, index: int, quantity: str) -> str:
+        """Return the unit of a column of a quantity as it is written; empty without one."""
+        name, unit = name_and_unit(self.columns[index], COLUMNS[quantity]['unit'])
+        row = self.units[index] if index < len(self.units) else ''
+        return unit or unit_in_name(name, quantity) or row.strip()
 
     def values(self, indices: Iterable[int]) -> Floats:
         """Numbers in some columns, NaN where a cell is not a number, (n, k)."""
@@ -165,14 +174,6 @@ class TextTable:
         """Texts of a column in some rows; empty where a row is short."""
         split = (self.split(self.texts[row]) for row in rows)
         return [row[index] if index < len(row) else '' for row in split]
-
-    def seconds(self, stamps: list[str], factor: float) -> tuple[Floats, float | None]:
-        """Seconds of times, and their origin if they are dates; NaN where one is not."""
-        numbers = [finite(stamp) for stamp in stamps]
-        if any(number is not None for number in numbers):
-            times = [np.nan if number is None else number * factor for number in numbers]
-            return np.array(times), None
-        return seconds_of_stamps(stamps)
 
     def family(
         self, number: str, parent: str, none: Sequence[int], what: str

@@ -82,8 +82,29 @@ def read_bytes(path: Path, at_most: int = -1) -> bytes:
 
 
 def read_head(path: Path) -> str:
-    """Read the beginning of a file, enough for its format; other bytes than text are replaced."""
-    return read_bytes(path, at_most=4096).removeprefix(b'\xef\xbb\xbf').decode('utf-8', 'replace')
+    """
+    Read the beginning of a file, enough for its format.
+
+    Other bytes than text are replaced in a file that has zero bytes, and so is not text.
+    """
+    return decoded(read_bytes(path, at_most=4096), 'replace')
+
+
+def decoded(data: bytes, errors: str = 'strict') -> str:
+    """
+    Return bytes as text: UTF-16 by its byte order mark, UTF-8, else Windows' code page 1252.
+
+    A spreadsheet writes CSV in the latter two. ``errors`` is for bytes that are none of these.
+    """
+    if data.startswith((b'\xff\xfe', b'\xfe\xff')):
+        return data.decode('utf-16', errors)
+    try:
+        return data.decode('utf-8-sig')
+    except UnicodeDecodeError as error:
+        is_cut = errors == 'replace' and error.start > len(data) - 4
+        if is_cut or b'\0' in data:
+            return data.removeprefix(b'\xef\xbb\xbf').decode('utf-8', errors)
+    return data.decode('cp1252', errors)
 
 
 def read_text(path: Path) -> str:
@@ -99,8 +120,20 @@ def read_text(path: Path) -> str:
 
 
 def read_lines(path: Path) -> list[str]:
-    """Read a text file as lines, ended by LF, CRLF or CR, without their ends."""
-    text = read_text(path)
+    """Read a text file in UTF-8 as lines, ended by LF, CRLF or CR, without their ends."""
+    return _lines(read_text(path), path)
+
+
+def read_table_lines(path: Path) -> list[str]:
+    """Read a table as lines, in any encoding of `decoded`; a `FormatError` for binary data."""
+    try:
+        return _lines(decoded(read_bytes(path)), path)
+    except UnicodeDecodeError as error:
+        what = f'not text: byte {error.start} is {error.object[error.start]:#04x}'
+        raise FormatError(what, where=str(path), cure='save it as UTF-8') from None
+
+
+def _lines(text: str, path: Path) -> list[str]:
     if max(text.count('\n'), text.count('\r')) > MAX_LINES:
         raise FormatError(
             f'more than {MAX_LINES} lines', where=str(path), cure='cut it into smaller files'

@@ -1,51 +1,134 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Time stamps of loggers: ISO 8601 dates with any number of digits after the second."""
+"""
+Times of loggers, stations and services: dates in any usual order, 12-hour clocks, and numbers.
+
+A date is ISO 8601, ``2024/03/01``, ``01.03.2024``, ``3/1/24``, ``1 Mar 2024`` or ``202403011200``,
+with a time of 24 or of 12 hours, and maybe a zone. Whether ``3/1/24`` has the month first is seen
+in the whole column. Numbers are seconds, or if they are as large as the time since 1970 in s, ms,
+us or ns, that.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import date, timedelta
+from itertools import pairwise
 import re
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.files.text_file import finite
 
 _STAMP = re.compile(
     r'(\d{4}-\d\d-\d\d[ T]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?)(Z|[+-]\d\d:?\d\d)?', re.ASCII
 )
+_MONTHS = ('jan', 'feb', 'mar', 'apr', 'may', 'jun', 'jul', 'aug', 'sep', 'oct', 'nov', 'dec')
+_DATE = (
+    r'(?:(?P<year>\d{4})[-/.](?P<month>\d\d?)[-/.](?P<day>\d\d?)'
+    r'|(?P<first>\d\d?)(?P<sign>[-/.])(?P<second>\d\d?)[-/.](?P<last>\d{4}|\d\d)'
+    r'|(?P<year8>\d{4})(?P<month8>\d\d)(?P<day8>\d\d)'
+    r'|(?P<day_n>\d\d?)[- ](?P<name>[A-Za-z]{3})[a-z]*[-, ]+(?P<year_n>\d{4})'
+    r'|(?P<name_m>[A-Za-z]{3})[a-z]* (?P<day_m>\d\d?),? (?P<year_m>\d{4}))'
+)
+_CLOCK = (
+    r'(?:[T,_ ]*(?P<hour>\d\d?)(?::?(?P<minute>\d\d))?(?::?(?P<seconds>\d\d(?:[.,]\d+)?))?'
+    r'\s*(?P<half>[apAP]\.?(?:[mM]\.?)?)?)?'
+)
+_ZONE = r'\s*(?P<zone>Z|UTC|GMT|[+-]\d\d(?::?\d\d)?)?'
+_ANY = re.compile(_DATE + _CLOCK + _ZONE, re.ASCII)
+_DIGITS = re.compile(r'(19|20)\d\d(0[1-9]|1[0-2])(0[1-9]|[12]\d|3[01])([01]\d|2[0-4])?(\d\d){0,2}')
+_SINCE_1970 = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (5e8, 1.0))
+"""Least number that is a time since 1970, and its unit in [s]: each is of 1973 or later."""
 
 _NONE = np.iinfo(np.int64).min
+_DAY = 86_400_000_000
+_1970 = date(1970, 1, 1)
 
 
-def seconds_of_stamps(stamps: Sequence[str]) -> tuple[Floats, float]:
+@dataclass(frozen=True)
+class Times:
     """
-    Seconds of each stamp after the first good one, to the microsecond; NaN for another text.
+    Times of rows.
 
-    Stamps are such as ``2012-06-07 12:45:00.05`` or ``2012-06-07T12:45:00Z``; one without a zone
-    is taken as UTC.
-
-    Returns
-    -------
-    tuple
-        The seconds, (n,), and the first good stamp in seconds after 1970-01-01; 0 if there is
-        none.
-
+    ``seconds`` are after ``epoch``, NaN where there is none; ``epoch`` is in seconds after
+    1970-01-01, None if the file has no dates. ``note`` is what was assumed; may be empty.
     """
-    microseconds = np.fromiter(map(_microseconds, stamps), np.int64, len(stamps))
+
+    seconds: Floats
+    epoch: float | None
+    note: str = ''
+
+
+def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
+    """
+    Return the times of texts: numbers of a unit ``factor`` in [s], or dates.
+
+    Whether they are numbers is decided by the first that is not empty.
+    """
+    first = next((stamp.strip() for stamp in stamps if stamp.strip()), '')
+    if finite(first) is None or _DIGITS.fullmatch(first):
+        return dates(stamps)
+    numbers = [finite(stamp) for stamp in stamps]
+    values = np.array([np.nan if number is None else number for number in numbers])
+    size = abs(float(np.nanmedian(values)))
+    if factor == 1.0:
+        factor = next((unit for least, unit in _SINCE_1970 if size >= least), 1.0)
+    if size * factor < _SINCE_1970[-1][0]:
+        return Times(values * factor, None)
+    origin = float(values[np.isfinite(values)][0])
+    return Times((values - origin) * factor, origin * factor)
+
+
+def dates(stamps: Sequence[str]) -> Times:
+    """Return the times of dates, NaN for other texts; those without a zone are taken as UTC."""
+    texts = [stamp.strip() for stamp in stamps]
+    is_month_first, note = _order(texts)
+    found = (_microseconds(text, is_month_first) for text in texts)
+    microseconds = np.fromiter(found, np.int64, len(texts))
     is_good = microseconds != _NONE
     # Differences in whole numbers first: a date in float64 seconds is good to 0.2 us only.
     first = int(microseconds[is_good][0]) if is_good.any() else 0
-    seconds = np.full(len(stamps), np.nan)
+    seconds = np.full(len(texts), np.nan)
     seconds[is_good] = (microseconds[is_good] - first) / 1e6
-    return seconds, first / 1e6
+    return Times(seconds, first / 1e6, note)
 
 
-def _microseconds(stamp: str) -> int:
-    """Microseconds after 1970-01-01, `_NONE` for other text than a stamp."""
-    match = _STAMP.fullmatch(_iso(stamp.strip()))
+def _order(texts: Sequence[str]) -> tuple[bool, str]:
+    """Whether dates such as 3/1/24 have the month first, and what was assumed."""
+    first = next((text for text in texts if text), '')
+    match = _ANY.fullmatch(first)
+    if match is None or match['first'] is None:
+        return False, ''
+    if match['sign'] == '.':
+        return False, ''
+    found = [each for text in texts if (each := _ANY.fullmatch(text)) and each['first']]
+    if any(int(each['first']) > 12 for each in found):
+        return False, ''
+    if any(int(each['second']) > 12 for each in found):
+        return True, ''
+    steps = [_total_step(found, is_month_first) for is_month_first in (True, False)]
+    if steps[0] != steps[1]:
+        return steps[0] < steps[1], ''
+    is_american = any(each['half'] for each in found)
+    order = 'month, day' if is_american else 'day, month'
+    return is_american, f'dates such as {first[:20]} are taken as {order}'
+
+
+def _total_step(found: Sequence[re.Match[str]], is_month_first: bool) -> int:
+    """Sum of all steps of time, which is smallest in the right order of day and month."""
+    times = [_general(each, is_month_first) for each in found]
+    return sum(abs(b - a) for a, b in pairwise(times))
+
+
+def _microseconds(stamp: str, is_month_first: bool) -> int:
+    """Microseconds after 1970-01-01, `_NONE` for other text than a date."""
+    match = _STAMP.fullmatch(stamp)
     if match is None:
-        return _NONE
+        general = _ANY.fullmatch(stamp)
+        return _NONE if general is None else _general(general, is_month_first)
     try:
         microseconds = int(np.datetime64(match[1], 'us').astype(np.int64))
     except ValueError:  # a month 13 or a February 30
@@ -53,13 +136,41 @@ def _microseconds(stamp: str) -> int:
     return microseconds - 1_000_000 * (_offset(match[2]) if match[2] else 0)
 
 
-def _iso(stamp: str) -> str:
-    """Year, month and day in the order of ISO 8601, from 2024/03/01 and 01.03.2024."""
-    if stamp[4:5] == '/' or stamp[2:3] == stamp[5:6] == '.':
-        stamp = stamp.replace('/', '-', 2)
-        day, month, rest = [*stamp.split('.', 2), '', ''][:3]
-        return f'{rest[:4]}-{month}-{day}{rest[4:]}' if '.' in stamp[:3] else stamp
-    return stamp
+def _general(match: re.Match[str], is_month_first: bool) -> int:
+    """Microseconds after 1970-01-01 of a date in any order; `_NONE` if it is impossible."""
+    try:
+        day = date(*_year_month_day(match, is_month_first))
+    except ValueError:
+        return _NONE
+    hour, minute = int(match['hour'] or 0), int(match['minute'] or 0)
+    seconds = float((match['seconds'] or '0').replace(',', '.'))
+    if match['half']:
+        if not 1 <= hour <= 12:
+            return _NONE
+        hour = hour % 12 + (12 if match['half'][0] in 'pP' else 0)
+    if hour > 24 or minute > 59 or seconds >= 60.0 or (hour == 24 and minute):
+        return _NONE
+    days = (day - _1970) // timedelta(days=1)
+    zone = match['zone']
+    offset = _offset(zone) if zone and zone[0] in '+-' else 0
+    whole = 3600 * hour + 60 * minute - offset
+    return days * _DAY + whole * 1_000_000 + round(seconds * 1e6)
+
+
+def _year_month_day(match: re.Match[str], is_month_first: bool) -> tuple[int, int, int]:
+    for name in ('name', 'name_m'):
+        if match[name]:
+            letter = '_n' if name == 'name' else '_m'
+            month = _MONTHS.index(match[name].lower()) + 1
+            return int(match[f'year{letter}']), month, int(match[f'day{letter}'])
+    for suffix in ('', '8'):
+        if match[f'year{suffix}']:
+            return tuple(int(match[f'{part}{suffix}']) for part in ('year', 'month', 'day'))  # type: ignore[return-value]
+    year = int(match['last'])
+    if len(match['last']) == 2:
+        year += 2000 if year < 70 else 1900
+    one, two = int(match['first']), int(match['second'])
+    return (year, one, two) if is_month_first else (year, two, one)
 
 
 def _offset(zone: str) -> int:
@@ -67,4 +178,5 @@ def _offset(zone: str) -> int:
     if zone == 'Z':
         return 0
     sign = -1 if zone[0] == '-' else 1
-    return sign * (3600 * int(zone[1:3]) + 60 * int(zone[-2:]))
+    minutes = int(zone[-2:]) if len(zone) > 3 else 0
+    return sign * (3600 * int(zone[1:3]) + 60 * minutes)

@@ -8,7 +8,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model.fill_records import (
@@ -24,7 +23,7 @@ from tree_sway.core.model.records import (
     room_for_fields,
     segment_layout,
 )
-from tree_sway.core.run.placing import GIVEN, place, room_for
+from tree_sway.core.run.placing_by_keys import placing_by_keys, PlacingByKeys
 from tree_sway.errors import FormatError
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import Description
@@ -33,7 +32,6 @@ MOST_MEMORY = 512 * 2**20
 """Largest memory for the records of a kind in [bytes]."""
 
 _TURNS = 'base_turn', 'turn'
-_Records = NDArray[np.void]
 
 
 class Placer:
@@ -78,8 +76,7 @@ class Placer:
             own = (number >= key) & (number < key + len(keys))
             keys[number[own].astype(np.int64) - key] += turn[own]
             origin = np.array([x, y, z])
-            room, (segments, blocks, bases) = room_for(len(keys)), kind.records
-            place(*GIVEN, segments, blocks, bases, c, s, scale, room, keys, origin, poses[row:end])
+            kind.placing.place(keys, origin, poses[row:end], c, s, scale)
             row, first, key = end, last, key + len(keys)
         return poses
 
@@ -89,8 +86,7 @@ class _Kind(NamedTuple):
 
     matrix: Floats
     n_segments: int
-    records: tuple[_Records, _Records, Floats]
-    """Records of its segments, blocks and scratch memory."""
+    placing: PlacingByKeys
 
 
 def _kind(arrays: dict[str, Array]) -> _Kind:
@@ -130,5 +126,5 @@ def _kind(arrays: dict[str, Array]) -> _Kind:
     )  # fmt: skip
     branches, segments = np.zeros(len(parent), layouts[0]), segment_records(places)
     fill_places(places, branches)
-    blocks = block_records(branches, segments)
-    return _Kind(matrix, int(first[-1]), (segments, blocks, np.zeros((len(branches), 8))))
+    placing = placing_by_keys(branches, segments, block_records(branches, segments))
+    return _Kind(matrix, int(first[-1]), placing)

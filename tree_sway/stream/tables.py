@@ -6,38 +6,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.cache.kernel_cache import PLAIN_VARIABLE
-from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.exported_table import exported_table, rounded
 from tree_sway.core.model.settings import USUAL
 from tree_sway.core.run.table_model import WindBasisBank
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
-from tree_sway.errors import MissingDependencyError, ParameterError, TreeSwayError
+from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import encode_description, TABLES
 from tree_sway.stream.scene_kind import SceneKind
-
-
-def refuse_without_compiler() -> None:
-    """Raise the error of `why_no_tables` where no tree has a table, before one is set up."""
-    if WHY_PLAIN:
-        raise _without_compiler()
-
-
-def _without_compiler() -> TreeSwayError:
-    is_turned_off = PLAIN_VARIABLE in WHY_PLAIN
-    return MissingDependencyError(
-        f'a tree that is solved elsewhere needs compiled kernels: {WHY_PLAIN or "they are off"}',
-        cure=f'unset {PLAIN_VARIABLE}' if is_turned_off else 'install numba 0.59 or later',
-    )
 
 
 def why_no_tables(kinds: list[SceneKind]) -> TreeSwayError | None:
     """
     Return the error of a scene that a receiver cannot solve; None if it can.
 
-    A table belongs to a tree on a number of coordinates, whose limbs meet each gust together. Only
-    compiled kernels make one.
+    A table belongs to a tree on a number of coordinates, whose limbs meet each gust together.
     """
     for kind in kinds:
         model = kind.simulator
@@ -46,8 +29,6 @@ def why_no_tables(kinds: list[SceneKind]) -> TreeSwayError | None:
             return ParameterError(what, where='crown_coherence', cure='set it to 1')
         if isinstance(model.bank.oscillators, WindBasisBank):
             continue
-        if model.bank.plain:
-            return _without_compiler()
         what = f"model '{model.model}' has no table to solve it by"
         cure = f'give a number of coordinates, such as {USUAL}'
         return ParameterError(what, where='--model', cure=cure)

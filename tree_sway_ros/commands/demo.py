@@ -32,13 +32,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add_sway_arguments(parser)
-    add('--start', type=float, default=0.0, metavar='T', help='skipped time of the record [s]')
+    add(
+        '--start',
+        type=float,
+        default=0.0,
+        metavar='T',
+        help='start at this time of the recording [s]',
+    )
     kinds = 'serial:/dev/ttyUSB0:4800, tcp://host:port, udp://:port'
-    add('--sensor', metavar='ADDRESS', help=f'anemometer in place of both: {kinds}')
+    add('--sensor', metavar='ADDRESS', help=f'live anemometer instead: {kinds}')
     add_seconds(parser)
     add('--rate', type=float, default=60.0, help='poses per second [Hz] (%(default)s)')
-    add('--gravity', choices=('on', 'off'), default='on', help='weight of the tree (%(default)s)')
-    add('--no-page', action='store_true', help='serve no page')
+    add(
+        '--gravity', choices=('on', 'off'), default='on', help='effect of the weight (%(default)s)'
+    )
+    add('--no-page', action='store_true', help='do not serve the page')
     add_page_arguments(parser)
 
 

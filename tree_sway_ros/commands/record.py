@@ -39,7 +39,7 @@ _LOOK = 0.2
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add('-o', '--output', required=True, metavar='FOLDER', help='bag to make')
+    add('-o', '--output', required=True, metavar='FOLDER', help='folder of the new bag')
     add('--format', choices=FORMATS, default=FORMATS[0], help='format of the bag (%(default)s)')
     add('--namespace', default='', help="namespace of the tree's nodes")
     add('--poses', action='store_true', help='also poses, markers and diagnostics: GB per hour')

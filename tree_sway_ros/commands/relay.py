@@ -36,9 +36,9 @@ _OVERDUE = 2.0
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add('url', help='address of the page of the remote site, as http://there:8765/')
-    add('--token-file', default='', metavar='FILE', help='token of its page')
-    add('--namespace', default='', help='namespace of the nodes of this site')
+    add('url', help='address of the page at the remote site, such as http://there:8765/')
+    add('--token-file', default='', metavar='FILE', help='file with the access token of that page')
+    add('--namespace', default='', help='namespace of the nodes at this site')
     add('--rate', type=float, default=20.0, help='samples per second [Hz] (%(default)s)')
     add_seconds(parser)
 

@@ -21,7 +21,7 @@ _LIVE_PERIOD, _LOG_PERIOD = 0.5, 2.0
 
 def add_seconds(parser: argparse.ArgumentParser) -> None:
     """Add the duration of a command."""
-    text = 'end after this time [s]; else by Ctrl-C'
+    text = 'end after this time [s]; without it, at Ctrl-C'
     parser.add_argument('--seconds', type=float, default=math.inf, metavar='N', help=text)
 
 

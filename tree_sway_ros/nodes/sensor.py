@@ -1,86 +1,101 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The sensor node: a real anemometer with NMEA 0183 or the lines of Gill."""
+"""The sensor node: a live source of wind, as a real anemometer or a weather service."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from tree_sway.files.wind.nmea import parse_nmea
-from tree_sway.files.wind.sonic_ascii import parse_sonic
-from tree_sway_ros.link.address import read_address
-from tree_sway_ros.link.line_source import LineSource
+from rclpy.clock import Clock, ClockType
+
+from tree_sway.files.wind.units import Velocity
+from tree_sway.sensors.live_wind import LiveWind
+from tree_sway.sensors.readers.instrument_lines import InstrumentLines
+from tree_sway.sensors.registry import open_source
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import WIND
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.recent_counts import is_fault, listed, RecentCounts
 from tree_sway_ros.wire.wind_messages import WindWriter
 
+_GUSTS_EVERY = 0.1
+"""Period of the samples of gusts about a mean [s]."""
+
 
 class SensorNode(TreeSwayNode):
-    """Publishes `wind` of an instrument, stamped with the time of arrival."""
+    """
+    Publishes `wind` of a source, stamped with the time of arrival.
+
+    Means over 20 s and more are published as gusts about them, ten samples per second.
+    """
+
+    _wind: LiveWind
 
     def configure(self) -> None:
         """Prepare the link."""
         self._writer = WindWriter(**self.values('output_type', 'direction_convention', 'frame_id'))
         self._publisher = self.publisher(WIND, self._writer.message_class)
-        self._kind = self.values['sentence']
-        self._accepted = self._other = 0
-        self._refused: dict[str, int] = {}
         self._recent = RecentCounts()
-        self._source = LineSource(
-            read_address(self.values['address']),
-            self.guard.wrapped(self._take),
+        opened = open_source(self.values['address'])
+        self._lines, self._messages = opened.source.read, opened.source.messages
+        is_of_lines = isinstance(self._lines, InstrumentLines)
+        self._wind = LiveWind(
+            opened,
             self.get_logger().info,
-            silence=self.values['silence'],
+            taken=self.guard.wrapped(self._publish),
+            silence=self.values['silence'] if is_of_lines else None,
         )
+        self.on_change(self.values())
+        self.create_timer(_GUSTS_EVERY, self._blow, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.report_with(self.values['address'], self._report)
 
     def activate(self) -> None:
         """Start to listen."""
-        self.run_worker(self._source)
+        self.run_worker(self._wind.link)
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Check the address."""
-        read_address(values['address'])
+        open_source(values['address'])
 
-    def _take(self, line: str) -> None:
-        heading = self.values['heading']
-        said = parse_nmea(line, heading, self.values['declination']) or parse_sonic(line, heading)
-        if said is None:
-            self._other += 1
+    def on_change(self, values: dict[str, Any]) -> None:
+        """Follow the directions of the instrument."""
+        if not hasattr(self, '_wind'):  # parameters may change before it is configured
             return
-        if self._kind == 'auto' and said.velocity is not None:
-            self._kind = said.kind  # the first good one; a change of reference would be a jump
-            self.get_logger().info(f'reading {said.kind}')
-        if said.kind != self._kind:
-            self._other += 1
-        elif said.velocity is None:
-            cause = said.refusal.split("'")[0].strip()
-            self._refused[cause] = self._refused.get(cause, 0) + 1
-        else:
-            self._accepted += 1
-            stamp = self.get_clock().now().nanoseconds
-            self._publisher.publish(self._writer.message(stamp, said.velocity))
+        self._wind.bearing = self.values['bearing']
+        lines = self._lines
+        if isinstance(lines, InstrumentLines):
+            lines.sentence = self.values['sentence']
+            lines.heading = self.values['heading']
+            lines.declination = self.values['declination']
+
+    def _publish(self, velocity: Velocity) -> None:
+        self._publisher.publish(self._writer.message(self.get_clock().now().nanoseconds, velocity))
+
+    def _blow(self) -> None:
+        """Publish the newest gust about a mean."""
+        if samples := self._wind.drain():
+            self._publish(samples[-1][1])
 
     def _report(self) -> list[Status]:
-        source = self._source
-        recent = self._recent.growth({**self._refused, '': self._accepted})
+        wind, link = self._wind, self._wind.link
+        newest = wind.newest
+        recent = self._recent.growth({**wind.refused, '': wind.accepted})
         refused = {cause: count for cause, count in recent.items() if cause and count}
+        reading = newest.kind if newest is not None else ''
         values: dict[str, object] = {
-            'reading': self._kind,
-            'links made': source.links,
-            'lines': source.lines,
-            'accepted': self._accepted,
-            'other lines': self._other,
-            **{f'refused: {cause}': count for cause, count in sorted(self._refused.items())[:20]},
+            'reading': reading,
+            'connections made': link.connections,
+            'messages': link.messages,
+            'accepted': wind.accepted,
+            'other messages': wind.other,
+            'gusts about means': wind.is_mean,
+            **{f'refused: {cause}': count for cause, count in sorted(wind.refused.items())},
         }
-        if not source.is_up:
-            return [Status('link', WARN, f'no link: {source.failure or "not yet"}', values)]
-        if not self._accepted:
-            text = f'no sentence of wind yet in {source.lines} lines'
-            return [Status('link', WARN, text, values)]
+        if not wind.accepted or not link.is_up:
+            return [Status('link', WARN, wind.problem or f'no link: {link.failure}', values)]
         if is_fault(sum(refused.values()), sum(refused.values()) + recent['']):
-            text = f'{self._kind}; lines refused: {listed(refused)}'
+            text = f'{reading}; {self._messages} refused: {listed(refused)}'
             return [Status('link', WARN, text, values)]
-        return [Status('link', OK, f'{self._kind}', values)]
+        if wind.state == 'stale':
+            return [Status('link', WARN, f'{reading}; none for {wind.age:.0f} s', values)]
+        return [Status('link', OK, reading, values)]

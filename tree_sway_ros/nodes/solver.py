@@ -81,9 +81,10 @@ class SolverNode(TreeSwayNode):
         self._state.start()
 
     def _open(self) -> Any:
-        source = open_scene(self.values['tree'])
-        if self.values['species']:
-            source = source.of_species(species_named(self.values['species'])).checked()
+        named = self.values['species']
+        source = open_scene(
+            self.values['tree'], wood=lambda found: species_named(named) if named else found
+        )
         x, y, z, yaw = self.values['pose']
         moved = source.moved(x=x, y=y, z=z, yaw=yaw)
         return shard_of(moved, self.values['shard.index'], self.values['shard.count'])
@@ -122,8 +123,6 @@ class SolverNode(TreeSwayNode):
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
         self._topic = self.subscription(WIND_FILTERED, self._receive).topic_name
         self.subscription(CAMERA, self._see)
-        names = source.tree.segment_names
-        self._segments = {name: number for number, name in enumerate(names)}
         self._hands = ControlPanel(pull=self._pull)
         self.subscription(PUSH, self._take_push)
         self.subscription(PULL, self._take_pull)
@@ -149,15 +148,18 @@ class SolverNode(TreeSwayNode):
         self.on_change({})
 
     def _take_push(self, message: Any) -> None:
-        name, force = message.header.frame_id, message.wrench.force
+        frames, frame_id = self.stream.tree_frames, message.header.frame_id
+        force, segment = message.wrench.force, frames.row(message.header.frame_id)
         components = (force.x, force.y, force.z)
-        if name not in self._segments:
-            self._refuse('push', f"no segment '{name}'; tree_description names all")
+        if segment is None:
+            why = f"'{frame_id}' is the frame of no segment: one is '{frames.example}'"
+            self._refuse('push', why)
         elif not math.hypot(*components) <= _STRONGEST_PUSH:  # false for NaN
             self._refuse('push', f'not finite or above {_STRONGEST_PUSH:g} N')
         else:
+            frames.show(segment)
             self._run.request(
-                lambda: self._push(self._segments[name], components),
+                lambda: self._push(segment, components),
                 lambda why: self._refuse('push', why),
             )
 

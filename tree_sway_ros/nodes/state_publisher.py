@@ -8,8 +8,6 @@ import math
 import threading
 from typing import Any
 
-import numpy as np
-
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import TreeSwayError
@@ -17,7 +15,7 @@ from tree_sway.stream.protocol import PAUSED, WIND_LOST
 from tree_sway.stream.scene_state import SceneState
 from tree_sway_ros.process.topics import TREE_STATE
 from tree_sway_ros.timing.divider import Divider
-from tree_sway_ros.wire.tree_state import state_entry, state_template
+from tree_sway_ros.wire.tree_state import ModalState, state_entry, StateWriter
 
 
 class StatePublisher:
@@ -34,7 +32,7 @@ class StatePublisher:
         rate = node.values['state_rate']
         self._every = max(1, math.ceil(node.values['rate'] / rate)) if rate > 0.0 else 0
         self._divider = Divider()
-        self._template: Any = None
+        self._writer: StateWriter | None = None
         self._scene: SceneState | None = None
 
     def start(self) -> None:
@@ -51,20 +49,18 @@ class StatePublisher:
         if self._scene is None or self._publisher.get_subscription_count() == 0:
             return
         flags = PAUSED * run.is_paused + WIND_LOST * run.is_wind_lost
-        state = np.concatenate([self._simulator.wind, [flags], self._scene.coordinates()])
-        if len(state) != len(self._template.blocks[0]):
-            names = self._scene.coordinate_names
-            names += [f'pulled{k}' for k in range(len(state) - 4 - len(names))]
-            self._template = state_template(names, self._node.values['frame_id'])
-        self._template.blocks[0][:] = state
-        self._publisher.publish(self._template.to_bytes(stamp))
+        coordinates = self._scene.coordinates()
+        if self._writer is None or self._writer.count != len(coordinates):
+            self._writer = StateWriter(len(coordinates))
+        state = ModalState(stamp, self._simulator.wind, flags, coordinates)
+        self._publisher.publish(self._writer.to_bytes(state))
 
     def _find(self) -> None:
         try:
             frame_id = self._node.values['frame_id']
             scene = SceneState(self._simulator, self._n_leaves, frame_id)
-            self._template = state_template(scene.coordinate_names, frame_id)
-            self._node.stream.add_to_description({'state': state_entry(scene.description)})
+            entry = state_entry(scene.description, scene.coordinate_names)
+            self._node.stream.add_to_description({'state': entry})
             self._scene = scene
         except TreeSwayError as error:
             self._node.get_logger().warning(f'no {TREE_STATE.name}: {error}')

@@ -32,7 +32,6 @@ from tree_sway_ros.process.topics import (
 )
 from tree_sway_ros.reports.diagnostics import OK, Status
 from tree_sway_ros.wire.tree_state import read_state, read_state_entry
-from tree_sway_ros.wire.wind_messages import stamp_to_ns
 
 _CHECK_PERIOD = 0.5
 _LIVE = {
@@ -146,12 +145,11 @@ class ViewerNode(TreeSwayNode):
         description, server = self._description, self.server
         if description is None or server is None:
             return
-        wind, coordinates, flags = read_state(message)
+        stamp, wind, flags, coordinates = read_state(message)
         count = len(description.scale)
         if len(coordinates) < count or (len(coordinates) - count) % 2:
             what = f'{len(coordinates)} coordinates of a tree with {count}'
             raise FormatError(what, where='tree_state')
-        stamp = stamp_to_ns(message.header.stamp)
         frame = encode_state(description, self._sequence, stamp, wind, coordinates, flags)
         self._sequence += 1
         server.publish(frame)

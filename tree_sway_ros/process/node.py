@@ -17,6 +17,7 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from tree_sway.core.wind.gate import LONGEST_TRANSPORT
 from tree_sway.errors import TreeSwayError
+from tree_sway.worker import Worker
 from tree_sway_ros.parameters.declaration import ParameterValues
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.process.guard import CallbackGuard
@@ -24,7 +25,6 @@ from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile
 from tree_sway_ros.reports.diagnostics import OK, Status, status_array, WARN
 from tree_sway_ros.timing.clock_rate import ClockRate
 from tree_sway_ros.timing.pacer import Pacer, Tick
-from tree_sway_ros.timing.worker import Worker
 
 REPORT_PERIOD = 1.0
 """Interval of reports [s] of wall time, also while simulated time is paused."""

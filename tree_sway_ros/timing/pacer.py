@@ -21,8 +21,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tree_sway.worker import Worker
 from tree_sway_ros.timing.clock_rate import ClockRate
-from tree_sway_ros.timing.worker import Worker
 
 LONGEST_STEP = 500_000_000
 """Longest time of a tick [ns]: a clock that jumped forward is not a long step."""

@@ -19,7 +19,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
-from tree_sway_ros.timing.worker import Worker
+from tree_sway.worker import Worker
 
 LONGEST_CLOCK_STEP = 0.25
 """Longest time between two ticks of /clock [s]; half of the threshold of nodes for a jump."""

@@ -93,8 +93,8 @@ class CdrTemplate:
         for block in self.blocks:
             block[...] = 0.0
 
-    def to_bytes(self, stamp: int) -> bytes:
-        """Return the message as bytes for `Publisher.publish`, stamped with a time in [ns]."""
+    def to_bytes(self, stamp: int = 0) -> bytes:
+        """Return the message as bytes for `Publisher.publish`; its stamps are a time in [ns]."""
         second, nanosecond = divmod(stamp, 1_000_000_000)
         for view in self._stamps:
             view[0], view[1] = second, nanosecond

@@ -3,7 +3,8 @@
 """
 The latest rotations between frames, by /tf and /tf_static: a sensor on a boat or a robot.
 
-They are read without tf2's buffer, so that only its messages are needed.
+They come from tf2's buffer where tf2_ros is installed, else from `Frames`, which needs only the
+messages of tf2.
 """
 
 from __future__ import annotations
@@ -65,21 +66,70 @@ class Frames:
         return way
 
 
+class BufferedFrames:
+    """Known frames, in tf2's own buffer."""
+
+    def __init__(self, node: Any) -> None:
+        from tf2_ros import Buffer, TransformListener
+
+        self._buffer = Buffer()
+        self._listener = TransformListener(self._buffer, node)
+
+    def rotation(self, frame: str, base: str) -> Floats | None:
+        """Rotation (3, 3) of vectors of a frame into a second one; None if not connected."""
+        from rclpy.time import Time
+        from tf2_ros import TransformException
+
+        try:
+            found = self._buffer.lookup_transform(base.strip('/'), frame.strip('/'), Time())
+        except TransformException:
+            return None
+        q = found.transform.rotation
+        return Rotation.from_quat((q.x, q.y, q.z, q.w)).as_matrix()
+
+
+class HeardFrames:
+    """Known frames, of the messages of tf2."""
+
+    def __init__(self, node: Any) -> None:
+        self._frames = Frames()
+        for topic in (TF, TF_STATIC):
+            node.subscription(topic, lambda heard: self._frames.take(heard.transforms))
+
+    def rotation(self, frame: str, base: str) -> Floats | None:
+        """Rotation (3, 3) of vectors of a frame into a second one; None if not connected."""
+        return self._frames.rotation(frame, base)
+
+
+class NoFrames:
+    """Known frames where tf2 is not installed."""
+
+    def rotation(self, _frame: str, _base: str) -> None:
+        """Return None."""
+
+
+def listen(node: Any) -> BufferedFrames | HeardFrames | NoFrames:
+    """Begin to listen to frames, by the best that is installed."""
+    for kind in (BufferedFrames, HeardFrames):
+        try:
+            return kind(node)
+        except ImportError:
+            continue
+    return NoFrames()
+
+
 class FrameListener:
     """Listener of /tf that logs the use of each frame once."""
 
     def __init__(self, node: Any, base: str) -> None:
         self._log, self._base = node.get_logger(), base
-        self._frames = Frames()
+        self._frames = listen(node)
         self._said: set[str] = set()
         self._until = time.monotonic() + _PATIENCE
         self._lack = 'no transform between the two on /tf'
         self.text, self.is_lacking, self.is_waiting = '', False, False
         self._latest = -math.inf
-        try:
-            for topic in (TF, TF_STATIC):
-                node.subscription(topic, lambda heard: self._frames.take(heard.transforms))
-        except ImportError:
+        if isinstance(self._frames, NoFrames):
             self._until, self._lack = 0.0, 'tf2_msgs is not installed'
 
     @property

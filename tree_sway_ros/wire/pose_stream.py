@@ -8,7 +8,6 @@ import json
 import math
 from typing import Any
 
-from rclpy.clock import Clock, ClockType
 from std_msgs.msg import String
 
 from tree_sway.core.leaves.foliage import LeafClusters
@@ -17,7 +16,8 @@ from tree_sway_ros.process.topics import MARKERS, SEGMENT_POSES, TREE_DESCRIPTIO
 from tree_sway_ros.timing.divider import Divider
 from tree_sway_ros.wire.cdr import pose_array_template
 from tree_sway_ros.wire.markers import TreeMarkers
-from tree_sway_ros.wire.tree_description import describe, REPEAT_PERIOD
+from tree_sway_ros.wire.tree_description import describe
+from tree_sway_ros.wire.tree_frames import TreeFrames
 
 _MARKER_RATE = 20.0
 """Pictures per second that RViz draws of a large tree [Hz]."""
@@ -37,21 +37,15 @@ class PoseStream:
         self._marker_every = max(1, math.ceil(values['rate'] / _MARKER_RATE))
         self._markers = TreeMarkers(tree, frame_id)
         self._marker_publisher = node.publisher(MARKERS)
-        self._description = String(data=describe(tree, frame_id, leaves))
+        self.tree_frames = TreeFrames(node, tree)
+        self._description = String(data=describe(tree, frame_id, self.tree_frames.root, leaves))
         self._description_publisher = node.publisher(TREE_DESCRIPTION)
-        self._timer = node.create_timer(
-            REPEAT_PERIOD, self.publish_description, clock=Clock(clock_type=ClockType.STEADY_TIME)
-        )
-        self.publish_description()
+        self._description_publisher.publish(self._description)
 
     def add_to_description(self, content: dict[str, Any]) -> None:
         """Add to the description, from any thread, and publish it."""
         whole = {**json.loads(self._description.data), **content}
         self._description = String(data=json.dumps(whole, separators=(',', ':')))
-        self.publish_description()
-
-    def publish_description(self) -> None:
-        """Publish the description."""
         self._description_publisher.publish(self._description)
 
     def publish(self, simulator: Any, index: int, stamp: int, every: int) -> None:
@@ -60,7 +54,8 @@ class PoseStream:
         markers_due = self._marker_divider.is_due(index, self._marker_every)
         poses_due = poses_due and self._pose_publisher.get_subscription_count() > 0
         markers_due = markers_due and self._marker_publisher.get_subscription_count() > 0
-        if not (poses_due or markers_due):
+        frames_due = self.tree_frames.is_due(index)
+        if not (poses_due or markers_due or frames_due):
             return
         simulator.place(self.poses)
         if poses_due:
@@ -68,3 +63,5 @@ class PoseStream:
             self.frames += 1
         if markers_due:
             self._marker_publisher.publish(self._markers.to_bytes(self.poses, stamp))
+        if frames_due:
+            self.tree_frames.publish(self.poses, stamp)

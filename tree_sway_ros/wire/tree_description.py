@@ -17,13 +17,15 @@ from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.tree.tree import Tree
 
 VERSION = 1
-REPEAT_PERIOD = 5.0
-"""Interval of descriptions [s]: bags and bridges lose a latched topic."""
 
 
-def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> str:
+def describe(
+    tree: Tree, frame_id: str, tree_frame: str = 'tree', leaves: LeafClusters | None = None
+) -> str:
     """
     Describe a tree as JSON of ``doc/tree_description.schema.json``.
+
+    ``frame_id`` is the frame of its poses, ``tree_frame`` the one at its own origin.
 
     Of trees joined to one record, each begins with a segment whose parent is -1.
     """
@@ -35,6 +37,7 @@ def describe(tree: Tree, frame_id: str, leaves: LeafClusters | None = None) -> s
             'hash': digest_of(tree),
             'species': tree.species,
             'frame_id': frame_id,
+            'tree_frame': tree_frame,
             'segments': {
                 'names': list(tree.segment_names),
                 'parents': tree.segment_parent.tolist(),

@@ -1,62 +1,108 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The state of a tree as `sensor_msgs/JointState`: a name per coordinate; wind and flags first.
+The state of a tree as `std_msgs/Float64MultiArray`: its modal coordinates, after their time.
 
-With the ``state`` of `tree_description` all poses follow from it; a bag of it can be plotted by
-other programs and takes some 50 MB per hour.
+The array that the layout describes is the coordinates: one dimension, ``coordinates``, which
+begins at ``data_offset``. In front of it are the numbers of `HEAD`, as the message has no header.
+With the ``state`` of `tree_description` all poses follow from it; a bag of it takes some 50 MB
+per hour.
 """
 
 from __future__ import annotations
 
 import base64
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray, MultiArrayDimension
 
 from tree_sway.core.arrays import Floats
 from tree_sway.errors import FormatError
 from tree_sway.stream.protocol import PAUSED, WIND_LOST
-from tree_sway_ros.wire.cdr import block_mark, CdrTemplate, mark_stamp
+from tree_sway_ros.wire.cdr import block_mark, CdrTemplate
 
-WIND_NAMES = ('wind/x', 'wind/y', 'wind/z')
-"""Wind at the anemometer, blowing to, in [m/s]; the first numbers of a state."""
+HEAD = ('stamp/sec', 'stamp/nanosec', 'wind/x', 'wind/y', 'wind/z', 'flags')
+"""
+Numbers in front of the coordinates: the time, in seconds and the nanoseconds of the last one, as
+each of the two is exact in a float64; the wind at the anemometer, blowing to, in [m/s]; the sum of
+the flags of `protocol`.
 
-FLAGS_NAME = 'flags'
-"""Name of the sum of the flags of `protocol`, after the wind; states of old bags have none."""
+"""
 
+LABEL = 'coordinates'
+"""Label of the dimension."""
 
-def state_template(coordinate_names: list[str], frame_id: str) -> CdrTemplate:
-    """Make the bytes of a state: its block has wind [m/s], flags and coordinates, (4 + m,)."""
-    message = JointState()
-    message.header.frame_id = frame_id
-    mark_stamp(message.header.stamp)
-    message.name = [*WIND_NAMES, FLAGS_NAME, *coordinate_names]
-    message.position = [block_mark(), *[0.0] * (len(message.name) - 1)]
-    # Velocities and efforts: two empty lists.
-    return CdrTemplate(message, 1, [(len(message.name),)], tail=8)
+_SECOND = 1_000_000_000
+_LATEST = float(2**31)
+"""End of ROS time [s]."""
 
 
-def read_state(message: Any) -> tuple[Floats, Floats, int]:
-    """Wind (3,) [m/s], coordinates (m,), flags of a state; a `FormatError` for wrong names."""
-    if tuple(message.name[:3]) != WIND_NAMES or len(message.name) != len(message.position):
+class ModalState(NamedTuple):
+    """A state: time [ns], wind (3,) [m/s], sum of flags, coordinates (m,)."""
+
+    stamp: int
+    wind: Floats
+    flags: int
+    coordinates: Floats
+
+
+class StateWriter:
+    """Writer of states of ``count`` coordinates, as bytes."""
+
+    def __init__(self, count: int) -> None:
+        message = Float64MultiArray()
+        dimension = MultiArrayDimension(label=LABEL, size=count, stride=count)
+        message.layout.dim = [dimension]
+        message.layout.data_offset = len(HEAD)
+        size = len(HEAD) + count
+        message.data = [block_mark(), *[0.0] * (size - 1)]
+        self.count = count
+        self._template = CdrTemplate(message, 0, [(size,)], tail=0)
+
+    def to_bytes(self, state: ModalState) -> bytes:
+        """Write a state as a ``std_msgs/Float64MultiArray``."""
+        numbers = self._template.blocks[0]
+        numbers[0], numbers[1] = divmod(state.stamp, _SECOND)
+        numbers[2:5] = state.wind
+        numbers[5] = state.flags
+        numbers[len(HEAD) :] = state.coordinates
+        return self._template.to_bytes()
+
+
+def read_state(message: Any) -> ModalState:
+    """Read a state; a `FormatError` for a different layout, or numbers that cannot be."""
+    layout, numbers = message.layout, np.array(message.data, dtype=np.float64)
+    labels = [each.label for each in layout.dim]
+    if labels != [LABEL] or layout.data_offset != len(HEAD):
         raise FormatError(
-            f'{len(message.position)} positions of {len(message.name)} names',
+            f'dimensions {labels} from number {layout.data_offset} on',
             where='tree_state',
-            cure=f'send {", ".join(WIND_NAMES)} and then the coordinates',
+            cure=f"send {', '.join(HEAD)} and then one dimension, '{LABEL}'",
         )
-    values = np.array(message.position, dtype=np.float64)
-    if not np.isfinite(values).all():
+    if len(numbers) != len(HEAD) + layout.dim[0].size:
+        what = f'{len(numbers)} numbers for {layout.dim[0].size} coordinates'
+        raise FormatError(what, where='tree_state', cure=f'send {len(HEAD)} more')
+    if not np.isfinite(numbers).all():
         raise FormatError('a state that is not finite', where='tree_state')
-    if tuple(message.name[3:4]) != (FLAGS_NAME,):
-        return values[:3], values[3:], 0
-    return values[:3], values[4:], int(values[3]) & (PAUSED | WIND_LOST)
+    seconds, nanoseconds = numbers[:2]
+    if not (0.0 <= seconds < _LATEST and 0.0 <= nanoseconds < _SECOND):
+        raise FormatError(f'the time {seconds:g} s {nanoseconds:g} ns', where='tree_state')
+    return ModalState(
+        stamp=int(seconds) * _SECOND + int(nanoseconds),
+        wind=numbers[2:5],
+        flags=int(numbers[5]) & (PAUSED | WIND_LOST),
+        coordinates=numbers[len(HEAD) :],
+    )
 
 
-def state_entry(description: bytes) -> dict[str, str]:
+def state_entry(description: bytes, coordinate_names: list[str]) -> dict[str, Any]:
     """Return the entry of `tree_description` for the state, by doc/streaming.md."""
-    return {'format': 'doc/streaming.md', 'base64': base64.b64encode(description).decode('ascii')}
+    return {
+        'format': 'doc/streaming.md',
+        'base64': base64.b64encode(description).decode('ascii'),
+        'names': coordinate_names,
+    }
 
 
 def read_state_entry(content: Any) -> bytes | None:

@@ -50,6 +50,23 @@ def test_positive_coordinates_move_the_tip_along_e1_and_e2(fork):
             assert field.nodes[-1] @ direction == pytest.approx(model.beam.chord_length)
 
 
+def test_one_of_many_alike_twigs_may_have_a_chord_that_no_wind_turns():
+    """A twig that returns to its base is one of a batch with others of as many segments."""
+    stem = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    starts, ends = [stem[0]], [stem[1]]
+    for way in ((0.3, 0.0, 0.0), (0.0, 0.3, 0.1), (-0.3, 0.0, 0.2)):
+        middle = stem[1] + way
+        starts += [stem[1], middle]
+        ends += [middle, stem[1] + 2.0 * np.array(way)]
+    ends[-1] = stem[1]
+    parent, branch = [-1, 0, 1, 0, 3, 0, 5], [0, 1, 1, 2, 2, 3, 3]
+    tree = tree_from_segments(starts, ends, np.full(7, 0.01), parent=parent, branch=branch)
+    models = TreeBeams(tree, 900.0).models(subtrees=True)
+    assert len(models) == 4
+    for model in models:
+        assert all(np.isfinite(field.nodes).all() for field in model.fields)
+
+
 def stem_with_limbs(n_limbs):
     """Make a straight stem of 8 m whose limbs carry nothing."""
     start, end, thick, parent, branch = [], [], [], [], []

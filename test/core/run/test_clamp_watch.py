@@ -14,8 +14,6 @@ from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.simulate import simulate
 
-pytestmark = pytest.mark.compiled
-
 DT = 1.0 / 60.0
 WIND = (9.0, 1.0, 0.0)
 

@@ -15,8 +15,6 @@ from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.tree.wood import Species
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
-pytestmark = pytest.mark.compiled  # without the compiler there is no table
-
 DT = 1.0 / 60.0
 WOOD = Species('sapling', 'sapling', modulus=9.0e9, density=900.0)
 N_LEAVES, LEAF_MASS, LEAF_AREA = 12, 0.0009, 0.0060

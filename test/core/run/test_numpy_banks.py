@@ -109,20 +109,6 @@ def test_a_state_of_one_is_taken_by_the_other(tree, model):
     assert np.abs(sim.place() - twin.place()).max() < 1e-9
 
 
-def test_a_number_of_coordinates_sways_alike_without_a_compiler(fork):
-    """On its table, and without one on the loads of all branches."""
-    sim, twin = pair(fork(), 20)
-    rest = sim.place()[:, :3].copy()
-    rng = np.random.default_rng(3)
-    apart, moved = [], []
-    for k in range(240):
-        wind = [12.0 + 3.0 * np.sin(0.05 * k), rng.normal(0, 1.5), 0.0]
-        sim.step(wind, 1 / 60), twin.step(wind, 1 / 60)
-        apart.append(sim.place()[:, :3] - twin.place()[:, :3])
-        moved.append(twin.place()[:, :3] - rest)
-    assert np.linalg.norm(apart) < 0.02 * np.linalg.norm(moved)
-
-
 @pytest.mark.compiled
 def test_moments_of_even_winds_are_those_that_a_tree_at_rest_bears():
     load = WindMoments(make_simulator(bench_tree(), model=12).bank.branches)

@@ -94,7 +94,6 @@ def test_every_model_moves_by_the_same_and_the_foot_holds_the_force(tree, model)
     np.testing.assert_allclose(load[3:], np.cross(arm, force), rtol=1e-3)
 
 
-@pytest.mark.compiled  # without the compiler there is no table
 def test_a_pull_moves_a_tree_further_than_any_wind_may():
     tree, segment, force = kind_called('leaning'), 7, np.array([8000.0, 2400.0, 0.0])
     table, truth = (make_simulator(tree, WOOD, model=each) for each in (60, 'full'))

@@ -156,7 +156,6 @@ def moves(sim, winds):
     return np.linalg.norm(np.diff(poses, axis=0), axis=2).max()
 
 
-@pytest.mark.compiled  # without the compiler there is no table
 @pytest.mark.parametrize(
     ('seed', 'most'),
     [
@@ -182,20 +181,17 @@ def test_a_storm_beyond_the_table_is_clamped_and_flings_no_tip(seed, most):
     assert np.abs(sim.rotations()).max() < 0.01
 
 
-@pytest.mark.compiled  # without the compiler there is no table
 @pytest.mark.xfail(strict=True, reason='the table moves it by 0.66 m, all coordinates by 0.58')
 def test_a_storm_moves_no_segment_further_than_all_coordinates_do():
     assert moves(make_simulator(crooked(1), model=60), 1.8 * gusty(35.0)) < 0.6
 
 
-@pytest.mark.compiled  # without the compiler there is no table
 @pytest.mark.parametrize('seed', marked([7, 11, 41, 42, 43, 44], 7, 44))
 def test_a_gale_moves_a_tree_as_all_coordinates_do(seed):
     one, other = (make_simulator(crooked(seed), model=m) for m in (60, 'full'))
     assert moves(one, gusty(16.0)) < 1.3 * moves(other, gusty(16.0))
 
 
-@pytest.mark.compiled  # without the compiler there is no table
 @pytest.mark.parametrize('seed', marked([1, 2, 4, 7, 11], 1, 4))
 def test_steady_storms_find_a_tree_at_rest_from_every_azimuth(seed):
     """Where a branch flips over, too: the pose beside it is no rest, and its slopes fling it."""
@@ -230,7 +226,6 @@ def test_the_base_moment_is_that_of_all_coordinates():
     assert (one.place() == before).all()
 
 
-@pytest.mark.compiled  # without the compiler there is no table
 def test_a_step_works_on_as_much_whatever_the_size():
     sizes = set()
     for tree in (crooked(1, n_branches=20), crooked(1)):

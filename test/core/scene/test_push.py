@@ -38,7 +38,6 @@ def stand_of(tree, scale=1.0, model=20):
     return Scene(trees).simulator(Settings(model=model))
 
 
-@pytest.mark.compiled  # without the compiler a turned tree has a basis of its own
 @pytest.mark.parametrize('kind', ['force', 'spring'])
 @pytest.mark.parametrize('scale', [1.0, 1.3])
 def test_a_tree_of_a_stand_moves_as_it_would_alone(tree, scale, kind):
@@ -107,7 +106,6 @@ def test_what_cannot_be_is_refused_and_counted(tree, segment, force, why):
     np.testing.assert_array_equal(stand.place(), before)
 
 
-@pytest.mark.compiled  # without the compiler each tree has its own
 def test_pushes_on_too_many_trees_are_refused(tree):
     trees = [PlacedTree(f't{k}', tree, 3.0 * k, 0.0, species=WOOD) for k in range(MOST_PUSHES + 1)]
     stand = Scene(trees).simulator(Settings(model=6))

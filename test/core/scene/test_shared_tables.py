@@ -60,7 +60,6 @@ def test_a_tree_of_a_stand_sways_as_it_does_alone(kinds):
     assert placed[:, 3:] == pytest.approx(alone.place()[:, 3:], abs=1e-12)
 
 
-@pytest.mark.compiled  # without the compiler trees share no table
 def test_a_turned_tree_in_a_turned_wind_is_the_same_tree_turned(kinds):
     stand = swaying(
         [PlacedTree('a', kinds['fork']), PlacedTree('b', kinds['fork'], yaw=0.8)], **EVEN
@@ -127,7 +126,6 @@ def mixed(kinds):
     return make
 
 
-@pytest.mark.compiled  # without the compiler trees share no table
 def test_every_tree_has_its_own_model(kinds):
     stand = swaying(
         [
@@ -149,7 +147,6 @@ def test_every_tree_has_its_own_model(kinds):
     assert stand.model == '0, 60, branch'
 
 
-@pytest.mark.compiled  # without the compiler trees share no table
 def test_a_wind_beyond_the_table_is_clamped_and_counted(kinds):
     stand = swaying([PlacedTree(f't{i}', kinds['fork'], x=i) for i in range(3)], **EVEN)
     assert stand.step((75.0, 0.0, 0.0), DT) == LOAD_CLAMPED
@@ -172,7 +169,6 @@ def test_a_wind_that_is_none_is_refused_and_the_old_one_kept(kinds, wind):
     assert stand.counts.refused == 1
 
 
-@pytest.mark.compiled  # without the compiler trees share no table
 def test_a_motion_that_is_not_finite_goes_on_from_rest(kinds):
     stand = swaying([PlacedTree('a', kinds['fork']), PlacedTree('b', kinds['fork'], x=2.0)])
     stand.step((3.0, 0.0, 0.0), DT)

@@ -20,20 +20,16 @@ from tree_sway.errors import FormatError, ParameterError  # noqa: E402
 from tree_sway.files.recording.bag_reader import read_bag  # noqa: E402
 from tree_sway.files.recording.bag_writer import BagWriter  # noqa: E402
 
-STATE_TYPE, DESCRIPTION_TYPE = 'sensor_msgs/msg/JointState', 'std_msgs/msg/String'
+STATE_TYPE, DESCRIPTION_TYPE = 'std_msgs/msg/Float64MultiArray', 'std_msgs/msg/String'
 TYPES = get_typestore(Stores.ROS2_JAZZY)
 SECOND = 1_000_000_000
 
 
 def state(stamp: int, value: float) -> bytes:
     types = TYPES.types
-    time = types['builtin_interfaces/msg/Time'](*divmod(stamp, SECOND))
-    header = types['std_msgs/msg/Header'](stamp=time, frame_id='map')
-
-    message = types[STATE_TYPE](
-        header=header, name=['c0'], position=np.array([value]), velocity=np.zeros(0),
-        effort=np.zeros(0),
-    )  # fmt: skip
+    dimension = types['std_msgs/msg/MultiArrayDimension'](label='coordinates', size=1, stride=1)
+    layout = types['std_msgs/msg/MultiArrayLayout'](dim=[dimension], data_offset=2)
+    message = types[STATE_TYPE](layout=layout, data=np.array([*divmod(stamp, SECOND), value]))
     return bytes(TYPES.serialize_cdr(message, STATE_TYPE))
 
 
@@ -90,7 +86,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, 2 * (int(sys.argv[3]),))
 bag_writer.COMMIT_EVERY = 0.0
 try:
     with bag_writer.BagWriter(Path(sys.argv[1]), sys.argv[2]) as bag:
-        bag.add('/state', 'sensor_msgs/msg/JointState')
+        bag.add('/state', 'std_msgs/msg/Float64MultiArray')
         for stamp in range(100):
             bag.write('/state', stamp, bytes(1000))
         os.kill(os.getpid(), signal.SIGKILL)

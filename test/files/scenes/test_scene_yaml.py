@@ -14,9 +14,9 @@ CONFIG = Path(__file__).parents[3] / 'config'
 ONE = 'trees:\n- {name: a, tree: seedling.yaml}\n'
 
 
-def seedlings(name, seed):
+def seedlings(name, seed, **how):
     """Any tree is the seedling; none is missing."""
-    return open_tree(DATA / 'seedling.yaml')
+    return open_tree(DATA / 'seedling.yaml', **how)
 
 
 def test_trees_stand_where_the_file_says():
@@ -45,9 +45,9 @@ def test_a_path_counts_from_the_file_and_a_tree_is_read_once(tmp_path):
     )
     opened = []
 
-    def counted(name, seed):
+    def counted(name, seed, **how):
         opened.append(Path(name).name)
-        return open_tree(name, seed)
+        return open_tree(name, seed, **how)
 
     forest = read_scene_yaml(path, counted)
     assert opened == ['seedling.yaml', 'seedling.yaml']  # './' is another spelling

@@ -184,7 +184,7 @@ def sums_of_tree121(path):
     ),
 )
 def test_equal_to_the_files_own_sums(file_of, name, sums):
-    tree = read_tree(file_of(name), twig_diameter=0.0).tree
+    tree = read_tree(file_of(name), twig_diameter=0.0, thicken=False).tree
     segments, branches, height, volume = sums(file_of(name))
     assert (tree.n_segments, tree.n_branches) == (segments, branches)
     assert tree.height == pytest.approx(height, rel=1e-6)

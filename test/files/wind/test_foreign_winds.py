@@ -84,62 +84,6 @@ def test_the_means_of_a_station_stay_and_turbulence_is_about_them(
         read_wind(path, seed=-1)
 
 
-NO_COLUMNS = 'no time with u and v, or with speed and direction, among .*; use these names'
-OTHERS = {
-    'airports by hours, knots': (
-        'station,valid,drct,sknt,gust\n' + stamped('%Y-%m-%d %H:%M', 60, 'DSM,{t},270.00,8,M'),
-        NO_COLUMNS,
-    ),
-    'buoys': (
-        '#YY  MM DD hh mm WDIR WSPD GST\n#yr  mo dy hr mn degT m/s  m/s\n'
-        + stamped('%Y %m %d %H %M', 10, '{t} 270 {u:.1f} {g:.1f}'),
-        NO_COLUMNS,
-    ),
-    'radiation laboratory': (
-        'DATE (MM/DD/YYYY),MST,Avg Wind Speed @ 6ft [m/s],Avg Wind Direction @ 6ft [deg from N]\n'
-        + stamped('%m/%d/%Y,%H:%M', 1, '{t},{u:.3f},270'),
-        "unknown unit 'mm/dd/yyyy'; use s",
-    ),
-    'compass points': (
-        'Date\tTime\tWind Speed\tWind Dir\tHi Speed\n'
-        + stamped('%d.%m.%Y\t%H:%M', 10, '{t}\t{u:.1f}\tW\t{g:.1f}'),
-        "Wind Dir is 'W', not a finite number",
-    ),
-    'Dutch service, tenths': (
-        '# STN,YYYYMMDD,   HH,   DD,   FH,   FF,   FX\n'
-        + stamped('%Y%m%d,   %H', 60, '  260,{t},  270,   40,   40,   80'),
-        NO_COLUMNS,
-    ),
-    'pocket logger': (
-        '"#","Date Time, GMT+00:00","Wind Speed, m/s (LGR S/N: 1)","Wind Direction, ø"\n'
-        + stamped('%m/%d/%y %I:%M:%S %p', 10, '1,{t},{u:.2f},270'),
-        NO_COLUMNS,
-    ),
-    'flux sites': (
-        'TIMESTAMP_START,TIMESTAMP_END,WS,WD\n' + stamped('%Y%m%d%H%M', 30, '{t},{t},{u:.3f},270'),
-        NO_COLUMNS,
-    ),
-    'date and hour': (
-        'date,hour,temp,wdir,wspd,wpgt\n' + stamped('%Y-%m-%d,%H', 60, '{t},8,270,{k:.1f},'),
-        'no good row of wind, 10 refused',
-    ),
-    'five fields in one': (
-        '"STATION","DATE","SOURCE","WND"\n'
-        + stamped('%Y-%m-%dT%H:%M:%S', 60, '"10637099999","{t}","4","270,1,N,0040,1"'),
-        NO_COLUMNS,
-    ),
-}
-
-
-@pytest.mark.parametrize('name', OTHERS)
-def test_another_is_refused_with_what_to_do(name: str, tmp_path: Path) -> None:
-    text, reason = OTHERS[name]
-    path = tmp_path / 'station.csv'
-    path.write_text(text, encoding='utf-8')
-    with pytest.raises(FormatError, match=reason):
-        read_wind(path)
-
-
 def test_turbulence_has_the_gusts_that_were_reported() -> None:
     time, mean = 600.0 * np.arange(50), np.tile([0.0, 8.0, 0.0], (50, 1))
     for gust in (10.0, 14.0):
@@ -203,7 +147,7 @@ def test_a_direction_that_is_none_costs_its_row(tmp_path: Path) -> None:
 def test_what_is_not_a_wind_says_what_to_name(tmp_path: Path) -> None:
     path = tmp_path / 'rain.csv'
     path.write_text('time,rain\n0,1\n1,2\n')
-    with pytest.raises(FormatError, match='no time with u and v, or with speed and direction'):
+    with pytest.raises(FormatError, match='no column for the speed and none for the direction'):
         read_wind(path)
 
 

@@ -46,7 +46,7 @@ def test_columns_by_name():
 @pytest.mark.parametrize(
     ('old', 'new', 'message'),
     [
-        ('Ux', 'wind', ':2: no time with u and v'),
+        ('Ux', 'wind', ':2: no column for the direction among TIMESTAMP'),
         ('cm/s', 'furlong', ":3: unknown unit 'furlong'"),
         ('2024-', '2024x', 'no good row of wind, 12 refused; first line 5'),
     ],

@@ -36,9 +36,8 @@ def test_line_ends_and_byte_order_mark(tmp_path):
 def test_options_and_formats_are_checked():
     with pytest.raises(ParameterError, match="no option 'rate'; it has: columns, dir"):
         read_wind(DATA / 'sonic.toa5.dat', rate=2.0)
-    with pytest.raises(
-        ParameterError, match="unknown wind format 'grib'; use toa5, nmea, sonic, bag, metar, csv"
-    ):
+    formats = 'toa5, nmea, sonic, bag, netcdf, metar, csv'
+    with pytest.raises(ParameterError, match=f"unknown wind format 'grib'; use {formats}"):
         read_wind(DATA / 'sonic.toa5.dat', format='grib')
     assert len({known.name for known in WIND_FORMATS}) == len(WIND_FORMATS)
 

@@ -28,7 +28,9 @@ def test_it_fits_its_schema():
 
 
 def test_leaves_are_part_of_it():
-    description = describe(TREE, 'map', leaf_clusters(TREE, np.random.default_rng(0), count=12))
+    description = describe(
+        TREE, 'map', leaves=leaf_clusters(TREE, np.random.default_rng(0), count=12)
+    )
     SCHEMA.validate(json.loads(description))
     assert len(json.loads(description)['leaves']['segment']) == 12
 

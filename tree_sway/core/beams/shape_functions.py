@@ -273,9 +273,9 @@ def _static_pair(
     """
     ends = beam.integral(cross(beam.from_base(curvatures)[0], beam.tangent[..., None, None, :]))
     turns = _WIND_WEIGHTS[:, None] * (ends @ np.stack([e1, e2], axis=-1))
-    turns /= beam.chord_length[..., None, None]
+    turns /= np.maximum(beam.chord_length, 1e-9)[..., None, None]
     sides, largest, winds = np.linalg.svd(turns, full_matrices=False)
-    is_turned = largest[..., -1] > 0.02 * largest[..., 0]
+    is_turned = (largest[..., -1] > 0.02 * largest[..., 0]) & (beam.chord_length > 1e-9)
     largest = np.where(is_turned[..., None], largest, 1.0)[..., None, :]
     mix = (winds.swapaxes(-1, -2) / largest) @ sides.swapaxes(-1, -2) * _WIND_WEIGHTS
     pair = np.moveaxis(mix[..., None, None, :, :] @ curvatures, -2, 0)
@@ -451,6 +451,8 @@ def inertial_moment(
 def _static_shape(beam: BranchBeam, drag_area: Floats, subtrees: SubtreeSums) -> SlopeShape:
     """Return the shape by a uniform wind on the branch and its subtrees."""
     places = beam.child_point[: len(subtrees.area)]
+    if not len(places):  # perhaps several twigs that are alike
+        return beam.slope_shape(beam.bending_moment(drag_area, subtrees.area, subtrees.area))
     lever = (subtrees.area_moment - subtrees.area[:, None] * places) @ beam.chord
     bending = beam.bending_moment(drag_area, subtrees.area, np.maximum(lever, 0.0))
     return beam.slope_shape(bending)

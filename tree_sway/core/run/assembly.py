@@ -59,9 +59,14 @@ def _oscillators(model: SwayModel, branches: Records, plain: bool) -> Oscillator
 
         coupled = NumpyModalBank
     modal = coupled(branches, model)
-    if not model.has_table or plain:
+    if not model.has_table:
         return modal
     from tree_sway.core.model.table_record import table_record
+
+    if plain:
+        from tree_sway.core.run.numpy_table import NumpyTableBank
+
+        return NumpyTableBank(modal, table_record(model))
     from tree_sway.core.run.table_model import WindBasisBank
 
     return WindBasisBank(modal, table_record(model))

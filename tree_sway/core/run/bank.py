@@ -124,6 +124,6 @@ class Bank:
         from tree_sway.core.run.placing import NONE
 
         oscillators = self.oscillators
-        if oscillators.to_place is not None:
+        if oscillators.to_place is not None and not self.plain:
             return partial(self._placing(*oscillators.to_place), NONE)
         return lambda origin, out: self.place(oscillators.rotations(), origin, out)

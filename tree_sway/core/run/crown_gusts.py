@@ -11,17 +11,20 @@ load on the bent tree is.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.model.records import Instances, Table, Tables, TimeSteps
 from tree_sway.core.model.spherical_harmonics import fill_harmonics
 from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.run.numpy_table import harmonics, Views, views_of
 from tree_sway.core.setup.numpy_branch_loads import into_slots
 from tree_sway.core.wind.crown_wind import CrownWind
 
@@ -29,18 +32,26 @@ from tree_sway.core.wind.crown_wind import CrownWind
 class CrownGusts:
     """The wind of a crown, and the model that is advanced in it."""
 
-    def __init__(self, model: SwayModel, oscillators: Any) -> None:
+    def __init__(self, model: SwayModel, oscillators: Any, *, plain: bool = False) -> None:
         """Start without wind."""
         self._delay, self._share = model.limb_delay, model.limb_share
         self.wind = CrownWind(float(model.limb_spread[0]), model.settings.crown_coherence)
         self._oscillators = oscillators
+        self._add_gusts: Callable[..., None] = add_gusts
         if oscillators.loads is None:
             moments = model.limb_harmonics
-            arrays = (
+            arrays: tuple[NDArray[Any], ...] = (
                 oscillators.record, oscillators.time_step, oscillators.instance, moments,
                 self.wind.record['apart'][0], np.zeros((3, max(moments[0].shape))),
             )  # fmt: skip
-            self._add_gusts = partial(entry_of(add_gusts, *arrays, *[0.0] * 7), *arrays)
+            if plain:
+                table, time_step, instance = (views_of(records) for records in arrays[:3])
+                apart = self.wind.record['apart'][0]
+                self._add_gusts = partial(
+                    add_gusts_in_numpy, table, time_step, instance, moments, apart
+                )
+            else:
+                self._add_gusts = partial(entry_of(add_gusts, *arrays, *[0.0] * 7), *arrays)
 
     def advance(self, x: float, y: float, z: float, per_speed_squared: float, dt: float) -> int:
         """Advance a step of dt [s] in a mean wind [m/s]; the result is that of the model."""
@@ -104,6 +115,36 @@ def add_gusts(
         instance.eta[i] += (whole[2, i] + whole[3, i]) * added
         instance.rate[i] += (whole[6, i] + whole[7, i]) * added
         instance.force[i] += added
+
+
+def add_gusts_in_numpy(
+    table: Views, time_step: Views, instance: Views, moments: Floats, apart: Floats,
+    x: float, y: float, z: float, ax: float, ay: float, az: float, per_speed_squared: float,
+) -> None:  # fmt: skip
+    """Add to a step what the winds of the limbs do beside their mean, as `add_gusts`."""
+    m = moments.shape[2]
+    most_pressure = float(table['most_pressure'])
+
+    def load(wx: float, wy: float, wz: float) -> Floats:
+        """Harmonics (h,) of a wind [m/s] times its dynamic pressure."""
+        speed = max(math.sqrt(wx * wx + wy * wy + wz * wz), 1e-12)
+        dynamic_pressure = min(per_speed_squared * speed * speed, most_pressure)
+        return dynamic_pressure * harmonics(wx / speed, wy / speed, wz / speed)
+
+    mean = load(x + ax, y + ay, z + az)
+    force = np.zeros(m)
+    for (more_x, more_y, more_z), by_harmonics in zip(apart.tolist(), moments, strict=True):
+        force += (load(x + more_x, y + more_y, z + more_z) - mean) @ by_harmonics
+    at_rest = mean @ table['harmonics'][:, :m] / table['stiffness'][:m]
+    bent = float(at_rest @ instance['wanted'][:m])
+    upright = 1e-300 + float(at_rest @ (at_rest * table['stiffness'][:m]))
+    whole, half = time_step['whole'][:, :m], time_step['half'][:, :m]
+    # As in `step_instance`.
+    added = min(max(bent / upright, 0.0), 1.0) * force
+    added /= 1.0 - instance['diagonal'][:m] * half[5]
+    instance['eta'][:m] += (whole[2] + whole[3]) * added
+    instance['rate'][:m] += (whole[6] + whole[7]) * added
+    instance['force'][:m] += added
 
 
 @part

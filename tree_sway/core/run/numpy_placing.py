@@ -53,8 +53,16 @@ class NumpyPlacing:
         place[self._rows] = np.arange(len(self._rows))
         self._base_row = place[np.maximum(branches['base_segment'], 0)]
 
-    def place(self, rotations: Floats, origin: Floats, out: Floats) -> None:
-        """Place every segment by key rotations (N,) in [rad], from a root node (3,) on, (n, 7)."""
+    def place(
+        self,
+        rotations: Floats,
+        origin: Floats,
+        out: Floats,
+        cosine: float = 1.0,
+        sine: float = 0.0,
+        scale: float = 1.0,
+    ) -> None:
+        """Place every segment, as `placing_by_keys.PlacingByKeys`."""
         branch, segment, owner = self._branch, self._segment, self._owner
         angles = self._passes.per_branch(rotations)
         t = np.square(angles[:, :2]).sum(axis=1)
@@ -71,7 +79,7 @@ class NumpyPlacing:
 
         angles[:, :2] *= (1.0 + np.minimum(t, _STRETCH_TO) * branch['skew'])[:, None]
         base = np.zeros((len(t), 4))
-        base[0, 0] = 1.0
+        base[0] = cosine, 0.0, 0.0, sine
         for level in self._passes.levels:
             parent = branch['parent'][level]
             turn = self._turns(parent, branch['base_rotation'][level], angles)
@@ -79,14 +87,14 @@ class NumpyPlacing:
         turned = quaternion_product(base[owner], bend)
         pose = quaternion_product(turned, segment['rest'])
 
-        ahead = quaternion_rotated(turned, segment['chord'])
+        ahead = quaternion_rotated(turned, scale * segment['chord'])
         ends = np.vstack([np.zeros(3), np.cumsum(ahead, axis=0)])
         within = ends[:-1] - ends[self._begin][owner]
         start = np.zeros((len(t), 3))
         start[0] = origin
         for level in self._passes.levels:
             on = self._base_row[level]
-            offset = quaternion_rotated(pose[on], branch['offset'][level])
+            offset = quaternion_rotated(pose[on], scale * branch['offset'][level])
             start[level] = start[owner[on]] + within[on] + offset
 
         out[self._rows, :3] = start[owner] + within

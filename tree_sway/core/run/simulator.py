@@ -104,7 +104,9 @@ class SwaySimulator:
         if prepared.has_limbs:
             from tree_sway.core.run import crown_gusts
 
-            self._gusts = crown_gusts.CrownGusts(prepared, self.bank.oscillators)
+            self._gusts = crown_gusts.CrownGusts(
+                prepared, self.bank.oscillators, plain=self.bank.plain
+            )
         self._tuning: LiveTuning | None = None
         self.touch: Touch | None = None
         """Pushes, until their effect is gone."""

@@ -172,6 +172,11 @@ class WindBasisBank:
         self._expand()
         return self._x
 
+    def rotations_of(self, instances: Records) -> Floats:
+        """Key rotations in [rad], (N,), of a tree of this kind; valid until the next call."""
+        expand(instances, self.laid_shapes, self._filled_x)
+        return self._x
+
     def forces(self) -> Floats:
         """Force of the last step's wind on each branch [N], (b, 3); a pass over all branches."""
         step_branches(self.instance[0], self.modal)

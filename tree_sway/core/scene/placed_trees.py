@@ -31,6 +31,7 @@ class PlacedTrees:
     notes: tuple[str, ...] = ()
     anemometer: tuple[float, float, float] | None = None
     convection_ratio: float = 1.0
+    faults: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the trees."""

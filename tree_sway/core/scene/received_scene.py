@@ -17,14 +17,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.exported_table import table_of
 from tree_sway.core.model.records import instance_layout, time_step_layout
 from tree_sway.core.oscillators.propagator import propagator
-from tree_sway.core.run.stand import step_stand
 from tree_sway.core.run.table_model import fill_time_step, Propagators
 from tree_sway.core.scene.placement_records import own_steps, placement_records
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway.errors import ParameterError
+
+if WHY_PLAIN:
+    from tree_sway.core.run.numpy_stand import step_stand
+else:
+    from tree_sway.core.run.stand import step_stand
 
 _SLOWEST = 0.3
 """Smallest response to a rate within a time step, over that of the slowest coordinate."""

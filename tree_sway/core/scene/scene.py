@@ -44,6 +44,8 @@ class Scene(PlacedTrees):
     convection_ratio
         Speed at which gusts travel over the mean wind speed in [-]; infinite for one wind
         everywhere.
+    faults
+        Changes by the importer of what no tree can have, one sentence each.
 
     Raises
     ------
@@ -77,8 +79,8 @@ class Scene(PlacedTrees):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Implausible values of the trees, one sentence per kind each."""
-        found = []
+        """Faults of the trees, and implausible values, one sentence per kind each."""
+        found = list(self.faults)
         for label, kind in self._labelled():
             found += [f'{label}{oddity}' for oddity in oddities(kind.tree, kind.species)]
         return tuple(found)

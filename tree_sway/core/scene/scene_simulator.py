@@ -28,7 +28,7 @@ from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.records import instance_layout, time_step_layout, zeros_in_lines
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.clamp_watch import ClampWatch, fewer
-from tree_sway.core.run.placing import GIVEN, place
+from tree_sway.core.run.placing_by_keys import placing_by_keys
 from tree_sway.core.run.simulator import (
     Counts,
     LOAD_CLAMPED,
@@ -37,7 +37,7 @@ from tree_sway.core.run.simulator import (
     SwaySimulator,
     WIND_REFUSED,
 )
-from tree_sway.core.run.stand import place_stand, PLACEMENT, step_stand
+from tree_sway.core.run.stand import place_stand, PLACEMENT
 from tree_sway.core.run.table_model import (
     bent_too_far,
     come_to_rest,
@@ -57,6 +57,10 @@ from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import inside, nearest, ParameterError
 
+if WHY_PLAIN:
+    from tree_sway.core.run.numpy_stand import step_stand
+else:
+    from tree_sway.core.run.stand import step_stand
 if TYPE_CHECKING:
     from tree_sway.core.run.pushes import Spring
 
@@ -99,8 +103,8 @@ class SceneSimulator:
         models = [settings.model if each.model is None else each.model for each in trees]
         kind = scene.kind_numbers
         counts = np.array([each if isinstance(each, int) else -1 for each in models])
-        # Without a compiler there are no tables, and winds of limbs are those of one tree.
-        is_own = (counts < 0) | bool(WHY_PLAIN) | (settings.crown_coherence < 1.0)
+        # Winds of limbs are those of one tree.
+        is_own = (counts < 0) | (settings.crown_coherence < 1.0)
         used = np.unique(kind[~is_own]).tolist()
         self._models: list[SwaySimulator] = []
         for k in used:
@@ -361,6 +365,10 @@ class SceneSimulator:
             blocks[:] = model.bank.blocks
             block, bases = np.zeros((model.tree.n_segments, 7)), np.zeros_like(model.bank.bases)
             self._scratch.append((blocks, bases, bank.room_for_rotations(), block))
+        self._by_keys = [
+            placing_by_keys(model.bank.branches, model.bank.segments, blocks)
+            for model, (blocks, *_) in zip(self._models, self._scratch, strict=True)
+        ]
 
     def _show(self) -> None:
         """Hide the coordinates of the table that a tree does not have."""
@@ -385,16 +393,21 @@ class SceneSimulator:
         """Place trees of one table: their numbers and first rows in a pose block, (w, 2)."""
         records, bank = self._models[kind].bank, self._banks[kind]
         blocks, bases, x, block = self._scratch[kind]
-        place_stand(
-            self._placed, self._instances, rows, bank.laid_shapes, records.segments, blocks,
-            bases, x, block, out,
-        )  # fmt: skip
-        for number, first in rows.tolist() if self.pushed else ():
+        if not WHY_PLAIN:
+            place_stand(
+                self._placed, self._instances, rows, bank.laid_shapes, records.segments, blocks,
+                bases, x, block, out,
+            )  # fmt: skip
+        for number, first in rows.tolist() if WHY_PLAIN or self.pushed else ():
             if number in self.pushed:
-                at, keys = self._placed[number], self.pushed[number].rotations()
-                turned = at['cosine'], at['sine'], at['scale'], x, keys, at['at']
-                bent = *GIVEN, records.segments, blocks, bases, *turned
-                place(*bent, out[first : first + len(block)])
+                keys = self.pushed[number].rotations()
+            elif WHY_PLAIN:
+                keys = bank.rotations_of(self._instances[number : number + 1])
+            else:
+                continue
+            at, own = self._placed[number], out[first : first + len(block)]
+            turned = float(at['cosine']), float(at['sine']), float(at['scale'])
+            self._by_keys[kind].place(keys, at['at'], own, *turned)
 
     @cached_property
     def _highest(self) -> tuple[int, Tree]:

@@ -153,20 +153,51 @@ def leading_modes(reduction: Reduction, answers: Floats, tips: Floats, count: in
 
 def buckling_factor(reduction: Reduction) -> tuple[float, int]:
     """Return critical over real weight, infinite without gravity, and its coordinate."""
+    factors, vectors = buckling_modes(reduction, 1)
+    if len(factors) == 0:
+        return float('inf'), 0
+    return float(factors[0]), int(np.argmax(np.abs(vectors[:, 0])))
+
+
+def buckling_modes(
+    reduction: Reduction, count: int, below: float = float('inf')
+) -> tuple[Floats, Floats]:
+    """
+    Find the modes in which the weight of a tree buckles it.
+
+    Parameters
+    ----------
+    reduction
+        Reduction of the tree.
+    count
+        Largest number of modes.
+    below
+        Weight over the real one [-] below which modes are wanted.
+
+    Returns
+    -------
+    tuple
+        Critical over real weight, ascending, (k,), and key rotations, (N, k).
+
+    """
     from scipy import linalg
 
     n = reduction.n_coordinates
     softening = -reduction.gravity
     if softening.nnz == 0 or abs(softening).max() == 0.0:
-        return float('inf'), 0
-    if n <= _DENSE_UP_TO:
+        return np.zeros(0), np.zeros((n, 0))
+    if n <= max(_DENSE_UP_TO, count + 1):
         values, vectors = linalg.eigh(
-            softening.toarray(), reduction.elastic.toarray(), subset_by_index=[n - 1, n - 1]
+            softening.toarray(),
+            reduction.elastic.toarray(),
+            subset_by_index=[max(n - count, 0), n - 1],
         )
     else:
-        values, vectors = _largest(softening, reduction.elastic, Factors(reduction.elastic), 1)
-    worst = int(np.argmax(np.abs(vectors[:, 0])))
-    return (1.0 / float(values[0]) if values[0] > 0.0 else float('inf')), worst
+        factors = Factors(reduction.elastic)
+        values, vectors = _largest(softening, reduction.elastic, factors, count)
+    order = np.argsort(-values)
+    order = order[values[order] > (1.0 / below if np.isfinite(below) else 0.0)]
+    return 1.0 / values[order], vectors[:, order]
 
 
 def _largest(matrix: Any, against: Any, factors: Factors, count: int) -> tuple[Floats, Floats]:

@@ -55,6 +55,11 @@ class NumpyPasses:
             'parent', 'twist', 'damping_mode', 'load_rotation', 'load_mode', 'lever',
             'speed', 'base', 'arm', 'per_arm',
         )  # fmt: skip
+        self.air, self.wrench = np.zeros((len(branches), 3)), np.zeros((len(branches), 6))
+        """
+        Wind in the turned frame of each base [m/s], (b, 3), and force and moment on each branch
+        and its subtree [N, N m], (b, 6), of the last `wind_forces` and `bent_loads`.
+        """
         self._branch: dict[str, NDArray[Any]] = {
             name: np.ascontiguousarray(branches[name])
             for name in (*names, 'spread', 'area', 'frame')
@@ -105,8 +110,9 @@ class NumpyPasses:
         """
         branch = self._branch
         back = bases.orientation * [1.0, -1.0, -1.0, -1.0]
-        air = quaternion_rotated(back, branch['speed'][:, None] * wind) - bases.velocity[:, :3]
-        rotation = np.einsum('bc,bck->bk', x, branch['load_rotation'])
+        self.air = quaternion_rotated(back, branch['speed'][:, None] * wind)
+        air = self.air - bases.velocity[:, :3]
+        rotation = self.load_rotation(x)
         spin = turned_by(-rotation, bases.velocity[:, 3:])
         u = turned_by(-rotation, air) - np.einsum('bij,bi->bj', self._coupling, spin)
         u += compliance[:, None] * impulse - np.einsum('bc,bck->bk', v, branch['damping_mode'])
@@ -121,7 +127,11 @@ class NumpyPasses:
 
     def at_bases(self, x: Floats, force: Floats) -> Floats:
         """Turn forces (b, 3) on branches at angles (b, c) into the frames of their bases."""
-        return turned_by(np.einsum('bc,bck->bk', x, self._branch['load_rotation']), force)
+        return turned_by(self.load_rotation(x), force)
+
+    def load_rotation(self, x: Floats) -> Floats:
+        """Rotation vectors [rad] of the loaded pieces of branches at angles (b, c), (b, 3)."""
+        return np.asarray(np.einsum('bc,bck->bk', x, self._branch['load_rotation']))
 
     def own_loads(self, force: Floats) -> Floats:
         """Find the load along each chord and the moments on its key rotation in [N m], (b, 3)."""
@@ -137,7 +147,7 @@ class NumpyPasses:
         Forces (b, 3) are those of `wind_forces`; they are returned in the frame of the tree.
         """
         branch = self._branch
-        load_rotation = np.einsum('bc,bck->bk', x, branch['load_rotation'])
+        load_rotation = self.load_rotation(x)
         own = np.einsum('bck,bk->bc', branch['load_mode'], force)
         couple = turned_by(load_rotation, np.einsum('bij,bj->bi', self._coupling, force))
         wrench = np.hstack([turned_by(load_rotation, force), couple])
@@ -153,6 +163,7 @@ class NumpyPasses:
             gyration = cross(m, rotation)
             m = m + 0.5 * gyration + cross(gyration, rotation) / 6.0 + cross(at, f)
             np.add.at(own, parent, np.einsum('bck,bk->bc', twist, np.hstack([f, m])))
+        self.wrench = wrench
         moment[self._column[self.is_there]] = own[self.is_there]
         return world
 

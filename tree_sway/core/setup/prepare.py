@@ -134,7 +134,7 @@ def _coupled_tree(reductions: TreeReductions, settings: Settings) -> SwayModel:
         reduced.branches['area'],
     )
     table: dict[str, Any] = {}
-    if settings.model != 'full' and modes.circular.size and not reductions.plain:
+    if settings.model != 'full' and modes.circular.size:
         table = load_table(coordinates, reductions.wind_moments, reductions.drag_law)
     order = np.argsort(reduced.branches['first'])
     return SwayModel(

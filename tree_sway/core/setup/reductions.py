@@ -52,19 +52,19 @@ class ReducedTree:
     """
     A tree reduced in one of the two ways.
 
-    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,); each
-    segment has its ``mass`` [kg], with leaves, (n,).
+    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,), and
+    ``row`` has the given tree's number of each segment, (n,); each segment has its ``mass`` [kg],
+    with leaves, (n,).
     """
 
     tree: Tree
     branch: Ints
+    row: Ints
     models: list[BranchModel]
     reduction: Reduction
     branches: Records
     places: Places
     mass: Floats
-    row: Ints
-    """Row in the whole tree of each segment of the reduced one, (n,)."""
 
 
 class TreeReductions:
@@ -225,7 +225,7 @@ class TreeReductions:
         mass = np.concatenate([
             model.beam.over_segments(model.mass) * model.beam.segment_length for model in models
         ])  # fmt: skip
-        return ReducedTree(tree, cut.branch, models, reduction, records, places, mass, cut.row)
+        return ReducedTree(tree, cut.branch, cut.row, models, reduction, records, places, mass)
 
 
 def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:

@@ -22,7 +22,7 @@ from tree_sway.core.model.fill_records import load_records
 from tree_sway.core.model.records import WORK
 from tree_sway.core.setup.branch_loads import wind_moments
 from tree_sway.core.setup.load_derivatives import LoadSlopes
-from tree_sway.core.setup.numpy_branch_loads import NumpyPasses
+from tree_sway.core.setup.numpy_branch_loads import into_slots, NumpyPasses
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
 
 _SPEEDS = (10.0, 20.0, 40.0)
@@ -58,12 +58,23 @@ class WindMoments:
         if not self._plain:
             self._compiled(x, v, moments, wx, wy, wz, 1.0)
             return moments
+        self._in_numpy(x, v, wind, moments)
+        return moments
+
+    def _in_numpy(self, x: Floats, v: Floats, wind: Floats, moments: Floats) -> None:
+        """Write the moments, and in the records what `LoadSlopes` reads, as the kernel does."""
         passes, n = self._passes, len(self.branches)
         angles, rates = passes.per_branch(x), passes.per_branch(v)
-        base = passes.outward(angles, rates)
-        force = passes.wind_forces(base, angles, rates, wind, 1.0, np.zeros(n), np.zeros((n, 3)))
-        passes.bent_loads(base, angles, force, moments)
-        return moments
+        bases = passes.outward(angles, rates)
+        force = passes.wind_forces(bases, angles, rates, wind, 1.0, np.zeros(n), np.zeros((n, 3)))
+        passes.bent_loads(bases, angles, force, moments)
+        _, work, loads = self._records
+        for name in ('orientation', 'rotation', 'displacement', 'arm'):
+            work[name] = getattr(bases, name)
+        work['wrench'] = passes.wrench
+        into_slots(passes.load_rotation(angles), loads['rotation'])
+        into_slots(passes.air, loads['air_velocity'])
+        into_slots(force, loads['own_force'])
 
     def at_rest(self, winds: Floats, shapes: Floats) -> Floats:
         """Return loads of winds (k, 3) on shapes (N, m) of a tree at rest, (k, m), at 1 kg/m^3."""

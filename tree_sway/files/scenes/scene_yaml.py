@@ -35,7 +35,7 @@ from tree_sway.files.text_file import is_file, path_of, read_text
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.yaml_document import packaged_schema, read_yaml, YamlDocument
 
-OpenTree = Callable[[str | Path, int], TreeFile]
+OpenTree = Callable[..., TreeFile]
 
 _PLACE = ('x', 'y', 'z', 'yaw', 'leaf_on')
 
@@ -73,8 +73,8 @@ def parse_scene(text: str, open_tree: OpenTree, path: Path, *, exact: bool = Fal
         'convection_ratio': values.get('convection_ratio', 1.0),
     }
     if 'trees' in values:
-        trees, notes = _trees(document, open_tree, path.parent)
-        return Scene(trees, notes=tuple(notes), **common)
+        trees, notes, faults = _trees(document, open_tree, path.parent)
+        return Scene(trees, notes=tuple(notes), faults=tuple(faults), **common)
     kinds = {}
     for number, entry in enumerate(values.get('kinds', ())):
         try:
@@ -87,8 +87,8 @@ def parse_scene(text: str, open_tree: OpenTree, path: Path, *, exact: bool = Fal
 
 def _trees(
     document: YamlDocument, open_tree: OpenTree, folder: Path
-) -> tuple[list[PlacedTree], list[str]]:
-    """Trees of the list, and notes of their importers."""
+) -> tuple[list[PlacedTree], list[str], list[str]]:
+    """Trees of the list, and notes and faults of their importers."""
     entries = document.values['trees']
     refuse_same_names(
         [entry['name'] for entry in entries], lambda number: document.where('trees', number)
@@ -97,10 +97,13 @@ def _trees(
     @cache
     def opened(tree: str, seed: int, species: str | None) -> TreeFile:
         """Open a tree once for all of its kind."""
-        file = open_tree(_beside(folder, tree), seed)
-        return file if species is None else file.of_species(species_named(species))
+        where = _beside(folder, tree)
+        if species is None:
+            return open_tree(where, seed)
+        named = species_named(species)
+        return open_tree(where, seed, wood=lambda _: named)
 
-    trees, notes = [], []
+    trees, notes, faults = [], list[str](), list[str]()
     for number, entry in enumerate(entries):
         name, where = entry['name'], document.where('trees', number)
         try:
@@ -111,7 +114,8 @@ def _trees(
         place: dict[str, Any] = {key: entry[key] for key in _PLACE if key in entry}
         trees.append(PlacedTree(name, file.tree, species=file.species, **place))
         notes += [f'{name}: {note}' for note in file.notes]
-    return trees, notes
+        faults += [f'{name}: {fault}' for fault in file.faults]
+    return trees, notes, faults
 
 
 def _beside(folder: Path, name: str) -> str | Path:

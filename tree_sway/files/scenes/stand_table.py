@@ -29,8 +29,9 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.core.tree.grown_tree import GrownTree, rooted
 from tree_sway.core.tree.species import Species, species_like
 from tree_sway.errors import FormatError, ParameterError, TreeSwayError
+from tree_sway.files.column_names import COLUMNS
 from tree_sway.files.scenes.tree_names import refuse_same_names
-from tree_sway.files.table_file import Column, COLUMNS, parse_table, TextTable
+from tree_sway.files.table_file import Column, parse_table, TextTable
 from tree_sway.files.text_file import read_lines
 from tree_sway.files.trees.imported_tree import TreeFile
 

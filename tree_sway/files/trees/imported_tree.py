@@ -28,6 +28,8 @@ class TreeFile:
         Source: a path, or the name of a built-in tree.
     notes : tuple of str
         Changes and omissions by the importer, one sentence each.
+    faults : tuple of str
+        Changes of what no tree can have, one sentence each.
     origin
         Origin of the tree in the frame of the file in [m].
 
@@ -37,6 +39,7 @@ class TreeFile:
     species: Species
     source: str
     notes: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __repr__(self) -> str:
@@ -45,8 +48,8 @@ class TreeFile:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Report unusual values of the tree, one sentence each, as `oddities`."""
-        return oddities(self.tree, self.species)
+        """Report faults and unusual values of the tree (`oddities`), one sentence each."""
+        return (*self.faults, *oddities(self.tree, self.species))
 
     def of_species(self, species: Species) -> TreeFile:
         """Return the tree with a different species, and its leaves."""

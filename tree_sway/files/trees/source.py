@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ import numpy as np
 from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
-from tree_sway.core.tree.species import species_keys, species_named
+from tree_sway.core.tree.species import Species, species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
 from tree_sway.files.file_format import UnknownFormatError
 from tree_sway.files.scenes.scene_yaml import read_scene_yaml
@@ -22,10 +22,17 @@ from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table,
 from tree_sway.files.text_file import path_of, read_head
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
+from tree_sway.files.trees.tree_options import same
 from tree_sway.files.yaml_document import begins_with_key
 
 
-def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFile:
+def open_tree(
+    name_or_path: str | Path,
+    seed: int = 0,
+    *,
+    wood: Callable[[Species], Species] = same,
+    **options: Any,
+) -> TreeFile:
     """
     Open a built-in tree or a tree file.
 
@@ -36,6 +43,9 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
         is ``./name``.
     seed
         Seed of a built-in tree.
+    wood
+        Function that returns the species to use in place of that of the file: faults of a scan are
+        mended by it.
     **options
         Options of the file's reader; see `read_tree`.
 
@@ -53,7 +63,8 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
             what = f"option '{next(iter(options))}' for a built-in tree"
             raise ParameterError(what, cure='leave it out: it has no file')
         tree = builtin_tree(text, seed)
-        return TreeFile(tree, species_named(tree.species), text)
+        built_in = TreeFile(tree, species_named(tree.species), text)
+        return built_in.of_species(wood(built_in.species)).checked()
     path = path_of(text)
     if not path.exists():
         guess = nearest(text, BUILTIN_TREES)
@@ -64,7 +75,7 @@ def open_tree(name_or_path: str | Path, seed: int = 0, **options: Any) -> TreeFi
     head = read_head(path) if path.is_file() else None
     if head is not None:
         _refuse_several_trees(path, head)
-    return read_tree(path, head=head, **options).checked()
+    return read_tree(path, head=head, wood=wood, **options).checked()
 
 
 def _refuse_several_trees(path: Path, head: str) -> None:
@@ -85,7 +96,12 @@ def _refuse_several_trees(path: Path, head: str) -> None:
 
 
 def open_scene(
-    name_or_path: str | Path, seed: int = 0, *, exact: bool = False, **options: Any
+    name_or_path: str | Path,
+    seed: int = 0,
+    *,
+    exact: bool = False,
+    wood: Callable[[Species], Species] = same,
+    **options: Any,
 ) -> Scene:
     """
     Open a built-in tree, a tree file, a forest or a stand.
@@ -97,6 +113,8 @@ def open_scene(
         trees, or a stand: a table with x, y, species and height, or a YAML file that names one.
     exact
         Whether each tree of a stand is grown by itself, as in `read_stand_table`.
+    wood
+        The same as in `open_tree`, for all trees.
     seed, **options
         Arguments of `open_tree`; not for a forest.
 
@@ -110,7 +128,7 @@ def open_scene(
     """
     path = path_of(name_or_path)
     if str(name_or_path) in BUILTIN_TREES or not path.is_file():
-        return scene_of_files([open_tree(name_or_path, seed, **options)])
+        return scene_of_files([open_tree(name_or_path, seed, wood=wood, **options)])
     head, read = read_head(path), None
     if any(begins_with_key(path, head, key) for key in ('trees', 'stand')):
         read = partial(read_scene_yaml, path, open_tree, exact=exact)
@@ -118,7 +136,7 @@ def open_scene(
         read = partial(read_stand_table, path, seed=seed, exact=exact)
     if read is None:
         try:
-            files = [each.checked() for each in read_trees(path, head=head, **options)]
+            files = [each.checked() for each in read_trees(path, head=head, wood=wood, **options)]
         except UnknownFormatError as error:
             if missing := why_no_stand(head):
                 cure = 'name them so in the header, if it is an inventory (doc/trees.md)'
@@ -129,7 +147,10 @@ def open_scene(
         what = f"option '{next(iter(options))}' for a forest"
         cure = 'convert its trees first, and name the new files in the forest'
         raise ParameterError(what, where=str(path), cure=cure)
-    return read()
+    scene = read()
+    if wood is same:
+        return scene
+    return scene.of_species(wood(scene.trees[0].species)).checked()
 
 
 def scene_of_files(files: Sequence[TreeFile], name: str = '') -> Scene:
@@ -140,6 +161,7 @@ def scene_of_files(files: Sequence[TreeFile], name: str = '') -> Scene:
         x, y, z = (moved + each.tree.start[0]).tolist()
         trees.append(PlacedTree(each.tree.name, each.tree, x, y, z, species=each.species))
     if len(files) == 1:
-        return Scene(trees, one.tree.name, one.source, one.notes)
+        return Scene(trees, one.tree.name, one.source, one.notes, faults=one.faults)
     notes = [f'{each.tree.name}: {note}' for each in files for note in each.notes]
-    return Scene(trees, name, one.source, tuple(notes))
+    faults = [f'{each.tree.name}: {fault}' for each in files for fault in each.faults]
+    return Scene(trees, name, one.source, tuple(notes), faults=tuple(faults))

@@ -9,19 +9,21 @@ with a `FileFormat`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields, replace
 from importlib import import_module
 from pathlib import Path
 import pkgutil
 from typing import Any
 
+from tree_sway.core.tree.species import Species
 from tree_sway.errors import ParameterError
 from tree_sway.files.file_format import FileFormat, format_of
 from tree_sway.files.text_file import path_of
 from tree_sway.files.trees import formats
 from tree_sway.files.trees.cylinders.cylinder_tree import tree_of_cylinders
 from tree_sway.files.trees.imported_tree import TreeFile
-from tree_sway.files.trees.tree_options import TreeOptions
+from tree_sway.files.trees.tree_options import same, TreeOptions
 
 TREE_FORMATS: tuple[FileFormat, ...] = tuple(
     each
@@ -37,12 +39,14 @@ def read_trees(
     format: str | None = None,  # noqa: A002
     *,
     head: str | None = None,
+    wood: Callable[[Species], Species] = same,
     **options: Any,
 ) -> tuple[TreeFile, ...]:
     """
     Read every tree of a file, of a given format or found from content and suffix.
 
-    Options are those of `TreeOptions`. ``head`` is the beginning of the file if it is known.
+    Options are those of `TreeOptions`. ``head`` is the beginning of the file if it is known;
+    ``wood`` returns the species to use in place of that of the file.
 
     Raises
     ------
@@ -72,7 +76,7 @@ def read_trees(
         raise ParameterError(what, where=str(path), cure=cure)
     if wanted.tree:
         files = [files[int(wanted.tree) - 1]]
-    return tuple(wanted.applied(each) for each in files)
+    return tuple(wanted.applied(each, wood) for each in files)
 
 
 def read_tree(path: str | Path, format: str | None = None, **options: Any) -> TreeFile:  # noqa: A002, E501

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -11,8 +13,11 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.setup.standing import standing_tree
+from tree_sway.core.tree.plausibility import refuse_implausible
+from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import TreeSwayError
 from tree_sway.files.trees.cylinders.cylinders import Cylinders
 from tree_sway.files.trees.cylinders.diameter_fit import corrected_twigs
 from tree_sway.files.trees.imported_tree import TreeFile
@@ -29,7 +34,15 @@ MEASURED = {'twig_diameter': 0.0}
 """Defaults of forms whose twigs have their true diameter."""
 
 AS_IT_IS = {'to_origin': False, **MEASURED}
-"""Defaults of our own forms, whose trees also have their true place."""
+"""Defaults of our own table, whose trees also have their true place."""
+
+DESCRIBED = {**AS_IT_IS, 'thicken': False}
+"""Defaults of a description that someone wrote or this program made."""
+
+
+def same(species: Species) -> Species:
+    """Return the species of a file unchanged."""
+    return species
 
 
 @dataclass(frozen=True)
@@ -50,6 +63,8 @@ class TreeOptions:
         that of the species if None, and 0 to leave all twigs as they are.
     trusted_diameter
         Diameter above which a scan is trusted in [m].
+    thicken
+        Whether to thicken the limbs that cannot carry themselves (`standing_tree`).
     to_origin
         Whether to move the base of the stem to the origin.
     tree
@@ -63,6 +78,7 @@ class TreeOptions:
     up: str = 'z'
     twig_diameter: float | None = None
     trusted_diameter: float = 0.05
+    thicken: bool = True
     to_origin: bool = True
     tree: int = 0
 
@@ -73,6 +89,7 @@ class TreeOptions:
                 within(name, getattr(self, name), low, high, 'm (0.01 is 1 cm)')
         one_of('up', self.up, ('z', 'y'))
         one_of('to_origin', self.to_origin, (True, False))
+        one_of('thicken', self.thicken, (True, False))
 
     def in_metres(self, shape: _Shape) -> _Shape:
         """Return a tree, or its cylinders, in metres, z up."""
@@ -86,10 +103,16 @@ class TreeOptions:
         turned = nodes[:, [0, 2, 1]] * [1.0, -1.0, 1.0] if self.up == 'y' else nodes
         return np.ascontiguousarray(self.length_unit * turned)
 
-    def applied(self, content: TreeFile) -> TreeFile:
-        """Return a tree in metres with these options applied, and notes of the changes."""
+    def applied(self, content: TreeFile, wood: Callable[[Species], Species] = same) -> TreeFile:
+        """
+        Return a tree in metres with these options applied, and notes of the changes.
+
+        ``wood`` returns the species to use in place of that of the file or of the option: what a
+        limb can carry depends on it.
+        """
         tree, notes, origin = content.tree, list(content.notes), np.zeros(3)
-        species = content.species if self.species is None else species_named(self.species)
+        given = content.species if self.species is None else species_named(self.species)
+        species, faults = wood(given), list(content.faults)
         twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter
         if twig > 0.0:
             tree = corrected_twigs(tree, twig, self.trusted_diameter)
@@ -104,6 +127,14 @@ class TreeOptions:
             tree = replace(tree, start=tree.start - origin, end=tree.end - origin)
             moved = ', '.join(f'{-x:.6g}' for x in origin)
             notes.append(f'moved by {moved} m, the base to the origin')
+        if self.thicken:
+            # Numbers that are no tree's are refused where the tree is checked or simulated.
+            with suppress(TreeSwayError):
+                refuse_implausible(tree, species)
+                tree, thickening = standing_tree(tree, species)
+                faults += [] if thickening is None else [thickening.sentence(tree)]
         x, y, z = origin.tolist()
-        done = replace(content, tree=tree, notes=tuple(notes), origin=(x, y, z))
-        return done if self.species is None else done.of_species(species)
+        done = replace(
+            content, tree=tree, notes=tuple(notes), faults=tuple(faults), origin=(x, y, z)
+        )
+        return done if species is content.species else done.of_species(species)

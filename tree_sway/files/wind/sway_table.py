@@ -20,8 +20,10 @@ from pathlib import Path
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.files.table_file import COLUMNS, MOTIONS, parse_table, TextTable
+from tree_sway.files.column_names import COLUMNS, MOTIONS
+from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.text_file import read_lines
+from tree_sway.files.time_stamps import times_of
 
 MAX_VALUE = 1e12
 """Largest time or motion in any unit."""
@@ -101,7 +103,7 @@ def _quantity(name: str) -> str | None:
 def _times(table: TextTable, clock: int) -> Floats:
     """Seconds of each row, from numbers or from dates."""
     stamps = table.cells(clock, range(len(table.texts)))
-    times, _ = table.seconds(stamps, table.factor(clock, 'time'))
+    times = times_of(stamps, table.factor(clock, 'time')).seconds
     for row in np.flatnonzero(~(np.abs(times) <= MAX_VALUE))[:1]:
         what = f"time is '{stamps[row][:40]}', neither seconds nor a date"
         raise table.error(what, row, 'correct the cell or remove the row')

@@ -15,11 +15,13 @@ from typing import Any
 from tree_sway.files.file_format import contains, FileFormat, format_of
 from tree_sway.files.text_file import path_of
 from tree_sway.files.wind.bag import read_bag_wind
+from tree_sway.files.wind.layouts.known import looks_like_wind
 from tree_sway.files.wind.metar import METAR, read_metar_wind
+from tree_sway.files.wind.netcdf import read_netcdf_wind
 from tree_sway.files.wind.nmea import read_nmea_wind
 from tree_sway.files.wind.record import WindRecord
 from tree_sway.files.wind.sonic_ascii import read_sonic_wind
-from tree_sway.files.wind.table import LOOKS_LIKE_WIND, read_table_wind
+from tree_sway.files.wind.table import read_table_wind
 
 WIND_FORMATS = (
     FileFormat('toa5', ('.dat', '.toa5'), contains(r'\A"?TOA5"?,'), read_table_wind),
@@ -33,8 +35,14 @@ WIND_FORMATS = (
     FileFormat(
         'bag', ('.db3', '.mcap'), contains(r'\A(SQLite format 3\0|\ufffdMCAP0\r\n)'), read_bag_wind
     ),
+    FileFormat(
+        'netcdf',
+        ('.nc', '.nc4'),
+        contains(r'\A(CDF[\x01\x02\x05]|\ufffdHDF\r\n)'),
+        read_netcdf_wind,
+    ),
     FileFormat('metar', ('.metar',), lambda head: METAR.search(head) is not None, read_metar_wind),
-    FileFormat('csv', ('.csv', '.tsv', '.txt'), contains(LOOKS_LIKE_WIND), read_table_wind),
+    FileFormat('csv', ('.csv', '.tsv', '.txt', '.json'), looks_like_wind, read_table_wind),
 )
 
 EXAMPLES = ('canopy',)

@@ -29,7 +29,7 @@ def cylinders_of(rows, continues=None):
 
 
 def built(rows, continues=None, **options):
-    options = TreeOptions(**{'twig_diameter': 0.0, **options})
+    options = TreeOptions(**{'twig_diameter': 0.0, 'thicken': False, **options})
     return options.applied(tree_of_cylinders(cylinders_of(rows, continues), FILE))
 
 

@@ -76,6 +76,33 @@ def test_matlab_arrays_of_structs(tmp_path):
         assert read_tree(tmp_path / 'two.mat').notes[-1] == 'the file has 1 more trees'
 
 
+@pytest.mark.parametrize('n_columns', [9, 10, 12, 14, 15])
+@pytest.mark.parametrize('base', [0, 1])
+@pytest.mark.parametrize('name', ['CylData', 'CylData_updated', 'cyl'])
+def test_arrays_of_cylinders_are_read_as_text_is(tmp_path, n_columns, base, name):
+    fork = columns_of_fork(base)
+    del fork['extension']
+    columns = [np.reshape(each, (4, -1)) for each in fork.values()]
+    extension = np.array([3, 4, 0, 0])[:, None] + base - 1
+    rest = np.full((4, 5), np.nan)  # as `add_buttress_cylinder` leaves them
+    table = np.hstack([*columns, extension, rest])[:, :n_columns]
+    branches = np.arange(10.0).reshape(2, 5)
+    savemat(tmp_path / 'array.mat', {name: np.single(table), 'BranchData': branches})
+    found = read_tree(tmp_path / 'array.mat', **AS_SCANNED)
+    assert found.tree.n_branches == 2
+    assert found.tree.volume.sum() == pytest.approx(VOLUME, rel=1e-5)
+    if n_columns <= 12:
+        np.savetxt(tmp_path / 'array.txt', np.nan_to_num(table), fmt='%.9g')
+        text = read_tree(tmp_path / 'array.txt', **AS_SCANNED)
+        assert text.tree.volume.sum() == pytest.approx(VOLUME, rel=1e-5)
+
+
+def test_a_matrix_that_is_no_cylinders_is_refused(tmp_path):
+    savemat(tmp_path / 'matrix.mat', {'x': np.random.default_rng(0).normal(size=(20, 12))})
+    with pytest.raises(FormatError, match='no array of cylinders'):
+        read_tree(tmp_path / 'matrix.mat')
+
+
 def test_matlab_7_3_says_how_to_save_it(tmp_path):
     (tmp_path / 'new.mat').write_bytes(
         b'MATLAB 7.3 MAT-file'.ljust(124) + b'\x00\x02IM' + bytes(400)

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind.simulated.turbulence import REFERENCE_INTENSITY, Turbulence
 
 RATE = 10.0
@@ -31,6 +31,30 @@ _GUST = 3.0
 def can_be_filled(duration: float) -> bool:
     """Whether a record of a duration [s] has room for turbulence."""
     return duration * _LEAST_RATE <= _MOST
+
+
+def usual_deviation(level: Floats) -> Floats:
+    """Return the deviation of IEC 61400-1 about a mean speed [m/s]; less in a calm."""
+    return np.asarray(REFERENCE_INTENSITY * (0.75 * level + 5.6) * np.minimum(level, 1.0))
+
+
+def usual_gust(along: Floats, first: Ints, rate: float) -> float:
+    """
+    Return the mean of the largest gusts of some intervals, gusts being means over 3 s.
+
+    Parameters
+    ----------
+    along
+        Turbulence along the wind in its own deviation, (n,).
+    first
+        First sample of each interval, (m,).
+    rate
+        Samples per second [Hz].
+
+    """
+    within = max(round(_GUST * rate), 1)
+    smooth = np.convolve(along, np.full(within, 1.0 / within), 'same')
+    return max(float(np.maximum.reduceat(smooth, first).mean()), 0.5)
 
 
 def turbulence_about_means(
@@ -59,7 +83,7 @@ def turbulence_about_means(
     rate = min(RATE, _MOST / duration)
     fine = time[0] + np.arange(math.floor(duration * rate) + 1) / rate
     level = np.hypot(mean[:, 0], mean[:, 1])
-    deviation = REFERENCE_INTENSITY * (0.75 * level + 5.6) * np.minimum(level, 1.0)
+    deviation = usual_deviation(level)
     between = np.stack([np.interp(fine, time, column) for column in mean.T], axis=1)
     typical = min(max(float(level.mean()), 1.0), 40.0)
     whole = max(len(fine), math.ceil(600.0 * rate))
@@ -72,10 +96,8 @@ def turbulence_about_means(
         about = np.bincount(nearest, weights=column, minlength=len(time)) / count
         column -= np.interp(fine, time, about)
     if gust is not None:
-        within = max(round(_GUST * rate), 1)
-        smooth = np.convolve(drawn[:, 0], np.full(within, 1.0 / within), 'same')
-        largest = np.maximum.reduceat(smooth, np.unique(nearest, return_index=True)[1])
-        above = np.maximum(gust - level, 0.0) / max(float(largest.mean()), 0.5)
+        largest = usual_gust(drawn[:, 0], np.unique(nearest, return_index=True)[1], rate)
+        above = np.maximum(gust - level, 0.0) / largest
         deviation = np.where(np.isfinite(gust), above, deviation)
     drawn *= np.interp(fine, time, deviation)[:, None]
     heading = np.arctan2(between[:, 1], between[:, 0])

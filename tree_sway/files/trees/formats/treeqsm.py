@@ -9,9 +9,11 @@ numbered from 0, parent -1 at the root. A cylinder that is the extension of its 
 the branch; any other starts one, on its parent's axis or skin and not at its end.
 
 MATLAB: structs with a field ``cylinder``. A file may have several models, as variables or as an
-array of structs; each is a tree. Text: without a header, or with that of 2.4 and PyTLidar, which
-names start and axis once, though each has three columns; tabs, spaces, commas or semicolons
-between the cells.
+array of structs; each is a tree. A file without structs may have the columns as one array of 9 to
+15, such as the ``CylData`` of versions before 2.3 and ``CylData_updated`` of published scans; with
+9 columns there is no extension. Text: the same columns without a header, or with that of 2.4 and
+PyTLidar, which names start and axis once, though each has three columns; tabs, spaces, commas or
+semicolons between the cells.
 """
 
 from __future__ import annotations
@@ -32,9 +34,12 @@ from tree_sway.files.trees.cylinders.mat_file import looks_like_mat, numbers, re
 
 _FIELDS = {'radius': 1, 'length': 1, 'start': 3, 'axis': 3, 'parent': 1, 'extension': 1}
 """Fields of ``cylinder`` in the order of the columns, and their widths."""
-_COLUMNS = 10
-_LEAST_COLUMNS = 13
-"""Smallest number of columns without a header that distinguishes cylinders from other tables."""
+_LEAST_COLUMNS, _MOST_COLUMNS = 9, 15
+"""Numbers of columns of an array of cylinders."""
+_UNMISTAKABLE = 13
+"""Number of columns from which a table without a header is one of cylinders."""
+_UNIT_ERROR = 0.02
+"""Largest difference of the length of a cylinder's axis from 1 where it tells what a table is."""
 
 
 def _is_text(head: str) -> bool:
@@ -43,20 +48,35 @@ def _is_text(head: str) -> bool:
     if lines and lines[0].lower().startswith('radius') and 'axis_direction' in lines[0]:
         return True
     rows = [[finite(cell) for cell in _cells(line)] for line in lines]
-    return any(len(row) >= _LEAST_COLUMNS and None not in row for row in rows)
+    full = [[each for each in row if each is not None] for row in rows if None not in row]
+    if any(len(row) >= _UNMISTAKABLE for row in full):
+        return True
+    narrow = [row for row in full if len(row) >= _LEAST_COLUMNS]
+    return bool(narrow) and all(_are_cylinders(np.array([row])) for row in narrow)
+
+
+def _are_cylinders(table: Floats) -> bool:
+    """Whether the columns of an array, (n, 9 to 15), are those of cylinders."""
+    axes = np.linalg.norm(table[:, 5:8], axis=1)
+    is_axis = (np.abs(axes - 1.0) < _UNIT_ERROR) | ((axes == 0.0) & (table[:, 1] == 0.0))
+    sizes, parent = table[:, :2], table[:, 8]
+    is_whole = (parent == np.round(parent)) & (parent >= -1)
+    return bool((is_axis & is_whole & (sizes >= 0.0).all(axis=1)).mean() > 0.9)
 
 
 def _read_mat(path: Path) -> tuple[Cylinders, ...]:
     """Every cylinder model of a MATLAB file."""
     source, trees = str(path), list[Cylinders]()
-    for name, model in _models(read_mat(path)):
-        table = _table(name, model, source)
+    variables = read_mat(path)
+    tables = [(name, _table(name, model, source)) for name, model in _models(variables)]
+    for name, table in tables or _arrays(variables):
         labels = [f'{source}: {name} cylinder {i + 1}' for i in range(len(table))]
         trees.append(_cylinders(table, labels, source))
         trees[-1].name = name
     if not trees:
-        what = "no struct with a field 'cylinder'"
-        raise FormatError(what, where=source, cure='save the QSM struct of TreeQSM')
+        what = "no struct with a field 'cylinder', and no array of cylinders"
+        cure = 'save the QSM struct of TreeQSM, or its columns as an array of 9 to 15'
+        raise FormatError(what, where=source, cure=cure)
     return tuple(trees)
 
 
@@ -68,6 +88,9 @@ def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
         lines[first] = ''
     names = [f'{field}{"xyz"[axis] * (width > 1)}' for field, width in _FIELDS.items()
              for axis in range(width)]  # fmt: skip
+    head = next((line for line in lines if line.strip()), '')
+    if len(_cells(head)) == _LEAST_COLUMNS:
+        names.remove('extension')
     table = parse_columns(lines, str(path), names, _cells)
     values = table.strict(names)
     labels = [f'{table.where(row)}: cylinder {row + 1}' for row in range(len(values))]
@@ -77,7 +100,7 @@ def read_treeqsm_text(path: Path) -> tuple[Cylinders, ...]:
 def _cells(line: str) -> list[str]:
     """Cells of a row; commas separate only where neither semicolons nor white space do."""
     cells = line.replace(';', ' ').split()
-    return cells if len(cells) >= _COLUMNS else line.replace(',', ' ').split()
+    return cells if len(cells) >= _LEAST_COLUMNS else line.replace(',', ' ').split()
 
 
 def _models(variables: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -89,6 +112,20 @@ def _models(variables: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
             inside = next(iter(_structs(struct.get('cylinder', struct))), {})
             if 'radius' in inside:
                 yield (f'{name}{number}' if several else name), inside
+
+
+def _arrays(variables: dict[str, Any]) -> Iterator[tuple[str, Floats]]:
+    """Name and columns of each array of cylinders, those of cells as well."""
+    for name, value in variables.items():
+        if isinstance(value, dict):
+            inside = {f'{name}{number}': each for number, each in enumerate(value.values(), 1)}
+            yield from _arrays(inside)
+        elif isinstance(value, np.ndarray) and value.ndim == 2:
+            for table in (value, value.T):
+                is_wide = _LEAST_COLUMNS <= table.shape[1] <= _MOST_COLUMNS
+                if is_wide and len(table) and _are_cylinders(table.astype(np.float64)):
+                    yield name, table[:, :10].astype(np.float64)
+                    break
 
 
 def _structs(value: Any) -> list[dict[str, Any]]:
@@ -116,7 +153,7 @@ def _table(name: str, fields: dict[str, Any], source: str) -> Floats:
 
 
 def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
-    """Cylinders from the columns, (n, 10), with the name of each row in errors."""
+    """Cylinders from the columns, (n, 9 or 10), with the name of each row in errors."""
     if len(table) == 0:
         raise FormatError('no cylinders', where=source)
     length, starts, axes, relatives = table[:, 1], table[:, 2:5], table[:, 5:8], table[:, 8:10]
@@ -131,15 +168,19 @@ def _cylinders(table: Floats, labels: list[str], source: str) -> Cylinders:
             where=source,
             cure='the root has parent 0, or -1',
         )
-    above, after = relatives.T.astype(np.int64) - first
+    family = relatives.astype(np.int64) - first
+    above = family[:, 0]
     norm = np.linalg.norm(axes, axis=1)
     for row in np.flatnonzero((norm == 0.0) & (length > 0.0))[:1]:
         raise FormatError('an axis without direction', where=labels[row])
     ends = starts + (length / np.where(norm > 0.0, norm, 1.0))[:, None] * axes
-    valid = (after >= 0) & (after < len(table))
-    continues = np.zeros(len(table), dtype=np.bool_)
-    child = after[valid]
-    continues[child[above[child] == np.flatnonzero(valid)]] = True
+    continues = None
+    if family.shape[1] > 1:
+        after = family[:, 1]
+        valid = (after >= 0) & (after < len(table))
+        continues = np.zeros(len(table), dtype=np.bool_)
+        child = after[valid]
+        continues[child[above[child] == np.flatnonzero(valid)]] = True
     return Cylinders(starts, ends, 2.0 * table[:, [0, 0]], above, continues, labels)
 
 

@@ -4,9 +4,9 @@ import threading
 
 import pytest
 
+from tree_sway import worker
 from tree_sway.errors import TransportError
-from tree_sway_ros.timing import worker
-from tree_sway_ros.timing.worker import Worker
+from tree_sway.worker import Worker
 
 
 class Stuck(Worker):

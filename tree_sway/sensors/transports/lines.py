@@ -6,29 +6,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-LONGEST = 1024
-"""Largest length of a line [bytes]."""
+LONGEST = 16 * 1024
+"""Largest length of a line [bytes]: a delta of Signal K has some thousand."""
 
 
 class Lines:
-    """Buffer of an incomplete line, of at most `LONGEST` bytes."""
+    """Buffer of an incomplete line, of at most ``longest`` bytes."""
 
-    def __init__(self) -> None:
+    def __init__(self, longest: int = LONGEST) -> None:
         self.dropped = 0
+        self._longest = longest
         self._begun = b''
         self._is_too_long = False
 
-    def feed(self, data: bytes, *, is_whole: bool = False) -> Iterator[str]:
+    def feed(self, data: bytes, *, is_whole: bool = False) -> Iterator[bytes]:
         """Add bytes, whose end ends a line if they are a datagram; return the complete lines."""
         *whole, begun = (self._begun + data).replace(b'\r', b'\n').split(b'\n')
         if is_whole:
             whole, begun = [*whole, begun], b''
         for line in whole:
-            if self._is_too_long or len(line) > LONGEST:
+            if self._is_too_long or len(line) > self._longest:
                 self.dropped += 1
                 self._is_too_long = False
             elif line:
-                yield line.decode('ascii', 'replace')
-        if len(begun) > LONGEST:
+                yield line
+        if len(begun) > self._longest:
             begun, self._is_too_long = b'', True
         self._begun = begun

@@ -1,0 +1,126 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Names of columns and their units, compared however they are written.
+
+``Baumhöhe [m]``, ``BAUMHOEHE (M)`` and ``baumhoehe_m`` are one name with one unit: letters are
+folded to lower case without accents, and all but letters and digits is left out. A unit is in
+brackets, behind ``-`` or a comma, or the last word.
+"""
+
+from __future__ import annotations
+
+from importlib.resources import files
+import json
+import re
+from typing import Any
+import unicodedata
+
+_KNOWN = json.loads(files('tree_sway.files').joinpath('columns.json').read_text('utf-8'))
+
+COLUMNS: dict[str, dict[str, Any]] = _KNOWN['columns']
+"""Names of the column of a quantity, and its kind of unit."""
+
+MOTIONS = {quantity: re.compile(pattern) for quantity, pattern in _KNOWN['motions'].items()}
+"""Names of columns of a tree's motion; each quantity has its own kind of unit."""
+
+_UMLAUTS = str.maketrans({'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ø': 'o', 'æ': 'ae', 'º': '°'})
+_BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
+_BEHIND = re.compile(r'(?:\s-\s|,)\s*([^,(\[]+)')
+_NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
+_ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?')
+_SHORTEST_GLUED = 4
+"""Letters of the shortest name that a unit follows without a sign, as in windspeedmph."""
+
+
+def folded(text: str) -> str:
+    """Letters and digits of a text in lower case, without accents, umlauts as ae, oe and ue."""
+    lower = unicodedata.normalize('NFC', text).lower().translate(_UMLAUTS)
+    plain = unicodedata.normalize('NFKD', lower)
+    return ''.join(letter for letter in plain if letter.isalnum())
+
+
+def folded_unit(text: str) -> str:
+    """Return a unit in lower case without spaces, with one sign for each of its parts."""
+    unit = unicodedata.normalize('NFKC', text.strip().lower().replace('º', '°').replace('ø', '°'))
+    return re.sub(r'[\s._·*^]|wmounit:', '', unit).replace('μ', 'u').replace('−', '-')
+
+
+UNITS: dict[str, dict[str, float]] = {
+    kind: {folded_unit(unit): factor for unit, factor in units.items()}
+    for kind, units in _KNOWN['units'].items()
+}
+"""Units of each kind of quantity as `folded_unit` writes them, and their factors to SI."""
+
+_NAMES = {
+    quantity: tuple(dict.fromkeys(folded(name) for name in known['names']))
+    for quantity, known in COLUMNS.items()
+}
+
+
+def unit_factor(kind: str, unit: str) -> float | None:
+    """
+    Factor from a unit to SI; None if it is not one of this kind.
+
+    A zone of time, as in ``Date (Europe/Berlin)``, stands for dates, of factor 1.
+    """
+    if kind == 'time' and _ZONE.fullmatch(unit.strip()):
+        return 1.0
+    return UNITS.get(kind, {}).get(folded_unit(unit))
+
+
+def name_and_unit(column: str, kind: str) -> tuple[str, str]:
+    """
+    Split the name of a column from its unit, of a kind in `UNITS`.
+
+    The unit is in brackets, or behind ``-`` or a comma. If none of these is a unit of the kind, it
+    is the text in the first brackets, or empty without them.
+    """
+    text = column.strip().strip('"').strip()
+    in_brackets = [found.strip() for found in _BRACKETS.findall(text)]
+    behind = [found.strip() for found in _BEHIND.findall(text)]
+    name = _NAME_ENDS.sub('', text, count=1).strip() or text
+    for unit in (*in_brackets, *behind):
+        if unit_known(kind, unit):
+            return name, unit
+    if in_brackets:
+        return name, in_brackets[0]
+    return text, ''
+
+
+def rank_of(column: str, quantity: str) -> int | None:
+    """Place of a column's name among the names of a quantity; None if it is not one of them."""
+    kind = COLUMNS[quantity]['unit']
+    name, _ = name_and_unit(column, kind)
+    found = (folded(name), folded(column))
+    for rank, known in enumerate(_NAMES[quantity]):
+        if known in found or trailing_unit(name, known, kind):
+            return rank
+    return None
+
+
+def unit_known(kind: str, unit: str) -> bool:
+    """Whether a unit is one of a kind."""
+    return bool(unit) and unit_factor(kind, unit) is not None
+
+
+def unit_in_name(name: str, quantity: str) -> str:
+    """Return the unit at the end of a column's name, as in ``x_m``; empty without one."""
+    kind = COLUMNS[quantity]['unit']
+    return next((u for each in _NAMES[quantity] if (u := trailing_unit(name, each, kind))), '')
+
+
+def trailing_unit(name: str, known: str, kind: str) -> str:
+    """Return the unit of a kind that follows a known name, as ``cm`` in ``dbh_cm``; or nothing."""
+    whole = folded(name)
+    if whole == known or not whole.startswith(known):
+        return ''
+    words = re.split(r'[\s_.]+', name.lower())
+    for count in range(1, len(words)):
+        if folded(''.join(words[:count])) == known:
+            unit = '_'.join(words[count:])
+            for each in (unit.replace('_', '/'), unit.replace('_', '')):
+                if unit_known(kind, each):
+                    return each
+    end = whole[len(known) :]
+    return end if len(known) >= _SHORTEST_GLUED and unit_known(kind, end) else ''

@@ -1,0 +1,45 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Directions of the wind as they are written: degrees, or points of the compass."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import re
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.files.text_file import finite
+
+_POINTS = (
+    'N', 'NNE', 'NE', 'ENE', 'E', 'ESE', 'SE', 'SSE',
+    'S', 'SSW', 'SW', 'WSW', 'W', 'WNW', 'NW', 'NNW',
+)  # fmt: skip
+_DEGREES = {point: 22.5 * number for number, point in enumerate(_POINTS)}
+_WORDS = {'north': 'N', 'east': 'E', 'south': 'S', 'west': 'W'}
+_WORD = re.compile('|'.join(_WORDS))
+
+
+def degrees_of(cells: Sequence[str]) -> Floats:
+    """
+    Return the directions of texts in degrees, (n,), NaN for another text.
+
+    A point is such as ``WNW`` or ``West``. ``O`` is east where others have a W, as in German, and
+    west where others have an E, as in French and Spanish.
+    """
+    numbers = [finite(cell.removesuffix('°').removesuffix('º')) for cell in cells]
+    if all(number is not None for number in numbers):
+        return np.array(numbers, dtype=np.float64)
+    points = [_point(cell) for cell in cells]
+    letters = set(''.join(points))
+    east_or_west = 'E' if 'W' in letters else 'W' if 'E' in letters else 'O'
+    named = (_DEGREES.get(point.replace('O', east_or_west), np.nan) for point in points)
+    pairs = zip(numbers, named, strict=True)
+    return np.array([point if number is None else number for number, point in pairs])
+
+
+def _point(cell: str) -> str:
+    text = _WORD.sub(lambda word: _WORDS[word[0]], cell.strip().lower())
+    text = text.replace('-', '').replace(' ', '').upper()
+    return text if len(text) <= 3 and set(text) <= set('NESWO') else ''

@@ -1,0 +1,82 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+NOAA's Integrated Surface Database: hourly CSV, and the short form ISD-Lite.
+
+The CSV has the wind in one cell, ``WND = "270,1,N,0040,1"``: direction, its quality, kind, speed
+in 0.1 m/s, its quality; 999 and 9999 are missing, and a gust is in ``OC1 = "0098,1"`` (Federal
+Climate Complex Data Documentation for ISD, 2018). ISD-Lite has twelve numbers a line and no names:
+year, month, day, hour, four others, direction, speed in 0.1 m/s, two others; -9999 is missing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+import re
+
+from tree_sway.files.table_file import split_row, TextTable
+from tree_sway.files.wind.layouts.layout import Layout, table_of_cells
+
+_COLUMNS = ('time', 'wind_speed', 'wind_direction', 'gust')
+_UNITS = ('', '0.1 m/s', 'deg', '0.1 m/s')
+_LITE = re.compile(r'\d{4} \d\d \d\d \d\d(\s+-?\d+){8}\s*')
+_CALM = 'C'
+_WRONG = ('3', '7')
+"""Qualities of an erroneous value."""
+
+
+def _has_wnd(lines: Sequence[str]) -> bool:
+    names = set(lines[0].replace('"', '').split(',')) if lines else set()
+    return {'STATION', 'DATE', 'WND'} <= names
+
+
+def _read(lines: list[str], source: str) -> TextTable:
+    split = partial(split_row, separator=',')
+    names = list(split(lines[0]))
+    date, wind = names.index('DATE'), names.index('WND')
+    gust = names.index('OC1') if 'OC1' in names else len(names)
+    numbers, rows = list[int](), list[list[str]]()
+    for number, line in enumerate(lines[1:], start=2):
+        cells = split(line)
+        if len(cells) > max(date, wind):
+            numbers.append(number)
+            of_gust = cells[gust] if gust < len(cells) else ''
+            rows.append([cells[date], *_wind(cells[wind]), _known(of_gust.split(',')[0], '9999')])
+    return table_of_cells(_COLUMNS, rows, source, numbers, _UNITS)
+
+
+def _wind(cell: str) -> tuple[str, str]:
+    """Speed and direction of the five fields of a wind; empty where missing or wrong."""
+    fields = [*cell.split(','), '', '', '', '', ''][:5]
+    direction, good_direction, kind, speed, good_speed = fields
+    if good_speed in _WRONG:
+        return '', ''
+    if kind == _CALM:
+        return '0', '0'
+    at = '' if good_direction in _WRONG else _known(direction, '999')
+    return _known(speed, '9999'), at
+
+
+def _known(text: str, missing: str) -> str:
+    return '' if text == missing else text
+
+
+def _is_lite(lines: Sequence[str]) -> bool:
+    return len(lines) > 1 and all(_LITE.fullmatch(line) for line in lines[:2])
+
+
+def _read_lite(lines: list[str], source: str) -> TextTable:
+    numbers, rows = list[int](), list[list[str]]()
+    for number, line in enumerate(lines, start=1):
+        cells = line.split()
+        if len(cells) == 12:
+            year, month, day, hour = cells[:4]
+            stamp = f'{year}-{month}-{day}T{hour}:00'
+            numbers.append(number)
+            rows.append([stamp, _known(cells[8], '-9999'), _known(cells[7], '-9999'), ''])
+    return table_of_cells(_COLUMNS, rows, source, numbers, _UNITS)
+
+
+ISD_CSV = Layout('isd', _has_wnd, _read)
+ISD_LITE = Layout('isd-lite', _is_lite, _read_lite)

@@ -1,0 +1,40 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A layout of a table of wind: how it is recognised, and how it is read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from tree_sway.files.table_file import TextTable
+
+_BETWEEN = '\x1f'
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """
+    A layout of a table of wind.
+
+    ``recognise`` gets the first lines of a file, ``read`` all of them and the name of the file.
+    """
+
+    name: str
+    recognise: Callable[[Sequence[str]], bool]
+    read: Callable[[list[str], str], TextTable]
+
+
+def table_of_cells(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    source: str,
+    numbers: Sequence[int] | None = None,
+    units: Sequence[str] = (),
+) -> TextTable:
+    """Return a table from the cells of its rows; ``numbers`` are those of their lines."""
+    texts = [_BETWEEN.join(row) for row in rows]
+    lines = range(1, len(texts) + 1) if numbers is None else numbers
+    split = partial(str.split, sep=_BETWEEN)
+    return TextTable(tuple(columns), lines, texts, split, source, units=tuple(units))

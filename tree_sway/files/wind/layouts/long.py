@@ -1,0 +1,87 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Long tables: a row per value, with the name of its quantity in a cell.
+
+InfluxDB's annotated CSV has ``_time``, ``_value`` and ``_field`` below lines with a hash (docs of
+InfluxDB, Annotated CSV); Home Assistant's history has ``entity_id,state,last_changed``. Each value
+holds until the next of its name, as Home Assistant stores changes alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import partial
+import re
+
+from tree_sway.files.table_file import split_row, TextTable
+from tree_sway.files.wind.layouts.layout import Layout, table_of_cells
+
+_COLUMNS = {
+    'influxdb': ('_time', '_field', '_value'),
+    'home assistant': ('last_changed', 'entity_id', 'state'),
+}
+"""Columns of the time, the name and the value."""
+_STATION = re.compile(r'(?:sensor\.)?(?:.*_)?(?=(?:avg_)?wind|gust)')
+_NO_STATE = ('unavailable', 'unknown', '')
+Value = tuple[int, str, str, str]
+"""Line, time, name and value."""
+
+
+def wide_table(values: Iterable[Value], source: str, clock: str) -> TextTable:
+    """Return a row for each time, in the column ``clock``, with the newest value of each name."""
+    by_time: dict[str, dict[str, str]] = {}
+    lines: dict[str, int] = {}
+    for line, time, name, value in values:
+        by_time.setdefault(time, {})[name] = value
+        lines.setdefault(time, line)
+    times = sorted(by_time)
+    names = list(dict.fromkeys(name for each in by_time.values() for name in each))
+    newest: dict[str, str] = {}
+    rows = []
+    for time in times:
+        newest.update(by_time[time])
+        rows.append([time, *(newest.get(name, '') for name in names)])
+    # sensor.garden_wind_speed is wind_speed, if no other sensor is called so.
+    short = [_STATION.sub('', name, count=1) for name in names]
+    columns = short if len(set(short)) == len(short) else names
+    return table_of_cells([clock, *columns], rows, source, [lines[time] for time in times])
+
+
+def _split(lines: Sequence[str], wanted: Sequence[str]) -> tuple[int, list[int]] | None:
+    """Line of the header, and the places of the wanted columns in it."""
+    for number, line in enumerate(lines[:10]):
+        cells = list(split_row(line, ',')) if not line.startswith('#') else []
+        if all(name in cells for name in wanted):
+            return number, [cells.index(name) for name in wanted]
+    return None
+
+
+def _read(lines: list[str], source: str, wanted: Sequence[str]) -> TextTable:
+    found = _split(lines, wanted)
+    assert found is not None
+    _, places = found
+    return wide_table(_values(lines, places, wanted), source, wanted[0])
+
+
+def _values(lines: list[str], places: list[int], wanted: Sequence[str]) -> Iterable[Value]:
+    for number, line in enumerate(lines, start=1):
+        cells = split_row(line, ',')
+        if line.startswith('#') or len(cells) <= max(places):
+            continue
+        if all(name in cells for name in wanted):  # a further header, of another table
+            places = [list(cells).index(name) for name in wanted]
+            continue
+        time, name, value = (cells[place] for place in places)
+        if value not in _NO_STATE:
+            yield number, time, name, value
+
+
+def _is_long(lines: Sequence[str], wanted: Sequence[str]) -> bool:
+    return _split(lines, wanted) is not None
+
+
+LONG = tuple(
+    Layout(name, partial(_is_long, wanted=wanted), partial(_read, wanted=wanted))
+    for name, wanted in _COLUMNS.items()
+)

@@ -1,0 +1,32 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+TOA5, the tables of Campbell Scientific's loggers.
+
+Four header lines: the logger, the names, their units and how they were processed. The components
+of a sonic, ``Ux Uy Uz``, point where the wind blows, in the axes of the instrument (CSAT3 manual,
+2.3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from tree_sway.files.table_file import split_row, TextTable
+from tree_sway.files.wind.layouts.layout import Layout
+
+
+def _is_toa5(lines: Sequence[str]) -> bool:
+    return len(lines) > 3 and lines[0].lstrip('"').startswith('TOA5')
+
+
+def _read(lines: list[str], source: str) -> TextTable:
+    split = partial(split_row, separator=',')
+    stored = [number for number, line in enumerate(lines[4:], start=5) if line.strip()]
+    texts = [lines[number - 1] for number in stored]
+    names, units = tuple(split(lines[1])), tuple(split(lines[2]))
+    return TextTable(names, stored, texts, split, source, 2, 3, units)
+
+
+TOA5 = Layout('toa5', _is_toa5, _read)

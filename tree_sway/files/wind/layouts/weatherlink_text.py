@@ -1,0 +1,54 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Text that WeatherLink for Windows exports (Davis): two lines of names, then rows with tabs.
+
+The names stand one above the other, ``Wind`` over ``Speed``. The units are those that the program
+was set to, which the file does not say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import zip_longest
+import re
+
+from tree_sway.files.table_file import TextTable
+from tree_sway.files.wind.layouts.layout import Layout, table_of_cells
+
+_NAMES = re.compile(r'^\s*Date\s+Time\b.*\bSpeed\s+Dir\b', re.IGNORECASE)
+_GAPS = re.compile(r'\t|\s{2,}')
+_WIND = ('Date', 'Time', 'Wind Speed', 'Wind Dir', 'Hi Speed')
+
+
+def _has_two_lines(lines: Sequence[str]) -> bool:
+    return len(lines) > 2 and 'Wind' in lines[0] and _NAMES.match(lines[1]) is not None
+
+
+def _read(lines: list[str], source: str) -> TextTable:
+    names = _names(lines[0], lines[1])
+    at = [index for index, name in enumerate(names) if name in _WIND]
+    numbers, rows = list[int](), list[list[str]]()
+    for number, line in enumerate(lines[2:], start=3):
+        cells = [cell.strip() for cell in (line.split('\t') if '\t' in line else line.split())]
+        if len(cells) == len(names):
+            numbers.append(number)
+            rows.append([cells[index] for index in at])
+    return table_of_cells([names[index] for index in at], rows, source, numbers)
+
+
+def _names(above: str, below: str) -> list[str]:
+    """Names of the columns: by tabs, else by where the words of the second line stand."""
+    if '\t' in below:
+        pairs = zip_longest(above.split('\t'), below.split('\t'), fillvalue='')
+        return [' '.join(f'{a} {b}'.split()) for a, b in pairs]
+    spans = [match.span() for match in re.finditer(r'\S+', below)]
+    words = [(m.start(), m.end(), m[0]) for m in re.finditer(r'\S+', above)]
+    names = []
+    for begin, end in spans:
+        over = [word for first, last, word in words if first < end and last > begin]
+        names.append(' '.join([*over[:1], below[begin:end]]))
+    return names
+
+
+WEATHERLINK_TEXT = Layout('weatherlink text', _has_two_lines, _read)

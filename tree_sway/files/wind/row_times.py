@@ -1,0 +1,95 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Times of the rows of a table: in one column, or in columns of their parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from datetime import datetime, timedelta
+import re
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
+
+import numpy as np
+
+from tree_sway.files.column_names import folded, name_and_unit
+from tree_sway.files.table_file import TextTable
+from tree_sway.files.time_stamps import Times, times_of
+
+Join = Callable[[Sequence[str]], str]
+
+
+def _date_and_time(parts: Sequence[str]) -> str:
+    return f'{parts[0]} {parts[1]}'
+
+
+def _date_and_hour(parts: Sequence[str]) -> str:
+    return f'{parts[0]} {parts[1]}:00' if parts[1].isdigit() else _date_and_time(parts)
+
+
+def _numbers(parts: Sequence[str]) -> str:
+    if not all(part.isdigit() for part in parts):
+        return ''
+    year, month, day, hour, minute = (*map(int, parts), 0, 0)[:5]
+    return f'{year + (1900 if 50 < year < 100 else 0)}-{month}-{day} {hour}:{minute:02d}'
+
+
+PARTS: tuple[tuple[tuple[str, ...], Join], ...] = (
+    (('yy', 'mm', 'dd', 'hh', 'minute'), _numbers),
+    (('year', 'month', 'day', 'hour', 'minute'), _numbers),
+    (('year', 'month', 'day', 'hour'), _numbers),
+    (('year', 'mo', 'dy', 'hr'), _numbers),
+    (('yyyymmdd', 'hh'), _date_and_hour),
+    (('date', 'time'), _date_and_time),
+    (('datum', 'zeit'), _date_and_time),
+    (('datum', 'uhrzeit'), _date_and_time),
+    (('fecha', 'hora'), _date_and_time),
+    (('date', 'heure'), _date_and_time),
+    (('date', 'timeutc'), _date_and_time),
+    (('date', 'hour'), _date_and_hour),
+    (('date', 'mst'), _date_and_time),
+    (('date', 'est'), _date_and_time),
+    (('date', 'pst'), _date_and_time),
+)
+"""Columns that make a time together, and how."""
+
+_ZONE = re.compile(r'\b((?:Africa|America|Asia|Atlantic|Australia|Europe|Indian|Pacific)/[\w/]+)')
+
+
+def time_columns(table: TextTable) -> tuple[list[int], Join | None, float] | None:
+    """Columns of the time, how they are joined, and the factor to [s]; None without a time."""
+    names = [folded(name_and_unit(column, 'time')[0]) for column in table.columns]
+    for wanted, join in PARTS:
+        if all(name in names for name in wanted):
+            return [names.index(name) for name in wanted], join, 1.0
+    clock = table.find('time')
+    return None if clock is None else ([clock.index], None, clock.factor)
+
+
+def row_times(
+    table: TextTable, columns: Sequence[int], join: Join | None, factor: float, rows: list[int]
+) -> Times:
+    """Return the times of some rows, in UTC where the table says its zone."""
+    cells = [table.cells(column, rows) for column in columns]
+    stamps = cells[0] if join is None else [join(parts) for parts in zip(*cells, strict=True)]
+    times = times_of(stamps, factor)
+    zone = _ZONE.search(' '.join(table.columns[column] for column in columns))
+    return times if zone is None or times.epoch is None else _in_utc(times, zone[1])
+
+
+def _in_utc(times: Times, name: str) -> Times:
+    """Return times on the clock of a zone as those of UTC."""
+    try:
+        zone = ZoneInfo(name)
+    except (ZoneInfoNotFoundError, ValueError):
+        return replace(times, note=f'zone {name} is not known here; times are left as they are')
+    begin = datetime(1970, 1, 1) + timedelta(seconds=times.epoch or 0.0)
+    offsets = np.zeros(len(times.seconds))
+    for row in np.flatnonzero(np.isfinite(times.seconds)).tolist():
+        local = begin + timedelta(seconds=float(times.seconds[row]))
+        offset = local.replace(tzinfo=zone).utcoffset()
+        offsets[row] = offset.total_seconds() if offset else 0.0
+    first = offsets[np.isfinite(times.seconds)][:1]
+    shift = float(first[0]) if len(first) else 0.0
+    seconds = times.seconds - (offsets - shift)
+    return replace(times, seconds=seconds, epoch=(times.epoch or 0.0) - shift)

@@ -1,0 +1,285 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Wind of a live source: its samples, its state for viewers, and news for the terminal.
+
+The wind of an instant is passed on as it comes. Means of 20 s and more are blown as gusts about
+them, until they are too old. Where messages do not say what they are, the time between them
+decides; a first one counts as a mean until the second comes.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+import math
+import threading
+import time
+
+import numpy as np
+
+from tree_sway.core.wind.limits import is_wind
+from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
+from tree_sway.core.wind.simulated.gusts_about_mean import GustsAboutMean, RATE
+from tree_sway.errors import shown
+from tree_sway.files.wind.units import Velocity
+from tree_sway.sensors.reading import Reading, Refusal, WindReading
+from tree_sway.sensors.registry import OpenedSource
+from tree_sway.sensors.transports.link import Link
+from tree_sway.sensors.transports.transport import Message
+
+Sample = tuple[float, Velocity]
+"""Time [s] and wind east, north, up [m/s], the way the air goes."""
+
+COMPLAIN_AFTER = 4.0
+"""Time [s] after which messages that are not understood, or none at all, are reported."""
+_USUAL_INTERVAL = 60.0
+"""Length of a mean [s] until the second one tells it."""
+_LASTS = 3.0
+"""Number of intervals for which a mean is used."""
+_QUEUE = 4096
+_MOST_CAUSES = 20
+_LIVE_FOR = 10.0
+"""Age [s] up to which the wind of an instant counts as live."""
+_POINTS = 'N NE E SE S SW W NW'.split()
+
+
+class LiveWind:
+    """
+    Samples of a source, from `start` to `stop`.
+
+    Parameters
+    ----------
+    opened
+        The source.
+    log
+        Function called with a line of news, from the source's thread.
+    taken
+        Function called with the wind of each instant as it comes, from that thread; such samples
+        are then not in `drain`.
+    silence
+        As in `Link`.
+
+    """
+
+    def __init__(
+        self,
+        opened: OpenedSource,
+        log: Callable[[str], None],
+        *,
+        taken: Callable[[Velocity], None] | None = None,
+        silence: float | None = None,
+    ) -> None:
+        self.bearing = opened.bearing
+        """Direction that a wind without one comes from, clockwise from north [rad]."""
+        self.accepted = self.other = 0
+        """Numbers of readings, and of messages that are not about the wind."""
+        self.refused: dict[str, int] = {}
+        """Numbers of readings that were refused, by cause."""
+        self.newest: WindReading | None = None
+        """Newest reading."""
+        self.is_mean = False
+        """Whether gusts are blown about the newest reading."""
+        self.lacks_direction = False
+        """Whether the newest reading has no direction of its own."""
+        self._opened, self._log, self._taken = opened, log, taken
+        self._lock = threading.Lock()
+        self._gusts = GustsAboutMean()
+        self._samples: deque[Sample] = deque(maxlen=_QUEUE)
+        self._arrival = self._gap = -math.inf
+        self._expires = -math.inf
+        self._blown = -math.inf
+        self._last = ''
+        self._begun = math.inf
+        self._has_complained = False
+        self._link = Link(opened.source.transport, self._take, log, silence)
+
+    def start(self) -> None:
+        """Start to listen."""
+        self._begun = time.monotonic()
+        self._link.start()
+
+    def stop(self) -> None:
+        """Stop; the thread ends by itself if it is busy."""
+        self._link.stop()
+
+    @property
+    def link(self) -> Link:
+        """The connection, with its state and counts."""
+        return self._link
+
+    @property
+    def name(self) -> str:
+        """Name of the source for viewers."""
+        place = self.newest.place if self.newest is not None else ''
+        return f'{place}, {self._opened.name}' if place else self._opened.name
+
+    @property
+    def state(self) -> str:
+        """State: ``connecting``, ``waiting``, ``unknown`` messages, ``live`` or ``stale``."""
+        if self.newest is not None:
+            return 'live' if time.monotonic() < self._expires else 'stale'
+        if self._link.messages:
+            return 'unknown'
+        return 'waiting' if self._link.is_up else 'connecting'
+
+    @property
+    def age(self) -> float:
+        """Age of the newest reading [s], since its measurement if it has a time."""
+        newest = self.newest
+        if newest is None:
+            return math.inf
+        if newest.time is not None:
+            return max(time.time() - newest.time, 0.0)
+        return time.monotonic() - self._arrival
+
+    @property
+    def source(self) -> Mapping[str, object]:
+        """Description for viewers: name, newest wind, its age, and whether it is a mean."""
+        newest = self.newest
+        described: dict[str, object] = {
+            'kind': 'live',
+            'name': self.name,
+            'state': self.state,
+        }
+        if newest is not None:
+            east, north, _ = newest.velocity(self.bearing)
+            described |= {
+                'speed': round(newest.speed, 2),
+                'wind': [round(east, 3), round(north, 3)],
+                'age': round(self.age, 1),
+                'is_mean': self.is_mean,
+                'lacks_direction': self.lacks_direction,
+            }
+        return described
+
+    def drain(self) -> list[Sample]:
+        """Return the samples since the last call, by the times of `time.monotonic`."""
+        found = list[Sample]()
+        while self._samples:
+            found.append(self._samples.popleft())
+        now = time.monotonic()
+        with self._lock:
+            until = min(now, self._expires)
+            if self.is_mean and until > self._blown:
+                first = math.floor(max(self._blown, until - 1.0) * RATE) + 1
+                ticks = range(first, math.floor(until * RATE) + 1)
+                found += [(tick / RATE, self._gusts.sample((tick + 0.5) / RATE)) for tick in ticks]
+                self._blown = until
+        return found
+
+    def between(self, since: float, until: float) -> Iterator[Sample]:
+        """Return the new samples as if they were of a time up to now, which is the later [s]."""
+        now = time.monotonic()
+        for at, velocity in self.drain():
+            moved = until - max(now - at, 0.0)
+            if moved > since:
+                yield moved, velocity
+
+    def complaint(self) -> str:
+        """Return once why there is no wind after some seconds; empty if there is, or too early."""
+        if self._has_complained or time.monotonic() - self._begun < COMPLAIN_AFTER:
+            return ''
+        if self.accepted or not self._link.is_up:
+            return ''
+        self._has_complained = True
+        return self.problem
+
+    @property
+    def problem(self) -> str:
+        """Why there is no wind, empty if there is one."""
+        source, link = self._opened.source, self._link
+        if self.accepted:
+            return ''
+        if not link.is_up:
+            return f'no connection: {link.failure or "not yet"}'
+        if not link.messages:
+            return f'listening to {source.transport}: nothing has come yet'
+        came = f'{link.messages} {source.messages} came'
+        if self.refused:
+            causes = ', '.join(list(self.refused)[:3])
+            return f'{came}, all of the wind were refused: {causes}; the last: {self._last}'
+        return f'{came}, none was understood, the last: {self._last}; expected {source.expects}'
+
+    def _take(self, message: Message) -> None:
+        """Read a message; called by the link's thread."""
+        self._last = shown(message.data[:300].decode('utf-8', 'replace'), 120)
+        readings = self._opened.source.read(message)
+        self.other += not readings
+        for reading in readings:
+            if not self._is_good(reading):
+                continue
+            assert isinstance(reading, WindReading)
+            self._use(reading)
+
+    def _is_good(self, reading: Reading) -> bool:
+        """Count a reading; whether it is a wind."""
+        cause = reading.reason if isinstance(reading, Refusal) else ''
+        if isinstance(reading, WindReading) and not is_wind(reading.speed, reading.up, 0.0):
+            cause = 'speed is too fast or no number'
+        if not cause:
+            self.accepted += 1
+            return True
+        if cause in self.refused or len(self.refused) < _MOST_CAUSES:
+            self.refused[cause] = self.refused.get(cause, 0) + 1
+        return False
+
+    def _use(self, reading: WindReading) -> None:
+        now = time.monotonic()
+        is_first = self.newest is None
+        before, self._gap = self._gap, now - self._arrival
+        self._arrival = now
+        interval = self._interval(reading, before)
+        velocity = reading.velocity(self.bearing)
+        with self._lock:
+            self.newest = reading
+            self.lacks_direction = reading.bearing is None
+            self.is_mean = interval >= LEAST_INTERVAL
+            if self.is_mean:
+                self._gusts.set(now, np.array(velocity), interval, _gust(reading))
+                self._blown = max(self._blown, now - 1.0 / RATE)
+                lasts = self._opened.source.lasts
+                age = 0.0 if reading.time is None else max(time.time() - reading.time, 0.0)
+                self._expires = now - age + (_LASTS * interval if lasts is None else lasts)
+            else:
+                self._expires = now + max(_LIVE_FOR, _LASTS * self._gap if not is_first else 0.0)
+        if is_first:
+            self._log(f'wind comes: {described(reading, self.bearing, interval)}')
+        if self.is_mean:
+            return
+        if self._taken is not None:
+            self._taken(velocity)
+        else:
+            self._samples.append((now, velocity))
+
+    def _interval(self, reading: WindReading, gap_before: float) -> float:
+        """Length of the mean that a reading is [s]; 0 for the wind of an instant."""
+        source = self._opened.source
+        for known in (self._opened.mean, reading.interval, source.interval):
+            if known is not None:
+                return known
+        if math.isinf(self._gap):
+            return _USUAL_INTERVAL
+        # One long gap is a failure of a fast instrument, unless it is the only one.
+        is_slow = self._gap >= LEAST_INTERVAL
+        was_slow = math.isinf(gap_before) or gap_before >= LEAST_INTERVAL
+        return self._gap if is_slow and was_slow else 0.0
+
+
+def _gust(reading: WindReading) -> float | None:
+    gust = reading.gust
+    return gust if gust is not None and is_wind(gust, 0.0, 0.0) else None
+
+
+def described(reading: WindReading, bearing: float, interval: float) -> str:
+    """Return a reading as words; the bearing is that of one without a direction [rad]."""
+    used = bearing if reading.bearing is None else reading.bearing
+    point = _POINTS[round(used / (math.pi / 4.0)) % 8]
+    text = f'{reading.speed:.1f} m/s from {point} ({reading.kind})'
+    if reading.bearing is None:
+        text += ', its direction is assumed'
+    if interval >= LEAST_INTERVAL:
+        length = f'{interval / 60.0:g} min' if interval >= 60.0 else f'{interval:g} s'
+        gusts = 'by its gust' if reading.gust is not None else 'by IEC 61400-1'
+        text += f'; a mean over {length}: gusts about it are simulated {gusts}'
+    return text

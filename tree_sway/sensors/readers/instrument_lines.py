@@ -1,0 +1,121 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Lines of instruments of any maker: the first form that fits is read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+import re
+
+from tree_sway.files.wind.nmea import parse_nmea, SENTENCES
+from tree_sway.files.wind.sensor_line import SensorLine
+from tree_sway.files.wind.sonic_ascii import KINDS, parse_sonic
+from tree_sway.sensors.readers.json_options import names_of, unit_factor
+from tree_sway.sensors.readers.json_path import parse_json
+from tree_sway.sensors.readers.named_values import WindNames
+from tree_sway.sensors.readers.number_columns import columns_of, read_numbers
+from tree_sway.sensors.readers.wxt import read_wxt
+from tree_sway.sensors.readers.young import read_young
+from tree_sway.sensors.reading import of_velocity, Reading, Refusal, WindReading
+from tree_sway.sensors.source_address import SourceAddress
+from tree_sway.sensors.transports.transport import Message
+
+LINE_KINDS = ('auto', *SENTENCES, *KINDS)
+"""Sentences that may be chosen where an instrument sends several."""
+EXPECTS = (
+    'NMEA 0183 (MWV, MWD, MDA, VWR, VWT, XDR), Gill, Vaisala WXT, Young, SDI-12, JSON, '
+    'name=value, or numbers as 5.3,270'
+)
+_PAIR = re.compile(r'([A-Za-z]\w*)\s*[=:]\s*([-+]?[\d.]+|[NESW]{1,3})\s*([a-zA-Z/]*)')
+
+
+@dataclass
+class InstrumentLines:
+    """
+    Reader of lines, which keeps to the first good kind: a change of reference would be a jump.
+
+    Parameters
+    ----------
+    sentence
+        Kind of `LINE_KINDS` to read; ``auto`` is the first good one.
+    heading
+        Bearing of the bow or the north mark, clockwise from true north [rad].
+    declination
+        Magnetic declination, east positive [rad].
+    columns
+        Meaning of numbers in a line, as `columns_of`.
+    factor
+        Metres per second in the unit of a line without one.
+    names
+        Where the wind is in a line of JSON.
+
+    """
+
+    sentence: str = 'auto'
+    heading: float = 0.0
+    declination: float = 0.0
+    columns: Sequence[str] = ()
+    factor: float = 1.0
+    names: WindNames = field(default_factory=WindNames)
+    found: str = field(default='', init=False)
+    """First good kind; empty before it."""
+
+    @property
+    def reading(self) -> str:
+        """Kind that is read; empty before it is known."""
+        return self.found if self.sentence == 'auto' else self.sentence
+
+    def __call__(self, message: Message) -> Sequence[Reading]:
+        """Read the lines of a message."""
+        found = list[Reading]()
+        for line in message.data.decode('utf-8', 'replace').splitlines():
+            if not line.strip():
+                continue
+            for each in self._read(line):
+                if isinstance(each, WindReading) and not self.reading:
+                    self.found = each.kind
+                if not self.reading or each.kind == self.reading:
+                    found.append(each)
+        return found
+
+    def _read(self, line: str) -> Iterator[Reading]:
+        said = parse_nmea(line, self.heading, self.declination) or parse_sonic(line, self.heading)
+        if said is not None:
+            yield _of_sensor_line(said)
+            return
+        if line.lstrip().startswith(('{', '[')):
+            document = parse_json(line.encode())
+            yield from self.names.read(document, 'JSON') if document is not None else ()
+            return
+        one = (
+            read_wxt(line, self.heading)
+            or read_young(line, self.heading, self.factor)
+            or read_numbers(line, self.columns, self.heading, self.factor)
+        )
+        if one is not None:
+            yield one
+        elif pairs := _PAIR.findall(line):
+            named = {f'{name}_{unit}' if unit else name: value for name, value, unit in pairs}
+            yield from self.names.read(named, 'name=value')
+
+
+def _of_sensor_line(said: SensorLine) -> Reading:
+    if said.velocity is None:
+        return Refusal(said.kind, said.refusal.split("'")[0].strip())
+    return of_velocity(said.kind, said.velocity)
+
+
+def lines_of(address: SourceAddress) -> InstrumentLines:
+    """Make a reader from the options of an address; a `TreeSwayError` for a wrong one."""
+    sentence = address.text_of('sentence', 'auto')
+    if sentence not in LINE_KINDS:
+        raise address.error(f"sentence is '{sentence}'", f'use {", ".join(LINE_KINDS)}')
+    return InstrumentLines(
+        sentence,
+        address.angle('heading_degrees'),
+        address.angle('declination_degrees'),
+        columns_of(address.text_of('columns')),
+        unit_factor(address),
+        names_of(address),
+    )

@@ -1,0 +1,57 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Path of a value in JSON: ``attributes.wind_speed``, ``data.conditions[0].wind_speed_last``."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+from tree_sway.errors import ParameterError
+
+_STEP = re.compile(r'\[(\d+)\]|([^.\[\]]+)')
+_PATH = re.compile(r'(\$\.?)?([^.\[\]]+|\[\d+\])((\.[^.\[\]]+)|(\[\d+\]))*')
+
+
+class JsonPath:
+    """
+    A path of names and of indices in brackets; ``$.`` may begin it.
+
+    Raises
+    ------
+    ParameterError
+        Text that is no path.
+
+    """
+
+    def __init__(self, text: str) -> None:
+        if not _PATH.fullmatch(text):
+            raise ParameterError(
+                f"'{text}' is no path", cure='write it as data.conditions[0].speed'
+            )
+        self.text = text
+        self._steps: list[str | int] = [
+            int(index) if index else name
+            for index, name in _STEP.findall(text.removeprefix('$').removeprefix('.'))
+        ]
+
+    def find(self, document: Any) -> Any:
+        """Return the value, None where there is none."""
+        for step in self._steps:
+            if isinstance(step, int):
+                is_there = isinstance(document, list) and step < len(document)
+            else:
+                is_there = isinstance(document, dict) and step in document
+            if not is_there:
+                return None
+            document = document[step]
+        return document
+
+
+def parse_json(data: bytes) -> Any:
+    """Return a document; None for any other text, as for JSON's own null."""
+    try:
+        return json.loads(data)
+    except (ValueError, RecursionError):
+        return None

@@ -1,0 +1,49 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Stations that send to a server: Ecowitt, Froggit, Ambient, and all that know Weather Underground.
+
+Ecowitt posts a form with ``windspeedmph``, ``windgustmph`` and ``winddir``; in the protocol of
+Weather Underground the same names are in the query of a GET. Speeds are in miles per hour in both.
+A station sends every 8 to 60 s: a shorter interval than 20 s is the wind itself, others are means.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from urllib.parse import parse_qsl
+
+from tree_sway.sensors.readers.named_values import WindNames
+from tree_sway.sensors.reading import Reading, Refusal
+from tree_sway.sensors.source_address import SourceAddress
+from tree_sway.sensors.source_kind import Source, SourceKind
+from tree_sway.sensors.transports.http_server import HttpServer
+from tree_sway.sensors.transports.transport import Message
+
+_KIND = 'upload'
+_MOST_FIELDS = 500
+_NAMES = WindNames()
+
+
+def read_upload(message: Message) -> Sequence[Reading]:
+    """Read a form of the two protocols."""
+    try:
+        form = parse_qsl(message.data.decode('utf-8', 'replace'), max_num_fields=_MOST_FIELDS)
+    except ValueError:
+        return [Refusal(_KIND, 'too many fields')]
+    return _NAMES.read(dict(form), _KIND)
+
+
+def open_ecowitt(address: SourceAddress) -> Source:
+    """Open a server on a port: ``ecowitt:8080``, on one address of this machine with ``host``."""
+    text = address.place
+    if not text.isdigit() or not 0 < int(text) < 65_536:
+        raise address.error('no port', 'give ecowitt:8080, and that port in the station')
+    server = HttpServer(int(text), address.text_of('host', '0.0.0.0'))
+    expects = 'the upload of Ecowitt or of Weather Underground, with windspeedmph'
+    return Source(server, read_upload, 'weather station', expects)
+
+
+SOURCES = (
+    SourceKind(('ecowitt',), 'ecowitt:PORT', 'a station that sends to this machine', open_ecowitt),
+)

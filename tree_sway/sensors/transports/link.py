@@ -1,0 +1,91 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A thread that listens to a transport and connects again when the connection breaks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+import time
+
+from tree_sway.errors import shown
+from tree_sway.sensors.transports.transport import Message, Transport
+from tree_sway.worker import Worker
+
+FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
+"""Pause between two attempts [s]: doubled from the first to the longest while there is no data."""
+
+
+@dataclass(eq=False)
+class Link(Worker):
+    """
+    Connection over a transport; calls `take` with each message, in its own thread.
+
+    A connection without a message for the time of `silence` [s], by default the transport's, is
+    closed and opened again, first after `first_pause` [s]. An exception of `take` breaks it too.
+    """
+
+    transport: Transport
+    take: Callable[[Message], None]
+    log: Callable[[str], None]
+    silence: float | None = None
+    first_pause: float = FIRST_PAUSE
+
+    def __post_init__(self) -> None:
+        """Prepare the thread."""
+        super().__init__('instrument')
+        self.is_up = False
+        """Whether there is a connection."""
+        self.connections = self.messages = 0
+        self.failure = ''
+        """Reason of the last failure; empty while there is a connection."""
+        self._latest = 0.0
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the transport is to end."""
+        return self._stopping.is_set() or self._is_silent
+
+    def opened(self) -> None:
+        """Note that the connection is made."""
+        self._latest = time.monotonic()
+        self.is_up, self.failure = True, ''
+        self.connections += 1
+        self.log(f'listening to {self.transport}')
+
+    def deliver(self, message: Message) -> None:
+        """Count a message and hand it on."""
+        self._latest = time.monotonic()
+        self.messages += 1
+        self.take(message)
+
+    def pause(self, seconds: float) -> None:
+        """Wait some seconds [s], or until the thread is stopped."""
+        self._stopping.wait(seconds)
+
+    @property
+    def _limit(self) -> float:
+        return self.transport.silence if self.silence is None else self.silence
+
+    @property
+    def _is_silent(self) -> bool:
+        return self.is_up and time.monotonic() - self._latest > self._limit
+
+    def _run(self) -> None:
+        pause = self.first_pause
+        while not self._stopping.is_set():
+            before = self.messages
+            try:
+                self.transport.listen(self)
+                why = f'nothing for {self._limit:g} s' if self._is_silent else 'it ended'
+            except ConnectionError as error:
+                why = str(error) or type(error).__name__
+            except Exception as error:  # an instrument may fail in any way
+                why = f'{type(error).__name__}: {error}'
+            why = shown(why, 200)
+            if not self._stopping.is_set() and (self.is_up or why != self.failure):
+                self.log(f'{self.transport}: {why}; trying again')
+            self.is_up, self.failure = False, why
+            has_data = self.messages > before
+            pause = self.first_pause if has_data else min(2.0 * pause, LONGEST_PAUSE)
+            self._stopping.wait(pause)
