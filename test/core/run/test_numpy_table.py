@@ -37,7 +37,7 @@ def pair():
 
 def random_state(bank, rng, size):
     """Return displacements, rates and forces whose energy is a share of the largest of winds."""
-    table = bank.table.record[0]
+    table = bank.table[0]
     n_modes = int(table['n_modes'])
     stiffness = table['stiffness'][:n_modes]
     state = np.zeros((3, len(table['stiffness'])))

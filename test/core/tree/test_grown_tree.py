@@ -19,7 +19,9 @@ WIND = np.full((3, 3), 4.0)
 SEEDLING = Path(__file__).parents[2] / 'files' / 'data' / 'seedling.yaml'
 DOORS = {
     'make_simulator': lambda tree, **options: sway.make_simulator(tree, model='branch', **options),
-    'prepare': lambda tree, **options: prepare(tree, model='branch', **options),
+    'prepare': lambda tree, **options: sway.make_simulator(
+        prepare(tree, model='branch', **options)
+    ),
     'simulate': lambda tree, **options: sway.simulate(tree, WIND, model='branch', **options),
     'Scene': lambda tree, **options: sway.Scene([sway.PlacedTree('one', tree)]).simulator(
         model='branch', **options
@@ -45,7 +47,9 @@ def test_an_opened_tree_may_be_given_as_it_is(opened, door):
     made = DOORS[door](opened)
     apart = {
         'make_simulator': lambda: sway.make_simulator(opened.tree, opened.species, model='branch'),
-        'prepare': lambda: prepare(opened.tree, opened.species, model='branch'),
+        'prepare': lambda: sway.make_simulator(
+            prepare(opened.tree, opened.species, model='branch')
+        ),
         'simulate': lambda: sway.simulate(opened, WIND, model='branch'),
         'Scene': lambda: sway.Scene(
             [sway.PlacedTree('one', opened.tree, species=opened.species)]

@@ -85,8 +85,8 @@ def test_another_species_is_set_up_anew(file):
     [
         (lambda path: path.write_bytes(path.read_bytes()[:900]), 'zip'),
         (lambda path: path.write_text('hello'), 'zip'),
-        (lambda path: rewritten(path, about=None), 'no text about it'),
-        (lambda path: rewritten(path, about=np.array('{')), 'no JSON'),
+        (lambda path: rewritten(path, about=None), 'no JSON'),
+        (lambda path: rewritten(path, about=np.ones(2)), 'no text about it'),
         (lambda path: with_about(path, format='glTF'), 'another format'),
         (lambda path: with_about(path, version=VERSION + 1), f'version {VERSION + 1}'),
         (lambda path: with_about(path, species={'key': 3}), 'tree or settings'),

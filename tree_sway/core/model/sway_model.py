@@ -32,8 +32,9 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.tree.wood import Species
 from tree_sway.errors import FormatError
 
-PLACING, LOADS, COORDINATES, TABLE, ISOLATED, LIMBS = (
+PLACING, LOADS, COORDINATES, TABLE, ISOLATED, LIMBS, LIMB_LOADS = (
     'placing', 'loads of branches', 'coordinates', 'table', 'isolated branches', 'limbs',
+    'loads of limbs',
 )  # fmt: skip
 """Groups of arrays."""
 
@@ -278,7 +279,7 @@ class SwayModel:
         LIMBS, ('delays',), '', 'share of these limbs in the load',
     )] = field(default_factory=_absent)  # fmt: skip
     limb_harmonics: Annotated[Floats, Meaning(
-        LIMBS, ('delays', N_HARMONICS, 'm'), 'm^2', 'load at rest on these limbs, as harmonics',
+        LIMB_LOADS, ('delays', N_HARMONICS, 'm'), 'm^2', 'load at rest on these limbs, as harmonics',
     )] = field(default_factory=_absent)  # fmt: skip
 
     def __repr__(self) -> str:
@@ -359,6 +360,7 @@ class SwayModel:
             TABLE: self.has_table,
             ISOLATED: self.is_isolated,
             LIMBS: self.has_limbs,
+            LIMB_LOADS: self.has_limbs and self.has_table,
         }[group]
 
     def _sizes(self) -> dict[int | str, int]:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
-from tree_sway.core.model.model_cache import PREPARED
+from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.run.simulator import Counts, SwaySimulator
 from tree_sway.core.scene.make import simulator_of, solved
@@ -102,14 +102,20 @@ class Rig:
     """A tree set up once for several simulations from rest, as by `simulate`."""
 
     def __init__(
-        self, tree: Tree | GrownTree, settings: Settings | None = None, **changes: Any
+        self,
+        tree: Tree | GrownTree,
+        settings: Settings | None = None,
+        *,
+        tolerance: float = 0.005,
+        cache: ModelCache | None = PREPARED,
+        **changes: Any,
     ) -> None:
         """Reduce the tree, once for the simulator and for its strain."""
         bare, species = tree_and_species(tree)
         chosen = settings_with(settings, changes)
         self.tree, self.reductions = bare, TreeReductions(bare, species, solved(chosen))
-        auto = {'tolerance': 0.005} if chosen.model == 'auto' else {}
-        self.simulator = simulator_of(self.reductions, cache=PREPARED, **auto)
+        auto = {'tolerance': tolerance} if chosen.model == 'auto' else {}
+        self.simulator = simulator_of(self.reductions, cache=cache, **auto)
 
     def run(
         self,

@@ -58,6 +58,7 @@ def write_model(path: str | Path, model: SwayModel) -> None:
         'format': _FORMAT,
         'version': VERSION,
         'name': tree.name,
+        'tree_species': tree.species,
         'branch_names': list(tree.branch_names),
         'species': _plain(model.species),
         'settings': _plain(settings),
@@ -151,7 +152,7 @@ def _tree(about: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Tree:
         branch=np.repeat(np.arange(len(sizes)), sizes),
         branch_names=[str(name) for name in about['branch_names']],
         name=str(about['name']),
-        species=str(about['species']['key']),
+        species=str(about['tree_species']),
     )
     if not np.array_equal(tree.branch_first, first) or not np.array_equal(
         tree.start, arrays['start']
