@@ -54,6 +54,14 @@ if 'bdist_wheel' in sys.argv:
     data_files.append((f'lib/{PACKAGE}', launchers()))
 
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
+#: Where numba has wheels; elsewhere pip would try to compile it, and a tree runs on numpy.
+NUMBA = (
+    'numba>=0.59; platform_python_implementation == "CPython" and python_version < "3.15" and '
+    '(sys_platform == "linux" and platform_machine == "x86_64" or '
+    'sys_platform == "linux" and platform_machine == "aarch64" or '
+    'sys_platform == "win32" and platform_machine == "AMD64" or '
+    'sys_platform == "darwin" and platform_machine == "arm64")'
+)
 extras = {
     # Compiled kernels; without numba the same model runs on numpy, slower (doc/faq.md).
     'fast': ['numba>=0.59'],
@@ -91,9 +99,9 @@ extras = {
     # Studies on all cores or a cluster; tables as Parquet.
     'study': ['distributed>=2023.1', 'cryptography>=41'],
     'parquet': ['pyarrow>=12'],
-    # Wind of reanalyses; inventories of spreadsheets and of geographic information systems.
+    # Wind of reanalyses; inventories in spreadsheets.
     'netcdf': ['netCDF4>=1.6'],
-    'inventory': ['openpyxl>=3.1', 'pyogrio>=0.7'],
+    'inventory': ['openpyxl>=3.1'],
     'docs': ['sphinx>=7', 'myst-parser>=2'],
 }
 
@@ -121,6 +129,8 @@ setup(
         'PyYAML>=6',
         'jsonschema>=4.10',
         'aiohttp>=3.8',
+        'tqdm>=4.60',
+        NUMBA,
     ],
     extras_require=extras,
     zip_safe=False,

@@ -36,7 +36,7 @@ STOREYS = {
     'growth': 3, 'leaves': 3, 'numpy_rotation': 3, 'model': 3,
     'setup': 4,
     'run': 5,
-    'fidelity': 7, 'identification': 7, 'strength': 7,
+    'fidelity': 7, 'identification': 7, 'observe': 7, 'strength': 7,
     'scene': 8,
 }  # fmt: skip
 CORE_LIBRARIES = {'numpy', 'scipy', 'numba', 'tree_sway'}

@@ -56,8 +56,9 @@ def test_a_tree_of_a_stand_sways_as_it_does_alone(kinds):
         assert stand.step(wind, DT) == 0
         alone.step(wind, DT)
     placed = stand.place()[stand.segments_of('b')]
-    assert placed[:, :3] - [4.0, 2.0, 0.5] == pytest.approx(alone.place()[:, :3], abs=1e-12)
-    assert placed[:, 3:] == pytest.approx(alone.place()[:, 3:], abs=1e-12)
+    # Rounding: without the compiler, BLAS adds the products of a batch in an order of its own.
+    assert placed[:, :3] - [4.0, 2.0, 0.5] == pytest.approx(alone.place()[:, :3], abs=1e-11)
+    assert placed[:, 3:] == pytest.approx(alone.place()[:, 3:], abs=1e-11)
 
 
 def test_a_turned_tree_in_a_turned_wind_is_the_same_tree_turned(kinds):

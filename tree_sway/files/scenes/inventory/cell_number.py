@@ -1,0 +1,55 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers as people write them in inventories: ``12 m``, ``6-10 m``, ``30' - 40'``, ``> 35``."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from tree_sway.files.column_names import unit_factor
+from tree_sway.files.text_file import finite
+
+_NUMBER = re.compile(r'(?<![\w.])\d+(?:[.,]\d+)?')
+_UNIT = re.compile(r"[\d\s]([a-zA-Z]+\.?|'|\")\s*$")
+_SEVERAL = re.compile(r'\d\D{0,4}?(?:[+;&]|,\s)\s*\d')
+_SPLIT = re.compile(r'[+;&]|,\s')
+_WORDS = ('tot', 'to', 'bis', 'à', 'a', 'und', 'ca', 'bzw')
+
+
+def cell_number(text: str) -> tuple[float, str] | None:
+    """
+    Return the number of a cell and its unit, the middle of a range; None if it has none.
+
+    The unit is empty unless it is one of lengths. A cell with other words is no number.
+    """
+    plain = finite(text)
+    if plain is not None:
+        return plain, ''
+    if _SEVERAL.search(text):
+        return None
+    numbers = [float(each.replace(',', '.')) for each in _NUMBER.findall(text)]
+    if not 1 <= len(numbers) <= 2 or (text.strip()[:1] in '-−' and len(numbers) == 1):
+        return None
+    found = _UNIT.search(text)
+    unit = found[1].rstrip('.') if found and unit_factor('length', found[1].rstrip('.')) else ''
+    words = re.findall(r'[^\W\d_]+', text.lower())
+    if any(word not in _WORDS and unit_factor('length', word) is None for word in words):
+        return None
+    return sum(numbers) / len(numbers), unit
+
+
+def stems_number(text: str) -> tuple[float, str] | None:
+    """
+    Return the number of a cell of one stem or several, as `cell_number`.
+
+    Stems such as ``320, 280`` or ``30+25`` are one of the sum of their sections.
+    """
+    if not _SEVERAL.search(text):
+        return cell_number(text)
+    found = [cell_number(part) for part in _SPLIT.split(text)]
+    stems = [each for each in found if each is not None]
+    if len(stems) != len(found):
+        return None
+    unit = next((unit for _, unit in stems if unit), '')
+    return math.sqrt(sum(value**2 for value, _ in stems)), unit
