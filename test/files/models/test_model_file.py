@@ -96,7 +96,7 @@ def test_another_species_is_set_up_anew(file):
         (lambda path: rewritten(path, stiffness=None), "'stiffness': missing"),
         (lambda path: rewritten(path, tree_start=None), 'tree_start'),
         (lambda path: rewritten(path, tree_branch_first=np.array([0, 3])), 'without segments'),
-        (lambda path: rewritten(path, stiffness=np.ones(60)), 'not those that were written'),
+        (lambda path: rewritten(path, stiffness=np.ones(25)), 'not those that were written'),
         (lambda path: rewritten(path, extra=np.array([{}], dtype=object)), 'no prepared model'),
     ],
 )  # fmt: skip

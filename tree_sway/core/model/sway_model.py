@@ -279,7 +279,7 @@ class SwayModel:
         LIMBS, ('delays',), '', 'share of these limbs in the load',
     )] = field(default_factory=_absent)  # fmt: skip
     limb_harmonics: Annotated[Floats, Meaning(
-        LIMB_LOADS, ('delays', N_HARMONICS, 'm'), 'm^2', 'harmonics of the load at rest on these limbs',
+        LIMB_LOADS, ('delays', N_HARMONICS, 'm'), 'm^2', 'their load at rest, by harmonics',
     )] = field(default_factory=_absent)  # fmt: skip
 
     def __repr__(self) -> str:
