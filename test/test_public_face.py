@@ -37,8 +37,7 @@ def test_every_name_is_there(name: str) -> None:
     assert name in dir(tree_sway)
 
 
-def test_about_twenty_names_and_no_other() -> None:
-    assert 15 <= len(tree_sway.__all__) <= 25
+def test_sorted_names_and_no_other() -> None:
     assert sorted(tree_sway.__all__) == list(tree_sway.__all__)
     with pytest.raises(AttributeError, match="has no attribute 'trunk'"):
         _ = tree_sway.trunk
@@ -93,14 +92,14 @@ def test_from_a_tree_to_a_record_of_its_sway() -> None:
 
 def test_one_default_model_behind_every_door() -> None:
     from tree_sway.commands.cli import _parser, _table
-    from tree_sway.core.scene.make import make_simulator
+    from tree_sway.core.run.simulator import SwaySimulator
     from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 
     default = tree_sway.Settings().model
     tree = tree_sway.open_tree(SEEDLING).tree
     doors = (
         tree_sway.make_simulator(tree),
-        make_simulator(tree),
+        SwaySimulator(tree_sway.prepare(tree)),
         tree_sway.Scene([tree_sway.PlacedTree('one', tree)]).simulator(),
     )
     assert [each.model for each in doors] == [str(default)] * len(doors)
