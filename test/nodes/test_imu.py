@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Motion sensors over ROS: topics by a parameter, covariances, and a report of each."""
 
+from dataclasses import replace
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,8 +14,17 @@ pytestmark = pytest.mark.ros
 
 from sensor_msgs.msg import Imu  # noqa: E402, I100
 
+from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
+from tree_sway.core.observe.observed_tree import ObservedTree  # noqa: E402
+from tree_sway.core.observe.simulated_sensor import SimulatedSensor  # noqa: E402
+from tree_sway.core.run.simulator import SwaySimulator  # noqa: E402
+from tree_sway.core.scene.run import Run  # noqa: E402
+from tree_sway.core.scene.simulate import PlacedMotion, simulate  # noqa: E402
+from tree_sway.core.tree.species import species_named  # noqa: E402
+from tree_sway.core.wind.intake import WindIntake  # noqa: E402
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
-from tree_sway_ros.nodes.imu_intake import places_of  # noqa: E402
+from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of  # noqa: E402
 from tree_sway_ros.process.topics import IMU  # noqa: E402
 from tree_sway_ros.reports.diagnostics import WARN  # noqa: E402
 from tree_sway_ros.wire.imu_messages import motion_from_message  # noqa: E402
@@ -87,6 +98,72 @@ def test_a_clock_of_its_own_is_told_with_the_cure(compose, observer, tree_file, 
         return report is not None and 'synchronise the clocks' in report.message
 
     observer.until(is_told, 'the cure')
+
+
+PERIOD = 16_666_667
+BEGIN = 60_000 * PERIOD
+"""Period of the steps, and stamp of the first sample [ns]."""
+
+
+class IntakeNode:
+    """The part of a node that the intake of a sensor calls, without a graph."""
+
+    stamp_limits = {'lead': 10**12, 'lag': 10**12}  # noqa: RUF012
+
+    def __init__(self):
+        self.receive = None
+
+    def subscription(self, topic, receive):
+        self.receive = receive
+
+    def get_clock(self):
+        return SimpleNamespace(now=lambda: SimpleNamespace(nanoseconds=BEGIN))
+
+
+def test_messages_move_a_tree_as_a_recording_does():
+    """`simulate` and the steps of the solver, which follow the wind later, give one motion."""
+    tree, at = builtin_tree('goldcrest'), 'segment:3'
+    softer = replace(species_named('goldcrest'), modulus=6.0e9)
+    rng, dt = np.random.default_rng(21), PERIOD * 1e-9
+    wind = simulate_turbulence(4.0, rate=60.0, duration=30.0, rng=rng)
+    true, poses = SwaySimulator(tree, softer, crown_coherence=0.3), np.empty((len(wind), 7))
+    for k, each in enumerate(wind):
+        true.step(each, dt)
+        poses[k] = true.place()[3]
+    motion = SimulatedSensor(rate=60.0).measured(poses, dt, rng)
+    placed = PlacedMotion('tree/imu', at, motion.time, motion.acceleration, motion.rate)
+    record = SimpleNamespace(time=dt * np.arange(0, len(wind), 6), velocity=wind[::6])
+    known = simulate(tree, record, motion=[placed])
+    assert not any('mounting' in note for note in known.notes)
+
+    twin = ObservedTree(tree, at={'tree/imu': at}, rate=60.0)
+    tips = []
+    run = Run(
+        twin, 60.0, intake=WindIntake.of_velocities(), starting=twin.set_time,
+        stepped=lambda end, mean: tips.append(twin.tip_displacement.copy()),
+    )  # fmt: skip
+    node = IntakeNode()
+    ImuIntake(node, run, twin)
+    for stamp, force, rate in zip(motion.time, motion.acceleration, motion.rate, strict=True):
+        message = imu(BEGIN * 1e-9 + stamp)
+        for vector, values in (
+            (message.linear_acceleration, force),
+            (message.angular_velocity, rate),
+        ):
+            vector.x, vector.y, vector.z = values.tolist()
+        node.receive(message)
+    for k, each in enumerate(wind.tolist()):
+        if k % 6 == 0:
+            run.offer(BEGIN + k * PERIOD, tuple(each), BEGIN + k * PERIOD)
+        run.advance(BEGIN + k * PERIOD, delay=dt)
+    assert twin.observer.is_active
+    later = slice(27 * 60, len(known.tips) - 12)
+    wanted = known.tips[later, 0]
+    found = np.array(tips)
+    # A period of the wind of six steps, a delay of one, and a first step at the first stamp.
+    late = 6 + 1 + 1
+    wrong = found[later.start + late : later.stop + late] - wanted
+    assert np.std(wrong, axis=0).max() < 0.01 * np.std(wanted, axis=0).max()
 
 
 def test_sensors_on_a_forest_are_refused(compose, tmp_path, tree_file):

@@ -13,7 +13,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.axis import aim, direction_of, GOLDEN_ANGLE, grow_axis, heading_of
-from tree_sway.core.growth.forms import broadleaf_form
+from tree_sway.core.growth.forms import broadleaf_form, BroadleafForm
 from tree_sway.core.growth.skeleton import Skeleton
 from tree_sway.core.growth.thickness import finished_tree
 from tree_sway.core.growth.twigs import add_twigs
@@ -27,13 +27,15 @@ def grow_broadleaf(
     height: float = 8.0,
     diameter: float = 0.18,
     species: str = 'broadleaf',
+    form: BroadleafForm | None = None,
 ) -> Tree:
     """
     Grow a tree with a trunk, limbs, branches and twigs, as in `finished_tree`.
 
-    The same state of the source of randomness gives the same tree.
+    ``form`` is that of the species if None. The same state of the source of randomness gives the
+    same tree.
     """
-    form, skeleton = broadleaf_form(species), Skeleton()
+    form, skeleton = form or broadleaf_form(species), Skeleton()
 
     def add_limb(at: int, azimuth: float, here: float) -> None:
         """Add a limb at a height of the trunk, from 0 at the lowest limb to 1, with branches."""

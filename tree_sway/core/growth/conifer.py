@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.growth.axis import direction_of, grow_axis
-from tree_sway.core.growth.forms import conifer_form
+from tree_sway.core.growth.forms import conifer_form, ConiferForm
 from tree_sway.core.growth.skeleton import Skeleton
 from tree_sway.core.growth.thickness import finished_tree
 from tree_sway.core.growth.twigs import add_twigs
@@ -26,10 +26,14 @@ STEM_TAPER = 0.7
 
 
 def grow_conifer(
-    rng: np.random.Generator, height: float = 12.0, diameter: float = 0.2, species: str = 'spruce'
+    rng: np.random.Generator,
+    height: float = 12.0,
+    diameter: float = 0.2,
+    species: str = 'spruce',
+    form: ConiferForm | None = None,
 ) -> Tree:
     """Grow whorls on a straight stem; arguments are those of `grow_broadleaf`."""
-    form, skeleton = conifer_form(species), Skeleton()
+    form, skeleton = form or conifer_form(species), Skeleton()
 
     def add_branch(at: int, azimuth: float, here: float) -> None:
         """Add a branch at a height of the crown from 0 to 1, as long as the crown is wide."""

@@ -10,13 +10,18 @@ Forms are those of trees in the open, drawn from descriptions in field guides (M
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+import math
 from typing import TypeVar
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.tree.crown_allometry import CrownChange
 from tree_sway.tables import table_beside
+
+_HIGHEST_BASE, _LARGEST_HALF_WIDTH = 0.8, 0.7
+"""Bounds of a crown that follows the diameter of its stem, over the height of the tree."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,14 @@ class Outline:
         away = np.clip(np.maximum(low, high), 0.0, 1.0)
         power = np.where(u < self.widest, self.below, self.above)
         return np.asarray(self.half_width * (1.0 - away**power) ** (1.0 / power))
+
+    def changed(self, change: CrownChange) -> Outline:
+        """Return the outline of a crown that is wider and begins lower, or the reverse."""
+        logit = math.log(self.base / (1.0 - self.base)) + change.bare
+        base = min(1.0 / (1.0 + math.exp(-logit)), max(_HIGHEST_BASE, self.base))
+        widest = max(_LARGEST_HALF_WIDTH, self.half_width)
+        half_width = min(self.half_width * change.width, widest)
+        return replace(self, base=base, half_width=half_width)
 
     def room(self, origin: Floats, way: Floats) -> float:
         """Distance from a point along a unit vector to the crown's surface; 0 from the outside."""
@@ -182,3 +195,12 @@ def broadleaf_form(species: str) -> BroadleafForm:
 def conifer_form(species: str) -> ConiferForm:
     """Habit of a species grown as a conifer; that of an average one if it is unknown."""
     return _CONIFERS.get(species, _CONIFERS['any'])
+
+
+def changed_form(form: _Form, change: CrownChange) -> _Form:
+    """Return a habit whose crown is changed; the lowest limb moves with the base of the crown."""
+    outline = form.outline.changed(change)
+    if not isinstance(form, BroadleafForm):
+        return replace(form, outline=outline)
+    bole = form.bole + outline.base - form.outline.base
+    return replace(form, outline=outline, bole=min(bole, max(0.8 * form.trunk, form.bole)))

@@ -7,7 +7,8 @@ Without a measured diameter a broadleaf is 45 of its diameters high, as first-or
 trees (allometry of 4,824 branches). The diameter of a conifer is proportional to the height to the
 power 1.5, so that trees of all sizes keep the same reserve against bending over (elastic
 similarity: McMahon 1973); at 20 m it is 60 diameters high, below the 70 that foresters consider
-stable (Wang, Titus & LeMay 1998), and never more than 90.
+stable (Wang, Titus & LeMay 1998), and never more than 90. A measured diameter thins or widens the
+crown with the stem (`crown_change`).
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ from tree_sway.core.beams.greenhill import greenhill_length
 from tree_sway.core.growth.benjamina import grow_benjamina
 from tree_sway.core.growth.broadleaf import grow_broadleaf
 from tree_sway.core.growth.conifer import grow_conifer
-from tree_sway.core.growth.forms import broadleaf_form
+from tree_sway.core.growth.forms import broadleaf_form, changed_form, conifer_form
 from tree_sway.core.growth.goldcrest import grow_goldcrest
+from tree_sway.core.tree.crown_allometry import crown_change
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
@@ -77,19 +79,26 @@ def grow(
     if not low <= height <= high:
         what = f"height {height:g} m is out of range for the habit '{kind}'"
         raise ParameterError(what, where='height', cure=f'give {low:g} to {high:g} m')
+    usual = height / _slenderness(kind, species, height)
     if diameter is None:
-        diameter = height / _slenderness(kind, species, height)
+        diameter = usual
     thinnest, thickest = stem_range(wood, height)
     if not thinnest <= diameter <= thickest:
         why = 'would bend over under its own weight' if diameter < thinnest else 'is no stem'
         what = f'diameter {diameter:.4g} m at a height of {height:g} m {why}'
         cure = f'give {thinnest:.3g} to {thickest:.3g} m'
         raise ParameterError(what, where='diameter', cure=cure)
-    if kind == 'pot':
-        generator = grow_goldcrest if species == 'goldcrest' else grow_benjamina
+    change = crown_change(species, height, usual, diameter)
+    if kind == 'conifer':
+        conifer = changed_form(conifer_form(species), change)
+        tree = grow_conifer(rng, height, diameter, species, conifer)
+    elif kind == 'broadleaf':
+        broadleaf = changed_form(broadleaf_form(species), change)
+        tree = grow_broadleaf(rng, height, diameter, species, broadleaf)
     else:
-        generator = grow_conifer if kind == 'conifer' else grow_broadleaf
-    return replace(generator(rng, height, diameter, species), name=name or species)
+        generator = grow_goldcrest if species == 'goldcrest' else grow_benjamina
+        tree = generator(rng, height, diameter, species)
+    return replace(tree, name=name or species)
 
 
 def _slenderness(kind: str, species: str, height: float) -> float:

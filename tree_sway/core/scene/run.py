@@ -293,7 +293,9 @@ class Run:
             self._wind.add(self._seconds(time), velocity)
         wind = self._wind.mean(self._felt - dt, self._felt)
         if not self.is_paused:
-            self._starting(end * 1e-9 - delay - self._wind.lateness)
+            # A sample acts a period after its time, when the next one is known.
+            behind = delay + self._wind.lateness + (self._wind.period or 0.0)
+            self._starting(end * 1e-9 - behind)
             self._solve(end, wind, dt)
 
     def _solve(self, end: int, wind: Floats, dt: float) -> None:

@@ -5,7 +5,9 @@ Crowns of trees of a species by stem diameter and height.
 
 Width and depth of crowns are the linear fits of ForestGALES, width on the diameter at breast
 height and depth on the height (Hale et al. 2015, Forest Ecology and Management 354, 255-266; table
-of the R package fgr: Locatelli et al. 2022, Environmental Modelling & Software 148).
+of the R package fgr: Locatelli et al. 2022, Environmental Modelling & Software 148). How far the
+crown reaches down follows slenderness and diameter (Hasenauer & Monserud 1996, Forest Ecology and
+Management 84, 49-60; coefficients of Hasenauer 2000, as the R package Prognaus has them).
 """
 
 from __future__ import annotations
@@ -34,6 +36,18 @@ _WIDTH_AND_DEPTH = {
     'eucalyptus': (0.064, 15.49, 1.7828, 0.3486),
 }
 """Width [m] at 0 and per [m] of diameter; depth [m] at 0 and per [m] of height [-]."""
+
+_CROWN_RATIO = {
+    'spruce': (0.011232, -0.63580e-4),
+    'fir': (0.007637, -0.74049e-4),
+    'larch': (0.009106, 0.0),
+    'pine': (0.002942, 0.0),
+    'beech': (0.007435, -1.35686e-4),
+    'oak': (0.005525, -1.10735e-4),
+    'conifer': (0.011232, -0.63580e-4),
+    'broadleaf': (0.006490, -1.22350e-4),
+}
+"""Logit of the bare share of a stem per height over diameter [-] and per diameter^2 [1/cm^2]."""
 
 _OF_HABIT = {'conifer': ('spruce', 'sitka', 'douglas_fir'), 'broadleaf': ('birch', 'beech', 'oak')}
 """Species whose means are used for others of a habit."""
@@ -82,6 +96,44 @@ def crown_size(species: str, diameter: float, height: float) -> CrownSize | None
     width_0, width_1, depth_0, depth_1 = np.mean(rows, axis=0).tolist()
     depth = min(max(depth_0 + depth_1 * height, 0.1 * height), height)
     return CrownSize(width_0 + width_1 * diameter, depth)
+
+
+class CrownChange(NamedTuple):
+    """How a crown differs from that of a tree of the usual diameter for its height."""
+
+    width: float
+    """Its width over the usual one [-]."""
+    bare: float
+    """Added to the logit of the share of the stem below the crown [-]."""
+
+
+def crown_change(
+    species: str, height: float, usual_diameter: float, diameter: float
+) -> CrownChange:
+    """
+    Return how the diameter of a stem changes the crown of a tree of a height.
+
+    Parameters
+    ----------
+    species
+        Key of the species; those without an allometry have that of their habit.
+    height
+        Height in [m].
+    usual_diameter, diameter
+        Diameters at breast height in [m].
+
+    """
+    habit = species_named(species).habit
+    usual = crown_size(species, usual_diameter, height)
+    own = crown_size(species, diameter, height)
+    if usual is None or own is None:
+        return CrownChange(1.0, 0.0)
+    of_slenderness, of_section = _CROWN_RATIO.get(species, _CROWN_RATIO[habit])
+    slenderness = height / diameter - height / usual_diameter
+    section = (100.0 * diameter) ** 2 - (100.0 * usual_diameter) ** 2
+    return CrownChange(
+        own.width / usual.width, of_slenderness * slenderness + of_section * section
+    )
 
 
 def breast_height_diameter(tree: Tree) -> float | None:
