@@ -46,6 +46,12 @@ LAYOUT = {
 }
 """Kinds of tokens that are not counted."""
 
+SIMULATORS = (
+    ('tree_sway/core/run/simulator.py', 'SwaySimulator'),
+    ('tree_sway/core/scene/scene_simulator.py', 'SceneSimulator'),
+)
+"""Simulators of one tree and of many: their public names are compared, if both are there."""
+
 SHORT = 2
 """Most letters of a short name."""
 
@@ -194,6 +200,25 @@ def public_names(module: ast.Module) -> Iterator[str]:
                         yield name.id
 
 
+def names_of_class(path: Path, name: str) -> set[str] | None:
+    """Return the public names of the instances of a class; None if it is not there."""
+    if not path.is_file():
+        return None
+    for node in ast.parse(path.read_text(encoding='utf-8')).body:
+        if isinstance(node, ast.ClassDef) and node.name == name:
+            functions = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
+            set_on_self = {
+                each.attr
+                for each in ast.walk(node)
+                if isinstance(each, ast.Attribute)
+                and isinstance(each.ctx, ast.Store)
+                and isinstance(each.value, ast.Name)
+                and each.value.id == 'self'
+            }
+            return {each for each in functions | set_on_self if not each.startswith('_')}
+    return None
+
+
 def count_of(path: Path) -> Count:
     """Count one module."""
     source = path.read_text(encoding='utf-8')
@@ -290,6 +315,9 @@ def main() -> None:
     share = rooms[largest].tokens / library.tokens
     row(f'share of the largest room in the library: {largest}', f'{share:.1%}')
     row('names that `import tree_sway` offers', f'{offered()}')
+    one, many = (names_of_class(ROOT / path, name) for path, name in SIMULATORS)
+    if one is not None and many is not None:
+        row('public names that a simulator of one or of many lacks', f'{len(one ^ many)}')
     row('public names that library and nodes define', f'{library.public + nodes.public:,}')
     folder = ROOT / arguments.names
     if folder.is_dir():

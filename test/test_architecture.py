@@ -33,7 +33,7 @@ LAYERS = {
 STOREYS = {
     'arrays': 0, 'kernel': 1, 'checks': 1, 'tree': 1,
     'rotation': 2, 'wind': 2, 'beams': 2, 'oscillators': 2,
-    'growth': 3, 'leaves': 3, 'numpy_rotation': 3, 'model': 3,
+    'growth': 3, 'leaves': 3, 'numpy_rotation': 3, 'vector': 3, 'model': 3,
     'setup': 4,
     'run': 5,
     'fidelity': 7, 'identification': 7, 'observe': 7, 'strength': 7,

@@ -9,6 +9,8 @@ crown.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from tree_sway.core.arrays import Floats
@@ -20,6 +22,10 @@ from tree_sway.core.growth.twigs import add_twigs
 from tree_sway.core.tree.tree import Tree
 
 _N_NODES = 12
+_STEEP = (1.57, 1.47)
+"""Angle of the trunk above the horizon at its foot and its top in [rad]."""
+_STEEPEST = 1.4
+"""Largest angle of the end of a limb or branch above the horizon in [rad]."""
 
 
 def grow_broadleaf(
@@ -35,53 +41,76 @@ def grow_broadleaf(
     ``form`` is that of the species if None. The same state of the source of randomness gives the
     same tree.
     """
-    form, skeleton = form or broadleaf_form(species), Skeleton()
+    growth = _Growth(rng, form or broadleaf_form(species), Skeleton())
+    growth.add_trunk_and_limbs()
+    law = {'exponent': growth.form.exponent, 'bole_taper': growth.form.taper}
+    return finished_tree(growth.skeleton, height, diameter, species, **law)
 
-    def add_limb(at: int, azimuth: float, here: float) -> None:
+
+@dataclass(frozen=True)
+class _Growth:
+    """
+    A tree that grows from the trunk to the twigs, in lengths over its height.
+
+    The order of random numbers is part of each built-in tree.
+    """
+
+    rng: np.random.Generator
+    form: BroadleafForm
+    skeleton: Skeleton
+
+    def add_trunk_and_limbs(self) -> None:
+        """Add the trunk and its limbs, from the lowest to the top."""
+        form, rng = self.form, self.rng
+        facing = rng.uniform(0.0, 2.0 * np.pi)
+        axis = grow_axis(
+            np.zeros(3), facing, _STEEP, form.trunk, _N_NODES, rng, wander=0.6 * form.wander
+        )
+        trunk = self.skeleton.add(axis)
+        lowest = max(1, round(form.bole / form.trunk * _N_NODES))
+        nodes = np.linspace(lowest, _N_NODES, form.n_limbs).round().astype(int)
+        if form.is_opposite:
+            nodes = nodes[np.arange(form.n_limbs) // 2 * 2]
+        roll = rng.uniform(0.0, 2.0 * np.pi)
+        for i, node in enumerate(nodes.tolist()):
+            azimuth = roll + _turn_of(i, form.is_opposite) + rng.uniform(-0.15, 0.15)
+            self._add_limb(trunk, node, azimuth, (node - lowest) / (_N_NODES - lowest))
+
+    def _add_limb(self, trunk: int, at: int, azimuth: float, height: float) -> None:
         """Add a limb at a height of the trunk, from 0 at the lowest limb to 1, with branches."""
-        origin = skeleton.shoots[trunk].nodes[at]
+        form, rng = self.form, self.rng
+        origin = self.skeleton.shoots[trunk].nodes[at]
         (low, high), (bent_low, bent_high) = form.rise, form.turn
-        rise = low + (high - low) * here + rng.uniform(-0.1, 0.1)
-        end = min(rise + bent_low + (bent_high - bent_low) * here, 1.4)
+        rise = low + (high - low) * height + rng.uniform(-0.1, 0.1)
+        end = min(rise + bent_low + (bent_high - bent_low) * height, _STEEPEST)
         heading = direction_of(azimuth, 0.5 * (rise + end))
         length = max(0.85 * form.outline.room(origin, heading), 0.08) * rng.uniform(0.85, 1.0)
         axis = grow_axis(origin, azimuth, (rise, end), length, 8, rng, wander=form.wander)
-        limb = skeleton.add(axis, trunk, at)
+        limb = self.skeleton.add(axis, trunk, at)
         roll = rng.uniform(0.0, np.pi)
         nodes = np.linspace(2.0, 8.0, form.n_branches).round().astype(int)
         for i, node in enumerate(nodes.tolist()):
             side = roll + _turn_of(i, form.is_opposite) + rng.uniform(-0.3, 0.3)
             angle = form.spread * rng.uniform(0.8, 1.2)
-            add_branch(limb, node, aim(skeleton.shoots[limb].tangent(node), angle, side))
+            tangent = self.skeleton.shoots[limb].tangent(node)
+            self._add_branch(limb, node, aim(tangent, angle, side))
 
-    def add_branch(limb: int, at: int, heading: Floats) -> None:
+    def _add_branch(self, limb: int, at: int, heading: Floats) -> None:
         """Add a branch of a limb with its twigs in a flat spray."""
-        origin = skeleton.shoots[limb].nodes[at]
+        form, rng = self.form, self.rng
+        origin = self.skeleton.shoots[limb].nodes[at]
         azimuth, rise = heading_of(heading)
         longest = 0.55 * form.outline.half_width
         length = float(np.clip(0.85 * form.outline.room(origin, heading), 0.06, longest))
         length *= rng.uniform(0.8, 1.0)
-        ends = rise, float(np.clip(rise + form.branch_turn, -1.3, 1.4))
-        segments, wander = 6 if length > 0.1 else 4, 1.2 * form.wander
-        axis = grow_axis(origin, azimuth, ends, length, segments, rng, wander=wander, floor=0.03)
-        branch, sides = skeleton.add(axis, limb, at), (0.2, np.pi - 0.2)
-        add_twigs(skeleton, branch, form.twig, 0.75, sides, first_node=2, lift=form.lift)
-
-    facing, wander = rng.uniform(0.0, 2.0 * np.pi), 0.6 * form.wander
-    steep = (1.57, 1.47)
-    trunk = skeleton.add(
-        grow_axis(np.zeros(3), facing, steep, form.trunk, _N_NODES, rng, wander=wander)
-    )
-    lowest = max(1, round(form.bole / form.trunk * _N_NODES))
-    nodes = np.linspace(lowest, _N_NODES, form.n_limbs).round().astype(int)
-    if form.is_opposite:
-        nodes = nodes[np.arange(form.n_limbs) // 2 * 2]
-    roll = rng.uniform(0.0, 2.0 * np.pi)
-    for i, node in enumerate(nodes.tolist()):
-        azimuth = roll + _turn_of(i, form.is_opposite) + rng.uniform(-0.15, 0.15)
-        add_limb(node, azimuth, (node - lowest) / (_N_NODES - lowest))
-    law = {'exponent': form.exponent, 'bole_taper': form.taper}
-    return finished_tree(skeleton, height, diameter, species, **law)
+        ends = rise, float(np.clip(rise + form.branch_turn, -1.3, _STEEPEST))
+        n_segments = 6 if length > 0.1 else 4
+        axis = grow_axis(
+            origin, azimuth, ends, length, n_segments, rng, wander=1.2 * form.wander, floor=0.03
+        )
+        branch = self.skeleton.add(axis, limb, at)
+        sides = 0.2, np.pi - 0.2
+        add_twigs(self.skeleton, branch, form.twig, 0.75, sides, first_node=2, lift=form.lift)
 
 
 def _turn_of(i: int, is_opposite: bool) -> float:

@@ -243,7 +243,12 @@ class Instance:
     middle_rate: Annotated[Floats, 'modes']
     wanted: Annotated[Floats, 'modes']
     diagonal: Annotated[Floats, 'modes']
-    scratch: Annotated[Singles, 7, 'modes']
+    # Load by the distance from poses of the table, damping by rates, and the rates themselves:
+    turned: Annotated[Singles, 'modes']
+    damped: Annotated[Singles, 'modes']
+    single_rate: Annotated[Singles, 'modes']
+    distance: Annotated[Singles, 4, 'modes']  # distance from each of four poses, times its weight
+    shown: Annotated[Singles, 'modes']  # coordinates less their hidden part
     values: Annotated[Floats, N_HARMONICS]
     left_out: int  # number of last coordinates that are neither shown nor loaded
     hidden: Annotated[Floats, 'modes']  # part of each coordinate that is not shown

@@ -3,8 +3,8 @@
 """
 A step of a tree on its table of winds in numpy: `wind_basis` without a compiler.
 
-The formulas and the records are those of `wind_basis_force.wind_force` and
-`wind_basis.step_instance`; a step is a few products of (m, m) matrices. Fields that the kernels
+The formulas and the records are those of `table_load.wind_force` and
+`table_model.step_instance`; a step is a few products of (m, m) matrices. Fields that the kernels
 read in single precision are multiplied in single precision here too.
 """
 
@@ -153,7 +153,7 @@ def wind_force(
 
 
 def _located(table: Views, x: float, y: float, eta: Floats) -> tuple[int, int, int, float, float]:
-    """Locate a wind and a lean in a table, as `wind_basis_force.table_corners`."""
+    """Locate a wind and a lean in a table, as `table_load.find_corners`."""
     turn = math.atan2(y, x) * (0.5 / math.pi) * N_AZIMUTHS
     whole = math.floor(turn)
     share = turn - whole
@@ -194,7 +194,7 @@ def step_instance(
     wind: tuple[float, float, float],
     per_speed_squared: float,
 ) -> int:
-    """Step one tree on its table, as `wind_basis.step_instance`."""
+    """Step one tree on its table, as `table_model.step_instance`."""
     x, y, z = wind
     speed = math.sqrt(x * x + y * y + z * z)
     direction = (x / speed, y / speed, z / speed) if speed > 0.0 else (1.0, 0.0, 0.0)
@@ -248,7 +248,7 @@ def step_in_wind(
     z: float,
 ) -> int:
     """
-    Check a wind [m/s] and step one tree, as `wind_basis.step_in_wind`.
+    Check a wind [m/s] and step one tree, as `table_model.step_in_wind`.
 
     Returns the sum of 1 if the wind was refused, and 2 if it was clamped to the table's limit.
     """

@@ -64,7 +64,7 @@ def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
 @part
 def _expand(instances: Instances, shapes: Singles, x: Floats) -> None:
     instance = instances[0]
-    eta, hidden, shown = instance.eta, instance.hidden, instance.scratch[0]
+    eta, hidden, shown = instance.eta, instance.hidden, instance.shown
     for k in range(len(eta)):
         shown[k] = eta[k] - hidden[k]
     shown = shown[: shapes.shape[1] - instance.left_out]
@@ -222,49 +222,90 @@ def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, n: int)
 
     Returns a bound on the squared half angle of any segment.
     """
-    key, parent, steepest = scratch.key, scratch.parent_base, block.steepest
-    rotation, frame, base, sine = scratch.base_half, block.frame, scratch.base, scratch.sine_part
-    half_rotation, half_key, bound = scratch.half_rotation, scratch.half_key, scratch.bound
+    key, frame, parent, half_key = scratch.key, block.frame, scratch.parent_base, scratch.half_key
+    on_parent, base, sine = scratch.base_half, scratch.base, scratch.sine_part
+    half_rotation, bound, steepest = scratch.half_rotation, scratch.bound, block.steepest
     support, start, offset = scratch.support, scratch.next, block.offset
     for j in range(n):
-        u, v = key[0, j], key[1, j]
-        t = u * u + v * v
-        blend = min(max((t - _BLEND_FROM) * _PER_BLEND, 0.0), 1.0)
-        bounded = 0.5 * min(t, _STRETCH_TO)
-        own = 0.5 + bounded * block.skew[j]
-        half = own + bounded * blend * (block.tip_skew[j] - block.skew[j])
-        wx = half * (u * frame[2, 0, j] - v * frame[1, 0, j])
-        wy = half * (u * frame[2, 1, j] - v * frame[1, 1, j])
-        wz = half * (u * frame[2, 2, j] - v * frame[1, 2, j])
-        base[4, j], base[5, j] = own * u, own * v
-        half_rotation[0, j], half_rotation[1, j], half_rotation[2, j] = wx, wy, wz
-        half_key[0, j], half_key[1, j] = half * u, half * v
-        scratch.blend[j], scratch.rotation_square[j] = blend, half * half * t
-        bound[j] = half * half * t * steepest[0, j]
-        c, s = scratch.cosine[j], scratch.sinc[j]
-        bw, bx, by, bz = product(
+        key_x, key_y = key[0, j], key[1, j]
+        square = key_x * key_x + key_y * key_y
+        carrying, half, blend = _halves(square, block.skew[j], block.tip_skew[j])
+        base[4, j], base[5, j] = carrying * key_x, carrying * key_y
+        half_key[0, j], half_key[1, j] = half * key_x, half * key_y
+        scratch.blend[j], scratch.rotation_square[j] = blend, half * half * square
+        bound[j] = half * half * square * steepest[0, j]
+        # x rotates the chord about the axis e2 of the branch, y about -e1.
+        rx = half * (key_x * frame[2, 0, j] - key_y * frame[1, 0, j])
+        ry = half * (key_x * frame[2, 1, j] - key_y * frame[1, 1, j])
+        rz = half * (key_x * frame[2, 2, j] - key_y * frame[1, 2, j])
+        half_rotation[0, j], half_rotation[1, j], half_rotation[2, j] = rx, ry, rz
+        cosine, sinc = scratch.cosine[j], scratch.sinc[j]
+        qw, qx, qy, qz = product(
             parent[0, j], parent[1, j], parent[2, j], parent[3, j],
-            c, s * rotation[0, j], s * rotation[1, j], s * rotation[2, j],
+            cosine, sinc * on_parent[0, j], sinc * on_parent[1, j], sinc * on_parent[2, j],
         )  # fmt: skip
-        base[0, j], base[1, j], base[2, j], base[3, j] = bw, bx, by, bz
-        sine[0, j] = -bx * wx - by * wy - bz * wz
-        sine[1, j] = bw * wx + by * wz - bz * wy
-        sine[2, j] = bw * wy - bx * wz + bz * wx
-        sine[3, j] = bw * wz + bx * wy - by * wx
+        base[0, j], base[1, j], base[2, j], base[3, j] = qw, qx, qy, qz
+        sine[0, j], sine[1, j], sine[2, j], sine[3, j] = _times_vector(qw, qx, qy, qz, rx, ry, rz)
         start[0, j], start[1, j], start[2, j] = _along(support, j, scale * offset[0, j])
     if not block.is_at_axes:
         _go_aside(support, start, scale, offset, n)
     if block.n_rows > 2:
+        _take_further(block, scratch, x, n)
+    return _largest(bound, n)
+
+
+@part
+def _halves(square: float, skew: float, tip_skew: float) -> tuple[float, float, float]:
+    """
+    Find what half a key rotation is, stretched so that the chord has the angle of the key.
+
+    ``square`` is the squared key rotation in [rad^2].
+
+    Returns
+    -------
+    tuple
+        Half a rotation for the branches that it carries, for its own segments, and the fraction
+        of the slope of a load at the tip in the latter.
+
+    """
+    blend = min(max((square - _BLEND_FROM) * _PER_BLEND, 0.0), 1.0)
+    stretched = 0.5 * min(square, _STRETCH_TO)
+    carrying = 0.5 + stretched * skew
+    return carrying, carrying + stretched * blend * (tip_skew - skew), blend
+
+
+@part
+def _times_vector(
+    w: float, x: float, y: float, z: float, vx: float, vy: float, vz: float
+) -> tuple[float, float, float, float]:
+    """Multiply a quaternion by a vector, a quaternion without real part."""
+    return (
+        -x * vx - y * vy - z * vz,
+        w * vx + y * vz - z * vy,
+        w * vy - x * vz + z * vx,
+        w * vz + x * vy - y * vx,
+    )
+
+
+@part
+def _take_further(block: Block, scratch: Block, x: Floats, n: int) -> None:
+    """Halve the coordinates after the key rotations, and raise the bounds on angles by them."""
+    half_key, bound, steepest = scratch.half_key, scratch.bound, block.steepest
+    for j in range(0, n, 4):
+        _read_further(x, block.coordinate, half_key, j)
+    for j in range(n):
+        total = bound[j]
+        for c in range(2, half_key.shape[0]):
+            half = 0.5 * half_key[c, j]
+            half_key[c, j] = half
+            total += half * half * steepest[c, j]
         # The square of a sum of n is at most n times the sum of the squares.
-        for j in range(0, n, 4):
-            _read_further(x, block.coordinate, half_key, j)
-        for j in range(n):
-            most = bound[j]
-            for c in range(2, half_key.shape[0]):
-                half = 0.5 * half_key[c, j]
-                half_key[c, j] = half
-                most += half * half * steepest[c, j]
-            bound[j] = most * block.bound_factor[j]
+        bound[j] = total * block.bound_factor[j]
+
+
+@part
+def _largest(bound: Floats, n: int) -> float:
+    """Return the largest bound, or the sum of all where that is near enough to zero."""
     total, largest = 0.0, 0.0
     for j in range(n):
         total += bound[j]
@@ -349,32 +390,18 @@ def _bend(
     segment: Segment, scratch: Block, scale: float, block: Block, largest: float, n: int
 ) -> None:
     """Rotate sixteen segments from rest by all coordinates of their branches, and join them."""
-    mode, half, square, rest = segment.rotation_mode, scratch.half, scratch.square, segment.rest
-    base, half_key, rotation = scratch.base, scratch.half_key, scratch.half_rotation
-    pose, blend, start, chord = scratch.pose, scratch.blend, scratch.next, segment.own_chord
     if block.n_rows == 2:
-        for j in range(n):
-            slope = segment.slope[j]
-            slope += blend[j] * (segment.tip_slope[j] - slope)
-            hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]
-            half[0, j], half[1, j], half[2, j] = hx, hy, hz
-            square[j] = hx * hx + hy * hy + hz * hz
+        _rotate_plain(segment, scratch, n)
     else:
-        # All rows of the record: with a count known at compile time the slots are a vector.
-        for j in range(n):
-            slope = blend[j] * (segment.tip_slope[j] - segment.slope[j])
-            hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]
-            for c in range(mode.shape[0]):
-                u = half_key[c, j]
-                hx, hy, hz = hx + u * mode[c, 0, j], hy + u * mode[c, 1, j], hz + u * mode[c, 2, j]
-            half[0, j], half[1, j], half[2, j] = hx, hy, hz
-            square[j] = hx * hx + hy * hy + hz * hz
+        _rotate_by_all(segment, scratch, n)
     _half_angles(scratch, largest, n)
+    base, half, rest, pose = scratch.base, scratch.half, segment.rest, scratch.pose
+    start, chord = scratch.next, segment.own_chord
     for j in range(n):
-        c, s = scratch.cosine[j], scratch.sinc[j]
+        cosine, sinc = scratch.cosine[j], scratch.sinc[j]
         w, x, y, z = product(
             base[0, j], base[1, j], base[2, j], base[3, j],
-            c, s * half[0, j], s * half[1, j], s * half[2, j],
+            cosine, sinc * half[0, j], sinc * half[1, j], sinc * half[2, j],
         )  # fmt: skip
         w, x, y, z = product(w, x, y, z, rest[0, j], rest[1, j], rest[2, j], rest[3, j])
         pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
@@ -382,3 +409,36 @@ def _bend(
         start[0, j], start[1, j], start[2, j] = _along(pose, j, scale * chord[0, j])
     if not block.is_joined:
         _go_aside(pose, start, scale, chord, n)
+
+
+@part
+def _rotate_plain(segment: Segment, scratch: Block, n: int) -> None:
+    """Find half the rotation vectors of sixteen segments of branches with key rotations alone."""
+    rotation, half, blend = scratch.half_rotation, scratch.half, scratch.blend
+    for j in range(n):
+        slope = segment.slope[j]
+        slope += blend[j] * (segment.tip_slope[j] - slope)
+        hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]
+        half[0, j], half[1, j], half[2, j] = hx, hy, hz
+        scratch.square[j] = hx * hx + hy * hy + hz * hz
+
+
+@part
+def _rotate_by_all(segment: Segment, scratch: Block, n: int) -> None:
+    """
+    Find half the rotation vectors of sixteen segments, by all coordinates of their branches.
+
+    All rows of the record are summed: with a count known at compile time the slots are a vector.
+    """
+    rotation, half, blend = scratch.half_rotation, scratch.half, scratch.blend
+    mode, half_key = segment.rotation_mode, scratch.half_key
+    for j in range(n):
+        slope = blend[j] * (segment.tip_slope[j] - segment.slope[j])
+        hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]
+        for c in range(mode.shape[0]):
+            amount = half_key[c, j]
+            hx += amount * mode[c, 0, j]
+            hy += amount * mode[c, 1, j]
+            hz += amount * mode[c, 2, j]
+        half[0, j], half[1, j], half[2, j] = hx, hy, hz
+        scratch.square[j] = hx * hx + hy * hy + hz * hz

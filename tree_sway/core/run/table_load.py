@@ -1,152 +1,296 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Modal forces of a uniform wind from the table of a tree."""
+"""
+Modal forces of a uniform wind from the table of a tree (`setup.load_table` has the equation).
+
+A wind and a lean lie between four poses of the table: at the azimuths before and after the wind,
+and at the levels of the lean below and above that of the tree. Every field is interpolated between
+these four corners.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Singles
+from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import part
-from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS, Table
+from tree_sway.core.model.records import Instance, N_AZIMUTHS, N_LEVELS, Table
 from tree_sway.core.model.spherical_harmonics import fill_harmonics
 
 STEEP = math.sin(math.radians(45.0))
 """Sine of the elevation above which slopes are blended with those of vertical wind."""
 
 
+class UniformWind(NamedTuple):
+    """A wind that is the same at all branches."""
+
+    x: float
+    """Components of its unit vector."""
+    y: float
+    z: float
+    dynamic_pressure: float
+    """``p U^2`` in [kg/m/s^2], U the speed."""
+    per_speed_squared: float
+    """`drag_law.pressure` p in [kg/m^3]."""
+
+
+class Corners(NamedTuple):
+    """The four corners around a wind and a lean."""
+
+    before: int
+    """Azimuth before that of the wind."""
+    after: int
+    below: int
+    """Level below the lean of the tree; the other is the next."""
+    above: int
+    azimuth_share: float
+    """Fraction of the way from the azimuth before to the one after."""
+    level_share: float
+    """Fraction of the way from the level below to the one above."""
+
+
+class Weights(NamedTuple):
+    """Bilinear weights of the corners. Their sum is 1 in winds that are not steep."""
+
+    before_below: float
+    before_above: float
+    after_below: float
+    after_above: float
+
+
 @part
-def table_corners(
-    table: Table, x: float, y: float, eta: Floats
-) -> tuple[int, int, int, float, float]:
-    """
-    Locate a wind and a lean in a table.
-
-    Returns
-    -------
-    tuple
-        Azimuths before and after, level below, and shares of the way to the next azimuth and to
-        the next level.
-
-    """
-    turn = math.atan2(y, x) * (0.5 / math.pi) * N_AZIMUTHS
-    whole = math.floor(turn)
-    share = turn - whole
-    first = int(whole) % N_AZIMUTHS
-    second = (first + 1) % N_AZIMUTHS
+def find_corners(table: Table, x: float, y: float, eta: Floats) -> Corners:
+    """Find the corners around a horizontal direction and the lean at some coordinates (m,)."""
+    position = math.atan2(y, x) * (0.5 / math.pi) * N_AZIMUTHS
+    whole = math.floor(position)
+    share = position - whole
+    before = int(whole) % N_AZIMUTHS
+    after = (before + 1) % N_AZIMUTHS
     rest = 1.0 - share
     lean = 0.0
     for i in range(len(eta)):
-        lean += (rest * table.amount[first, i] + share * table.amount[second, i]) * eta[i]
-    j = 0
-    below = rest * table.levels[first, 0] + share * table.levels[second, 0]
-    above = rest * table.levels[first, 1] + share * table.levels[second, 1]
-    while j < N_LEVELS - 2 and lean > above:
-        j += 1
-        below = above
-        above = rest * table.levels[first, j + 1] + share * table.levels[second, j + 1]
-    up = min(max((lean - below) / (above - below), 0.0), 1.0)
-    return first, second, j, share, up
+        lean += (rest * table.amount[before, i] + share * table.amount[after, i]) * eta[i]
+    level = 0
+    low = rest * table.levels[before, 0] + share * table.levels[after, 0]
+    high = rest * table.levels[before, 1] + share * table.levels[after, 1]
+    while level < N_LEVELS - 2 and lean > high:
+        level += 1
+        low = high
+        high = rest * table.levels[before, level + 1] + share * table.levels[after, level + 1]
+    level_share = min(max((lean - low) / (high - low), 0.0), 1.0)
+    return Corners(before, after, level, level + 1, share, level_share)
 
 
 @part
-def wind_force(
-    table: Table, x: float, y: float, z: float, dynamic_pressure: float, per_speed_squared: float,
-    eta: Floats, rate: Floats, values: Floats, scratch: Singles, force: Floats, diagonal: Floats,
-    n_coupled: int,
-) -> None:  # fmt: skip
+def wind_force(table: Table, instance: Instance, wind: UniformWind, n_coupled: int) -> None:
     """
-    Find the modal forces of a uniform wind.
+    Find the modal forces of a uniform wind on a tree.
 
     Parameters
     ----------
     table
         Record of `table_layout`.
-    x, y, z
-        Unit vector of the wind.
-    dynamic_pressure, per_speed_squared
-        Dynamic pressure ``p U^2`` in [kg/m/s^2] and p in [kg/m^3].
-    eta, rate
-        Coordinates and their rates, (m,).
-    values, scratch
-        Harmonics, (h,), and scratch memory in single precision, (7, m), both written.
-    force, diagonal
-        Modal forces, and their slopes by the rate of the coordinate, (m,), both written; the
-        slopes include those by the others, with equal rates.
+    instance
+        Record of `instance_layout`. ``middle`` and ``middle_rate`` are the coordinates and their
+        rates. Written are the forces, ``wanted``, and their slopes by the rate of the coordinate,
+        ``diagonal``, which include those by the others, with equal rates.
+    wind
+        The wind.
     n_coupled
         Number of coordinates whose motion loads all; each of the others damps only itself.
 
     """
-    m = len(eta)
-    fill_harmonics(x, y, z, values)
-    first, second, j, share, up = table_corners(table, x, y, eta)
-    steep = max(0.0, (abs(z) - STEEP) / (1.0 - STEEP))
-    level, slant, pole = 1.0 - steep, min(max(z, -STEEP), STEEP), 1 if z > 0.0 else 0
-    e, f = level * (1.0 - share), level * share
-    a, b, c, d = e * (1.0 - up), e * up, f * (1.0 - up), f * up
-    turned, damped, rates, off = scratch[0], scratch[1], scratch[2], scratch[3:]
-    moving = dynamic_pressure / per_speed_squared if per_speed_squared > 0.0 else 0.0
-    for i in range(m):
-        on = table.equilibrium[first, j + 1, i] - table.equilibrium[first, j, i]
-        by = table.equilibrium[second, j + 1, i] - table.equilibrium[second, j, i]
-        away = eta[i] - (1.0 - share) * (table.equilibrium[first, j, i] + up * on)
-        away -= share * (table.equilibrium[second, j, i] + up * by)
-        # Half of the way to each pose, so that loads between levels are cubic.
-        off[0, i] = a * (away + 0.5 * up * on)
-        off[1, i] = b * (away - 0.5 * (1.0 - up) * on)
-        off[2, i] = c * (away + 0.5 * up * by)
-        off[3, i] = d * (away - 0.5 * (1.0 - up) * by)
-        rates[i] = rate[i]
-        moving += table.motion[i] * rate[i] * rate[i]
+    fill_harmonics(wind.x, wind.y, wind.z, instance.values)
+    corners = find_corners(table, wind.x, wind.y, instance.middle)
+    steepness = max(0.0, (abs(wind.z) - STEEP) / (1.0 - STEEP))
+    weights = _weights_of(corners, 1.0 - steepness)
+    drag = _drag_per_speed(table, instance, wind)
+    _begin(table, instance, corners, weights)
+    _find_distances(table, instance, corners, weights)
+    _add_harmonics(instance.values, table.harmonics, instance.wanted)
+    _add_slopes(table, instance, corners, weights, _slants(corners, wind.z, steepness), n_coupled)
+    _fill_diagonal(table, instance, corners, weights, drag)
+    if steepness > 0.0:
+        upwards = 1 if wind.z > 0.0 else 0
+        _add_steep_slopes(table, instance, upwards, steepness, drag, n_coupled)
+    _sum_up(table, instance, wind.dynamic_pressure, drag, n_coupled)
+    _take_off_cross_damping(table, instance, corners, weights, drag)
+
+
+@part
+def _weights_of(corners: Corners, level_winds: float) -> Weights:
+    """Find the weights of the corners, which add up to a share of winds that are not steep."""
+    before = level_winds * (1.0 - corners.azimuth_share)
+    after = level_winds * corners.azimuth_share
+    up = corners.level_share
+    return Weights(before * (1.0 - up), before * up, after * (1.0 - up), after * up)
+
+
+@part
+def _slants(corners: Corners, z: float, steepness: float) -> tuple[np.float32, np.float32]:
+    """Find the weights of the change of slopes by the elevation, at the two azimuths."""
+    slant = min(max(z, -STEEP), STEEP)
+    before = (1.0 - steepness) * (1.0 - corners.azimuth_share)
+    after = (1.0 - steepness) * corners.azimuth_share
+    return np.float32(before * slant), np.float32(after * slant)
+
+
+@part
+def _begin(table: Table, instance: Instance, corners: Corners, weights: Weights) -> None:
+    """Begin the forces with the interpolated load."""
+    force, turned, damped = instance.wanted, instance.turned, instance.damped
+    before, after, below, above = corners.before, corners.after, corners.below, corners.above
+    for i in range(len(force)):
         force[i] = (
-            a * table.load[first, j, i] + b * table.load[first, j + 1, i]
-            + c * table.load[second, j, i] + d * table.load[second, j + 1, i]
-        )  # fmt: skip
+            weights.before_below * table.load[before, below, i]
+            + weights.before_above * table.load[before, above, i]
+            + weights.after_below * table.load[after, below, i]
+            + weights.after_above * table.load[after, above, i]
+        )
         turned[i] = damped[i] = 0.0
-    drag = per_speed_squared * math.sqrt(moving)
+
+
+@part
+def _find_distances(table: Table, instance: Instance, corners: Corners, weights: Weights) -> None:
+    """Find how far the tree is from the poses at the corners, times their weights."""
+    eta, distance = instance.middle, instance.distance
+    before, after, below, above = corners.before, corners.after, corners.below, corners.above
+    share, up = corners.azimuth_share, corners.level_share
+    for i in range(len(eta)):
+        low, other_low = table.equilibrium[before, below, i], table.equilibrium[after, below, i]
+        step = table.equilibrium[before, above, i] - low
+        other_step = table.equilibrium[after, above, i] - other_low
+        away = eta[i] - (1.0 - share) * (low + up * step)
+        away -= share * (other_low + up * other_step)
+        # Half of the way to each pose, so that loads between levels are cubic.
+        distance[0, i] = weights.before_below * (away + 0.5 * up * step)
+        distance[1, i] = weights.before_above * (away - 0.5 * (1.0 - up) * step)
+        distance[2, i] = weights.after_below * (away + 0.5 * up * other_step)
+        distance[3, i] = weights.after_above * (away - 0.5 * (1.0 - up) * other_step)
+
+
+@part
+def _drag_per_speed(table: Table, instance: Instance, wind: UniformWind) -> float:
+    """
+    Find the drag per speed of the branches, ``p W`` in [kg/m^2/s].
+
+    W is the root mean square of the wind and the velocity of the branches. Rates are kept in
+    single precision for `_add_slopes`.
+    """
+    rate, single_rate = instance.middle_rate, instance.single_rate
+    square = 0.0
+    if wind.per_speed_squared > 0.0:
+        square = wind.dynamic_pressure / wind.per_speed_squared
+    for i in range(len(rate)):
+        single_rate[i] = rate[i]
+        square += table.motion[i] * rate[i] * rate[i]
+    return wind.per_speed_squared * math.sqrt(square)
+
+
+@part
+def _add_harmonics(values: Floats, harmonics: Floats, force: Floats) -> None:
+    """Add the load at rest, a sum of harmonics (h, m) by their values at the wind (h,)."""
     for k in range(len(values)):
-        for i in range(m):
-            force[i] += values[k] * table.harmonics[k, i]
-    a4, b4, c4, d4 = np.float32(a), np.float32(b), np.float32(c), np.float32(d)
-    e4, f4 = np.float32(e * slant), np.float32(f * slant)
+        for i in range(len(force)):
+            force[i] += values[k] * harmonics[k, i]
+
+
+@part
+def _add_slopes(
+    table: Table, instance: Instance, corners: Corners, weights: Weights,
+    slants: tuple[np.float32, np.float32], n_coupled: int,
+) -> None:  # fmt: skip
+    """
+    Add the load by the distance from the corners, and the damping by the rates.
+
+    The moving coordinate is the outer loop, so that the loop over the loaded ones is a vector.
+    """
+    eta, rates, distance = instance.middle, instance.single_rate, instance.distance
+    turned, damped = instance.turned, instance.damped
+    turning, damping, lean = table.turning, table.damping, table.lean
+    before, after, below, above = corners.before, corners.after, corners.below, corners.above
+    before_below = np.float32(weights.before_below)
+    before_above = np.float32(weights.before_above)
+    after_below = np.float32(weights.after_below)
+    after_above = np.float32(weights.after_above)
     for k in range(n_coupled):
-        moving_at, slow = rates[k], np.float32(eta[k])
-        am, bm, cm, dm = off[0, k], off[1, k], off[2, k], off[3, k]
-        av, bv, cv, dv = a4 * moving_at, b4 * moving_at, c4 * moving_at, d4 * moving_at
-        em, fm = e4 * slow, f4 * slow
-        for i in range(m):
+        away_0, away_1 = distance[0, k], distance[1, k]
+        away_2, away_3 = distance[2, k], distance[3, k]
+        rate_0, rate_1 = before_below * rates[k], before_above * rates[k]
+        rate_2, rate_3 = after_below * rates[k], after_above * rates[k]
+        moved = np.float32(eta[k])
+        slant_before, slant_after = slants[0] * moved, slants[1] * moved
+        for i in range(len(eta)):
             turned[i] += (
-                am * table.turning[first, j, k, i] + bm * table.turning[first, j + 1, k, i]
-                + cm * table.turning[second, j, k, i] + dm * table.turning[second, j + 1, k, i]
-                + em * table.lean[first, k, i] + fm * table.lean[second, k, i]
+                away_0 * turning[before, below, k, i] + away_1 * turning[before, above, k, i]
+                + away_2 * turning[after, below, k, i] + away_3 * turning[after, above, k, i]
+                + slant_before * lean[before, k, i] + slant_after * lean[after, k, i]
             )  # fmt: skip
             damped[i] += (
-                av * table.damping[first, j, k, i] + bv * table.damping[first, j + 1, k, i]
-                + cv * table.damping[second, j, k, i] + dv * table.damping[second, j + 1, k, i]
+                rate_0 * damping[before, below, k, i] + rate_1 * damping[before, above, k, i]
+                + rate_2 * damping[after, below, k, i] + rate_3 * damping[after, above, k, i]
             )  # fmt: skip
-    for i in range(m):
+
+
+@part
+def _fill_diagonal(
+    table: Table, instance: Instance, corners: Corners, weights: Weights, drag: float
+) -> None:
+    """Fill the slopes of the forces by the rate of the same coordinate."""
+    diagonal, below, above = instance.diagonal, corners.below, corners.above
+    before, after = corners.before, corners.after
+    for i in range(len(diagonal)):
         diagonal[i] = drag * (
-            a * table.damping[first, j, i, i] + b * table.damping[first, j + 1, i, i]
-            + c * table.damping[second, j, i, i] + d * table.damping[second, j + 1, i, i]
-        )  # fmt: skip
-    if steep > 0.0:
-        s4 = np.float32(steep)
-        for k in range(n_coupled):
-            moved, moving_at = s4 * np.float32(eta[k]), s4 * rates[k]
-            for i in range(m):
-                turned[i] += moved * table.steep_turning[pole, k, i]
-                damped[i] += moving_at * table.steep_damping[pole, k, i]
-            diagonal[k] += drag * steep * table.steep_damping[pole, k, k]
-    for i in range(m):
+            weights.before_below * table.damping[before, below, i, i]
+            + weights.before_above * table.damping[before, above, i, i]
+            + weights.after_below * table.damping[after, below, i, i]
+            + weights.after_above * table.damping[after, above, i, i]
+        )
+
+
+@part
+def _add_steep_slopes(
+    table: Table, instance: Instance, upwards: int, steepness: float, drag: float, n_coupled: int
+) -> None:
+    """Add the slopes in winds straight up or down, by the share that the wind has of them."""
+    turned, damped, share = instance.turned, instance.damped, np.float32(steepness)
+    for k in range(n_coupled):
+        moved, rate = share * np.float32(instance.middle[k]), share * instance.single_rate[k]
+        for i in range(len(turned)):
+            turned[i] += moved * table.steep_turning[upwards, k, i]
+            damped[i] += rate * table.steep_damping[upwards, k, i]
+        instance.diagonal[k] += drag * steepness * table.steep_damping[upwards, k, k]
+
+
+@part
+def _sum_up(
+    table: Table, instance: Instance, dynamic_pressure: float, drag: float, n_coupled: int
+) -> None:
+    """Sum the forces of load and damping."""
+    force, turned, damped = instance.wanted, instance.turned, instance.damped
+    limit, diagonal, rate = table.limit, instance.diagonal, instance.middle_rate
+    for i in range(len(force)):
         # Slopes are valid near a pose; the load far from it is bounded by that of any wind.
-        load = min(max(force[i] + turned[i], -table.limit[i]), table.limit[i])
+        load = min(max(force[i] + turned[i], -limit[i]), limit[i])
         force[i] = dynamic_pressure * load + drag * damped[i]
-    for i in range(n_coupled, m):
+    for i in range(n_coupled, len(force)):
         force[i] += diagonal[i] * rate[i]
-    for i in range(m):
+
+
+@part
+def _take_off_cross_damping(
+    table: Table, instance: Instance, corners: Corners, weights: Weights, drag: float
+) -> None:
+    """Take the damping by the rates of the other coordinates off the slopes."""
+    diagonal, below, above = instance.diagonal, corners.below, corners.above
+    before, after = corners.before, corners.after
+    for i in range(len(diagonal)):
         diagonal[i] -= drag * (
-            a * table.cross_damping[first, j, i] + b * table.cross_damping[first, j + 1, i]
-            + c * table.cross_damping[second, j, i] + d * table.cross_damping[second, j + 1, i]
-        )  # fmt: skip
+            weights.before_below * table.cross_damping[before, below, i]
+            + weights.before_above * table.cross_damping[before, above, i]
+            + weights.after_below * table.cross_damping[after, below, i]
+            + weights.after_above * table.cross_damping[after, above, i]
+        )

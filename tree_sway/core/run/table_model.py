@@ -38,7 +38,7 @@ from tree_sway.core.model.records import (
 from tree_sway.core.run.modal_coordinates import ModalCoordinates
 from tree_sway.core.run.placing import expand, room_for
 from tree_sway.core.run.simd import shapes_together, TOGETHER
-from tree_sway.core.run.table_load import wind_force
+from tree_sway.core.run.table_load import UniformWind, wind_force
 
 if TYPE_CHECKING:
     from tree_sway.core.setup.static_responses import WindMoments
@@ -330,10 +330,8 @@ def step_instance(
         middle[i] = half[0, i] * q + half[1, i] * v + half[2, i] * f
         middle_rate[i] = half[3, i] * q + half[4, i] * v + half[5, i] * f
     diagonal = instance.diagonal
-    wind_force(
-        table, x, y, z, dynamic_pressure, per_speed_squared, middle, middle_rate, instance.values,
-        instance.scratch, wanted, diagonal, table.n_modes - instance.left_out,
-    )  # fmt: skip
+    wind = UniformWind(x, y, z, dynamic_pressure, per_speed_squared)
+    wind_force(table, instance, wind, table.n_modes - instance.left_out)
     instance.wind[0], instance.wind[1], instance.wind[2] = wx, wy, wz
     instance.pressure = per_speed_squared
     energy = 0.0

@@ -16,8 +16,23 @@ from __future__ import annotations
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import fused, part
 from tree_sway.core.model.drag_law import drag
-from tree_sway.core.model.records import Branches, Load, Loads, WIDTH, Works
-from tree_sway.core.rotation import product, quaternion, rotated, turned
+from tree_sway.core.model.records import Branch, Branches, Load, Loads, WIDTH, Work, Works
+from tree_sway.core.rotation import product, quaternion, rotated
+from tree_sway.core.vector import (
+    column,
+    cross,
+    dot,
+    minus,
+    plus,
+    plus_times,
+    put,
+    put_column,
+    times,
+    turned_back,
+    turned_by,
+    Vector,
+    vector,
+)
 
 
 @part
@@ -26,54 +41,66 @@ def outward_pass(branches: Branches, work: Works, x: Floats, v: Floats) -> None:
     Find the motion of all bases by rotations [rad] and rates [rad/s], (N,), of their parents.
 
     Position, velocity and orientation of the bases are written to records of `WORK`, (b,). A base
-    keeps its distance from the parent's base, as the end of a rod.
+    keeps its distance from the parent's base, as the end of a rod: where it is displaced by s
+    across an arm a, it comes closer by ``|s|^2 / (2 |a|)``.
     """
     work[0].velocity[:], work[0].orientation[:] = 0.0, 0.0
     work[0].orientation[0] = 1.0
     for b in range(1, len(branches)):
-        branch, own, parent_work = branches[b], work[b], work[branches[b].parent]
-        parent, twist, base = branches[branch.parent], branch.twist, branch.base
-        i, moved, rotation, arm = parent.coordinate, own.displacement, own.rotation, own.arm
-        sx, sy, sz, tx, ty, tz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        ux, uy, uz, wx, wy, wz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for c in range(parent.n_coordinates):
-            q, rate, row = x[i + c], v[i + c], twist[c]
-            sx, sy, sz = sx + q * row[0], sy + q * row[1], sz + q * row[2]
-            tx, ty, tz = tx + q * row[3], ty + q * row[4], tz + q * row[5]
-            ux, uy, uz = ux + rate * row[0], uy + rate * row[1], uz + rate * row[2]
-            wx, wy, wz = wx + rate * row[3], wy + rate * row[4], wz + rate * row[5]
-        sx += ty * base[2] - tz * base[1]
-        sy += tz * base[0] - tx * base[2]
-        sz += tx * base[1] - ty * base[0]
-        ux += wy * base[2] - wz * base[1]
-        uy += wz * base[0] - wx * base[2]
-        uz += wx * base[1] - wy * base[0]
-        shortening = branch.per_arm * (sx * sx + sy * sy + sz * sz)
-        shortening_rate = 2.0 * branch.per_arm * (sx * ux + sy * uy + sz * uz)
-        ax = (1.0 - shortening) * branch.arm[0] + sx
-        ay = (1.0 - shortening) * branch.arm[1] + sy
-        az = (1.0 - shortening) * branch.arm[2] + sz
-        moved[0], moved[1], moved[2] = sx, sy, sz
-        rotation[0], rotation[1], rotation[2] = tx, ty, tz
-        arm[0], arm[1], arm[2] = ax, ay, az
-        vx, vy, vz, px, py, pz = (
-            parent_work.velocity[0], parent_work.velocity[1], parent_work.velocity[2],
-            parent_work.velocity[3], parent_work.velocity[4], parent_work.velocity[5],
-        )  # fmt: skip
-        # The spin of a rotation vector t exceeds its rate w by t x w / 2 + t x (t x w) / 6.
-        gx, gy, gz = ty * wz - tz * wy, tz * wx - tx * wz, tx * wy - ty * wx
-        kx = px + wx + 0.5 * gx + (ty * gz - tz * gy) / 6.0
-        ky = py + wy + 0.5 * gy + (tz * gx - tx * gz) / 6.0
-        kz = pz + wz + 0.5 * gz + (tx * gy - ty * gx) / 6.0
-        vx += py * az - pz * ay + ux - shortening_rate * branch.arm[0]
-        vy += pz * ax - px * az + uy - shortening_rate * branch.arm[1]
-        vz += px * ay - py * ax + uz - shortening_rate * branch.arm[2]
-        own_velocity = own.velocity
-        own_velocity[0], own_velocity[1], own_velocity[2] = turned(-tx, -ty, -tz, vx, vy, vz)
-        own_velocity[3], own_velocity[4], own_velocity[5] = turned(-tx, -ty, -tz, kx, ky, kz)
-        old, new = parent_work.orientation, own.orientation
-        qw, qx, qy, qz = quaternion(tx, ty, tz)
-        new[0], new[1], new[2], new[3] = product(old[0], old[1], old[2], old[3], qw, qx, qy, qz)
+        branch, own, on = branches[b], work[b], work[branches[b].parent]
+        parent, rest_arm = branches[branch.parent], vector(branch.arm, 0)
+        shift, rotation = _of_base(branch, parent, x)
+        shift_rate, rotation_rate = _of_base(branch, parent, v)
+        shortening = branch.per_arm * dot(shift, shift)
+        shortening_rate = 2.0 * branch.per_arm * dot(shift, shift_rate)
+        arm = plus_times(shift, 1.0 - shortening, rest_arm)
+        put(shift, own.displacement, 0)
+        put(rotation, own.rotation, 0)
+        put(arm, own.arm, 0)
+
+        # In the frame of the parent's base, then in that of the base itself.
+        parent_spin = vector(on.velocity, 3)
+        carried = plus(plus(vector(on.velocity, 0), cross(parent_spin, arm)), shift_rate)
+        velocity = plus_times(carried, -shortening_rate, rest_arm)
+        spin = plus(parent_spin, _spin(rotation, rotation_rate))
+        put(turned_back(rotation, velocity), own.velocity, 0)
+        put(turned_back(rotation, spin), own.velocity, 3)
+        _orient(on.orientation, rotation, own.orientation)
+
+
+@part
+def _of_base(branch: Branch, parent: Branch, amounts: Floats) -> tuple[Vector, Vector]:
+    """Find displacement and rotation vector of a base by amounts of its parent's coordinates."""
+    shift, rotation = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for c in range(parent.n_coordinates):
+        amount, twist = amounts[parent.coordinate + c], branch.twist[c]
+        shift = plus_times(shift, amount, vector(twist, 0))
+        rotation = plus_times(rotation, amount, vector(twist, 3))
+    return plus(shift, cross(rotation, vector(branch.base, 0))), rotation
+
+
+@part
+def _spin(rotation: Vector, rate: Vector) -> Vector:
+    """
+    Return the angular velocity of a rotation vector t that changes by w per second.
+
+    By series it is ``w + t x w / 2 + t x (t x w) / 6``.
+    """
+    first = cross(rotation, rate)
+    second = cross(rotation, first)
+    return (
+        rate[0] + 0.5 * first[0] + second[0] / 6.0,
+        rate[1] + 0.5 * first[1] + second[1] / 6.0,
+        rate[2] + 0.5 * first[2] + second[2] / 6.0,
+    )
+
+
+@part
+def _orient(parent: Floats, rotation: Vector, orientation: Floats) -> None:
+    """Write the orientation of a base, w x y z, that is rotated from its parent's."""
+    w, x, y, z = quaternion(rotation[0], rotation[1], rotation[2])
+    w, x, y, z = product(parent[0], parent[1], parent[2], parent[3], w, x, y, z)
+    orientation[0], orientation[1], orientation[2], orientation[3] = w, x, y, z
 
 
 @part
@@ -107,42 +134,69 @@ def wind_forces(loads: Loads, per_speed_squared: float) -> None:
     """
     for block in range(len(loads)):
         group = loads[block]
-        base, air, rotation, impulse, coupling = (
-            group.velocity, group.air_velocity, group.rotation, group.drag_impulse, group.coupling,
-        )  # fmt: skip
-        damping, mode, p, x, v = (
-            group.damping_mode, group.load_rotation, group.projector, group.x, group.v,
-        )  # fmt: skip
-        force, own_force, own_velocity = group.force, group.own_force, group.moment
+        _move_pieces(group)
+        impulse, compliance = group.drag_impulse, group.compliance
         for j in range(WIDTH):
-            for k in range(3):
-                rotation[k, j] = mode[0, k, j] * x[0, j] + mode[1, k, j] * x[1, j]
-                own_velocity[k, j] = damping[0, k, j] * v[0, j] + damping[1, k, j] * v[1, j]
-        for c in range(2, group.n_rows):
-            for k in range(3):
-                for j in range(WIDTH):
-                    rotation[k, j] += mode[c, k, j] * x[c, j]
-                    own_velocity[k, j] += damping[c, k, j] * v[c, j]
-        for j in range(WIDTH):
-            tx, ty, tz = rotation[0, j], rotation[1, j], rotation[2, j]
-            ux, uy, uz = air[0, j] - base[0, j], air[1, j] - base[1, j], air[2, j] - base[2, j]
-            ux, uy, uz = turned(-tx, -ty, -tz, ux, uy, uz)
-            wx, wy, wz = turned(-tx, -ty, -tz, base[3, j], base[4, j], base[5, j])
-            beta = group.compliance[j]
-            sx = coupling[0, 0, j] * wx + coupling[1, 0, j] * wy + coupling[2, 0, j] * wz
-            sy = coupling[0, 1, j] * wx + coupling[1, 1, j] * wy + coupling[2, 1, j] * wz
-            sz = coupling[0, 2, j] * wx + coupling[1, 2, j] * wy + coupling[2, 2, j] * wz
-            ux += beta * impulse[0, j] - own_velocity[0, j] - sx
-            uy += beta * impulse[1, j] - own_velocity[1, j] - sy
-            uz += beta * impulse[2, j] - own_velocity[2, j] - sz
-            fx, fy, fz, f = drag(
-                p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
-                per_speed_squared * group.area[j], beta, ux, uy, uz,
-                group.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j]),
-            )  # fmt: skip
-            impulse[0, j], impulse[1, j], impulse[2, j] = f * ux, f * uy, f * uz
-            own_force[0, j], own_force[1, j], own_force[2, j] = fx, fy, fz
-            force[0, j], force[1, j], force[2, j] = turned(tx, ty, tz, fx, fy, fz)
+            rotation = column(group.rotation, 0, j)
+            # The wind less the motion of the base, of the branch itself, and of its spin.
+            wind = minus(column(group.air_velocity, 0, j), column(group.velocity, 0, j))
+            spin = turned_back(rotation, column(group.velocity, 3, j))
+            air = minus(turned_back(rotation, wind), column(group.moment, 0, j))
+            air = minus(air, _transposed_times(group.coupling, j, spin))
+            air = plus_times(air, compliance[j], column(impulse, 0, j))
+            fx, fy, fz, per_velocity = _drag_at(group, j, per_speed_squared, air)
+            put_column(times(per_velocity, air), impulse, j)
+            put_column((fx, fy, fz), group.own_force, j)
+            put_column(turned_by(rotation, (fx, fy, fz)), group.force, j)
+
+
+@part
+def _move_pieces(group: Load) -> None:
+    """Find rotation and velocity of the loaded pieces; ``moment`` is scratch for the latter."""
+    mode, damping, x, v = group.load_rotation, group.damping_mode, group.x, group.v
+    rotation, velocity = group.rotation, group.moment
+    for j in range(WIDTH):
+        for k in range(3):
+            rotation[k, j] = mode[0, k, j] * x[0, j] + mode[1, k, j] * x[1, j]
+            velocity[k, j] = damping[0, k, j] * v[0, j] + damping[1, k, j] * v[1, j]
+    for c in range(2, group.n_rows):
+        for k in range(3):
+            for j in range(WIDTH):
+                rotation[k, j] += mode[c, k, j] * x[c, j]
+                velocity[k, j] += damping[c, k, j] * v[c, j]
+
+
+@part
+def _drag_at(
+    group: Load, j: int, per_speed_squared: float, air: Vector
+) -> tuple[float, float, float, float]:
+    """Return the force on a branch in air, and the force per velocity, as `drag_law.drag`."""
+    p, v = group.projector, group.v
+    return drag(
+        p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j],
+        per_speed_squared * group.area[j], group.compliance[j], air[0], air[1], air[2],
+        group.spread[j] * (v[0, j] * v[0, j] + v[1, j] * v[1, j]),
+    )  # fmt: skip
+
+
+@part
+def _times(matrix: Floats, j: int, v: Vector) -> Vector:
+    """Multiply the matrix (3, 3) of a slot by a vector."""
+    return (
+        matrix[0, 0, j] * v[0] + matrix[0, 1, j] * v[1] + matrix[0, 2, j] * v[2],
+        matrix[1, 0, j] * v[0] + matrix[1, 1, j] * v[1] + matrix[1, 2, j] * v[2],
+        matrix[2, 0, j] * v[0] + matrix[2, 1, j] * v[1] + matrix[2, 2, j] * v[2],
+    )
+
+
+@part
+def _transposed_times(matrix: Floats, j: int, v: Vector) -> Vector:
+    """Multiply the transpose of the matrix (3, 3) of a slot by a vector."""
+    return (
+        matrix[0, 0, j] * v[0] + matrix[1, 0, j] * v[1] + matrix[2, 0, j] * v[2],
+        matrix[0, 1, j] * v[0] + matrix[1, 1, j] * v[1] + matrix[2, 1, j] * v[2],
+        matrix[0, 2, j] * v[0] + matrix[1, 2, j] * v[1] + matrix[2, 2, j] * v[2],
+    )
 
 
 @part
@@ -181,66 +235,66 @@ def bent_loads(branches: Branches, work: Works, loads: Loads, moment: Floats) ->
 
     """
     for block in range(len(loads)):
-        _turned_loads(loads[block])
+        _load_own(loads[block])
     for b in range(len(branches)):
-        group, j, i = loads[b // WIDTH], b % WIDTH, branches[b].coordinate
-        for c in range(branches[b].n_coordinates):
-            moment[i + c] = group.load[1 + c, j]
-        wrench = work[b].wrench
-        for k in range(3):
-            wrench[k], wrench[3 + k] = group.force[k, j], group.moment[k, j]
-        q, world = work[b].orientation, work[b].force
-        world[0], world[1], world[2] = rotated(
-            q[0], q[1], q[2], q[3], wrench[0], wrench[1], wrench[2]
-        )
+        _begin(branches[b], work[b], loads[b // WIDTH], b % WIDTH, moment)
     for b in range(len(branches) - 1, 0, -1):
         branch, own = branches[b], work[b]
-        wrench, rotation, moved, bent_arm = own.wrench, own.rotation, own.displacement, own.arm
-        tx, ty, tz = rotation[0], rotation[1], rotation[2]
-        dx, dy, dz = moved[0], moved[1], moved[2]
-        fx, fy, fz = turned(tx, ty, tz, wrench[0], wrench[1], wrench[2])
-        mx, my, mz = turned(tx, ty, tz, wrench[3], wrench[4], wrench[5])
-        arm, base, twist = branch.arm, branch.base, branch.twist
-        ax, ay, az = bent_arm[0], bent_arm[1], bent_arm[2]
+        rotation, shift = vector(own.rotation, 0), vector(own.displacement, 0)
+        force = turned_by(rotation, vector(own.wrench, 0))
+        couple = turned_by(rotation, vector(own.wrench, 3))
         total = work[branch.parent].wrench
-        total[0], total[1], total[2] = total[0] + fx, total[1] + fy, total[2] + fz
-        total[3] += mx + ay * fz - az * fy
-        total[4] += my + az * fx - ax * fz
-        total[5] += mz + ax * fy - ay * fx
-        axial = 2.0 * branch.per_arm * (arm[0] * fx + arm[1] * fy + arm[2] * fz)
-        fx, fy, fz = fx - axial * dx, fy - axial * dy, fz - axial * dz
-        gx, gy, gz = my * tz - mz * ty, mz * tx - mx * tz, mx * ty - my * tx
-        px = mx + 0.5 * gx + (gy * tz - gz * ty) / 6.0 + base[1] * fz - base[2] * fy
-        py = my + 0.5 * gy + (gz * tx - gx * tz) / 6.0 + base[2] * fx - base[0] * fz
-        pz = mz + 0.5 * gz + (gx * ty - gy * tx) / 6.0 + base[0] * fy - base[1] * fx
+        put(plus(vector(total, 0), force), total, 0)
+        at_parent = plus(couple, cross(vector(own.arm, 0), force))
+        put(plus(vector(total, 3), at_parent), total, 3)
+
+        # `outward_pass` transposed: the shortening of the arm, the spin, and the base's motion.
+        axial = 2.0 * branch.per_arm * dot(vector(branch.arm, 0), force)
+        force = plus_times(force, -axial, shift)
+        on_base = plus(_spin_transposed(rotation, couple), cross(vector(branch.base, 0), force))
         parent = branches[branch.parent]
-        i = parent.coordinate
         for c in range(parent.n_coordinates):
-            moment[i + c] += (
-                twist[c, 0] * fx + twist[c, 1] * fy + twist[c, 2] * fz
-                + twist[c, 3] * px + twist[c, 4] * py + twist[c, 5] * pz
-            )  # fmt: skip
+            twist = branch.twist[c]
+            work_done = dot(vector(twist, 0), force) + dot(vector(twist, 3), on_base)
+            moment[parent.coordinate + c] += work_done
 
 
 @part
-def _turned_loads(loads: Load) -> None:
+def _begin(branch: Branch, own: Work, group: Load, j: int, moment: Floats) -> None:
+    """Begin moments, wrench and force of a branch with the wind's own."""
+    for c in range(branch.n_coordinates):
+        moment[branch.coordinate + c] = group.load[1 + c, j]
+    force, q = column(group.force, 0, j), own.orientation
+    put(force, own.wrench, 0)
+    put(column(group.moment, 0, j), own.wrench, 3)
+    put(rotated(q[0], q[1], q[2], q[3], force[0], force[1], force[2]), own.force, 0)
+
+
+@part
+def _spin_transposed(rotation: Vector, couple: Vector) -> Vector:
+    """Return what a couple does per unit of a rotation vector: `_spin` transposed."""
+    first = cross(couple, rotation)
+    second = cross(first, rotation)
+    return (
+        couple[0] + 0.5 * first[0] + second[0] / 6.0,
+        couple[1] + 0.5 * first[1] + second[1] / 6.0,
+        couple[2] + 0.5 * first[2] + second[2] / 6.0,
+    )
+
+
+@part
+def _load_own(group: Load) -> None:
     """Turn the wind's forces on sixteen branches into loads and moments about their bases."""
-    force, mode, load, coupling = loads.own_force, loads.load_mode, loads.load, loads.coupling
-    rotation, moment = loads.rotation, loads.moment
+    mode, load = group.load_mode, group.load
     for j in range(WIDTH):
-        fx, fy, fz = force[0, j], force[1, j], force[2, j]
-        load[1, j] = mode[0, 0, j] * fx + mode[0, 1, j] * fy + mode[0, 2, j] * fz
-        load[2, j] = mode[1, 0, j] * fx + mode[1, 1, j] * fy + mode[1, 2, j] * fz
-        moment[0, j], moment[1, j], moment[2, j] = turned(
-            rotation[0, j], rotation[1, j], rotation[2, j],
-            coupling[0, 0, j] * fx + coupling[0, 1, j] * fy + coupling[0, 2, j] * fz,
-            coupling[1, 0, j] * fx + coupling[1, 1, j] * fy + coupling[1, 2, j] * fz,
-            coupling[2, 0, j] * fx + coupling[2, 1, j] * fy + coupling[2, 2, j] * fz,
-        )  # fmt: skip
-    for c in range(2, loads.n_rows):
+        force = column(group.own_force, 0, j)
+        load[1, j] = dot(column(mode[0], 0, j), force)
+        load[2, j] = dot(column(mode[1], 0, j), force)
+        couple = _times(group.coupling, j, force)
+        put_column(turned_by(column(group.rotation, 0, j), couple), group.moment, j)
+    for c in range(2, group.n_rows):
         for j in range(WIDTH):
-            fx, fy, fz = force[0, j], force[1, j], force[2, j]
-            load[1 + c, j] = mode[c, 0, j] * fx + mode[c, 1, j] * fy + mode[c, 2, j] * fz
+            load[1 + c, j] = dot(column(mode[c], 0, j), column(group.own_force, 0, j))
 
 
 @fused

@@ -10,6 +10,7 @@ the projector across the branch, and the mean displacements that the load works 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -92,6 +93,43 @@ def branch_records(
 _STRAIGHT = 0.03
 """Smallest share of the wind along a branch that is distinguished from 0."""
 
+_CROOKED = 1e-9
+"""Largest deviation of the cosine between panels from 1 of a branch that is straight."""
+
+
+class _Panels(NamedTuple):
+    """Panels of k branches that all have p panels, g points in each, and n fields."""
+
+    point: Floats
+    """Points from the base, (k, p, g, 3)."""
+    tangent: Floats
+    """Direction of each panel, (k, p, 3)."""
+    area: Floats
+    """Drag area of each branch in [m^2], (k,)."""
+    share: Floats
+    """Fraction of that area at each point, (k, p, g)."""
+    displacement: Floats
+    """Displacement of each point per unit of each coordinate, (k, n, p, g, 3)."""
+    rotation: Floats
+    """Rotation vector there, likewise."""
+    tip: Floats
+    """Displacement of the tip, (k, n, 3)."""
+
+
+def _panels_of(models: list[BranchModel]) -> _Panels:
+    """Stack the panels of branches."""
+    beams = [model.beam for model in models]
+    weight = np.array([model.drag_area for model in models]) * stacked(beams, 'weight')
+    alike = list(zip(*(model.fields for model in models), strict=True))
+    displacement, rotation, nodes = (
+        np.stack([stacked(each, name) for each in alike], axis=1)
+        for name in ('points', 'slope', 'nodes')
+    )
+    area = weight.sum(axis=(1, 2))
+    share = weight / area[:, None, None]
+    point, tangent = stacked(beams, 'point'), stacked(beams, 'tangent')
+    return _Panels(point, tangent, area, share, displacement, rotation, nodes[:, :, -1])
+
 
 def _fill_loads(
     models: list[BranchModel], speed_profile: Floats, rows: Ints, records: Records
@@ -101,51 +139,82 @@ def _fill_loads(
 
     The speed profile is the wind speed at their panels over that at the anemometer, (k, p).
     """
-    beams, n = [model.beam for model in models], len(models[0].fields)
-    point, tangent = stacked(beams, 'point'), stacked(beams, 'tangent')
-    weight = np.array([model.drag_area for model in models]) * stacked(beams, 'weight')
-    alike = list(zip(*(model.fields for model in models), strict=True))
-    fields, slopes, nodes = (
-        np.stack([stacked(each, name) for each in alike], axis=1)
-        for name in ('points', 'slope', 'nodes')
-    )
-    records['tip_mode'][rows, :n] = nodes[:, :, -1]
-    total = weight.sum(axis=(1, 2))
-    share = weight / total[:, None, None]
-    centre = np.einsum('ksg,ksgi->ki', share, point)
-    records['centre'][rows] = centre
-    records['coupling'][rows] = cross_matrix(centre)
-    panels = share.sum(axis=2)
-    speed = (panels * speed_profile).sum(axis=1)
-    records['speed'][rows] = speed
-    records['area'][rows] = np.divide(total, speed**2, out=np.zeros_like(speed), where=speed > 0.0)
-    across = np.eye(3) - (panels[:, None] * tangent.swapaxes(1, 2)) @ tangent
-    records['projector'][rows] = across[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
-    exposed = exposure(tangent)
-    exposed /= (panels * exposed).sum(axis=1, keepdims=True)
-    amounts, axes = np.linalg.eigh(across)
-    stored = amounts > _STRAIGHT * amounts[:, -1:]
-    amounts = np.divide(1.0, amounts, out=np.zeros_like(amounts), where=stored)
-    into_load_mode = (axes * amounts[:, None]) @ axes.swapaxes(1, 2)
-    own = exposed[:, None, :, None] * (share[:, None, ..., None] * fields).sum(axis=3)
-    own -= (own * tangent[:, None]).sum(axis=-1, keepdims=True) * tangent[:, None]
-    mean = own.sum(axis=2)
-    records['load_mode'][rows, :n] = mean @ into_load_mode
-    along_it = (fields[:, :2] * tangent[:, None, :, None]).sum(axis=-1)
-    moved = (np.square(fields[:, :2]).sum(axis=-1) - np.square(along_it)).sum(axis=1)
-    # Pieces that move most do most work, and are rotated most.
-    work = (share * np.sqrt(np.maximum(moved, 0.0))).reshape(len(rows), 1, 1, -1)
-    whole = work.sum(axis=-1, keepdims=True)
-    work /= np.where(whole > 0.0, whole, 1.0)
-    slopes = slopes.reshape(len(rows), n, -1, 3)
-    records['load_rotation'][rows, :n] = (work @ slopes)[:, :, 0]
-    bows = np.abs((tangent * tangent[:, :1]).sum(axis=2) - 1.0).max(axis=1)
+    panels = _panels_of(models)
+    records['tip_mode'][rows, : panels.tip.shape[1]] = panels.tip
+    _fill_area(panels, speed_profile, rows, records)
+    projector = _fill_projector(panels, rows, records)
+    mean = _mean_across(panels)
+    records['load_mode'][rows, : mean.shape[1]] = mean @ _inverse_of(projector)
+    moved = _squares_across(panels)
+    _fill_load_rotation(panels, moved, rows, records)
+    off_line = (panels.tangent * panels.tangent[:, :1]).sum(axis=2) - 1.0
+    for k in np.flatnonzero(np.abs(off_line).max(axis=1) > _CROOKED):
+        _fit_load(models[k], panels.share[k], records[rows[k]])
     # As if both axes were alike.
     cubes = 2.0 * np.maximum(0.5 * moved, 0.0) ** 1.5
-    square, cube = ((share * each).sum(axis=(1, 2)) for each in (moved, cubes))
-    for k in np.flatnonzero(bows > 1e-9):
-        _fit_load(models[k], share[k], records[rows[k]])
+    square, cube = ((panels.share * each).sum(axis=(1, 2)) for each in (moved, cubes))
     _fill_damping(records, rows, mean, square, cube)
+
+
+def _fill_area(panels: _Panels, speed_profile: Floats, rows: Ints, records: Records) -> None:
+    """Fill where the wind acts on branches, its speed there, and on how much area."""
+    centre = np.einsum('ksg,ksgi->ki', panels.share, panels.point)
+    records['centre'][rows] = centre
+    records['coupling'][rows] = cross_matrix(centre)
+    speed = (panels.share.sum(axis=2) * speed_profile).sum(axis=1)
+    records['speed'][rows] = speed
+    has_wind = speed > 0.0
+    area = np.divide(panels.area, speed**2, out=np.zeros_like(speed), where=has_wind)
+    records['area'][rows] = area
+
+
+def _fill_projector(panels: _Panels, rows: Ints, records: Records) -> Floats:
+    """Fill the mean of ``1 - t t^T`` over the panels, tangents t; return it, (k, 3, 3)."""
+    weighted = panels.share.sum(axis=2)[:, None] * panels.tangent.swapaxes(1, 2)
+    projector = np.eye(3) - weighted @ panels.tangent
+    first, second = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]  # xx, yy, zz, xy, xz, yz
+    records['projector'][rows] = projector[:, first, second]
+    return np.asarray(projector)
+
+
+def _inverse_of(projector: Floats) -> Floats:
+    """
+    Invert projectors (k, 3, 3) across the branches.
+
+    The wind along a straight branch exerts no force on it, and that direction is left out.
+    """
+    amounts, axes = np.linalg.eigh(projector)
+    stored = amounts > _STRAIGHT * amounts[:, -1:]
+    amounts = np.divide(1.0, amounts, out=np.zeros_like(amounts), where=stored)
+    return np.asarray((axes * amounts[:, None]) @ axes.swapaxes(1, 2))
+
+
+def _mean_across(panels: _Panels) -> Floats:
+    """Find the mean displacement across the panels, weighted by their exposure, (k, n, 3)."""
+    tangent = panels.tangent[:, None]
+    exposed = exposure(panels.tangent)
+    exposed /= (panels.share.sum(axis=2) * exposed).sum(axis=1, keepdims=True)
+    mean = (panels.share[:, None, ..., None] * panels.displacement).sum(axis=3)
+    mean = exposed[:, None, :, None] * mean
+    mean -= (mean * tangent).sum(axis=-1, keepdims=True) * tangent
+    return np.asarray(mean.sum(axis=2))
+
+
+def _squares_across(panels: _Panels) -> Floats:
+    """Sum the squared displacements of points across their panels by both axes, (k, p, g)."""
+    by_axes = panels.displacement[:, :2]
+    along = (by_axes * panels.tangent[:, None, :, None]).sum(axis=-1)
+    return np.asarray((np.square(by_axes).sum(axis=-1) - np.square(along)).sum(axis=1))
+
+
+def _fill_load_rotation(panels: _Panels, moved: Floats, rows: Ints, records: Records) -> None:
+    """Fill the mean rotation: pieces that move most do most work, and are rotated most."""
+    work = (panels.share * np.sqrt(np.maximum(moved, 0.0))).reshape(len(rows), 1, 1, -1)
+    whole = work.sum(axis=-1, keepdims=True)
+    work /= np.where(whole > 0.0, whole, 1.0)
+    n = panels.rotation.shape[1]
+    rotation = panels.rotation.reshape(len(rows), n, -1, 3)
+    records['load_rotation'][rows, :n] = (work @ rotation)[:, :, 0]
 
 
 def _fit_load(model: BranchModel, share: Floats, record: np.void) -> None:

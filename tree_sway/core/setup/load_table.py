@@ -9,10 +9,10 @@ each projection of it on a mode (Diener, Rodriguez, Baboud & Reveret 2009, *Wind
 for real-time animation of trees*, Computer Graphics Forum 28(2), 533-540). Here it is a sum of
 harmonics Y, and the effect of the tree's own motion is added.
 
- In steady winds of an azimuth, calm to storm, a
-tree has equilibria e, each with more lean than the one before; its lean, a mean of its
-coordinates, is between those of two of them. The table has the load there, its slope by the
-coordinates (the load rotates with the tree) and by their rates (aerodynamic damping):
+For each azimuth of the wind the table stores the equilibria e of the tree in steady winds, calm to
+storm; its mean deflection, the lean, increases from one to the next. Between the two equilibria
+around the present lean it interpolates the load, its slope by the coordinates (the load rotates
+with the tree) and its slope by their rates (aerodynamic damping):
 
     F = s [Y C + load + turning (eta - e) + d_z lean eta] + p W damping eta'
 
@@ -116,55 +116,92 @@ class WindBasisTable:
         table['most_energy'] = _MOST_ENERGY * float(energy.max())
 
     def _fill_standing(self, table: np.void, pressures: list[float]) -> None:
-        """Find loads and their slopes at the equilibria in winds of each speed."""
-        shapes, m = self._shapes, int(table['n_modes'])
+        """Fill loads and their slopes at the equilibria in winds of each speed."""
+        m = int(table['n_modes'])
         stiffness = table['stiffness'][:m]
-        equilibrium = np.zeros((len(self._azimuths), N_LEVELS, m))
-        amount = np.zeros((len(self._azimuths), m))
-        turning, damping = np.zeros((2, *equilibrium.shape, m))
-        winds = direction(self._azimuths, 0.0)
-        at_rest = self._moments.at_rest(winds, shapes)
-        for k, (ahead, upright) in enumerate(zip(winds, at_rest, strict=True)):
-            amount[k] = upright / max(float(upright @ (upright / stiffness)), 1e-300)
-            at = np.zeros(m)
-            for j, s in enumerate(pressures):
-                weaker = at
-                at = self._equilibrium(at, s, ahead, turning[k, j - 1]) if j > 0 else at
-                x = shapes @ at
-                equilibrium[k, j] = at
-                if j > 0 and at is weaker:
-                    turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
-                    continue
-                if j == 0 and (other := k - len(winds) // 2) >= 0:  # the opposite of this wind
-                    turning[k, 0], damping[k, 0] = -turning[other, 0], damping[other, 0]
-                    continue
-                turning[k, j], damping[k, j] = self._slopes(x, ahead)
-                if SPEEDS[j] > _BREEZE:
-                    air = self._damping - s / SPEEDS[j] * np.diag(damping[k, j])
-                    most = _FLUTTER[SPEEDS[j] > _STORM]
-                    turning[k, j] -= self._feeding(s * turning[k, j], air, most) / max(s, 1e-300)
-        calm = int(np.searchsorted(SPEEDS, _STORM))
-        for k, poses in enumerate(equilibrium):
-            for j in range(1, calm):
-                self._turn_inertia(poses[j], pressures[j], turning[k, j], damping[k, j])
-        table['equilibrium'][..., :m] = equilibrium = _between(equilibrium)
+        poses, amount, turning, damping = self._standing(stiffness, pressures)
+        n_calm = int(np.searchsorted(SPEEDS, _STORM))
+        for k, azimuth_poses in enumerate(poses):
+            for j in range(1, n_calm):
+                self._turn_inertia(azimuth_poses[j], pressures[j], turning[k, j], damping[k, j])
+        table['equilibrium'][..., :m] = equilibrium = _between(poses)
         table['amount'][..., :m] = _between(amount)
-        # Loads in storms are those of the springs; up to a gale poses in between are none at rest.
-        load = stiffness * equilibrium / np.maximum(pressures, 1e-300)[:, None]
-        for poses, ahead, loads in zip(equilibrium, direction(_AZIMUTHS, 0.0), load, strict=True):
-            moments = [self._moments(x, self._still, ahead) for x in poses[:calm] @ shapes.T]
-            loads[:calm] = moments @ shapes
+        load = self._loads_at(equilibrium, stiffness, pressures, n_calm)
         np.maximum(table['limit'][:m], np.abs(load).max(axis=(0, 1)), out=table['limit'][:m])
         table['load'][..., :m] = load - load[:, :1]
         table['turning'][..., :m, :m] = _between(turning)
         table['damping'][..., :m, :m] = _between(damping)
         table['cross_damping'] = np.abs(table['damping']).sum(axis=2)
         table['cross_damping'] -= np.abs(np.einsum('ajii->aji', table['damping']))
-        levels = np.einsum('ajm,am->aj', table['equilibrium'], table['amount'])
-        # Levels rise, also those of a tree without any load.
-        largest = float(np.abs(levels).max()) or 1.0
-        least = 1e-6 * largest * np.arange(N_LEVELS)
-        table['levels'] = np.maximum.accumulate(levels, axis=1) + least
+        table['levels'] = _rising_levels(table['equilibrium'], table['amount'])
+
+    def _standing(
+        self, stiffness: Floats, pressures: list[float]
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """
+        Find the equilibria at the computed azimuths, and the slopes of the load there.
+
+        Returns
+        -------
+        tuple
+            Equilibria, (a, l, m); weights of the coordinates in the lean, (a, m); slopes by the
+            coordinates and by their rates, both (a, l, m, m).
+
+        """
+        n, m = len(self._azimuths), len(stiffness)
+        poses, amount = np.zeros((n, N_LEVELS, m)), np.zeros((n, m))
+        turning, damping = np.zeros((2, n, N_LEVELS, m, m))
+        winds = direction(self._azimuths, 0.0)
+        at_rest = self._moments.at_rest(winds, self._shapes)
+        for k, (wind, load) in enumerate(zip(winds, at_rest, strict=True)):
+            # One unit of the lean is the pose in a steady wind that bends the tree a little.
+            amount[k] = load / max(float(load @ (load / stiffness)), 1e-300)
+            opposite = k - n // 2
+            if opposite >= 0:
+                turning[k, 0], damping[k, 0] = -turning[opposite, 0], damping[opposite, 0]
+            else:
+                turning[k, 0], damping[k, 0] = self._slopes(self._still, wind)
+            pose = np.zeros(m)
+            for j in range(1, N_LEVELS):
+                weaker = pose
+                pose = self._equilibrium(weaker, pressures[j], wind, turning[k, j - 1])
+                poses[k, j] = pose
+                if pose is weaker:  # there is no equilibrium near it
+                    turning[k, j], damping[k, j] = turning[k, j - 1], damping[k, j - 1]
+                else:
+                    turning[k, j], damping[k, j] = self._damped_slopes(pose, wind, j, pressures[j])
+        return poses, amount, turning, damping
+
+    def _damped_slopes(
+        self, pose: Floats, wind: Floats, level: int, pressure_there: float
+    ) -> tuple[Floats, Floats]:
+        """Find the slopes at an equilibrium, without what would feed a flutter of twigs there."""
+        slopes = self._slopes(self._shapes @ pose, wind)
+        turning, damping = (each.astype(np.float64) for each in slopes)
+        speed = SPEEDS[level]
+        if speed > _BREEZE:
+            air = self._damping - pressure_there / speed * np.diag(damping)
+            most = _FLUTTER[speed > _STORM]
+            feeding = self._feeding(pressure_there * turning, air, most)
+            turning -= feeding / max(pressure_there, 1e-300)
+        return turning, damping
+
+    def _loads_at(
+        self, equilibrium: Floats, stiffness: Floats, pressures: list[float], n_calm: int
+    ) -> Floats:
+        """
+        Find the loads at the equilibria, (a, l, m).
+
+        In storms they are those of the springs. At lower levels the wind's own load is taken: a
+        pose that is interpolated between two azimuths is not exactly at rest.
+        """
+        load = stiffness * equilibrium / np.maximum(pressures, 1e-300)[:, None]
+        winds = direction(_AZIMUTHS, 0.0)
+        for poses, wind, loads in zip(equilibrium, winds, load, strict=True):
+            rotations = poses[:n_calm] @ self._shapes.T
+            moments = [self._moments(x, self._still, wind) for x in rotations]
+            loads[:n_calm] = moments @ self._shapes
+        return np.asarray(load)
 
     def _turn_inertia(self, at: Floats, s: float, turning: Floats, damping: Floats) -> None:
         """
@@ -256,6 +293,14 @@ def fit_harmonics(moments: WindMoments, shapes: Floats) -> tuple[Floats, Floats]
     values = harmonics_at(directions) * weight[:, None]
     fitted = np.linalg.lstsq(values, loads * weight[:, None], rcond=None)[0]
     return np.asarray(fitted), np.abs(loads).max(axis=0)
+
+
+def _rising_levels(equilibrium: Floats, amount: Floats) -> Floats:
+    """Find the lean at each equilibrium, (a, l); it rises even for a tree without any load."""
+    levels = np.einsum('ajm,am->aj', equilibrium, amount)
+    largest = float(np.abs(levels).max()) or 1.0
+    least = 1e-6 * largest * np.arange(N_LEVELS)
+    return np.asarray(np.maximum.accumulate(levels, axis=1) + least)
 
 
 def _between(values: Floats) -> Floats:

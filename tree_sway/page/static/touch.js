@@ -102,7 +102,7 @@ export class Touch {
   }
 
   /** Find how a segment moves with each coordinate, and what these leave of the wood: the compliance of each branch
-   * less what the coordinates have of it (tree_sway/core/run/modal.py). @param {number} segment
+   * less what the coordinates have of it (tree_sway/core/run/modal_coordinates.py). @param {number} segment
    * @param {Pushed} push @param {import("./sway.js").Table} table @param {Float64Array} coordinates */
   _renew(segment, push, { m, n, nKeys, arrays }, coordinates) {
     const { basis_matrix: basis, branch_coordinate: first, branch_keys: count } = this.kind.arrays;
