@@ -13,8 +13,8 @@ import pytest
 from tree_sway import installed_models as module
 from tree_sway.commands.cli import main
 from tree_sway.core.model.settings import MODELS, OF_LAB, Settings
-from tree_sway.core.run.assembly import assembled
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.run.rigid import RigidBank
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.errors import MissingDependencyError, ParameterError
 from tree_sway.installed_models import GROUP, installed_models
 from tree_sway.parameters.sway_parameters import SWAY
@@ -30,9 +30,9 @@ def installed(monkeypatch: pytest.MonkeyPatch) -> dict[str, EntryPoint]:
     return points
 
 
-def mine(reductions, cache):
-    """Make a model of this file: that of three coordinates."""
-    return assembled(reductions, 3, cache)
+def mine(model, branches, plain):
+    """Make a model of this file: a tree that does not move."""
+    return RigidBank(branches, model)
 
 
 @pytest.mark.parametrize('model', OF_LAB)
@@ -57,13 +57,13 @@ def test_the_laboratory_names_an_object_that_makes_the_model(fork) -> None:
     assert {*found} == {*OF_LAB}
     for name, value in found.items():
         assert EntryPoint(name, value, GROUP).load() == installed_models()[name].load()
-        assert SwaySimulator(fork(), model=name, cache=None).model == name
+        assert make_simulator(fork(), model=name, cache=None).model == name
 
 
 def test_a_model_of_another_package_is_made_by_its_own_function(installed, fork) -> None:
     installed['mine'] = type('Point', (), {'load': staticmethod(lambda: mine)})()
-    sim = SwaySimulator(fork(), model='mine', cache=None)
-    other = SwaySimulator(fork(), model=3, cache=None)
+    sim = make_simulator(fork(), model='mine', cache=None)
+    other = make_simulator(fork(), model=0, cache=None)
     for one in (sim, other):
         one.step((6.0, 1.0, 0.0), 1 / 60)
     assert sim.model == 'mine'

@@ -3,9 +3,9 @@
 """
 Models of installed packages, by the entry point group `tree_sway.models`.
 
-An entry point names a function ``make(reductions, cache)`` that returns the `Bank` of a tree: its
-oscillators, and the records by which it is placed. The reference model ``full`` comes so, from the
-laboratory.
+An entry point names a function ``make(model, branches, plain)`` that returns the `Oscillators` of
+a tree, from its `SwayModel` on all coordinates and the records of its branches. The reference
+model ``full`` comes so, from the laboratory.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.observe.simulated_sensor import SimulatedSensor
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
@@ -28,7 +28,7 @@ def recorded(folder: Path) -> Floats:
     """Write a wind and the motion of a softer tree in it; return its displacements, (n, 3)."""
     tree, species = builtin_tree('goldcrest'), species_named('goldcrest')
     softer = replace(species, modulus=0.8 * species.modulus)
-    sim = SwaySimulator(tree, softer, model=40, crown_coherence=0.3)
+    sim = make_simulator(tree, softer, model=40, crown_coherence=0.3)
     rng = np.random.default_rng(3)
     wind = simulate_turbulence(4.0, rate=60.0, duration=45.0, rng=rng)
     segment = place_on(tree, f'{tree.branch_names[0]}:0.6').segment

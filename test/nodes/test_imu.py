@@ -17,7 +17,7 @@ from sensor_msgs.msg import Imu  # noqa: E402, I100
 from tree_sway.core.growth.builtin import builtin_tree  # noqa: E402
 from tree_sway.core.observe.observed_tree import ObservedTree  # noqa: E402
 from tree_sway.core.observe.simulated_sensor import SimulatedSensor  # noqa: E402
-from tree_sway.core.run.simulator import SwaySimulator  # noqa: E402
+from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.scene.run import Run  # noqa: E402
 from tree_sway.core.scene.simulate import PlacedMotion, simulate  # noqa: E402
 from tree_sway.core.tree.species import species_named  # noqa: E402
@@ -126,7 +126,7 @@ def test_messages_move_a_tree_as_a_recording_does():
     softer = replace(species_named('goldcrest'), modulus=6.0e9)
     rng, dt = np.random.default_rng(21), PERIOD * 1e-9
     wind = simulate_turbulence(4.0, rate=60.0, duration=30.0, rng=rng)
-    true, poses = SwaySimulator(tree, softer, crown_coherence=0.3), np.empty((len(wind), 7))
+    true, poses = make_simulator(tree, softer, crown_coherence=0.3), np.empty((len(wind), 7))
     for k, each in enumerate(wind):
         true.step(each, dt)
         poses[k] = true.place()[3]

@@ -17,7 +17,7 @@ from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.serialization import deserialize_message  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
-from tree_sway.core.run.simulator import SwaySimulator  # noqa: E402
+from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.wind.averaging import WindAverage  # noqa: E402
 from tree_sway.errors import ParameterError, TreeSwayError  # noqa: E402, E501
 from tree_sway.files.trees.source import open_tree  # noqa: E402
@@ -64,7 +64,7 @@ def test_without_wind_the_rest_pose_comes_at_the_full_rate(compose, observer, st
     compose(solver={'tree': tree_file})
     frames = observer.listen(SEGMENT_POSES)
     observer.until(lambda: len(frames) > 60, 'a second of frames')
-    rest = SwaySimulator(open_tree(tree_file).tree).place()
+    rest = make_simulator(open_tree(tree_file).tree).place()
     assert frames[0].header.frame_id == 'map'
     np.testing.assert_array_equal(block(frames[0]), rest)
     np.testing.assert_array_equal(block(frames[60]), rest)

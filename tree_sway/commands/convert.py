@@ -28,13 +28,17 @@ from tree_sway.commands.moments import at_moments, moments_of, numbered_paths
 from tree_sway.commands.progress import waiting
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator, solved
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
 from tree_sway.files.export.obj_scene import ObjScene
 from tree_sway.files.export.tree_export import SUFFIXES, write_gltf, write_tree
 from tree_sway.files.export.usd_writing import write_usd
+from tree_sway.files.models.model_file import SUFFIX as MODEL_SUFFIX
+from tree_sway.files.models.model_file import write_model
 from tree_sway.files.whole_file import write_text_whole
 
 
@@ -45,7 +49,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_leaves_argument(parser, None, 'on in .glb, .usda, .usdz and .html, else auto')
     add_model_argument(parser)
     add_wind_arguments(parser, 'wind recording that trees sway in until --at')
-    add_output_arguments(parser, f'{OUTPUT_HELP}, .html, .usda, .usdz, .xml (MJCF), .sdf, .obj')
+    add_output_arguments(
+        parser, f'{OUTPUT_HELP}, .npz, .html, .usda, .usdz, .xml (MJCF), .sdf, .obj'
+    )
     parser.add_argument(
         '--at',
         metavar='SECONDS',
@@ -90,7 +96,9 @@ def run(arguments: argparse.Namespace) -> int:
         _write_moments(scene, arguments, moments, paths)
     elif suffix == '.html':
         _write_page(scene, arguments)
-    elif suffix in (*_USD, *_HINGED) or (suffix == '.glb' and _is_to_sway(scene, arguments)):
+    elif suffix in (*_USD, *_HINGED, MODEL_SUFFIX) or (
+        suffix == '.glb' and _is_to_sway(scene, arguments)
+    ):
         _write_swaying(scene, arguments, suffix)
     else:
         species = scene.species if scene.is_one_tree else None
@@ -106,7 +114,7 @@ _USD = ('.usda', '.usdz')
 _DRAWN = ('.glb', '.html', *_USD)
 """Formats to look at, in leaf if nothing else is asked for."""
 
-_FORMATS = (*SUFFIXES, '.html', *_USD, *_HINGED, '.obj')
+_FORMATS = (*SUFFIXES, MODEL_SUFFIX, '.html', *_USD, *_HINGED, '.obj')
 
 
 def _write_moments(
@@ -146,8 +154,12 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             cure='convert its trees one by one',
         )
     settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
+    if suffix == MODEL_SUFFIX:
+        with waiting('preparing the tree'):
+            write_model(arguments.output, prepare(scene.tree, scene.species, solved(settings)))
+        return
     with waiting('finding what sways'):
-        simulator = SwaySimulator(scene.tree, scene.species, settings)
+        simulator = make_simulator(scene.tree, scene.species, settings)
         leaves = drawn_leaves(scene, arguments)
         if suffix == '.glb':
             write_gltf(arguments.output, morphing_tree(simulator, leaves))

@@ -9,7 +9,7 @@ A tree that is solved by itself is a separate kind.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.run.find_basis import state_basis
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
+from tree_sway.core.setup.prepare import prepare
 
 Place = tuple[float, float, float, float, float]
 """Place of a tree: x, y, z [m], rotation about the vertical [rad], scale."""
@@ -91,9 +92,10 @@ def _alone(number: int, simulator: SwaySimulator, is_running: bool) -> SceneKind
 
 def _runner(simulator: SwaySimulator, is_running: bool) -> SwaySimulator:
     """Choose the simulator for finding the basis: this one if at rest and as cheap."""
-    is_cheap = isinstance(simulator, SwaySimulator) and simulator.model not in ('full', 'auto')
-    if isinstance(simulator, SwaySimulator) and is_cheap and not is_running:
+    is_cheap = simulator.model not in ('full', 'auto')
+    if is_cheap and not is_running:
         return simulator
-    model = simulator.model if is_cheap else USUAL
-    settings = replace(simulator.settings, model=model)
-    return SwaySimulator(simulator.tree, simulator.species, settings)
+    if simulator.model != 'full':
+        return SwaySimulator(simulator.prepared)
+    made_of = simulator.tree, simulator.species, simulator.settings
+    return SwaySimulator(prepare(*made_of, model=USUAL))

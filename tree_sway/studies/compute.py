@@ -15,6 +15,7 @@ from tree_sway.core.growth.grow import grow
 from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.files.models.disk_cache import use_disk_cache
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_tree
 from tree_sway.files.wind.record import WindRecord
@@ -72,6 +73,7 @@ def _rig(case: Case, tree: TreeFile | None) -> tuple[Rig, float]:
     """Set up a tree and its frequency in [Hz]; the next case often has the same."""
     asked = json.dumps([case.tree, case.settings, case.digest], sort_keys=True)
     if asked not in _RIGS:
+        use_disk_cache()  # in each process of a study
         rig = Rig(_tree(case.tree) if tree is None else tree, **case.settings)
         _RIGS[asked] = rig, float(rig.reductions.natural_frequencies(1)[0])
         while len(_RIGS) > _MOST_RIGS:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
 
 
@@ -35,8 +35,8 @@ def tree():
 
 def pair(tree, **changes):
     """Make a simulator on compiled kernels, and one in numpy."""
-    sim = SwaySimulator(tree, model='full', gravity=0.0, **changes)
-    return sim, SwaySimulator(tree, settings=sim.settings, plain=True)
+    sim = make_simulator(tree, model='full', gravity=0.0, **changes)
+    return sim, make_simulator(tree, settings=sim.settings, plain=True)
 
 
 @pytest.mark.parametrize('name', ['bench', pytest.param('wild', marks=pytest.mark.long)])

@@ -16,7 +16,7 @@ from tree_sway.commands.cli import main
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.observe.simulated_sensor import SimulatedSensor
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
@@ -57,7 +57,7 @@ def make_record(folder: Path) -> str:
     """Write wind, sway and motion of a softer tree; return the place of the sensor."""
     tree, species = builtin_tree('goldcrest'), species_named('goldcrest')
     softer = replace(species, modulus=0.8 * species.modulus)
-    sim = SwaySimulator(tree, softer, model=40, crown_coherence=0.3)
+    sim = make_simulator(tree, softer, model=40, crown_coherence=0.3)
     rng = np.random.default_rng(3)
     wind = simulate_turbulence(4.0, rate=60.0, duration=80.0, rng=rng)
     at = f'{tree.branch_names[0]}:0.6'

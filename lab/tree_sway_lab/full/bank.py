@@ -17,7 +17,7 @@ on the key rotations, w circular frequencies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cached_property, partial
 import math
 
@@ -25,13 +25,14 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.model.fill_records import load_records
 from tree_sway.core.model.records import Branches, Loads, WIDTH, WORK, Works
+from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
 from tree_sway.core.run.branchwise import Branchwise
 from tree_sway.core.run.modal_coordinates import FARTHEST, ModalCoordinates
 from tree_sway.core.setup.bent_inertia import MOST_CHANGE
 from tree_sway.core.setup.branch_loads import wind_moments
-from tree_sway.core.setup.fill_records import load_records
 
 MOST_TRIALS = 12
 """Largest number of iterations for the load of a step."""
@@ -50,11 +51,9 @@ MOST_TURN = 1.0
 class FullBank(Branchwise, ModalCoordinates):
     """Oscillators of the coordinates of a tree, loaded branch by branch."""
 
-    def __init__(
-        self, branches: Records, made_of: Mapping[str, Floats], damping_ratio: float
-    ) -> None:
+    def __init__(self, branches: Records, model: SwayModel) -> None:
         """Make room for the state."""
-        super().__init__(branches, made_of, damping_ratio)
+        super().__init__(branches, model)
         m, n = self.by_coordinate.shape
         self._springs = np.zeros((5 + len(self.inertia_slopes), m))
         self.work = np.zeros(len(branches), dtype=WORK)

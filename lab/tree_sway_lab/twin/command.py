@@ -18,7 +18,7 @@ import argparse
 import sys
 
 from tree_sway.commands.ending import Ending
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway_lab.twin.trial import plain_score, Score, squared_score, twin_score
 from tree_sway_lab.twin.true_tree import Circumstances, sensor_places, tree_called, true_motion
 
@@ -78,7 +78,7 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
     places = sensor_places(tree, max(arguments.sensors))
     model = int(arguments.model) if arguments.model.isdecimal() else arguments.model
     true = true_motion(tree, species, places, around, in_leaf=in_leaf, model=model)
-    known = SwaySimulator(tree, species, in_leaf=in_leaf)
+    known = make_simulator(tree, species, in_leaf=in_leaf)
     _print(name, 'U^2', squared_score(true, float(known.frequencies(1)[0])))
     _print(name, 'model', plain_score(known, true))
     for count in arguments.sensors:

@@ -30,7 +30,7 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.commands.motion_arguments import add_motion_arguments, placed_motion
 from tree_sway.core.arrays import Floats
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.simulate import simulate
 from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.wind.sway_table import read_csv_sway
@@ -91,7 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
     rate = (len(time) - 1) / float(np.ptp(time))
     grid = time[0] + np.arange(len(time)) / rate
     measured = _at(grid, time, measured)
-    frequency = float(SwaySimulator(opened, model=0, in_leaf=choice['in_leaf']).frequencies(1)[0])
+    frequency = float(make_simulator(opened, model=0, in_leaf=choice['in_leaf']).frequencies(1)[0])
 
     def scored(computed: Floats) -> SwayComparison:
         return compare_sway(computed, measured, rate, frequency)

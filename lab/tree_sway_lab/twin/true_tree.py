@@ -17,7 +17,8 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.observe.sensor_place import place_on, SensorPlace
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.species import Species, species_keys, species_named
 from tree_sway.core.tree.tree import tips_of_poses, Tree
@@ -100,11 +101,11 @@ def true_motion(
     model: int | str = 'full',
 ) -> TrueMotion:
     """Sway the true tree in its wind."""
-    known = SwaySimulator(tree, species, model=0, in_leaf=in_leaf)
+    known = prepare(tree, species, model=0, in_leaf=in_leaf)
     wood = replace(species, modulus=around.wood * species.modulus)
-    true = SwaySimulator(
+    true = make_simulator(
         tree, wood, model=model, in_leaf=in_leaf, crown_coherence=around.coherence,
-        damping_ratio=around.damping * known.reductions.damping_ratio,
+        damping_ratio=around.damping * known.damping_ratio,
     )  # fmt: skip
     rng = np.random.default_rng(around.seed)
     late = round(around.upwind / around.speed / DT)

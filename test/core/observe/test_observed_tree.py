@@ -18,7 +18,7 @@ from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.observer import LATE_STEPS
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.observe.simulated_sensor import SensedMotion, SimulatedSensor
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import tips_of_poses
@@ -44,7 +44,7 @@ class Truth(NamedTuple):
 def truth() -> Truth:
     """Sway a tree of softer wood and more damping, in gusts that reach it limb by limb."""
     softer = replace(SPECIES, modulus=0.85 * SPECIES.modulus)
-    sim = SwaySimulator(
+    sim = make_simulator(
         TREE, softer, in_leaf=False, damping_ratio=0.06, crown_coherence=0.3, model=90
     )
     rng = np.random.default_rng(17)
@@ -183,7 +183,7 @@ def test_a_hostile_sensor_does_not_move_the_tree_beyond_its_storms(size: float) 
     sway = size * np.sin(2.0 * np.pi * motion.time[hostile])
     shaken[hostile, 0] += sway
     twin, tips, _ = replayed(motion._replace(acceleration=shaken))
-    storm = SwaySimulator(TREE, SPECIES, in_leaf=False)
+    storm = make_simulator(TREE, SPECIES, in_leaf=False)
     for _ in range(600):
         storm.step((36.0, 0.0, 0.0), DT)
     rest = TREE.end[TREE.branch_first[1:] - 1]

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.observe.sensor_place import place_motion, place_on, tip_slopes, turn_between
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.errors import ParameterError
 
@@ -58,7 +58,7 @@ def test_other_places_are_refused_with_a_cure(where: str, what: str) -> None:
 
 
 def test_the_motion_of_a_place_is_that_of_its_pose() -> None:
-    sim = SwaySimulator(TREE, model=12)
+    sim = make_simulator(TREE, model=12)
     place = place_on(TREE, f'{TREE.branch_names[2]}:0.7')
     motion = place_motion(sim, place)
     eta = 1e-3 * np.random.default_rng(1).normal(size=12) / np.arange(1, 13)
@@ -85,7 +85,7 @@ def test_turns_are_those_of_scipy() -> None:
 
 
 def test_tips_move_as_places_at_their_ends_do() -> None:
-    sim = SwaySimulator(TREE, model=12)
+    sim = make_simulator(TREE, model=12)
     slopes = tip_slopes(sim)
     assert slopes.shape == (TREE.n_branches, 3, 12)
     for branch in (0, 3, TREE.n_branches - 1):

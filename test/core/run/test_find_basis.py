@@ -14,7 +14,7 @@ import pytest
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.model.state_basis import FULL_SCALE
 from tree_sway.core.run.find_basis import state_basis, tip_moments
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.tree_motion import tip_motion
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.stream.protocol import quantised
@@ -25,7 +25,7 @@ DT = 1.0 / 60.0
 @cache
 def with_basis(name):
     """Make a tree that sways, and its basis; once."""
-    sim = SwaySimulator(builtin_tree(name), model=60)
+    sim = make_simulator(builtin_tree(name), model=60)
     return sim, state_basis(sim)
 
 
@@ -91,7 +91,7 @@ def test_what_is_beyond_full_scale_is_held(basis):
 
 
 def test_forces_on_tips_do_the_work_that_moments_do(fork):
-    joints = SwaySimulator(fork(), model='full', enrich='all').joints
+    joints = make_simulator(fork(), model='full', enrich='all').joints
     rng = np.random.default_rng(3)
     x = rng.normal(size=(int(joints['n_coordinates'].sum()), 4))
     forces = rng.normal(size=(len(joints), 3, 5))
@@ -100,12 +100,12 @@ def test_forces_on_tips_do_the_work_that_moments_do(fork):
 
 
 def test_a_tree_without_motion_has_a_basis(fork):
-    basis = state_basis(SwaySimulator(fork(), model=0))
+    basis = state_basis(make_simulator(fork(), model=0))
     assert (basis.rotations(basis.coordinates(np.zeros(len(basis.matrix)))) == 0.0).all()
 
 
 def test_the_simulator_is_left_as_it_was(fork):
-    sim = SwaySimulator(fork(), model='branch')
+    sim = make_simulator(fork(), model='branch')
     sim.step((4.0, 1.0, 0.0), DT)
     before = sim.state().values.tobytes()
     state_basis(sim)
@@ -117,8 +117,9 @@ import hashlib
 import numpy as np
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.run.find_basis import state_basis
-sim = SwaySimulator(builtin_tree("goldcrest"), model=60)
+sim = make_simulator(builtin_tree("goldcrest"), model=60)
 basis = state_basis(sim)
 coordinates = np.linspace(-0.1, 0.1, basis.n_coordinates) * basis.scale
 poses = sim.place_rotations(basis.rotations(coordinates))

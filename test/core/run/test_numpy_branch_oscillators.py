@@ -14,7 +14,8 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.run.simulator import LOAD_CLAMPED, SwaySimulator
+from tree_sway.core.run.simulator import LOAD_CLAMPED
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.static_responses import WindMoments
 from tree_sway.core.tree.building import tree_from_segments
 
@@ -38,8 +39,8 @@ def tree():
 
 def pair(tree, model, **changes):
     """Make a simulator on compiled kernels, and one in numpy."""
-    sim = SwaySimulator(tree, model=model, gravity=0.0, **changes)
-    return sim, SwaySimulator(tree, settings=sim.settings, plain=True)
+    sim = make_simulator(tree, model=model, gravity=0.0, **changes)
+    return sim, make_simulator(tree, settings=sim.settings, plain=True)
 
 
 @pytest.mark.parametrize(
@@ -108,7 +109,7 @@ def test_a_state_of_one_is_taken_by_the_other(tree, model):
 
 @pytest.mark.compiled
 def test_moments_of_even_winds_are_those_that_a_tree_at_rest_bears():
-    load = WindMoments(SwaySimulator(bench_tree(), model=12).bank.branches)
+    load = WindMoments(make_simulator(bench_tree(), model=12).bank.branches)
     moments, still = load.at_rest(np.eye(3), np.eye(load.n)), np.zeros(load.n)
     for wind, moment in zip(np.eye(3), moments, strict=True):
         assert moment == pytest.approx(load(still, still, wind), rel=1e-9, abs=1e-12)

@@ -65,11 +65,11 @@ class Disturbance:
 
 def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
     """Find the unknown forces on a number of coordinates in a mean wind [m/s]."""
-    branches = simulator.reductions.with_subtrees.branches
+    branches = simulator.joints
     slope, moved = _branch_slopes(simulator, speed, count)
     air_damping = np.einsum('bim,bim->m', slope, moved)
 
-    limb = _limbs(simulator)[simulator.reductions.with_subtrees.branch]
+    limb = _limbs(simulator)[simulator.tree.branch_of_segment[branches['first']]]
     n_limbs = int(limb.max()) + 1
     by_limb = np.zeros((n_limbs, *slope.shape[1:]))
     np.add.at(by_limb, limb, slope)
@@ -102,7 +102,7 @@ def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:
 
 def _branch_slopes(simulator: SwaySimulator, speed: float, count: int) -> tuple[Floats, Floats]:
     """Slopes of modal forces by the wind of each branch, and the motion it damps, (b, 3, m)."""
-    branches = simulator.reductions.with_subtrees.branches
+    branches = simulator.joints
     shapes = np.ascontiguousarray(simulator.bank.oscillators.shapes[:, :count])
     bases = base_motion(branches, shapes)
     at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]

@@ -22,9 +22,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import three_numbers, within
+from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
 from tree_sway.core.observe.motion_sensor import MotionSensor
@@ -32,9 +32,10 @@ from tree_sway.core.observe.observer import Observer
 from tree_sway.core.observe.sensor_place import place_on, tip_slopes
 from tree_sway.core.observe.sensor_track import SensorTrack
 from tree_sway.core.observe.tree_fit import TreeFit
-from tree_sway.core.run.crown_gusts import delays_of
 from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
-from tree_sway.core.tree.grown_tree import GrownTree
+from tree_sway.core.setup.prepare import delays_of, prepared
+from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.crown_wind import CrownWind, USUAL_COHERENCE
@@ -70,7 +71,7 @@ class ObservedTree(SwaySimulator):
     Parameters
     ----------
     tree, species, settings, cache, plain, **changes
-        Arguments of `SwaySimulator`. The model is a number of coordinates, or ``full``.
+        Arguments of `make_simulator`. The model is a number of coordinates, or ``full``.
     at
         Place of each sensor by its name, as `place_on` takes it.
     rate
@@ -103,15 +104,16 @@ class ObservedTree(SwaySimulator):
         rate: float = 60.0,
         is_smoothed: bool = False,
         learns: bool = True,
-        cache: SetUpFiles | None = SET_UPS,
+        cache: ModelCache | None = PREPARED,
         plain: bool = False,
         **changes: Any,
     ) -> None:
         chosen = settings_with(settings, changes)
         coherence = min(chosen.crown_coherence, USUAL_COHERENCE)
-        super().__init__(
-            tree, species, replace(chosen, crown_coherence=1.0), cache=cache, plain=plain
-        )
+        bare, wood = tree_and_species(tree, species)
+        whole = replace(chosen, crown_coherence=1.0)
+        reductions = TreeReductions(bare, wood, whole, plain=plain)
+        super().__init__(prepared(reductions, cache=cache), plain=plain)
         if not hasattr(self.bank.oscillators, 'swing') or self.settings.model == 0:
             raise ParameterError(
                 f"motion sensors on model '{self.model}'",
@@ -124,7 +126,7 @@ class ObservedTree(SwaySimulator):
         """Sensors by their names."""
         self._records: dict[str, _Record] = {}
         self.set_rate(rate)
-        delays = delays_of(self.tree, self.reductions.leaf_load_area)
+        delays = delays_of(self.tree, reductions.leaf_load_area)
         self._share = delays.share
         self._crown = CrownWind(delays.spread, coherence)
         self._added = np.zeros((2, self.observer.count))
@@ -253,7 +255,7 @@ class ObservedTree(SwaySimulator):
         self._known = fit
         if fit is None or not self.learns:
             return
-        ratio = min(fit.damping * self.reductions.damping_ratio, 1.0)
+        ratio = min(fit.damping * self.prepared.damping_ratio, 1.0)
         with suppress(ParameterError):  # a tree that would buckle stays as it is
             self.tune(stiffness_factor=fit.stiffness, damping_ratio=ratio)
 

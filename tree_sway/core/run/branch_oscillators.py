@@ -42,6 +42,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, fused, part
+from tree_sway.core.model.fill_records import load_records
 from tree_sway.core.model.records import (
     Banks,
     Branches,
@@ -61,7 +62,6 @@ from tree_sway.core.oscillators.two_axis import (
 )
 from tree_sway.core.run.branchwise import Branchwise, Tunable
 from tree_sway.core.setup.branch_loads import own_loads, set_air, wind_forces
-from tree_sway.core.setup.fill_records import load_records
 
 NOT_FINITE = -1
 """Result of a step after which the motion is not finite."""

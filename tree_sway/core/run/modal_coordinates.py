@@ -11,13 +11,11 @@ Symbols: Phi shapes (N, m), stored by coordinate, (m, N), w circular frequencies
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.oscillators.propagator import fill_propagator
-from tree_sway.core.oscillators.two_axis import LOAD_MAX
 from tree_sway.core.run.branchwise import Tunable
 
 FARTHEST = 2.0
@@ -26,53 +24,43 @@ FARTHEST = 2.0
 
 class ModalCoordinates:
     """
-    Some or all coordinates of a tree, of one damping ratio.
+    Some or all coordinates of a tree; what a tuning changes is copied.
 
     Parameters
     ----------
     branches
-        Records of `Branch`, (b,).
-    made_of
-        Arrays of `setup.modal_arrays`.
-    damping_ratio
-        Damping ratio of the tree in [-].
+        Records of `Branch`, (b,), of the model.
+    model
+        Prepared model of the tree.
 
     """
 
-    def __init__(
-        self, branches: Records, made_of: Mapping[str, Floats], damping_ratio: float
-    ) -> None:
+    def __init__(self, branches: Records, model: SwayModel) -> None:
         self.branches = branches
-        self.by_coordinate = made_of['shapes']
+        self.by_coordinate = np.ascontiguousarray(model.shapes.T)
         """Key rotations per unit of each coordinate, (m, N)."""
         self.shapes = self.by_coordinate.T
-        self.stiffness = made_of['circular'] ** 2
-        self.loss = made_of['loss']
+        self.stiffness = model.stiffness.copy()
+        self.loss = model.relative_damping
         """Damping ratio of each coordinate over that of the tree, (m,)."""
-        self.damping = 2.0 * damping_ratio * self.loss * made_of['circular']
-        self.limit = LOAD_MAX * made_of['diagonal']
+        self.damping = model.own_damping.copy()
+        self.limit = model.key_limit.copy()
         """Largest moment on each key rotation in [N m], (N,)."""
-        self.weight = made_of['weight']
+        self.weight = model.weight
         """Stiffness by gravity in [1/s^2], (m,); negative where weight softens a coordinate."""
-        self.compliance = made_of['branch_compliance'], made_of['mode_compliance']
+        self.compliance = model.branch_compliance.copy(), model.shape_compliance.copy()
         """
         Compliance of every isolated branch, (N, 9), and of the coordinates of isolated branches,
         (m, m).
         """
-        self.momentum = made_of['momentum'].T
+        self.momentum = model.projection
         """Coordinates, or their rates, per unit of each key rotation, or its rate, (m, N)."""
-        self.inertia_slopes = made_of['inertia_slopes']
+        self.inertia_slopes = model.inertia_slopes
         """Slopes of the inertia by leading coordinates, (q, q, q), as `inertia_slopes`."""
-        self.participation = made_of['participation']
+        self.participation = model.participation
         """Mean squared motion of each load centre per unit of each coordinate, (b, m)."""
         self.whole, self.half = np.zeros((2, len(self.stiffness), 8))
         """Propagators over the time step and half of it, as `fill_propagator`, (m, 8)."""
-
-    @property
-    def mean_square_motion(self) -> Floats:
-        """Mean square motion of the loaded pieces, per unit of each coordinate, (m,)."""
-        area = self.branches['area']
-        return np.asarray(2.0 * area @ self.participation / max(float(area.sum()), 1e-300))
 
     @property
     def air_damping(self) -> Floats:

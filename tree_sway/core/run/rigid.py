@@ -4,22 +4,21 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.model.fill_records import load_records
+from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.branchwise import Branchwise
 from tree_sway.core.run.modal_coordinates import ModalCoordinates
-from tree_sway.core.setup.fill_records import load_records
 
 
 class RigidBank(Branchwise, ModalCoordinates):
     """A tree without coordinates; it is bent by pushes alone, as its branches are."""
 
-    def __init__(self, *arguments: Any) -> None:
+    def __init__(self, branches: Records, model: SwayModel) -> None:
         """Make the arrays of a tree at rest."""
-        super().__init__(*arguments)
+        super().__init__(branches, model)
         self.loads = load_records(self.branches)
         self.swing = tuple(np.zeros((3, 0)))
         """Displacement, rate and force of each coordinate, (0,)."""

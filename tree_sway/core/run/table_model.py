@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property, partial
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,8 +39,9 @@ from tree_sway.core.run.modal_coordinates import ModalCoordinates
 from tree_sway.core.run.placing import expand, room_for
 from tree_sway.core.run.simd import shapes_together, TOGETHER
 from tree_sway.core.run.table_load import UniformWind, wind_force
-from tree_sway.core.setup.load_table import WindBasisTable
-from tree_sway.core.setup.static_responses import WindMoments
+
+if TYPE_CHECKING:
+    from tree_sway.core.setup.static_responses import WindMoments
 
 STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside', 'left_out')
 """Fields of an instance that are its state."""
@@ -50,14 +51,14 @@ class WindBasisBank:
     """
     Oscillators of a tree in uniform winds, loaded by a table.
 
-    ``modal`` are its coordinates.
+    ``modal`` are its coordinates, ``table`` is a `table_record`, (1,).
     """
 
     is_plain = False
 
     loads: Records | None = None
 
-    def __init__(self, modal: ModalCoordinates, table: WindBasisTable) -> None:
+    def __init__(self, modal: ModalCoordinates, table: Records) -> None:
         """Begin at rest."""
         self.modal, self.table = modal, table
         self.branches, self.shapes = modal.branches, modal.shapes
@@ -76,7 +77,7 @@ class WindBasisBank:
         """Lay the table out for a number of coordinates, that of the largest tree of a stand."""
         for compiled in ('_step', '_expand'):
             self.__dict__.pop(compiled, None)
-        table_record = self.table.record
+        table_record = self.table
         self.record = zeros_in_lines(1, table_layout(n_modes))
         for name in table_record.dtype.names or ():
             values = table_record[name]
@@ -194,6 +195,8 @@ class WindBasisBank:
 
     @cached_property
     def _wind_moments(self) -> WindMoments:
+        from tree_sway.core.setup.static_responses import WindMoments
+
         return WindMoments(self.branches, plain=self.is_plain)
 
     def motion(self) -> tuple[Floats, Floats]:

@@ -16,15 +16,16 @@ from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.model.model_cache import ModelCache, PREPARED
+from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.run.simulator import Counts, SwaySimulator
-from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.make import simulator_of, solved
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
-from tree_sway.core.tree.grown_tree import GrownTree
+from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.tree import tips_of_poses, Tree
 from tree_sway.core.wind.averaging import LONGEST_HOLD, WindAverage
 from tree_sway.core.wind.gate import WindGate
@@ -125,18 +126,23 @@ class Rig:
         tree: Tree | GrownTree,
         settings: Settings | None = None,
         motion: Sequence[PlacedMotion] = (),
+        *,
+        tolerance: float = 0.005,
+        cache: ModelCache | None = PREPARED,
         **changes: Any,
     ) -> None:
         """Reduce the tree, once for the simulator and for its strain."""
+        bare, species = tree_and_species(tree)
+        chosen = settings_with(settings, changes)
+        self.tree, self.reductions = bare, TreeReductions(bare, species, solved(chosen))
         self.motion = motion
-        self.simulator: SwaySimulator = (
-            ObservedTree(
-                tree, settings=settings, at={each.name: each.at for each in motion}, **changes
-            )
-            if motion
-            else make_simulator(tree, settings=settings, **changes)
-        )
-        self.tree, self.reductions = self.simulator.tree, self.simulator.reductions
+        self.simulator: SwaySimulator
+        if motion:
+            places = {each.name: each.at for each in motion}
+            self.simulator = ObservedTree(tree, settings=chosen, at=places, cache=cache)
+        else:
+            auto = {'tolerance': tolerance} if chosen.model == 'auto' else {}
+            self.simulator = simulator_of(self.reductions, cache=cache, **auto)
 
     def run(
         self,

@@ -24,6 +24,7 @@ from scipy.spatial.transform import Rotation
 from tree_sway.core.arrays import Floats
 from tree_sway.core.model.drag_law import AIR_DENSITY, pressure, SHARED_AT
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.tree import Tree
 
 _MARGIN, _FASTEST_TO = 0.95, 1e-3
@@ -130,7 +131,8 @@ def _spread(tree: Tree, leaves: Floats | None) -> Floats:
 def _drag_area(simulator: SwaySimulator) -> Floats:
     tree = simulator.tree
     diameter = 0.5 * (tree.base_diameter + tree.tip_diameter)
-    area = (diameter + _spread(tree, simulator.reductions.leaf_load_area)) * tree.length
+    reductions = TreeReductions(tree, simulator.species, simulator.settings)
+    area = (diameter + _spread(tree, reductions.leaf_load_area)) * tree.length
     return 2.0 / AIR_DENSITY * pressure(SHARED_AT, *simulator.drag_law) * area
 
 
