@@ -8,13 +8,17 @@ Modules of one model are imported where that model is made.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any, TYPE_CHECKING
 
 import numpy as np
 
-from tree_sway.core.arrays import Records
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.model.drag_law import DragLaw
 from tree_sway.core.model.records import in_lines
+from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.run.bank import Bank, Oscillators
 from tree_sway.core.setup.fill_records import block_records
@@ -35,6 +39,11 @@ Number of natural modes of equal damping ratio; above them it grows with the fre
 damping proportional to the stiffness of the wood.
 
 """
+
+_OF_STREAM = (
+    'shapes', 'momentum', 'stream_shapes', 'stream_projection', 'stream_scale', 'stream_error',
+)  # fmt: skip
+"""Arrays of a set-up that make the basis of the stream."""
 
 
 def assembled(
@@ -86,18 +95,53 @@ def _bank_of_modes(reductions: TreeReductions, model: int | str, cache: SetUpFil
         kind = NumpyModalBank
     modal = kind(branches, made_of, reductions.damping_ratio)
     oscillators: Oscillators = modal
+    find_basis = partial(_basis_of_responses, reductions)
     if model != 'full' and model != 0:
         from tree_sway.core.setup.load_table import WindBasisTable
 
         table = _table(reductions, modal) if found is None else WindBasisTable.of_arrays(found)
         made_of['table'] = table.record
+        if found is None:
+            made_of |= _stream_arrays(reductions, modal, table)
         oscillators = _bank_of_table(modal, table, reductions.plain)
+        find_basis = partial(_basis_of_arrays, {name: made_of[name] for name in _OF_STREAM})
     if found is None and cache is not None:
         cache.write(digest, made_of)
     segments = made_of['segments'] if found is None else in_lines(made_of['segments'])
-    return _laid_out(
-        oscillators, branches, segments, float(made_of['tree_mass']), reductions.plain
+    mass = float(made_of['tree_mass'])
+    return _laid_out(oscillators, branches, segments, mass, find_basis, reductions.plain)
+
+
+@one_thread()
+def _stream_arrays(
+    reductions: TreeReductions, modal: ModalBank, table: WindBasisTable
+) -> dict[str, Any]:
+    """Find the basis of the stream from the table, as arrays."""
+    from tree_sway.core.setup.leaning_responses import leaning_responses
+    from tree_sway.core.setup.stream_basis import stream_arrays, WEIGHTS
+
+    law, record = reductions.drag_law, table.record[0]
+    responses = leaning_responses(record, modal.damping, law, tuple(WEIGHTS))
+    return stream_arrays(modal.branches, modal.shapes, responses)
+
+
+def _basis_of_arrays(made_of: Mapping[str, Any]) -> StateBasis:
+    """Return the basis of the stream that is stored with a set-up, as one of key rotations."""
+    matrix = made_of['shapes'].T @ made_of['stream_shapes']
+    projection = made_of['stream_projection'] @ made_of['momentum'].T
+    return StateBasis(
+        matrix, projection, made_of['stream_scale'], float(made_of['stream_error'][0])
     )
+
+
+@one_thread()
+def _basis_of_responses(reductions: TreeReductions) -> StateBasis:
+    """Find the basis of a tree that is stepped in all its coordinates."""
+    from tree_sway.core.setup.stream_basis import basis_of_responses
+
+    responses = reductions.responses
+    branches, rotations = reductions.with_subtrees.branches, responses.rotations
+    return basis_of_responses(branches, rotations, responses.in_gale * rotations)
 
 
 def _bank_of_table(modal: ModalBank, table: WindBasisTable, plain: bool) -> WindBasisBank:
@@ -163,12 +207,30 @@ def _bank_of_branches(reductions: TreeReductions) -> Bank:
 
         kind = NumpyUncoupledBank
     oscillators = kind(branches, inertia, damping, stiffness, weight)
-    mass = float(reduced.mass.sum())
-    return _laid_out(oscillators, branches, reduced.segments, mass, reductions.plain)
+    mass, law = float(reduced.mass.sum()), reductions.drag_law
+    made_of = inertia.copy(), damping.copy(), stiffness.copy()
+    find_basis = partial(_basis_of_isolated, branches, made_of, law)
+    return _laid_out(oscillators, branches, reduced.segments, mass, find_basis, reductions.plain)
+
+
+@one_thread()
+def _basis_of_isolated(
+    branches: Records, oscillators: tuple[Floats, Floats, Floats], law: DragLaw
+) -> StateBasis:
+    """Find the basis of branches whose inertia, damping and stiffness are their own, (b,)."""
+    from tree_sway.core.setup.stream_basis import basis_of_responses
+    from tree_sway.core.setup.uncoupled_responses import uncoupled_responses
+
+    return basis_of_responses(branches, *uncoupled_responses(branches, *oscillators, law))
 
 
 def _laid_out(
-    oscillators: Oscillators, branches: Records, segments: Records, mass: float, plain: bool
+    oscillators: Oscillators,
+    branches: Records,
+    segments: Records,
+    mass: float,
+    find_basis: Callable[[], StateBasis],
+    plain: bool,
 ) -> Bank:
     blocks = block_records(branches, segments)
-    return Bank(oscillators, branches, segments, blocks, mass, plain)
+    return Bank(oscillators, branches, segments, blocks, mass, find_basis, plain)

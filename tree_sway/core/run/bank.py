@@ -14,6 +14,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
 from tree_sway.core.model.drag_law import DragLaw
+from tree_sway.core.model.state_basis import StateBasis
 
 if TYPE_CHECKING:
     from tree_sway.core.run.branchwise import Tunable
@@ -87,7 +88,14 @@ class Bank:
     segments: Records
     blocks: Records
     mass: float
+    find_basis: Callable[[], StateBasis]
+    """Find the basis in which the motion is streamed; no state is read or changed."""
     plain: bool = bool(WHY_PLAIN)
+
+    @cached_property
+    def basis(self) -> StateBasis:
+        """Return the basis in which the motion is streamed."""
+        return self.find_basis()
 
     @cached_property
     def bases(self) -> Floats:
