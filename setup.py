@@ -91,9 +91,9 @@ extras = {
     # Studies on all cores or a cluster; tables as Parquet.
     'study': ['distributed>=2023.1', 'cryptography>=41'],
     'parquet': ['pyarrow>=12'],
-    # Wind of reanalyses; inventories of spreadsheets and of geographic information systems.
+    # Wind of reanalyses; inventories in spreadsheets.
     'netcdf': ['netCDF4>=1.6'],
-    'inventory': ['openpyxl>=3.1', 'pyogrio>=0.7'],
+    'inventory': ['openpyxl>=3.1'],
     'docs': ['sphinx>=7', 'myst-parser>=2'],
 }
 

@@ -66,8 +66,9 @@ NEEDS = {
 }
 #: Extras that a file needs which is named on the command line, by its suffix.
 NEEDS_OF_FILES = {
-    **{'.parquet': 'parquet', '.nc': 'netcdf'},
-    **dict.fromkeys(('.xlsx', '.gpkg', '.shp'), 'inventory'),
+    '.parquet': 'parquet',
+    '.nc': 'netcdf',
+    '.xlsx': 'inventory',
 }
 #: What a sourced ROS sets; its libraries and these wheels must not meet in one process.
 ROS_NAMES = (
@@ -118,6 +119,8 @@ def extras_for(command):
     names = [os.path.basename(command[0])]
     names += [argument for argument in command[1:] if not argument.startswith('-')][:1]
     needed = {*ALWAYS, *NEEDS.get(names[0], ()), *NEEDS.get(' '.join(names), ())}
+    if '--sensor' in command and names[-1] == 'record':
+        needed.discard('ros')  # the wind of a live source is recorded without it
     for argument in command[1:]:
         path = Path(argument.rpartition('=')[2])
         if path.suffix in NEEDS_OF_FILES:

@@ -25,7 +25,7 @@ EXTRAS = {
     **{'numba': 'fast', 'rosbags': 'bag', 'tqdm': 'progress'},
     **dict.fromkeys(('paho', 'pymodbus', 'serial'), 'sensors'),
     **{'imageio_ffmpeg': 'film', 'pyarrow': 'parquet'},
-    **{'netCDF4': 'netcdf', 'openpyxl': 'inventory', 'pyogrio': 'inventory'},
+    **{'netCDF4': 'netcdf', 'openpyxl': 'inventory'},
 }
 """Extra of the package with a module."""
 

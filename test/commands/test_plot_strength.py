@@ -51,7 +51,8 @@ def test_info_says_the_share_and_where_if_a_speed_is_given(capsys):
     assert 0.0 < least < share < most
     assert len(facts['strength']['roots']) == 3
     assert facts['strength']['branch'] in {mode['branch'] for mode in facts['modes']}
-    assert 'in gusts of a mean wind of 12 m/s, strength used: wood' in facts['notes'][-1]
+    said = facts['notes'][-1]
+    assert 'in the open; mean wind 2.3 m above the ground, of 12 m/s: strength used' in said
     assert 'not included' in facts['notes'][-1]
     assert main([*tree, '--speed', '-3']) == 2
 

@@ -19,7 +19,7 @@ from tree_sway.core.model.settings import USUAL
 from tree_sway.core.strength.strength_use import ROOT_BAND, WOOD_BAND
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
-from tree_sway.files.scenes import stand_table
+from tree_sway.files.scenes import kind_classes
 from tree_sway.files.trees.tree_file import TREE_FORMATS
 from tree_sway.files.wind.wind_file import WIND_FORMATS
 from tree_sway.page import server
@@ -43,9 +43,9 @@ FIGURES = {
     },
     'doc/reference.md': {r'Rows (\d+) s and more apart are means': [LEAST_INTERVAL]},
     'doc/trees.md': {
-        r'more than ([\d.]+) times as high': [round(stand_table._HEIGHTS**0.5, 1)],
+        r'more than ([\d.]+) times as high': [round(kind_classes._HEIGHTS**0.5, 1)],
         r'height to diameter by more than (\d+) %': [
-            round(100 * (stand_table._SLENDERNESSES**0.5 - 1)),
+            round(100 * (kind_classes._SLENDERNESSES**0.5 - 1)),
         ],
         r'\| `oak` \| oak \| ([\d.]+) \| (\d+) ': [
             species_named('oak').modulus / 1e9, species_named('oak').density,

@@ -21,7 +21,7 @@ from tree_sway.files.recording.bag_writer import BagWriter  # noqa: E402
 from tree_sway.files.wind.wind_file import read_wind  # noqa: E402
 from tree_sway.stream.placing import Placer  # noqa: E402
 from tree_sway.stream.protocol import decode_description  # noqa: E402
-from tree_sway_ros.commands.record import _MORE, _USUAL, Recorder  # noqa: E402
+from tree_sway_ros.commands.bag_recorder import _MORE, _USUAL, Recorder  # noqa: E402
 from tree_sway_ros.process.topics import TREE_DESCRIPTION, TREE_STATE  # noqa: E402
 from tree_sway_ros.wire.tree_state import read_state, read_state_entry  # noqa: E402
 

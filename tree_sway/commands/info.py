@@ -18,6 +18,7 @@ from tree_sway.commands.arguments import (
     chosen_leaves,
     opened_scene,
 )
+from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
 from tree_sway.commands.mode_table import mode_table
 from tree_sway.commands.progress import bar
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
@@ -27,6 +28,7 @@ from tree_sway.core.scene.placed_tree import Kind, PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.setup.season import in_season
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
+from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TreeError
 from tree_sway.parameters.sway_parameters import SWAY
@@ -56,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     speed = 'report the fraction of the strength used in gusts of this mean wind [m/s]'
     add('--speed', type=float, metavar='U', help=speed)
+    add_exposure_arguments(parser)
     add('--json', action='store_true', help='print JSON in SI units')
 
 
@@ -102,16 +105,28 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
         doubt = f'no modes: {error}'
     else:
         doubt = sway_oddity(tree, species, min(mode['frequency'] for mode in modes))
-    used = None
+    used = published = None
     if arguments.speed is not None:
         rng = np.random.default_rng(0)
-        chosen = Settings(gravity=settings.gravity, in_leaf=settings.in_leaf)
-        (used,) = strength_rig(tallest, chosen).strength_curve([arguments.speed], rng=rng)
-        left_out = 'rot, wet soil and sheltering are not included'
+        placed = tallest.placed()
+        exposure = chosen_exposure(arguments, placed, species)
+        chosen = Settings(
+            gravity=settings.gravity, in_leaf=settings.in_leaf,
+            profile=exposure.profile(float(placed.start[0, 2])),
+        )  # fmt: skip
+        rig = strength_rig(tallest, chosen)
+        (used,) = rig.strength_curve([arguments.speed], rng=rng, **turbulence_of(exposure))
         notes.append(
-            f'{tallest.name} in gusts of a mean wind of {arguments.speed:g} m/s, {used}; '
-            f'{left_out}'
+            f'{tallest.name} {exposure}, of {arguments.speed:g} m/s: {used}; rot and wet soil are '
+            'not included'
         )
+        published = _published_moment(placed, species, arguments.speed)
+        if published is not None:
+            notes.append(
+                f'largest moment at the base {used.base_moment / 1e3:.3g} kN m; that of conifers '
+                f'in stands {published / 1e3:.3g} kN m, 112 d^2 h U^2 with the hourly mean at '
+                'the top of the stand (Hale et al. 2012)'
+            )
     frequencies = [mode['frequency'] for mode in modes]
     return {
         'name': tree.name, 'notes': notes,
@@ -124,7 +139,8 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
         'modulus': species.modulus, 'density': species.density, 'mass': mass,
         'root_stiffness': None if math.isinf(species.root_stiffness) else species.root_stiffness,
         'gravity': settings.gravity, 'in_leaf': settings.in_leaf,
-        'strength': used and used.plain(), 'frequencies': frequencies, 'modes': modes,
+        'strength': used and used.plain(), 'published_moment': published,
+        'frequencies': frequencies, 'modes': modes,
     }  # fmt: skip
 
 
@@ -136,6 +152,19 @@ def _breast_height_diameter(tree: Tree) -> float | None:
     if level.max() < _BREAST_HEIGHT:
         return None
     return float(np.interp(_BREAST_HEIGHT, np.maximum.accumulate(level), thick))
+
+
+def _published_moment(tree: Tree, species: Species, speed: float) -> float | None:
+    """
+    Largest moment in an hour at the base of a conifer in a stand in [N m].
+
+    Hale et al. (2012), European Journal of Forest Research 131, 203-217: 111.7 d^2 h U^2, d at
+    breast height, U the mean at the top of the stand. None for others and below 1.3 m.
+    """
+    diameter = _breast_height_diameter(tree)
+    if species.habit != 'conifer' or diameter is None:
+        return None
+    return 111.7 * diameter**2 * tree.height * speed**2
 
 
 def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:

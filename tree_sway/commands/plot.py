@@ -19,6 +19,7 @@ from tree_sway.commands.arguments import (
     opened_wind,
     output_path,
 )
+from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
 from tree_sway.commands.progress import bar, waiting
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.commands.swaying import swaying
@@ -50,6 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     strength = 'draw the fraction of the strength in use over wind speed, up to --speed (30 m/s)'
     parser.add_argument('--strength', action='store_true', help=strength)
+    add_exposure_arguments(parser)
     parser.set_defaults(speed=None)
     parser.add_argument(
         '--seconds', type=float, default=60.0, metavar='N', help='duration [s] (%(default)s)'
@@ -115,13 +117,18 @@ def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
 def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     """Draw the strength that the tallest tree of each kind uses over wind speed; print it."""
     tallest = tallest_of_kinds(scene)
-    settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
     speeds, used = np.linspace(0.0, SWAY['mean_speed'].checked(arguments.speed), 7)[1:], {}
     for each in bar(tallest.values(), 'loading trees'):
-        rig = strength_rig(each, settings)
-        used[each.name] = rig.strength_curve(speeds, rng=np.random.default_rng(0))
+        placed = each.placed()
+        exposure = chosen_exposure(arguments, placed, each.species)
+        settings = Settings(
+            model=arguments.model, in_leaf=chosen_leaves(arguments),
+            profile=exposure.profile(float(placed.start[0, 2])),
+        )  # fmt: skip
+        rig, rng = strength_rig(each, settings), np.random.default_rng(0)
+        used[each.name] = rig.strength_curve(speeds, rng=rng, **turbulence_of(exposure))
         for speed, use in zip(speeds, used[each.name], strict=True):
-            print(f'{each.name} in gusts of a mean wind of {speed:.3g} m/s, {use}')
+            print(f'{each.name} {exposure}, of {speed:.3g} m/s: {use}')
     plot_strength(speeds, used, output)
 
 

@@ -19,6 +19,7 @@ from tree_sway.commands.arguments import (
     opened_wind,
 )
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
+from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
@@ -28,10 +29,11 @@ from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
-from tree_sway.page.server import PageServer
+from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.page.session import Choices, Session
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway.parameters.sway_parameters import SWAY
+from tree_sway.sensors.live_wind import LiveWind
 from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET
 
 _SPACING = 1.2
@@ -61,6 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--seconds', type=float, metavar='N', help='end after this time [s]; without it, at Ctrl-C'
     )
     parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
+    add_sensor_argument(parser)
     add_page_arguments(parser)
 
 
@@ -68,7 +71,14 @@ def run(arguments: argparse.Namespace) -> int:
     """Serve the page until the time is over or Ctrl-C."""
     settings = page_settings(arguments)
     within('--stand', arguments.stand, 1, 1e5)
-    wind = opened_wind(arguments)
+    if arguments.sensor is None:
+        return _serve(arguments, settings, opened_wind(arguments))
+    with listening(arguments) as wind:
+        return _serve(arguments, settings, wind)
+
+
+def _serve(arguments: argparse.Namespace, settings: PageSettings, wind: WindSource) -> int:
+    """Serve the page of a wind."""
     print(f'{arguments.tree}: starting (the first start compiles, up to a minute)', flush=True)
     choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
     session = Session(lambda wanted: build_scene(wanted, arguments), choices, wind)
@@ -140,6 +150,9 @@ def _controls(
     if isinstance(wind, SimulatedWind):
         names = 'mean_speed', 'intensity', 'bearing_to'
         controls += [Control.of(SWAY[name], _LABELS[name], wind.values[name]) for name in names]
+    if isinstance(wind, LiveWind) and wind.lacks_direction:
+        to = Control.of(SWAY['bearing_to'], _LABELS['bearing_to'], wind.bearing_to)
+        controls.append(to)
     if isinstance(wind, RecordedWind):
         span = 's', 0.0, wind.length
         controls.append(Control('record_time', 'Time', 0.0, 'Of the record.', *span))

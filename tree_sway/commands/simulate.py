@@ -21,8 +21,11 @@ from tree_sway.commands.arguments import (
     opened_tree,
     output_path,
 )
+from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
 from tree_sway.commands.progress import waiting
+from tree_sway.commands.sensor_arguments import add_sensor_argument, live_record
 from tree_sway.core.scene.simulate import simulate, WindSamples
+from tree_sway.core.wind.exposure import Exposure
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.export.table_writing import refuse_no_table, write_columns
@@ -33,6 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add_tree_arguments(parser)
     add_wind_arguments(parser)
+    add_sensor_argument(parser)
+    add_exposure_arguments(parser)
     add_model_argument(parser)
     add_leaves_argument(parser)
     which = 'branch whose tip is written, repeatable; without it, the highest tip'
@@ -57,23 +62,33 @@ def run(arguments: argparse.Namespace) -> int:
         if name not in names:
             cure = nearest(name, names) or f'such as {names[0]}'
             raise ParameterError(f"no branch '{name}'", where='--branch', cure=cure)
+    exposure = chosen_exposure(arguments, tree_file.tree, tree_file.species)
+    ground = float(tree_file.tree.start[0, 2])
+    wind = _wind(arguments, exposure)
     with waiting('simulating'):
         record = simulate(
-            tree_file, _wind(arguments), rate=arguments.rate, seconds=arguments.seconds,
+            tree_file, wind, rate=arguments.rate, seconds=arguments.seconds,
             branches=[names.index(name) for name in arguments.branch] or None,
             model=arguments.model, in_leaf=chosen_leaves(arguments),
+            profile=exposure.profile(ground),
         )  # fmt: skip
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     for note in record.notes:
         print(f'note: {note}', file=sys.stderr)
     print(f'{output}: {record}')
+    print(exposure)
     print(record.strength)
     return 0
 
 
-def _wind(arguments: argparse.Namespace) -> WindSamples | np.ndarray:
-    """Return the given record, or simulated wind."""
+def _wind(arguments: argparse.Namespace, exposure: Exposure) -> WindSamples | np.ndarray:
+    """Return the given record, the wind of a live source from now on, or simulated wind."""
+    if arguments.sensor is not None:
+        return live_record(arguments, arguments.seconds or 60.0)
     if arguments.wind is None:
         rng, seconds = np.random.default_rng(0), arguments.seconds or 60.0
-        return simulate_turbulence(arguments.speed, rate=arguments.rate, duration=seconds, rng=rng)
+        return simulate_turbulence(
+            arguments.speed, rate=arguments.rate, duration=seconds, rng=rng,
+            **turbulence_of(exposure),
+        )  # fmt: skip
     return opened_record(arguments)

@@ -28,6 +28,7 @@ from tree_sway.page.newest import Newest
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.server import PageServer
 from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, WindSource
+from tree_sway.sensors.live_wind import LiveWind
 from tree_sway.stream.controls import Refused, Value
 from tree_sway.stream.scene_state import SceneState
 
@@ -150,10 +151,14 @@ class Session:
         elif name == 'tolerance':
             self._tolerance = float(value or 0.0)
             set_demand(self._scene.simulator.simulators, tolerance=self._tolerance)
+        elif name == 'bearing_to' and isinstance(self.wind, LiveWind):
+            self.wind.bearing_to = float(value or 0.0)
         elif name in ('mean_speed', 'intensity', 'bearing_to'):
             if not isinstance(self.wind, SimulatedWind):
                 raise ParameterError(
-                    'the wind is a record', where=name, cure='start without --wind'
+                    f'the wind is {self.wind.source["kind"]}',
+                    where=name,
+                    cure='start without --wind or --sensor',
                 )
             self.wind.set(name, float(value or 0.0))
         elif name == 'record_time' and isinstance(self.wind, RecordedWind):

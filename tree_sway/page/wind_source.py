@@ -23,8 +23,12 @@ class WindSource(Protocol):
     """Samples of wind by their times."""
 
     @property
-    def source(self) -> Mapping[str, str]:
-        """What the wind is, for viewers: its ``kind``, simulated or recorded, and a ``name``."""
+    def source(self) -> Mapping[str, object]:
+        """
+        What the wind is, for viewers: its ``kind``, simulated, recorded or live, and a ``name``.
+
+        That of a live one has the newest reading and its age too.
+        """
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
         """Return the samples after a time up to a later one, both in [s]."""

@@ -31,13 +31,17 @@ from tree_sway.sensors.transports.transport import Message
 Sample = tuple[float, Velocity]
 """Time [s] and wind east, north, up [m/s], the way the air goes."""
 
-COMPLAIN_AFTER = 4.0
-"""Time [s] after which messages that are not understood, or none at all, are reported."""
+_LOOK = 0.5
+"""Interval at which it is looked whether wind comes [s]."""
+_PATIENCE = {'waiting': 4.0, 'unknown': 3.0}
+"""Time [s] after which silence, or messages that are not understood, are told."""
 _USUAL_INTERVAL = 60.0
 """Length of a mean [s] until the second one tells it."""
 _LASTS = 3.0
 """Number of intervals for which a mean is used."""
 _QUEUE = 4096
+_OLDEST = 1.0
+"""Age of the oldest sample that a run is given [s]."""
 _MOST_CAUSES = 20
 _LIVE_FOR = 10.0
 """Age [s] up to which the wind of an instant counts as live."""
@@ -57,6 +61,8 @@ class LiveWind:
     taken
         Function called with the wind of each instant as it comes, from that thread; such samples
         are then not in `drain`.
+    heard
+        Function called with each reading, from that thread.
     silence
         As in `Link`.
 
@@ -68,6 +74,7 @@ class LiveWind:
         log: Callable[[str], None],
         *,
         taken: Callable[[Velocity], None] | None = None,
+        heard: Callable[[WindReading], None] | None = None,
         silence: float | None = None,
     ) -> None:
         self.bearing = opened.bearing
@@ -78,11 +85,12 @@ class LiveWind:
         """Numbers of readings that were refused, by cause."""
         self.newest: WindReading | None = None
         """Newest reading."""
-        self.is_mean = False
-        """Whether gusts are blown about the newest reading."""
-        self.lacks_direction = False
+        self.interval = 0.0
+        """Length of the mean that the newest reading is [s]; 0 for the wind of an instant."""
+        self.lacks_direction = opened.is_without_vane
         """Whether the newest reading has no direction of its own."""
-        self._opened, self._log, self._taken = opened, log, taken
+        self._opened, self._log = opened, log
+        self._taken, self._heard = taken, heard
         self._lock = threading.Lock()
         self._gusts = GustsAboutMean()
         self._samples: deque[Sample] = deque(maxlen=_QUEUE)
@@ -90,18 +98,33 @@ class LiveWind:
         self._expires = -math.inf
         self._blown = -math.inf
         self._last = ''
-        self._begun = math.inf
-        self._has_complained = False
+        self._ended = threading.Event()
         self._link = Link(opened.source.transport, self._take, log, silence)
 
     def start(self) -> None:
         """Start to listen."""
-        self._begun = time.monotonic()
+        self._ended.clear()
         self._link.start()
+        threading.Thread(target=self._watch, name='wind', daemon=True).start()
 
     def stop(self) -> None:
         """Stop; the thread ends by itself if it is busy."""
+        self._ended.set()
         self._link.stop()
+
+    @property
+    def bearing_to(self) -> float:
+        """Direction that such a wind blows to, from -pi to pi [rad]."""
+        return math.remainder(self.bearing + math.pi, math.tau)
+
+    @bearing_to.setter
+    def bearing_to(self, value: float) -> None:
+        self.bearing = (value + math.pi) % math.tau
+
+    @property
+    def is_mean(self) -> bool:
+        """Whether gusts are blown about the newest reading."""
+        return self.interval >= LEAST_INTERVAL
 
     @property
     def link(self) -> Link:
@@ -169,21 +192,17 @@ class LiveWind:
         return found
 
     def between(self, since: float, until: float) -> Iterator[Sample]:
-        """Return the new samples as if they were of a time up to now, which is the later [s]."""
-        now = time.monotonic()
-        for at, velocity in self.drain():
-            moved = until - max(now - at, 0.0)
-            if moved > since:
-                yield moved, velocity
+        """
+        Return the new samples on the clock of a run, whose present time is the later [s].
 
-    def complaint(self) -> str:
-        """Return once why there is no wind after some seconds; empty if there is, or too early."""
-        if self._has_complained or time.monotonic() - self._begun < COMPLAIN_AFTER:
-            return ''
-        if self.accepted or not self._link.is_up:
-            return ''
-        self._has_complained = True
-        return self.problem
+        Those that came while the run was busy get times after the earlier one; while it was
+        paused, all but the last second are left out.
+        """
+        now = time.monotonic()
+        samples = [each for each in self.drain() if now - each[0] <= _OLDEST]
+        step = (until - since) / (len(samples) + 1)
+        for number, (at, velocity) in enumerate(samples, start=1):
+            yield max(until - max(now - at, 0.0), since + number * step), velocity
 
     @property
     def problem(self) -> str:
@@ -200,6 +219,17 @@ class LiveWind:
             causes = ', '.join(list(self.refused)[:3])
             return f'{came}, all of the wind were refused: {causes}; the last: {self._last}'
         return f'{came}, none was understood, the last: {self._last}; expected {source.expects}'
+
+    def _watch(self) -> None:
+        """Tell once why there is no wind, as soon as it is known, until there is."""
+        state, since, told = '', 0.0, ''
+        while not self._ended.wait(_LOOK) and not self.accepted:
+            if self.state != state:
+                state, since = self.state, time.monotonic()
+            waited = time.monotonic() - since
+            if state != told and waited >= _PATIENCE.get(state, math.inf):
+                told = state
+                self._log(self.problem)
 
     def _take(self, message: Message) -> None:
         """Read a message; called by the link's thread."""
@@ -234,7 +264,7 @@ class LiveWind:
         with self._lock:
             self.newest = reading
             self.lacks_direction = reading.bearing is None
-            self.is_mean = interval >= LEAST_INTERVAL
+            self.interval = interval
             if self.is_mean:
                 self._gusts.set(now, np.array(velocity), interval, _gust(reading))
                 self._blown = max(self._blown, now - 1.0 / RATE)
@@ -243,6 +273,8 @@ class LiveWind:
                 self._expires = now - age + (_LASTS * interval if lasts is None else lasts)
             else:
                 self._expires = now + max(_LIVE_FOR, _LASTS * self._gap if not is_first else 0.0)
+        if self._heard is not None:
+            self._heard(reading)
         if is_first:
             self._log(f'wind comes: {described(reading, self.bearing, interval)}')
         if self.is_mean:

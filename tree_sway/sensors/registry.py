@@ -26,13 +26,14 @@ class OpenedSource(NamedTuple):
 
     ``name`` is shown to viewers. ``bearing`` is the direction that a wind comes from where the
     instrument has no vane, clockwise from north [rad]. ``mean`` is the length of its means [s] if
-    it is given, 0 for the wind of instants.
+    it is given, 0 for the wind of instants. ``is_without_vane`` says that the direction is given.
     """
 
     source: Source
     name: str
     bearing: float
     mean: float | None
+    is_without_vane: bool = False
 
 
 WEST = 1.5 * math.pi
@@ -79,7 +80,7 @@ def open_source(text: str) -> OpenedSource:
     mean = address.number('mean', 0.0, 0.0, 86_400.0) if given else None
     address.refuse_others()
     shown = f'{name}, {source.name}' if name else source.name
-    return OpenedSource(source, shown, bearing, mean)
+    return OpenedSource(source, shown, bearing, mean, 'from_degrees' in address.options)
 
 
 def forms() -> str:

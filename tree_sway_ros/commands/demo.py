@@ -18,13 +18,15 @@ import webbrowser
 from tree_sway.commands.arguments import add_sway_arguments, opened_scene
 from tree_sway.commands.ending import Ending, LONGEST
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
+from tree_sway.commands.sensor_arguments import add_sensor_argument
 from tree_sway.core.scene.scene import Scene
 from tree_sway.errors import ParameterError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.parameters.parameter import Value
+from tree_sway_ros.commands.duration import add_seconds, seconds_of
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
-from tree_sway_ros.commands.watch import add_seconds, seconds_of, watch
+from tree_sway_ros.commands.watch import watch
 from tree_sway_ros.process.composition import Composition
 
 
@@ -39,8 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='T',
         help='start at this time of the recording [s]',
     )
-    kinds = 'serial:/dev/ttyUSB0:4800, tcp://host:port, udp://:port'
-    add('--sensor', metavar='ADDRESS', help=f'live anemometer instead: {kinds}')
+    add_sensor_argument(parser)
     add_seconds(parser)
     add('--rate', type=float, default=60.0, help='poses per second [Hz] (%(default)s)')
     add(

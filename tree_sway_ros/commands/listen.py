@@ -11,9 +11,10 @@ from __future__ import annotations
 import argparse
 
 from tree_sway.commands.ending import Ending, LONGEST
+from tree_sway_ros.commands.duration import add_seconds, seconds_of
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import summary
-from tree_sway_ros.commands.watch import add_seconds, seconds_of, watch
+from tree_sway_ros.commands.watch import watch
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

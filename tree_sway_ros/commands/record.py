@@ -1,45 +1,28 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-``tree-sway record``: wind, state and description of a running tree as a bag, some 60 MB per hour.
+``tree-sway record``: the wind of a live source as a table, or a running tree of ROS as a bag.
 
-All poses follow from the state; ``player`` replays it, or the wind, to be solved again.
+The first needs no ROS.
 """
 
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
-import time
-from typing import Any
 
-from tree_sway.commands.ending import Ending
-from tree_sway.files.recording.bag_writer import BagWriter, FORMATS
-from tree_sway_ros.commands.watch import add_seconds, seconds_of
-from tree_sway_ros.process.listener import Listener
-from tree_sway_ros.process.topics import (
-    DIAGNOSTICS,
-    FORCE_PLANE,
-    MARKERS,
-    message_class,
-    qos_profile,
-    SEGMENT_POSES,
-    Topic,
-    TREE_DESCRIPTION,
-    TREE_STATE,
-    WIND,
-    WIND_FILTERED,
-)
-
-_USUAL = (WIND, WIND_FILTERED, TREE_STATE, TREE_DESCRIPTION)
-_MORE = (FORCE_PLANE, SEGMENT_POSES, MARKERS, DIAGNOSTICS)
-_LOOK = 0.2
+from tree_sway.commands.record_wind import record_wind
+from tree_sway.commands.sensor_arguments import add_sensor_argument
+from tree_sway.extras import refuse_missing
+from tree_sway.files.recording.bag_writer import FORMATS
+from tree_sway_ros.commands.duration import add_seconds, seconds_of
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add('-o', '--output', required=True, metavar='FOLDER', help='folder of the new bag')
+    add('-o', '--output', required=True, metavar='FILE', help='wind.csv, or the folder of a bag')
+    add_sensor_argument(parser)
+    add('--force', action='store_true', help='write over an existing table')
     add('--format', choices=FORMATS, default=FORMATS[0], help='format of the bag (%(default)s)')
     add('--namespace', default='', help="namespace of the tree's nodes")
     add('--poses', action='store_true', help='also poses, markers and diagnostics: GB per hour')
@@ -49,52 +32,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Record until the time is over or Ctrl-C."""
     seconds = seconds_of(arguments)
-    topics = _USUAL + (_MORE if arguments.poses else ())
-    with (
-        BagWriter(Path(arguments.output), arguments.format) as bag,
-        Ending() as ending,
-        Recorder(None, bag, topics, arguments.namespace) as recorder,
-    ):
-        ending.look()
-        while not ending.is_asked and recorder.recorded < seconds:
-            recorder.spin(_LOOK)
-    written = ', '.join(f'{count} of {name}' for name, count in bag.counts.items())
-    print(f'{arguments.output}: {written or "nothing was sent"}')
-    return 0
+    if arguments.sensor is not None:
+        return record_wind(arguments, seconds)
+    refuse_missing(['rclpy', 'rosbags'], 'record ...')
+    from tree_sway_ros.commands.bag_recorder import record_bag
 
-
-class Recorder(Listener):
-    """Recording of some topics of a tree's nodes into a bag, message by message as bytes."""
-
-    def __init__(
-        self, context: Any, bag: BagWriter, topics: tuple[Topic, ...], namespace: str = ''
-    ) -> None:
-        super().__init__('tree_sway_record', namespace, context)
-        self._bag = bag
-        self._began: float | None = None
-        self._wanted = {self.node.resolve_topic_name(topic.name): topic for topic in topics}
-
-    @property
-    def recorded(self) -> float:
-        """Time since the first message in [s]."""
-        return 0.0 if self._began is None else time.monotonic() - self._began
-
-    def spin(self, seconds: float) -> None:
-        """Record for a time [s]; subscribe to new topics first."""
-        for name, kinds in self.node.get_topic_names_and_types() if self._wanted else ():
-            if name in self._wanted:
-                self._join(name, self._wanted.pop(name), kinds[0])
-        super().spin(seconds)
-
-    def _join(self, name: str, topic: Topic, kind: str) -> None:
-        self._bag.add(
-            name, kind, reliable=topic.reliable, latched=topic.latched, depth=topic.depth
-        )
-
-        def write(data: bytes) -> None:
-            self._bag.write(name, time.time_ns(), data)
-            if self._began is None:
-                self._began = time.monotonic()
-
-        message, profile = message_class(topic, kind), qos_profile(topic, is_input=True)
-        self.node.create_subscription(message, name, write, profile, raw=True)
+    return record_bag(arguments, seconds)

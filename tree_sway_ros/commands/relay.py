@@ -19,7 +19,7 @@ from tree_sway.errors import ParameterError
 from tree_sway.page.access import read_token
 from tree_sway.stream.client import StreamClient
 from tree_sway.stream.protocol import Frame, PAUSED, WIND_LOST
-from tree_sway_ros.commands.watch import add_seconds, seconds_of
+from tree_sway_ros.commands.duration import add_seconds, seconds_of
 from tree_sway_ros.process.listener import Listener
 from tree_sway_ros.process.topics import DIAGNOSTICS, message_class, qos_profile, WIND
 from tree_sway_ros.reports.diagnostics import OK, Status, status_array, WARN

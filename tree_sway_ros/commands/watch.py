@@ -4,30 +4,16 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable
-import math
 import sys
 import time
 
-from tree_sway.core.checks import within
 from tree_sway.errors import TransportError
 from tree_sway_ros.commands.monitor import StreamMonitor
 from tree_sway_ros.commands.text import status_line
 
 _SETTLING = 0.5
 _LIVE_PERIOD, _LOG_PERIOD = 0.5, 2.0
-
-
-def add_seconds(parser: argparse.ArgumentParser) -> None:
-    """Add the duration of a command."""
-    text = 'end after this time [s]; without it, at Ctrl-C'
-    parser.add_argument('--seconds', type=float, default=math.inf, metavar='N', help=text)
-
-
-def seconds_of(arguments: argparse.Namespace) -> float:
-    """Return the duration of a command in [s]; a `ParameterError` for an impossible one."""
-    return within('--seconds', arguments.seconds, 0.0, math.inf, 's', above=True)
 
 
 def watch(

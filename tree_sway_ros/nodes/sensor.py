@@ -51,7 +51,8 @@ class SensorNode(TreeSwayNode):
 
     def activate(self) -> None:
         """Start to listen."""
-        self.run_worker(self._wind.link)
+        self.on_close(self._wind.stop)
+        self._wind.start()
 
     def check_values(self, values: dict[str, Any]) -> None:
         """Check the address."""

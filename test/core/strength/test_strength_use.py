@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -43,8 +45,9 @@ def test_strength_used_is_stress_over_that_of_rupture(stem):
     record = rig.run(STEADY)
     used = record.strength
     assert used.wood[0] == pytest.approx(oak.modulus * record.strain.max() / oak.rupture)
-    assert used.wood[1] == pytest.approx(used.wood[0] / WOOD_BAND[1])
-    assert used.wood[1] < used.wood[0] < used.wood[2]
+    load = math.hypot(0.25, 0.3)  # drag and wind; the tree is bare
+    assert math.log(used.wood[0] / used.wood[1]) == pytest.approx(math.hypot(load, math.log(1.16)))
+    assert used.wood[2] / used.wood[0] > 1.0 / WOOD_BAND[0]
     moment = np.linalg.norm(record.base_moment, axis=1).max()
     capacity = ROOT_MOMENT * oak.density * tree.volume.sum()
     assert used.roots[0] == pytest.approx(moment / capacity)

@@ -42,7 +42,10 @@ def test_an_unknown_species_is_refused_with_those_that_exist():
 
 def test_guesses_are_marked():
     guesses = {key for key in species_keys() if species_named(key).is_estimate}
-    assert guesses == {'benjamina', 'goldcrest', 'broadleaf', 'conifer'}
+    dry_wood = {'horse_chestnut', 'hornbeam', 'pear', 'apple', 'tree_of_heaven', 'ginkgo'}
+    of_family = {'zelkova', 'rowan', 'hawthorn', 'hazel', 'pagoda_tree'}
+    guessed = {'benjamina', 'goldcrest', 'broadleaf', 'conifer'}
+    assert guesses == guessed | dry_wood | of_family
 
 
 def test_a_species_cannot_be_changed_by_accident():
@@ -73,6 +76,22 @@ def test_every_crown_in_leaf_streamlines():
         ('Salix sp.', 'willow'),
         ('Populus x canadensis', 'poplar'),
         ('Fichte', 'spruce'),
+        ('Hainbuche', 'hornbeam'),
+        ('Roßkastanie', 'horse_chestnut'),
+        ('ROSSKASTANIE', 'horse_chestnut'),
+        ("Marronnier d'Inde", 'horse_chestnut'),
+        ('Chêne', 'oak'),
+        ('CHENE', 'oak'),
+        ('plátano de sombra', 'plane'),
+        ('London planetree', 'plane'),
+        ('honeylocust', 'honey_locust'),
+        ('Callery pear', 'pear'),
+        ('Ginkgo biloba', 'ginkgo'),
+        ('Robinie', 'robinia'),
+        ('Acer saccharinum', 'silver_maple'),
+        ('Sophora japonica', 'pagoda_tree'),
+        ('dąb', 'oak'),
+        ('björk', 'birch'),
     ],
 )
 def test_names_of_lists_are_known_whatever_their_case(name, key):
@@ -83,7 +102,13 @@ def test_names_of_lists_are_known_whatever_their_case(name, key):
     ('name', 'key', 'guess'),
     [
         ('brich', 'broadleaf', "did you mean 'birch'?"),
-        ('Ulmus glabra', 'broadleaf', 'a broadleaf of no known species'),
+        ('Paulownia tomentosa', 'broadleaf', 'a broadleaf of no known species'),
+        ('Sumpfzypresse', 'conifer', 'a conifer of no known species'),
+        ('Winter-Linde', 'lime', 'is taken as lime'),
+        ('Kaiserlinde', 'lime', 'is taken as lime'),
+        ('American linden', 'lime', 'is taken as lime'),
+        ('pin oak', 'oak', 'is taken as oak'),
+        ('Pin noir', 'pine', 'is taken as Scots pine'),
         ('western redcedar', 'conifer', 'a conifer of no known species'),
     ],
 )

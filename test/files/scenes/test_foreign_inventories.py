@@ -33,7 +33,7 @@ READ = {
     'i-Tree Eco': (
         'Tree ID,Species,DBH (in),Total Height (ft),Longitude,Latitude\n'
         '1,Silver maple,18.2,52,-77.03,38.9\n2,White oak,24,60,-77.031,38.9001\n',
-        [('maple', 15.85), ('oak', 18.29)],
+        [('silver_maple', 15.85), ('oak', 18.29)],
     ),
     'NEON, vegetation structure': (
         'uid,plotID,scientificName,easting,northing,stemDiameter,height,plantStatus\n'
@@ -46,11 +46,15 @@ READ = {
         '1028628,London Plane,Platanus x acerifolia,34,-37.8,144.96\n',
         [('plane', None)],
     ),
+    'a list in Finnish': (
+        'plot;tree;x;y;puulaji;lpm;pituus\n1;1;2,3;4,5;kuusi;21,3;17,2\n',
+        [('spruce', 17.2)],
+    ),
     'New York, street trees': (
         'tree_id,tree_dbh,status,spc_latin,latitude,longitude\n'
         '180683,12,Alive,Acer rubrum,40.72309177,-73.84421522\n'
         '200540,21,Alive,Quercus palustris,40.79411067,-73.81867946\n',
-        [('maple', None), ('oak', None)],
+        [('red_maple', None), ('oak', None)],
     ),
 }
 
@@ -63,8 +67,8 @@ REFUSED = {
         'treeID,X,Y,Z\n1,273364.5,5274361.0,18.2\n',
         'the species and none for the size .* among',
     ),
-    'a list in Finnish': (
-        'plot;tree;x;y;puulaji;lpm;pituus\n1;1;2,3;4,5;kuusi;21,3;17,2\n',
+    'a list of codes': (
+        'plot;tree;x;y;code;lpm7;pit\n1;1;2,3;4,5;2;21,3;17,2\n',
         'the species and none for the size .* among',
     ),
 }
@@ -99,5 +103,5 @@ def test_it_is_refused_with_the_cure(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize('cell', ['POINT (nan 48.2)', 'somewhere', '48.2 16.3 200'])
 def test_a_place_that_is_none_is_named(tmp_path: Path, cell: str) -> None:
     text = f'SHAPE,species,height\n{cell},oak,12\n'
-    with pytest.raises(FormatError, match=r'trees.csv:2: .* is no latitude and longitude'):
+    with pytest.raises(FormatError, match=r'line 2: .* is no latitude and longitude'):
         open_scene(written(tmp_path, text))

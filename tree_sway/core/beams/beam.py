@@ -8,8 +8,8 @@ Gauss-Legendre points, at which the diameter is known from the linear taper betw
 segment. Integrals are taken on those points, so the result does not depend on how finely a branch
 is cut; and as the load of a child makes a step or a kink at its base, no panel extends across one.
 
-Branches of as many segments with children at the same places can be one beam, one field or one
-shape: all arrays then have one more axis, the first, that of branches (`many_of`, `one_of`).
+Branches with the same number of segments and children at the same places can share one beam,
+field or shape, a batch: all arrays then have one more axis, the first, with an entry per branch.
 
 Symbols: s arc length from the base [m]; V shear force, M bending moment per unit of load; kappa =
 M / EI curvature; psi slope, the rotation of the branch at s per unit of key rotation [-].
@@ -67,20 +67,19 @@ class Attachments:
     fraction: Floats
 
 
-class Viewed:
-    """What may be one of many (`one_of`): its arrays are views, made when they are first read."""
+class Batched:
+    """
+    One beam, shape or field, or several of branches that are alike.
 
-    def __getattr__(self, name: str) -> Any:
-        """Return the view of an array of all, or what all have in common."""
-        many = vars(self).get('_many')
-        if many is None or name not in vars(many):
-            raise AttributeError(name)
-        each = vars(many)[name]
-        vars(self)[name] = each[self._number] if isinstance(each, np.ndarray) else each
-        return vars(self)[name]
+    The arrays of several have one more axis, the first, with an entry per branch. `one_of` returns
+    an element, whose arrays are views; `many_of` stacks elements.
+    """
+
+    origin: tuple[Batched, int] | None = None
+    """Batch that this is a view of, and its place there."""
 
 
-class BranchBeam(Viewed):
+class BranchBeam(Batched):
     """
     A branch as a clamped beam.
 
@@ -124,7 +123,7 @@ class BranchBeam(Viewed):
         self.diameter = base_diameter[..., on, None] + thinning * along
         self.point = start[..., on, None, :] + step[..., on, None, :] * along[..., None]
         foot = np.searchsorted(cuts, seats)
-        # Lists are those of all branches.
+        # The same for every branch of a batch.
         self._feet = foot.tolist()
         self._first_panels = np.searchsorted(on, np.arange(step.shape[-2])).tolist()
         self.child_place = self.node[..., foot]
@@ -279,7 +278,7 @@ class BranchBeam(Viewed):
         return SlopeShape(self, curvature / scale[..., None, None])
 
 
-class SlopeShape(Viewed):
+class SlopeShape(Batched):
     """
     A shape in which a branch bends: slope psi(s) per unit of its coordinate.
 
@@ -306,7 +305,7 @@ class SlopeShape(Viewed):
         return float(self.beam.integral(rigidity * self.curvature * self.curvature))
 
 
-class RotationField(Viewed):
+class RotationField(Batched):
     """
     Field by which a branch bends and twists in space: rotation phi(s) per unit of coordinate.
 
@@ -356,32 +355,41 @@ def products(a: Floats, b: Floats, n_axes: int) -> Floats:
     return np.asarray(flat[0] @ flat[1].swapaxes(-1, -2))
 
 
-_Kind = TypeVar('_Kind', bound=Viewed)
+_Kind = TypeVar('_Kind', bound=Batched)
 
 
 def one_of(many: _Kind, number: int, **others: Any) -> _Kind:
-    """Return one of many beams, shapes or fields, which has views of their arrays."""
+    """Return an element of a batch, with views of its arrays; `others` replace attributes."""
     one = object.__new__(type(many))
-    vars(one).update(others, _many=many, _number=number)
+    for name, value in vars(many).items():
+        setattr(one, name, value[number] if isinstance(value, np.ndarray) else value)
+    for name, value in others.items():
+        setattr(one, name, value)
+    one.origin = many, number
     return one
 
 
-def stacked(ones: Sequence[Viewed], name: str) -> Any:
-    """Stack one array of beams, shapes or fields that are alike."""
-    whole = vars(ones[0]).get('_many')
-    numbers = [vars(one)['_number'] for one in ones if vars(one).get('_many') is whole is not None]
-    if len(numbers) == len(ones):
-        return vars(whole)[name][numbers]
+def stacked(ones: Sequence[Batched], name: str) -> Any:
+    """Stack an array of beams, shapes or fields that are alike."""
+    first = ones[0].origin
+    if first is not None:
+        batch = first[0]
+        numbers = [one.origin[1] for one in ones if one.origin and one.origin[0] is batch]
+        if len(numbers) == len(ones):
+            return getattr(batch, name)[numbers]
     return np.array([getattr(one, name) for one in ones])
 
 
 def many_of(ones: Sequence[_Kind], **others: Any) -> _Kind:
-    """Stack the arrays of beams, shapes or fields that are alike: see `one_of`."""
+    """Stack beams, shapes or fields that are alike to a batch; `others` replace attributes."""
     many = object.__new__(type(ones[0]))
-    for name, each in vars(vars(ones[0]).get('_many', ones[0])).items():
-        is_own = isinstance(each, np.ndarray | float) and name not in others
-        vars(many)[name] = stacked(ones, name) if is_own else each
-    vars(many).update(others)
+    for name, value in vars(ones[0]).items():
+        if name in others or name == 'origin':
+            continue
+        is_stacked = isinstance(value, np.ndarray | float)
+        setattr(many, name, stacked(ones, name) if is_stacked else value)
+    for name, value in others.items():
+        setattr(many, name, value)
     return many
 
 

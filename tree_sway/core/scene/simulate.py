@@ -146,8 +146,9 @@ class Rig:
         )  # fmt: skip
 
     def strength_curve(
-        self, speeds: ArrayLike, *, rng: np.random.Generator, seconds: float = 60.0
-    ) -> list[StrengthUse]:
+        self, speeds: ArrayLike, *, rng: np.random.Generator, seconds: float = 60.0,
+        height: float = 10.0, intensity: float | None = None,
+    ) -> list[StrengthUse]:  # fmt: skip
         """
         Find the shares of strength used in turbulence of each of some mean speeds.
 
@@ -160,11 +161,16 @@ class Rig:
             used: the gusts are those that `simulate_turbulence` makes from it.
         seconds
             Length of each wind in [s].
+        height, intensity
+            Height and intensity of the turbulence, as in `Turbulence`.
 
         """
         used = []
         for speed in np.asarray(speeds, dtype=np.float64).tolist():
-            wind = simulate_turbulence(speed, rate=60.0, duration=seconds, rng=deepcopy(rng))
+            wind = simulate_turbulence(
+                speed, rate=60.0, duration=seconds, rng=deepcopy(rng), height=height,
+                intensity=intensity,
+            )  # fmt: skip
             used.append(self.run(wind).strength)
         return used
 

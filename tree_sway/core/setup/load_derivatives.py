@@ -1,21 +1,28 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Slopes of the wind load of a bent tree, by many shapes of motion in one pass.
+Derivatives of the wind load on a bent tree, for many shapes of motion in one pass.
 
-`branch_loads` differentiated by hand, for all branches at once. A unit of each shape gives every
-base a velocity and a spin; the load on a shape is the power of the changed forces on it, by
-virtual work. Where the tree rotates below a constant force, the force does work on other
-coordinates: in a storm that part is as large as the other.
+This is `branch_loads` differentiated by hand, for all branches at once. A unit of each shape gives
+every base a velocity and a spin. By virtual work, the load on a shape is the power of the changed
+forces on the motion of that shape. Where the tree rotates below a constant force, the force does
+work on other coordinates as well; in a storm that part is as large as the change of the force.
 
-Twists are (velocity, spin) and wrenches (force, moment); both are about the root node and in the
-frame of the tree where no other point and frame are named.
+Two kinds of terms add up:
+
+- *joints*, `_Joints`: how the base of each branch moves on its parent's, and how the constant
+  force and moment at the joint change as the parent or the joint itself moves;
+- *loads*, `_Loads`: how the wind load of each branch changes as the branch turns and moves.
+
+Twists are (velocity, spin) and wrenches (force, moment). Both are about the root node and in the
+frame of the tree unless another point and frame are named. [v] is the matrix of the cross product
+with v. Rotations are exponential coordinates; their maps are taken to second order.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,14 +33,68 @@ from tree_sway.core.numpy_rotation import quaternions_of
 from tree_sway.core.setup.numpy_branch_loads import of_slots
 from tree_sway.core.setup.tree_motion import joint_motion, levels_of, own_motion, sum_outward
 
-_ONE = np.eye(3)
-_TOGETHER = 256
-"""Branches that are summed at once."""
+_IDENTITY = np.eye(3)
+_CHUNK = 256
+"""Branches that are summed at once, so that intermediate results stay in the cache."""
+_SYMMETRIC = [0, 3, 4, 3, 1, 5, 4, 5, 2]
+"""Places in a symmetric matrix, row by row, of its entries xx, yy, zz, xy, xz, yz."""
+
+
+class _Joints(NamedTuple):
+    """
+    Motion of the base of each branch on its parent's, and the work of the load at the joint.
+
+    Parameters
+    ----------
+    twist
+        Twist of the base per unit of the motion at the joint (displacement, rotation vector, in
+        the frame of the parent's base), (b, 6, 6).
+    by_parent
+        Change of the load on the joint's motion per unit twist of the parent, (b, 6, 6).
+    by_joint
+        The same per unit of the joint's own motion, (b, 6, 6).
+
+    """
+
+    twist: NDArray[Any]
+    by_parent: NDArray[Any]
+    by_joint: NDArray[Any]
+
+
+class _Loads(NamedTuple):
+    """
+    Wind load of each branch in its own turned frame, and what its change depends on.
+
+    Parameters
+    ----------
+    to_branch
+        Twist of the base in the frame and at the base of the branch, per unit twist about the
+        root, (b, 6, 6).
+    turn
+        Rotation of the loaded pieces per unit of their rotation vector, (b, 3, 3).
+    lever
+        Displacement of the centre of the load per unit rotation of the base, (b, 3, 3).
+    force, moment
+        [f] and [m] of the present force and of its moment about the base, (b, 3, 3).
+    by_turn
+        Change of the force per unit rotation in the wind, (b, 3, 3).
+    drag
+        Change of the force per unit velocity of the air, (b, 3, 3).
+
+    """
+
+    to_branch: NDArray[Any]
+    turn: NDArray[Any]
+    lever: NDArray[Any]
+    force: NDArray[Any]
+    moment: NDArray[Any]
+    by_turn: NDArray[Any]
+    drag: NDArray[Any]
 
 
 class LoadSlopes:
     """
-    Slopes of the load of a tree on some shapes by their motion.
+    Derivatives of the load of a tree on some shapes by the motion of these shapes.
 
     Parameters
     ----------
@@ -56,20 +117,22 @@ class LoadSlopes:
         """Find the motion of each branch on its parent per unit of each shape."""
         branches, self._work, self._loads = records
         self._branches, count = branches, len(branches)
-        bearing, self._on = np.unique(np.maximum(branches['parent'], 0), return_inverse=True)
-        self._bearing, self._levels = bearing, levels_of(np.r_[-1, self._on[bearing[1:]]])
+        # Branches that carry others, and for each branch the place of its parent among them.
+        self._bearing, self._on = np.unique(np.maximum(branches['parent'], 0), return_inverse=True)
+        self._levels = levels_of(np.r_[-1, self._on[self._bearing[1:]]])
         base = -cross_matrix(branches['base'])
-        self._free = np.concatenate([np.broadcast_to(_ONE, (count, 3, 3)), base], axis=2)
-        self._bowed = (
-            -2.0 * branches['per_arm'][:, None, None] * (self._free.swapaxes(1, 2) @ self._free)
+        self._slide_at_rest = np.concatenate(
+            [np.broadcast_to(_IDENTITY, (count, 3, 3)), base], axis=2
         )
+        # A base keeps its distance from the parent's as it moves aside: second derivative of that.
+        squares = self._slide_at_rest.swapaxes(1, 2) @ self._slide_at_rest
+        self._shortening = -2.0 * branches['per_arm'][:, None, None] * squares
         self._moments = moments
         shapes = shapes.astype(np.float32)
         self._joint = joint_motion(branches, shapes)
-        self._load_rotation, self._load_mode, self._damping_mode = (
-            own_motion(branches, name, shapes)
-            for name in ('load_rotation', 'load_mode', 'damping_mode')
-        )
+        self._load_rotation = own_motion(branches, 'load_rotation', shapes)
+        self._load_mode = own_motion(branches, 'load_mode', shapes)
+        self._damping_mode = own_motion(branches, 'damping_mode', shapes)
 
     def __call__(self, x: Floats, wind: Floats) -> tuple[Singles, Singles]:
         """
@@ -79,92 +142,127 @@ class LoadSlopes:
         x, (N,), without motion.
         """
         self._moments(x, np.zeros(len(x)), wind)
+        frame = _rotations(self._work['orientation'])
+        place = self._places(frame)
+        joints = _Joints(*map(_single, self._joints(frame, place)))
+        loads = _Loads(*map(_single, self._branch_loads(frame, place)))
+        return self._summed(joints, loads)
+
+    def _places(self, frame: Floats) -> Floats:
+        """Return the bases of all branches on the bent tree, from the root, (b, 3)."""
+        parent_frame = frame[self._bearing[self._on]]
+        place: Floats = (parent_frame @ self._work['arm'][..., None])[..., 0]
+        place += self._outward(place[self._bearing])[self._on]
+        return place
+
+    def _joints(self, frame: Floats, place: Floats) -> _Joints:
         branches, work, count = self._branches, self._work, len(self._branches)
-        on, parent = self._on, self._bearing[self._on]
-        frame = _rotations(work['orientation'])
-        frames = frame[parent]
-        place = (frames @ work['arm'][..., None])[..., 0]
-        place += self._outward(place[self._bearing])[on]
+        parent_frame = frame[self._bearing[self._on]]
         force = (frame @ work['wrench'][:, :3, None])[..., 0]
         moment = (frame @ work['wrench'][:, 3:, None])[..., 0]
 
-        # Each base on its parent's: its twist by that of the joint, and how the force and moment
-        # at the joint change as the parent, or the joint itself, moves.
-        per_arm, moved = branches['per_arm'][:, None, None], work['displacement']
-        leant = -2.0 * per_arm * _outer(branches['arm'], moved)
-        slide, spin = self._free + leant @ self._free, np.zeros((count, 3, 6))
-        skew = cross_matrix(work['rotation'])
-        spin[:, :, 3:] = _ONE + 0.5 * skew + skew @ skew / 6.0
-        relative = np.concatenate([slide, spin], axis=1)
-        twist = _blocks(frames, cross_matrix(place) @ frames, 0.0, frames) @ relative
-        pulled, bent = (np.einsum('bji,bj->bi', frames, each) for each in (force, moment))
-        force_cross = cross_matrix(force)
-        about_root = cross_matrix(moment + cross(place, force))
-        by_parent = twist.swapaxes(1, 2) @ _blocks(0.0, force_cross, force_cross, about_root)
-        by_joint = spin.swapaxes(1, 2) @ cross_matrix(pulled) @ slide
-        # The second derivatives of slide and spin times both.
-        by_joint += (branches['arm'] * pulled).sum(axis=1)[:, None, None] * self._bowed
-        bent = cross_matrix(bent)
-        by_joint[:, 3:, 3:] += 0.5 * bent + (bent @ skew - 2.0 * skew @ bent) / 6.0
+        # Twist of the base by the motion at the joint: displacement, then rotation vector r, whose
+        # spin is 1 + [r] / 2 + [r]^2 / 6 per unit.
+        per_arm = branches['per_arm'][:, None, None]
+        leaning = -2.0 * per_arm * _outer(branches['arm'], work['displacement'])
+        slide = self._slide_at_rest + leaning @ self._slide_at_rest
+        rotation = cross_matrix(work['rotation'])
+        spin = np.zeros((count, 3, 6))
+        spin[:, :, 3:] = _IDENTITY + 0.5 * rotation + rotation @ rotation / 6.0
+        at_root = _blocks(parent_frame, cross_matrix(place) @ parent_frame, 0.0, parent_frame)
+        twist = at_root @ np.concatenate([slide, spin], axis=1)
 
-        # Each branch on its base, in its own turned frame.
-        own = of_slots(self._loads['rotation'], count)
-        turn = frame @ _rotations(quaternions_of(own))
-        back = turn.swapaxes(1, 2)
-        moving = _blocks(back, -back @ cross_matrix(place), 0.0, back)
-        own = cross_matrix(own)
-        seeing = _ONE - 0.5 * own + own @ own / 6.0
+        # The parent turns under the constant force and moment at the joint.
+        about_root = cross_matrix(moment + cross(place, force))
+        force_cross = cross_matrix(force)
+        by_parent = twist.swapaxes(1, 2) @ _blocks(0.0, force_cross, force_cross, about_root)
+
+        # The joint itself moves: first its slide under the spin, then the second derivatives of
+        # slide and spin, times force and moment in the frame of the parent.
+        local_force = np.einsum('bji,bj->bi', parent_frame, force)
+        local_moment = cross_matrix(np.einsum('bji,bj->bi', parent_frame, moment))
+        by_joint = spin.swapaxes(1, 2) @ cross_matrix(local_force) @ slide
+        along_arm = (branches['arm'] * local_force).sum(axis=1)[:, None, None]
+        by_joint += along_arm * self._shortening
+        second = (local_moment @ rotation - 2.0 * rotation @ local_moment) / 6.0
+        by_joint[:, 3:, 3:] += 0.5 * local_moment + second
+        return _Joints(twist, by_parent, by_joint)
+
+    def _branch_loads(self, frame: Floats, place: Floats) -> _Loads:
+        rotation_vector = of_slots(self._loads['rotation'], len(self._branches))
+        own_frame = frame @ _rotations(quaternions_of(rotation_vector))
+        to_own = own_frame.swapaxes(1, 2)
+        to_branch = _blocks(to_own, -to_own @ cross_matrix(place), 0.0, to_own)
+        rotation = cross_matrix(rotation_vector)
+        turn = _IDENTITY - 0.5 * rotation + rotation @ rotation / 6.0
         air = (frame @ self._in_slots('air_velocity')[..., None])[..., 0]
-        air = np.einsum('bji,bj->bi', turn, air)
+        air = np.einsum('bji,bj->bi', own_frame, air)
         drag = self._drag(air)
-        own_force, lever = self._in_slots('own_force'), self._in_slots('coupling')
-        forces, moments = (
-            cross_matrix(each) for each in (own_force, (lever @ own_force[..., None])[..., 0])
+        force, lever = self._in_slots('own_force'), self._in_slots('coupling')
+        moment = (lever @ force[..., None])[..., 0]
+        return _Loads(
+            to_branch,
+            turn,
+            lever.swapaxes(1, 2),
+            cross_matrix(force),
+            cross_matrix(moment),
+            drag @ cross_matrix(air),
+            drag,
         )
-        small: list[Any] = [
-            each.astype(np.float32) for each in (
-                twist, by_parent, by_joint, moving, seeing, lever.swapaxes(1, 2), forces, moments,
-                drag @ cross_matrix(air), drag,
-            )
-        ]  # fmt: skip
-        bases = self._outward(small[0][self._bearing] @ self._joint[self._bearing])
+
+    def _summed(self, joints: _Joints, loads: _Loads) -> tuple[Singles, Singles]:
+        """Sum the power of the changed loads over the branches."""
+        at_bearing = joints.twist[self._bearing] @ self._joint[self._bearing]
+        bases = self._outward(at_bearing)
         m = bases.shape[2]
-        turning, damping = np.zeros((2, m, m), dtype=np.float32)
-        for first in range(0, count, _TOGETHER):  # intermediate results stay in the cache
-            rows = slice(first, first + _TOGETHER)
-            twist, by_parent, by_joint, moving, seeing, lever, forces, moments, gain, drag = (
-                each[rows] for each in small
-            )
-            joint, parents = self._joint[rows], bases[on[rows]]
-            moves = moving @ (parents + twist @ joint)
-            seen = seeing @ self._load_rotation[rows] + moves[:, 3:]
-            arm = lever @ moves[:, 3:] + moves[:, :3]
-            work_at = arm + self._load_mode[rows]
-            turning += _power(by_parent @ parents + by_joint @ joint, joint)
-            turning -= _power(forces @ seen, moves[:, :3])
-            turning -= _power(moments @ seen + forces @ moves[:, :3], moves[:, 3:])
-            turning += _power(gain @ seen, work_at)
-            damping -= _power(drag @ (arm + self._damping_mode[rows]), work_at)
+        turning = np.zeros((m, m), dtype=np.float32)
+        damping = np.zeros((m, m), dtype=np.float32)
+        for first in range(0, len(self._branches), _CHUNK):
+            rows = slice(first, first + _CHUNK)
+            joint = self._joint[rows]
+            parent = bases[self._on[rows]]
+            twist = parent + joints.twist[rows] @ joint
+            by_motion = joints.by_parent[rows] @ parent + joints.by_joint[rows] @ joint
+            turning += _power(by_motion, joint)
+
+            moves = loads.to_branch[rows] @ twist
+            velocity, spin = moves[:, :3], moves[:, 3:]
+            turned = loads.turn[rows] @ self._load_rotation[rows] + spin
+            centre = loads.lever[rows] @ spin + velocity
+            loaded = centre + self._load_mode[rows]
+            force, moment = loads.force[rows], loads.moment[rows]
+            turning -= _power(force @ turned, velocity)
+            turning -= _power(moment @ turned + force @ velocity, spin)
+            turning += _power(loads.by_turn[rows] @ turned, loaded)
+            damping -= _power(loads.drag[rows] @ (centre + self._damping_mode[rows]), loaded)
         return turning, damping
 
     def _outward(self, joints: NDArray[Any]) -> NDArray[Any]:
-        """Sum the joint motion of branches that have children from the root on."""
+        """Sum the motion at the joints of branches that carry others, from the root outward."""
         return sum_outward(self._on[self._bearing], self._levels, joints)
 
     def _in_slots(self, name: str) -> Floats:
         return of_slots(self._loads[name], len(self._branches))
 
     def _drag(self, air: Floats) -> Floats:
-        """Slope of `drag` by the wind on each branch, (b, 3), in its own frame, (b, 3, 3)."""
-        projector = self._in_slots('projector')[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+        """
+        Differentiate `drag` by the air velocity at each branch, (b, 3), to (b, 3, 3).
+
+        With the projector P across the branch, the force is area |P u| P u.
+        """
+        projector = self._in_slots('projector')[:, _SYMMETRIC].reshape(-1, 3, 3)
         across = (projector @ air[..., None])[..., 0]
         speed = np.sqrt(np.maximum((air * across).sum(axis=1), 0.0))[:, None, None]
         slope = speed * projector + _outer(across, across) / np.maximum(speed, 1e-12)
         return np.asarray(self._branches['area'][:, None, None] * slope)
 
 
+def _single(values: Floats) -> Singles:
+    return values.astype(np.float32)
+
+
 def _power(moved: Singles, loaded: Singles) -> Singles:
-    """Sum products of motion and load by shapes, both (b, k, m), to (m, m)."""
+    """Sum products of motion and load over branches and axes, both (b, k, m), to (m, m)."""
     m = moved.shape[2]
     return moved.reshape(-1, m).T @ loaded.reshape(-1, m)
 
@@ -174,17 +272,21 @@ def _outer(a: Floats, b: Floats) -> Floats:
 
 
 def _blocks(
-    upper: Floats | float, upper_right: Floats, lower: Floats | float, lower_right: Floats
+    upper_left: Floats | float,
+    upper_right: Floats,
+    lower_left: Floats | float,
+    lower_right: Floats,
 ) -> Floats:
-    """Matrices (b, 6, 6) of four (b, 3, 3), or numbers that fill them."""
+    """Return matrices (b, 6, 6) of four blocks (b, 3, 3), or numbers that fill them."""
     out = np.empty((len(lower_right), 6, 6))
-    out[:, :3, :3], out[:, :3, 3:], out[:, 3:, :3], out[:, 3:, 3:] = (
-        upper, upper_right, lower, lower_right
-    )  # fmt: skip
+    out[:, :3, :3] = upper_left
+    out[:, :3, 3:] = upper_right
+    out[:, 3:, :3] = lower_left
+    out[:, 3:, 3:] = lower_right
     return out
 
 
 def _rotations(quaternions: Floats) -> Floats:
-    """Matrices (b, 3, 3) of unit quaternions w x y z, (b, 4)."""
+    """Return matrices (b, 3, 3) of unit quaternions w x y z, (b, 4)."""
     turn = cross_matrix(quaternions[:, 1:])
-    return np.asarray(_ONE + 2.0 * (quaternions[:, :1, None] * turn + turn @ turn))
+    return np.asarray(_IDENTITY + 2.0 * (quaternions[:, :1, None] * turn + turn @ turn))

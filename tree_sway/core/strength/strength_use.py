@@ -9,6 +9,8 @@ knots reduce that of a stem by 15 % (Gardiner et al. 2000, Ecological Modelling 
 fail at a moment of 77 to 146 N m for each kg of the stem, by species and soil (Byrne 2005;
 winching tests of near 2,000 conifers: Nicoll et al. 2006).
 
+Bands also have the spread of the load: `LOAD_SPREADS`, and `LEAF_SPREAD` in leaf.
+
 Rot, wounds and forks, a wet or shallow soil, the stress of growth and of the tree's own weight,
 fatigue, and sheltering by neighbours are left out. It is no verdict on a tree's safety.
 """
@@ -16,6 +18,7 @@ fatigue, and sheltering by neighbours are left out. It is no verdict on a tree's
 from __future__ import annotations
 
 from dataclasses import dataclass
+import math
 from typing import Any
 
 import numpy as np
@@ -26,6 +29,16 @@ from tree_sway.core.strength.wood_strain import WoodStrain
 
 WOOD_BAND = (0.85 * (1.0 - 0.16), 1.0 + 0.16)
 """Modulus of rupture of a tree's wood over that of its species' mean [-]."""
+
+LOAD_SPREADS = {'drag': 0.25, 'wind at the crown': 0.3}
+"""
+Log-deviations of what loads a tree: drag coefficients of crowns of one species (Mayhead 1973;
+Vollsinger et al. 2005) and the wind at a crown by a profile.
+
+"""
+
+LEAF_SPREAD = 0.35
+"""Log-deviation of the leaf area of a stem: a factor of two either way (`LeafTraits`)."""
 
 ROOT_MOMENT, ROOT_BAND = 110.0, (77.0, 146.0)
 """Strength of roots as a moment per mass of the stem, mean and band in [N m/kg]."""
@@ -39,8 +52,8 @@ class StrengthUse:
     Parameters
     ----------
     wood
-        Largest share of the modulus of rupture [-], with its lower and upper bound by `WOOD_BAND`,
-        (3,).
+        Largest share of the modulus of rupture [-], with its lower and upper bound by `WOOD_BAND`
+        and by the spreads of the load, (3,).
     branch, height
         Branch with that share, and its height above the base of the tree in [m].
     roots
@@ -48,6 +61,8 @@ class StrengthUse:
         in a pot.
     in_leaf
         Whether the tree bore leaves.
+    base_moment
+        Largest bending moment at the base of the stem in [N m].
 
     """
 
@@ -56,6 +71,7 @@ class StrengthUse:
     height: float
     roots: Floats
     in_leaf: bool = False
+    base_moment: float = math.nan
 
     def plain(self) -> dict[str, Any]:
         """Return the fields as plain numbers, for JSON; ``roots`` is None in a pot."""
@@ -113,13 +129,28 @@ class StrengthGauge:
         at = int(np.argmax(self._largest))
         stem_mass = species.density * float(tree.volume[tree.segments_of(0)].sum())
         capacity = np.nan if species.habit == 'pot' else ROOT_MOMENT * stem_mass
-        least, most = WOOD_BAND
+        in_leaf = bool(self._reductions.settings.in_leaf)
         wood = species.modulus * self._largest[at] / species.rupture
         roots = self._moment / capacity
+        weakest, strongest = ROOT_BAND[0] / ROOT_MOMENT, ROOT_BAND[1] / ROOT_MOMENT
         return StrengthUse(
-            wood * np.array([1.0, 1.0 / most, 1.0 / least]),
+            wood * _band(WOOD_BAND, in_leaf),
             tree.branch_names[int(self._strain.branch[at])],
             float(self._strain.height[at]),
-            roots * np.array([1.0, ROOT_MOMENT / ROOT_BAND[1], ROOT_MOMENT / ROOT_BAND[0]]),
-            bool(self._reductions.settings.in_leaf),
+            roots * _band((weakest, strongest), in_leaf),
+            in_leaf,
+            self._moment,
         )
+
+
+def _band(strength: tuple[float, float], in_leaf: bool) -> Floats:
+    """
+    Return 1 and the bounds of a used share over it, (3,).
+
+    Strength has a smallest and a largest value over its mean; its logarithm and those of what
+    loads the tree are independent.
+    """
+    loads = [*LOAD_SPREADS.values(), *([LEAF_SPREAD] if in_leaf else [])]
+    load = math.hypot(*loads)
+    weak, strong = (math.hypot(load, math.log(each)) for each in strength)
+    return np.array([1.0, math.exp(-strong), math.exp(weak)])

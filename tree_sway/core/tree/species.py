@@ -18,7 +18,17 @@ species or of its genus in the table of Morales & MacFarlane (2024, Forestry; R 
 Thuja for goldcrest, its moderately slender twigs for broadleaf, Douglas-fir and alder, its slender
 ones for benjamina, willow and eucalyptus, spruces for conifer. Entries marked as estimates are not
 measured. Sources of leaves are in `leaf_traits`. Besides their keys, species have names: genus,
-Latin and other names, abbreviations.
+Latin names, names in a dozen languages, abbreviations.
+
+Trees of streets: elm (American elm), hackberry, honey locust, robinia (black locust), sweetgum,
+tulip tree (yellow-poplar), chestnut (American chestnut), magnolia (southern magnolia), red and
+silver maple are by the same two tables of the Wood Handbook. No table of green wood has the
+others, which are marked as estimates: horse chestnut, hornbeam, pear, apple and tree of heaven are
+by the Wood Database (Meier), ginkgo by Cheng (1992, Wood of China), all of dry wood, times 0.80 in
+modulus and 0.58 in rupture, the mean ratios of green to dry hardwoods in table 5-3, and with a
+moisture of 80 %; pagoda tree has the modulus of the Stuttgart catalogue (Wessolly & Erb 1998);
+zelkova has the wood of elm, rowan and hawthorn that of pear, hazel that of birch, of their
+families. They have the habit of an average broadleaf.
 """
 
 from __future__ import annotations
@@ -27,6 +37,7 @@ from dataclasses import fields
 import math
 import re
 from typing import Any
+import unicodedata
 
 from tree_sway.core.tree.leaf_traits import LeafTraits
 from tree_sway.core.tree.wood import Species
@@ -49,11 +60,28 @@ def _species(row: dict[str, Any]) -> Species:
 SPECIES = {key: _species(row) for key, row in _ROWS.items()}
 """Every species by its key."""
 
+_UMLAUTS = str.maketrans({'ä': 'ae', 'ö': 'oe', 'ü': 'ue', 'ß': 'ss', 'ø': 'o', 'ł': 'l'})
+_SHORTEST_END = 4
+"""Letters of the shortest name that a longer word may end with, as Winterlinde with linde."""
+
+
+def _plain(name: str) -> str:
+    """Words of a name in lower case without accents; umlauts as ae, oe and ue."""
+    lower = unicodedata.normalize('NFC', name).lower().translate(_UMLAUTS)
+    letters = unicodedata.normalize('NFKD', lower)
+    bare = ''.join(letter for letter in letters if not unicodedata.combining(letter))
+    return ' '.join(re.findall(r'\w+', bare.replace('_', ' ')))
+
+
 _KEYS = {key.replace('_', ' '): key for key in SPECIES}
-_KEYS |= {name: key for key, names in NAMES.items() for name in names}
+_KEYS |= {_plain(name): key for key, names in NAMES.items() for name in names}
 _WORDS = [name for name in _KEYS if len(name) > 3]
+_ENDS = sorted((name for name in _KEYS if len(name) >= _SHORTEST_END), key=len, reverse=True)
 _FILE = re.compile(r'\.(ya?ml|json|csv)\s*$', re.IGNORECASE)
-_CONIFEROUS = re.compile(r'conifer|nadel|cypress|cedar|yew|hemlock|redwood|(fir|pine|spruce)\b')
+_CONIFEROUS = re.compile(
+    r'conifer|nadel|needle|(c|z)[iy]pre|ceda?r|zeder|yew|eibe|hemlock|redwood|tasso|'
+    r'(fir|pine|spruce|if)\b'
+)
 
 
 def species_named(name: str) -> Species:
@@ -74,13 +102,15 @@ def species_named(name: str) -> Species:
     if _FILE.search(name):
         cure = 'give the name of a species; only the option --species reads a file'
         raise SpeciesError(f"'{name}' is the name of a file", cure=cure)
-    words = re.findall(r'\w+', name.lower().replace('_', ' '))
-    for known in (' '.join(words), ' '.join(words[:2]), *words[:1]):
+    words = _plain(name).split()
+    # A first word alone is a genus; pin oak is no pine, though that is pin in French.
+    genus = words[:1] if len(words) == 1 or len(words[0]) >= _SHORTEST_END else []
+    for known in (' '.join(words), ' '.join(words[:2]), *genus):
         if known in _KEYS:
             return SPECIES[_KEYS[known]]
     known_names = [*_WORDS, *SPECIES]
     # Of two words, one may be right: the whole name is far from each known name.
-    guesses = (nearest(each, known_names) for each in (name.lower(), *words))
+    guesses = (nearest(each, known_names) for each in (' '.join(words), *words))
     guess = next(filter(None, guesses), '')
     cure = f'{guess} use one of: {", ".join(sorted(SPECIES))}'.lstrip()
     raise SpeciesError(f"unknown species '{name}'", cure=cure)
@@ -88,9 +118,10 @@ def species_named(name: str) -> Species:
 
 def species_like(name: str) -> tuple[Species, str]:
     """
-    Look a species up, an unknown one by its last word, as a silver maple as a maple.
+    Look a species up, an unknown one by its last word, as a silver birch as a birch.
 
-    Any other name is taken as a conifer or a broadleaf of unknown species.
+    A longer word counts by its end, as Winterlinde by linde. Any other name is taken as a conifer
+    or a broadleaf of unknown species.
 
     Returns
     -------
@@ -101,12 +132,17 @@ def species_like(name: str) -> tuple[Species, str]:
     try:
         return species_named(name), ''
     except SpeciesError:
-        kind = 'conifer' if _CONIFEROUS.search(name.lower()) else 'broadleaf'
-        group = SPECIES[_KEYS.get((re.findall(r'[^\W_]+', name.lower()) or [''])[-1], kind)]
-        guess = nearest(name.lower(), _WORDS)
-        return group, f"'{name[:40]}' is not in the table: taken as {group.title}; {guess}".rstrip(
-            '; '
-        )
+        pass
+    plain = _plain(name)
+    first, last = (plain.split() or [''])[0], (plain.split() or [''])[-1]
+    ends = (each for each in _ENDS if last.endswith(each))
+    end = last if last in _KEYS else next(ends, first if first in _KEYS else '')
+    if end:
+        group = SPECIES[_KEYS[end]]
+        return group, f"'{name[:40]}' is taken as {group.title}"
+    group = SPECIES['conifer' if _CONIFEROUS.search(plain) else 'broadleaf']
+    note = f"'{name[:40]}' is not in the table: taken as {group.title}; {nearest(plain, _WORDS)}"
+    return group, note.rstrip('; ')
 
 
 def species_keys() -> tuple[str, ...]:

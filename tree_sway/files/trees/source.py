@@ -18,7 +18,12 @@ from tree_sway.core.tree.species import Species, species_keys, species_named
 from tree_sway.errors import FormatError, nearest, ParameterError
 from tree_sway.files.file_format import UnknownFormatError
 from tree_sway.files.scenes.scene_yaml import read_scene_yaml
-from tree_sway.files.scenes.stand_table import is_stand_table, read_stand_table, why_no_stand
+from tree_sway.files.scenes.stand_table import (
+    is_stand_table,
+    lacks_species_alone,
+    read_stand_table,
+    why_no_stand,
+)
 from tree_sway.files.text_file import path_of, read_head
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.tree_file import read_tree, read_trees
@@ -84,7 +89,7 @@ def _refuse_several_trees(path: Path, head: str) -> None:
     if begins_with_key(path, head, 'trees'):
         what, cure = 'a forest, where one tree is expected', 'name one of its trees'
         raise FormatError(what, where=where, cure=cure)
-    is_table = is_stand_table(head)
+    is_table = is_stand_table(head, path)
     if is_table or begins_with_key(path, head, 'stand'):
         what = 'an inventory' if is_table else 'a stand'
         raise FormatError(
@@ -132,12 +137,14 @@ def open_scene(
     head, read = read_head(path), None
     if any(begins_with_key(path, head, key) for key in ('trees', 'stand')):
         read = partial(read_scene_yaml, path, open_tree, exact=exact)
-    elif is_stand_table(head):
-        read = partial(read_stand_table, path, seed=seed, exact=exact)
+    elif is_stand_table(head, path):
+        read = partial(read_stand_table, path, seed=seed, exact=exact, head=head)
     if read is None:
         try:
             files = [each.checked() for each in read_trees(path, head=head, wood=wood, **options)]
         except UnknownFormatError as error:
+            if lacks_species_alone(head):
+                return read_stand_table(path, seed=seed, exact=exact, head=head)
             if missing := why_no_stand(head):
                 cure = 'name them so in the header, if it is an inventory (doc/trees.md)'
                 raise FormatError(missing, where=error.where, cure=cure) from None

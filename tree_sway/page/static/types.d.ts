@@ -163,6 +163,25 @@ interface Mesh {
   indices: number[];
 }
 
+/** What the wind is, and for a live one its newest reading. */
+interface WindStatus {
+  kind?: string;
+  name?: string;
+  /** Samples per second [Hz]. */
+  rate?: number;
+  /** connecting, waiting, unknown (messages), live or stale. */
+  state?: string;
+  /** [m/s] */
+  speed?: number;
+  /** To east and north [m/s]. */
+  wind?: number[];
+  /** Of the reading [s]. */
+  age?: number;
+  /** Whether gusts are simulated about it. */
+  is_mean?: boolean;
+  lacks_direction?: boolean;
+}
+
 /** How much of a kind is drawn. */
 interface Level {
   /** The first of its order. */

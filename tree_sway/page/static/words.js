@@ -48,9 +48,29 @@ export function windFrom(wind) {
   return point && word("from", point);
 }
 
-/** Source of the wind. @param {{kind?: string, name?: string, rate?: number}} [source] of a status */
-export function windSource({ kind = "", name = "", rate } = {}) {
+/** Age of a reading in words; empty for the present. @param {number} age [s] */
+function ago(age) {
+  if (age < 10) return "";
+  if (age < 90) return word("seconds_ago", Math.round(age));
+  return age < 5400 ? word("minutes_ago", Math.round(age / 60)) : word("hours_ago", Math.round(age / 3600));
+}
+
+/** A live source: its name, its newest reading and how old it is. @param {WindStatus} source */
+function liveSource({ name = "", rate, state = "", speed, wind = [0, 0], age = 0, is_mean, lacks_direction }) {
+  const parts = [rate ? `${name}, ${Math.round(rate)} Hz` : name];
+  if (Number.isFinite(speed)) {
+    parts.push(`${Number(speed).toFixed(1)} m/s ${windFrom(wind)}`.trim(), ago(age));
+    if (is_mean) parts.push(word("wind_gusts"));
+    if (lacks_direction) parts.push(word("wind_assumed"));
+    if (state === "stale") parts.push(word("wind_stale"));
+  } else if (state) parts.push(word(state === "unknown" ? "wind_unknown" : "wind_awaited"));
+  return word("wind_live", parts.filter(Boolean).join(", "));
+}
+
+/** Source of the wind. @param {WindStatus} [source] of a status */
+export function windSource(source = {}) {
+  const { kind = "", name = "" } = source;
   if (kind === "recorded") return name ? word("wind_recorded", name) : word("wind_recorded_unnamed");
-  if (kind === "live") return word("wind_live", rate ? `${name}, ${Math.round(rate)} Hz` : name);
+  if (kind === "live") return liveSource(source);
   return hasWord(`wind_${kind}`) ? word(`wind_${kind}`) : "";
 }

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 import re
 
+from tree_sway.core.wind.limits import is_wind
 from tree_sway.files.wind.nmea import parse_nmea, SENTENCES
 from tree_sway.files.wind.sensor_line import SensorLine
 from tree_sway.files.wind.sonic_ascii import KINDS, parse_sonic
@@ -73,7 +74,8 @@ class InstrumentLines:
             if not line.strip():
                 continue
             for each in self._read(line):
-                if isinstance(each, WindReading) and not self.reading:
+                is_good = isinstance(each, WindReading) and is_wind(each.speed, each.up, 0.0)
+                if is_good and not self.reading:
                     self.found = each.kind
                 if not self.reading or each.kind == self.reading:
                     found.append(each)

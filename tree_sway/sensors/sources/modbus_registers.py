@@ -51,7 +51,8 @@ def open_modbus(address: SourceAddress) -> Source:
         )
 
     def read(message: Message) -> Sequence[Reading]:
-        words = struct.unpack(f'>{len(message.data) // 2}h', message.data)
+        size = len(message.data) // 2
+        words = struct.unpack(f'>{size}h', message.data[: 2 * size])
         if len(words) < count:
             return [Refusal(_KIND, f'{len(words)} registers of {count}')]
         value = scale * words[speed - first]

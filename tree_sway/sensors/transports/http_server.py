@@ -50,10 +50,12 @@ class HttpServer:
 
         application = web.Application(client_max_size=_LARGEST)
         application.router.add_route('*', '/{path:.*}', take)
-        runner = web.AppRunner(application, access_log=None, keepalive_timeout=_TIMEOUT)
+        runner = web.AppRunner(
+            application, access_log=None, keepalive_timeout=_TIMEOUT, shutdown_timeout=0.1
+        )
         await runner.setup()
         try:
-            await web.TCPSite(runner, self.host, self.port, shutdown_timeout=0.1).start()
+            await web.TCPSite(runner, self.host, self.port).start()
             receiver.opened()
             await asyncio.Event().wait()
         finally:

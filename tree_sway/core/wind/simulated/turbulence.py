@@ -32,8 +32,8 @@ from tree_sway.core.checks import within
 
 # IEC 61400-1: standard deviations over that of u, for u, v, w.
 _DEVIATION_RATIOS = np.array([1.0, 0.8, 0.5])
-# Integral scales of u, v, w over Lambda1.
-_SCALE_RATIOS = np.array([8.1, 2.7, 0.66])
+SCALE_RATIOS = np.array([8.1, 2.7, 0.66])
+"""Integral scales of u, v, w over Lambda1 [-]."""
 
 STRESS = -1.0 / 3.0
 """
@@ -93,7 +93,7 @@ class Turbulence:
     @cached_property
     def scales(self) -> Floats:
         """Integral scales of u, v, w in [m], (3,)."""
-        return turbulence_scale(self.height) * _SCALE_RATIOS
+        return turbulence_scale(self.height) * SCALE_RATIOS
 
     def spectrum(self, frequency: ArrayLike) -> Floats:
         """Return one-sided spectra of u, v, w in [m^2/s^2/Hz] at frequencies in [Hz], (n, 3)."""

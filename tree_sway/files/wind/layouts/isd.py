@@ -15,8 +15,9 @@ from collections.abc import Sequence
 from functools import partial
 import re
 
+from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.table_file import split_row, TextTable
-from tree_sway.files.wind.layouts.layout import Layout, table_of_cells
+from tree_sway.files.wind.layouts.layout import Layout
 
 _COLUMNS = ('time', 'wind_speed', 'wind_direction', 'gust')
 _UNITS = ('', '0.1 m/s', 'deg', '0.1 m/s')

@@ -6,11 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 from tree_sway.files.table_file import TextTable
-
-_BETWEEN = '\x1f'
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,17 +21,3 @@ class Layout:
     name: str
     recognise: Callable[[Sequence[str]], bool]
     read: Callable[[list[str], str], TextTable]
-
-
-def table_of_cells(
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str]],
-    source: str,
-    numbers: Sequence[int] | None = None,
-    units: Sequence[str] = (),
-) -> TextTable:
-    """Return a table from the cells of its rows; ``numbers`` are those of their lines."""
-    texts = [_BETWEEN.join(row) for row in rows]
-    lines = range(1, len(texts) + 1) if numbers is None else numbers
-    split = partial(str.split, sep=_BETWEEN)
-    return TextTable(tuple(columns), lines, texts, split, source, units=tuple(units))

@@ -14,8 +14,9 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 import re
 
+from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.table_file import split_row, TextTable
-from tree_sway.files.wind.layouts.layout import Layout, table_of_cells
+from tree_sway.files.wind.layouts.layout import Layout
 
 _COLUMNS = {
     'influxdb': ('_time', '_field', '_value'),

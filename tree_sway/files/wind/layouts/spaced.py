@@ -12,8 +12,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 import re
 
+from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.wind.layouts.layout import Layout, table_of_cells
+from tree_sway.files.wind.layouts.layout import Layout
 
 _NAMES = re.compile(r'#\s*(YY+\s+MM\s+DD|STN\s*,\s*YYYYMMDD)\b')
 _HEAD = 200

@@ -13,8 +13,9 @@ from collections.abc import Sequence
 from itertools import zip_longest
 import re
 
+from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.table_file import TextTable
-from tree_sway.files.wind.layouts.layout import Layout, table_of_cells
+from tree_sway.files.wind.layouts.layout import Layout
 
 _NAMES = re.compile(r'^\s*Date\s+Time\b.*\bSpeed\s+Dir\b', re.IGNORECASE)
 _GAPS = re.compile(r'\t|\s{2,}')

@@ -1,0 +1,45 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Where trees stand: arguments of the exposure, and the wind of a mean speed there."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.exposure import Exposure, exposure_of, EXPOSURES
+
+
+def add_exposure_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add where the trees stand, and at which height the mean wind is."""
+    add = parser.add_argument_group('exposure').add_argument
+    add(
+        '--exposure', choices=EXPOSURES, default='open',
+        help='where the trees stand: in the open, at the edge of a stand or inside it; it sets '
+        'the wind over the height (%(default)s)',
+    )  # fmt: skip
+    add(
+        '--spacing', type=float, metavar='D',
+        help='mean distance between the trees of a stand [m]; 0.18 of their height if left out',
+    )  # fmt: skip
+    add(
+        '--anemometer-height', type=float, metavar='Z',
+        help='height of the mean wind above the ground [m]; if left out, that of the top of the '
+        'tree, in the open at most 10 m',
+    )  # fmt: skip
+
+
+def chosen_exposure(arguments: argparse.Namespace, tree: Tree, species: Species) -> Exposure:
+    """Return the exposure of the arguments for a tree."""
+    return exposure_of(
+        tree, species, arguments.exposure, spacing=arguments.spacing,
+        anemometer_height=arguments.anemometer_height,
+    )  # fmt: skip
+
+
+def turbulence_of(exposure: Exposure) -> dict[str, Any]:
+    """Height and intensity of simulated turbulence; in the open the class of IEC 61400-1."""
+    intensity = None if exposure.kind == 'open' else exposure.intensity
+    return {'height': exposure.turbulence_height, 'intensity': intensity}

@@ -1,0 +1,103 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The argument ``--sensor``: a live source of wind, which is told of on standard error."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+import sys
+import threading
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tree_sway.errors import ParameterError, TransportError
+from tree_sway.files.wind.record import WindRecord
+
+if TYPE_CHECKING:
+    from tree_sway.sensors.live_wind import LiveWind
+    from tree_sway.sensors.reading import WindReading
+
+HELP = (
+    'live wind instead: udp://:port, tcp://host:port, serial:/dev/ttyUSB0:4800, modbus:DEVICE, '
+    'mqtt://host/topic, signalk://host, http://host/path.json, tempest, weatherlink:HOST, '
+    'ecowitt:PORT, open-meteo:LAT,LON, metar:ICAO (doc/live_wind.md)'
+)
+_LOOK = 0.1
+_PATIENCE = 90.0
+"""Longest wait for the first wind of a source [s]: a garden station sends once in a minute."""
+
+
+def add_sensor_argument(parser: argparse.ArgumentParser) -> None:
+    """Add ``--sensor``."""
+    parser.add_argument('--sensor', metavar='SOURCE', help=HELP)
+
+
+def say(text: str) -> None:
+    """Print a line of news of a source."""
+    print(f'sensor: {text}', file=sys.stderr, flush=True)
+
+
+@contextmanager
+def listening(
+    arguments: argparse.Namespace, heard: Callable[[WindReading], None] | None = None
+) -> Iterator[LiveWind]:
+    """
+    Listen to the source of ``--sensor``, and end at once.
+
+    ``heard`` is called with each reading. A `ParameterError` reports a wrong address, or a record
+    beside it.
+    """
+    from tree_sway.sensors.live_wind import LiveWind
+    from tree_sway.sensors.registry import open_source
+
+    if getattr(arguments, 'wind', None) is not None:
+        raise ParameterError('both --sensor and --wind', cure='give one of the two')
+    wind = LiveWind(open_source(arguments.sensor), say, heard=heard)
+    wind.start()
+    try:
+        yield wind
+    finally:
+        wind.stop()
+
+
+def wait_for_wind(wind: LiveWind, patience: float = _PATIENCE) -> None:
+    """Wait for the first reading; a `TransportError` with the reason if none comes."""
+    pause, end = threading.Event(), time.monotonic() + patience
+    while wind.newest is None:
+        if time.monotonic() > end:
+            raise TransportError(
+                f'no wind within {patience:g} s: {wind.problem}', where='--sensor'
+            )
+        pause.wait(_LOOK)
+
+
+def live_record(arguments: argparse.Namespace, seconds: float) -> WindRecord:
+    """
+    Record a source for a time [s] from its first wind on; Ctrl-C ends the record sooner.
+
+    A `TransportError` reports that no wind came.
+    """
+    pause, samples = threading.Event(), list[tuple[float, tuple[float, float, float]]]()
+    with listening(arguments) as wind:
+        wait_for_wind(wind)
+        end = time.monotonic() + seconds
+        try:
+            while time.monotonic() < end:
+                pause.wait(_LOOK)
+                samples += wind.drain()
+        except KeyboardInterrupt:
+            say('ended: what came so far is used')
+        name = wind.name
+    if len(samples) < 2:
+        raise TransportError(
+            f'{len(samples)} samples within {seconds:g} s', where='--sensor', cure='wait longer'
+        )
+    times = np.array([time for time, _ in samples])
+    velocity = np.array([velocity for _, velocity in samples])
+    rising = np.concatenate([[True], np.diff(np.maximum.accumulate(times)) > 0.0])
+    note = f'{name}, {int(rising.sum())} samples'
+    return WindRecord(times[rising] - times[0], velocity[rising], name, notes=(note,))

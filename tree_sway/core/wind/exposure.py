@@ -1,0 +1,215 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Where a tree stands: alone in the open, at the edge of a stand, or inside it.
+
+Open: a log profile over grass, U ~ ln(z / z0) with z0 = 0.03 m, and its mean wind at the top of
+the tree, or 10 m above the ground where the tree is higher, as weather stations measure it.
+
+Stand: a tree as high as its neighbours. Displacement d, roughness z0 and friction velocity u* over
+the wind U_h at the top follow from the streamlined frontal area of the crowns per ground area
+(Raupach 1994, Boundary-Layer Meteorology 71, 211-216; with the constants of ForestGALES: Hale et
+al. 2015; Locatelli et al. 2022, Environmental Modelling & Software, R package fgr). Below the top
+the wind decays exponentially (Cionco 1965). Its mean is that at the top.
+
+Edge: the same at the windward edge of the stand behind a wide gap. The largest moment there over
+the one inside is a function of spacing over height (Gardiner et al. 1997, wind tunnel; Hale et al.
+2015; `edge_factor`); the wind in the crown is its root times that inside, at most that at the top.
+Mean wind and gusts at the top are those inside.
+
+Symbols: h height [m], D spacing [m], w and c width and depth of a crown [m], L frontal area of the
+crowns over ground [-].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from tree_sway.core.checks import one_of, within
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.height_profile import WindProfile
+from tree_sway.core.wind.simulated.turbulence import SCALE_RATIOS, turbulence_scale
+
+EDDY_LENGTH = float(SCALE_RATIOS[0])
+"""Integral scale of the wind along itself over the turbulence scale [-]."""
+
+HART_BECKING = 0.18
+"""Spacing of a stand over its height [-]."""
+
+EXPOSURES = ('open', 'edge', 'stand')
+"""Kinds of exposure."""
+
+STATION_HEIGHT, GRASS = 10.0, 0.03
+"""Height of weather stations and roughness of open grass in [m] (WMO guide no. 8)."""
+
+ATTENUATION = 2.7
+"""
+Attenuation a of the wind in a stand in [-]: 2.74 in spruce, 2.68 in oak and gum (Cionco 1978,
+Boundary-Layer Meteorology 15, 81-93).
+"""
+
+_CD1, _CW, _CS, _CR, _LARGEST, _KARMAN = 7.5, 2.0, 0.003, 0.3, 0.6, 0.4
+"""Constants of Raupach (1994), and the frontal area from which u* / U_h no longer grows."""
+
+_GUSTS = {'open': 2.4, 'edge': 1.8, 'stand': 1.8}
+"""Deviation of the wind over u* [-]: Panofsky & Dutton 1984; Raupach, Finnigan & Brunet 1996."""
+
+
+@dataclass(frozen=True)
+class Exposure:
+    """
+    Exposure of a tree to the wind.
+
+    Parameters
+    ----------
+    kind
+        ``open``, ``edge`` or ``stand``.
+    height
+        Height of the tree, and of the stand around it, in [m].
+    spacing
+        Mean distance between the trees of the stand in [m].
+    crown_width, crown_depth
+        Of the trees of the stand in [m].
+    drag
+        Drag coefficient of a crown in [-], at 10 m/s.
+    anemometer_height
+        Height of the mean wind above the ground in [m]; that of the kind if None.
+
+    Raises
+    ------
+    ParameterError
+        An unknown kind, or a value out of its range.
+
+    """
+
+    kind: str = 'open'
+    height: float = 20.0
+    spacing: float = 3.0
+    crown_width: float = 4.0
+    crown_depth: float = 9.0
+    drag: float = 0.73
+    anemometer_height: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        one_of('exposure', self.kind, EXPOSURES)
+        for name, high in (('height', 150.0), ('crown_width', 60.0), ('crown_depth', 150.0)):
+            within(name, getattr(self, name), 0.0, high, 'm', above=True)
+        within('spacing', self.spacing, 0.1, 100.0, 'm')
+
+    @property
+    def frontal_area(self) -> float:
+        """Streamlined frontal area of the crowns over ground, L [-]."""
+        return self.crown_width * self.drag * self.crown_depth / self.spacing**2
+
+    @property
+    def friction_ratio(self) -> float:
+        """Friction velocity over the wind at the reference height [-]."""
+        if self.kind == 'open':
+            return _KARMAN / math.log(self.reference_height / GRASS)
+        return math.sqrt(_CS + 0.5 * _CR * min(self.frontal_area, _LARGEST))
+
+    @property
+    def displacement(self) -> float:
+        """Displacement d of a stand in [m]."""
+        depth = math.sqrt(_CD1 * self.frontal_area)
+        return (1.0 - (1.0 - math.exp(-depth)) / depth) * self.height
+
+    @property
+    def reference_height(self) -> float:
+        """Height above the ground of the mean wind in [m]."""
+        if self.anemometer_height is not None:
+            return self.anemometer_height
+        return min(self.height, STATION_HEIGHT) if self.kind == 'open' else self.height
+
+    @property
+    def intensity(self) -> float:
+        """Turbulence intensity at the reference height [-]."""
+        return _GUSTS[self.kind] * self.friction_ratio
+
+    @property
+    def turbulence_height(self) -> float:
+        """
+        Height in [m] at which the open country's turbulence has the integral scale of this one.
+
+        Eddies at the top of a stand are as long as it is high (Raupach, Finnigan & Brunet 1996).
+        """
+        if self.kind == 'open':
+            return self.reference_height
+        return self.height / (EDDY_LENGTH * turbulence_scale(1.0))
+
+    @property
+    def edge_factor(self) -> float:
+        """
+        Largest moment at the edge of a stand, behind a wide gap, over that deep inside it [-].
+
+        Gardiner et al. (1997), as the edge and gap factor of ForestGALES (Hale et al. 2015).
+        """
+        ratio = min(max(self.spacing / self.height, 0.075), 0.45)
+        inside = 2.7193 * ratio - 0.061
+        at_edge, decay = 0.9701 - 1.273 * ratio, 1.1127 * ratio + 0.0311
+        deep = at_edge * decay**9
+        return (inside + at_edge) / (inside + deep)
+
+    def profile(self, ground: float = 0.0) -> WindProfile:
+        """Return the profile over the height above the ground, that is at a height in [m]."""
+        if self.kind == 'open':
+            return WindProfile('log', self.reference_height, roughness=GRASS, ground=ground)
+        d = self.displacement
+        psi = math.log(_CW) - 1.0 + 1.0 / _CW
+        roughness = (self.height - d) * math.exp(psi - _KARMAN / self.friction_ratio)
+        return WindProfile(
+            'canopy', self.reference_height, roughness=roughness, ground=ground,
+            canopy_height=self.height, displacement=d, attenuation=ATTENUATION,
+            exposed=math.sqrt(self.edge_factor) if self.kind == 'edge' else 1.0,
+        )  # fmt: skip
+
+    def __str__(self) -> str:
+        """Return where the tree stands and where its mean wind is, for people."""
+        place = {
+            'open': 'in the open',
+            'edge': f'at the edge of a stand, trees {self.spacing:.2g} m apart',
+            'stand': f'in a stand, trees {self.spacing:.2g} m apart',
+        }[self.kind]
+        return f'{place}; mean wind {self.reference_height:.3g} m above the ground'
+
+
+def exposure_of(
+    tree: Tree,
+    species: Species,
+    kind: str = 'open',
+    *,
+    spacing: float | None = None,
+    anemometer_height: float | None = None,
+) -> Exposure:
+    """
+    Return the exposure of a tree among others of its size.
+
+    Parameters
+    ----------
+    tree, species
+        The tree.
+    kind
+        ``open``, ``edge`` or ``stand``.
+    spacing
+        Mean distance between trees in [m]; if None, 0.18 of the height, that of stands thinned as
+        foresters recommend (Hart-Becking spacing of 16 to 20 %).
+    anemometer_height
+        Height of the mean wind above the ground in [m]; that of the kind if None.
+
+    """
+    height = max(tree.height, 0.1)
+    nodes = np.vstack([tree.start, tree.end])[:, :2]
+    width = float(np.ptp(nodes, axis=0).mean())
+    feet = tree.start[tree.branch_first[1:-1], 2] - tree.start[0, 2]
+    lowest = float(np.percentile(feet, 5.0)) if len(feet) else 0.5 * height
+    c, n = species.drag_law(in_leaf=True)
+    return Exposure(
+        kind, height, HART_BECKING * height if spacing is None else spacing,
+        max(width, 0.05 * height), max(height - lowest, 0.05 * height), c * 10.0**-n,
+        anemometer_height,
+    )  # fmt: skip

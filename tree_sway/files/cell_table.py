@@ -1,0 +1,26 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of cells that are no lines of text, as those of JSON and of spreadsheets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from tree_sway.files.table_file import TextTable
+
+_BETWEEN = '\x1f'
+
+
+def table_of_cells(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    source: str,
+    numbers: Sequence[int] | None = None,
+    units: Sequence[str] = (),
+) -> TextTable:
+    """Return a table from the cells of its rows; ``numbers`` are those of their lines."""
+    texts = [_BETWEEN.join(row) for row in rows]
+    lines = range(1, len(texts) + 1) if numbers is None else numbers
+    split = partial(str.split, sep=_BETWEEN)
+    return TextTable(tuple(columns), lines, texts, split, source, units=tuple(units))

@@ -1,0 +1,93 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Columns of an inventory, and which of its rows are left out and why."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats
+from tree_sway.files.column_names import rank_of
+from tree_sway.files.scenes.inventory.cell_number import cell_number
+from tree_sway.files.table_file import Column, TextTable
+
+
+class InventoryColumns:
+    """
+    Columns of a table by their quantity, with its used ones, assumptions, and rows left out.
+
+    Parameters
+    ----------
+    table
+        The table; its rows are counted from 0.
+
+    """
+
+    def __init__(self, table: TextTable) -> None:
+        self.table = table
+        self.n_rows = len(table.texts)
+        self.used = set[int]()
+        self.notes = list[str]()
+        self.is_kept: NDArray[np.bool_] = np.ones(self.n_rows, dtype=np.bool_)
+        self._reasons = Counter[str]()
+        self._first = ''
+
+    def note(self, *notes: str) -> None:
+        """Add assumptions that are not empty and not yet there."""
+        self.notes += [note for note in notes if note and note not in self.notes]
+
+    def leave_out(self, row: int, reason: str, detail: str = '') -> None:
+        """Leave a row out for a reason; the first is told in full, with its line."""
+        if not self.is_kept[row]:
+            return
+        self.is_kept[row] = False
+        self._reasons[reason] += 1
+        if not self._first:
+            self._first = f'line {self.table.numbers[row]}: {detail or reason}'
+
+    def why_left_out(self) -> str:
+        """Return how many rows were left out, why, and the first; empty without one."""
+        if not self._reasons:
+            return ''
+        reasons = ', '.join(f'{count} {reason}' for reason, count in self._reasons.most_common())
+        count = sum(self._reasons.values())
+        return (
+            f'{count} {"row is" if count == 1 else "rows are"} left out: {reasons}; {self._first}'
+        )
+
+    def find_all(self, quantity: str) -> list[int]:
+        """Places of all columns of a quantity, in the order of their names in `COLUMNS`."""
+        ranks = [(rank_of(name, quantity), i) for i, name in enumerate(self.table.columns)]
+        return [i for _, i in sorted((rank, i) for rank, i in ranks if rank is not None)]
+
+    def index_of(self, quantity: str) -> int | None:
+        """Place of the first column of a quantity; None without one."""
+        return next(iter(self.find_all(quantity)), None)
+
+    def find(self, *quantities: str) -> list[Column] | None:
+        """Columns of quantities; None if one is missing."""
+        found = [self.table.find(each) for each in quantities]
+        return None if None in found else [each for each in found if each is not None]
+
+    def texts(self, index: int) -> list[str]:
+        """Texts of a column."""
+        self.used.add(index)
+        return self.table.cells(index, range(self.n_rows))
+
+    def numbers(self, index: int) -> tuple[Floats, str]:
+        """Numbers of a column, NaN where a cell has none, and the unit within cells, if any."""
+        values, units = np.full(self.n_rows, np.nan), Counter[str]()
+        n_ranges = 0
+        for row, text in enumerate(self.texts(index)):
+            found = cell_number(text)
+            if found is None:
+                continue
+            values[row], unit = found
+            units[unit] += 1
+            n_ranges += not text.strip().replace('.', '').isdigit() and '-' in text.strip()[1:]
+        if n_ranges:
+            self.note(f'{n_ranges} cells of {self.table.columns[index]} are ranges: their middles')
+        return values, next((unit for unit, _ in units.most_common() if unit), '')

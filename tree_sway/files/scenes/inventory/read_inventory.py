@@ -1,0 +1,188 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The trees of an inventory: a row each, in SI units, and what was assumed for it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+import re
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.tree.species import Species
+from tree_sway.errors import FormatError
+from tree_sway.files.scenes.inventory.columns import InventoryColumns
+from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES, why_missing
+from tree_sway.files.scenes.inventory.places import Places, places_of
+from tree_sway.files.scenes.inventory.sizes import diameters_of, fill_heights, heights_of
+from tree_sway.files.scenes.inventory.species_names import species_of_rows
+from tree_sway.files.table_file import TextTable
+
+_DEAD = re.compile(
+    r'\b(dead|stump|removed|felled|fallen|retired|vacant|tot|abgestorben|gefällt|stubben|mort|'
+    r'abattu|souche|muerto|tocón|dood|död)\b',
+    re.IGNORECASE,
+)
+
+
+@dataclass(frozen=True)
+class Inventory:
+    """
+    The trees of an inventory, (n,) each.
+
+    Parameters
+    ----------
+    source
+        Name of the file.
+    lines
+        Line of each tree.
+    names
+        Name of each tree, each once.
+    species
+        Name of its species as in the file; empty without one.
+    wood
+        Species of the table by name; without those that the caller gave.
+    x, y, z
+        Place [m], east, north and up.
+    yaw
+        Rotation about the vertical [rad], NaN if none is given.
+    height
+        Height [m].
+    diameter
+        Diameter at breast height [m], NaN if unknown.
+    is_height_found
+        Whether the height is that of a grown tree of its stem.
+    models
+        Model of each tree; None if none is given.
+    notes
+        What was assumed, one sentence each.
+
+    """
+
+    source: str
+    lines: tuple[int, ...]
+    names: tuple[str, ...]
+    species: tuple[str, ...]
+    wood: Mapping[str, Species]
+    x: Floats
+    y: Floats
+    z: Floats
+    yaw: Floats
+    height: Floats
+    diameter: Floats
+    is_height_found: tuple[bool, ...]
+    models: tuple[str | None, ...]
+    notes: tuple[str, ...]
+
+    def where(self, row: int) -> str:
+        """File and line of a tree."""
+        return f'{self.source}:{self.lines[row]}'
+
+
+def inventory_of(
+    table: TextTable, given: Mapping[str, object] | None = None, *, needs_place: bool = True
+) -> Inventory:
+    """
+    Return the trees of a table; species of names in ``given`` are not looked up.
+
+    A row without a place, a size or a number in it is left out and counted. Without a column of
+    places all are at the origin, unless that ``needs_place``. Raises a `FormatError` for a missing
+    column, or if no row is left.
+    """
+    given = given or {}
+    missing = [each for each in missing_columns(table) if each != SPECIES]
+    if not needs_place:
+        missing = [each for each in missing if 'place' not in each]
+    if missing:
+        what = why_missing(table) or 'no column of an inventory'
+        raise table.error(what, cure='name them so in the header (doc/trees.md)')
+    columns = InventoryColumns(table)
+    found = places_of(columns)
+    zero = np.zeros(columns.n_rows)
+    places = Places(zero, zero) if found is None else found
+    _leave_out_dead(columns)
+    names, wood = species_of_rows(columns, given)
+    keys = [wood[each].key if each in wood else each for each in names]
+    diameter = diameters_of(columns, places.is_in_states)
+    height = heights_of(columns, diameter)
+    for row in np.flatnonzero(~np.isfinite(places.x + places.y)).tolist():
+        columns.leave_out(row, 'no place', _why_no_place(table, row))
+    height = np.full(columns.n_rows, np.nan) if height is None else height
+    is_found = fill_heights(columns, height, diameter, keys)
+    kept = np.flatnonzero(columns.is_kept).tolist()
+    columns.note(columns.why_left_out())
+    if not kept:
+        what = f'no tree is left: {columns.why_left_out() or "no row"}'
+        raise FormatError(what, where=table.source, cure='fill the cells, or remove the rows')
+    tree_names = _names(columns, kept)
+    further = {each: _optional(columns, each) for each in ('z', 'yaw')}
+    models = table.find('model')
+    model_texts = columns.texts(models.index) if models else [''] * columns.n_rows
+    unused = [each for i, each in enumerate(table.columns) if i not in columns.used]
+    if unused:
+        columns.note(f'columns that are not used: {", ".join(unused[:20])}')
+    stems = np.full(columns.n_rows, np.nan) if diameter is None else diameter
+    return Inventory(
+        table.source,
+        tuple(table.numbers[row] for row in kept),
+        tuple(tree_names),
+        tuple(names[row] for row in kept),
+        wood,
+        places.x[kept],
+        places.y[kept],
+        np.nan_to_num(further['z'][kept]),
+        further['yaw'][kept],
+        height[kept],
+        stems[kept],
+        tuple(is_found[row] for row in kept),
+        tuple(model_texts[row] or None for row in kept),
+        tuple(columns.notes),
+    )
+
+
+def _leave_out_dead(columns: InventoryColumns) -> None:
+    for index in columns.find_all('status'):
+        for row, text in enumerate(columns.texts(index)):
+            if _DEAD.search(text):
+                columns.leave_out(
+                    row, 'dead or gone', f"{columns.table.columns[index]} is '{text}'"
+                )
+
+
+def _optional(columns: InventoryColumns, quantity: str) -> Floats:
+    found = columns.table.find(quantity)
+    if found is None:
+        return np.full(columns.n_rows, np.nan)
+    return columns.numbers(found.index)[0] * found.factor
+
+
+def _why_no_place(table: TextTable, row: int) -> str:
+    for quantity in ('x', 'y', 'latitude', 'longitude', 'place'):
+        column = table.find(quantity)
+        if column is not None:
+            text = table.cells(column.index, [row])[0]
+            if not text or not any(letter.isdigit() for letter in text):
+                return f"{table.columns[column.index]} is '{text[:40]}', no place"
+    return 'no place'
+
+
+def _names(columns: InventoryColumns, kept: list[int]) -> list[str]:
+    """Names of trees, each once: a further one of a name gets its number."""
+    column = columns.table.find('tree_name')
+    texts = columns.texts(column.index) if column else [''] * columns.n_rows
+    names, n_changed = list[str](), 0
+    counts: dict[str, int] = {}
+    for row in kept:
+        name = texts[row].replace('/', '-') or f'tree{row + 1}'
+        count = counts[name] = counts.get(name, 0) + 1
+        n_changed += count > 1 or name != (texts[row] or name)
+        while count > 1 and f'{name}-{count}' in counts:
+            count += 1
+        whole = name if count == 1 else f'{name}-{count}'
+        counts.setdefault(whole, 1)
+        names.append(whole)
+    if n_changed:
+        columns.note(f'{n_changed} names are changed, as they occur twice or have a slash')
+    return names

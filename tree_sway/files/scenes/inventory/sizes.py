@@ -1,0 +1,138 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Heights and stem diameters of the trees of an inventory, with their units.
+
+A unit in the header or in the cells counts. Without one, heights are in m and diameters in cm;
+they are in m, mm, inches or feet where only that makes trees: by their size, by height over
+diameter, or as the trees stand in the United States. What was taken is a note.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.growth.grow import height_of_stem
+from tree_sway.files.column_names import unit_factor
+from tree_sway.files.scenes.inventory.columns import InventoryColumns
+
+TALLEST = 130.0
+"""Height that no tree exceeds [m]; the tallest known is 116 m."""
+THICKEST = 12.0
+"""Diameter at breast height that no tree exceeds [m]; the thickest known is 11.6 m."""
+_SLENDER = (12.0, 130.0)
+"""Usual heights over diameters of trees, for the choice of a unit."""
+_INCH, _FOOT, _CM, _MM = 0.0254, 0.3048, 0.01, 0.001
+_SAID = {1.0: 'm', _CM: 'cm', _MM: 'mm', _INCH: 'inches', _FOOT: 'feet'}
+
+
+def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None:
+    """Diameters at breast height [m], NaN without one; None if no column has them."""
+    found: Floats | None = None
+    for quantity, over in (('diameter', 1.0), ('girth', math.pi)):
+        index = columns.index_of(quantity)
+        if index is None:
+            continue
+        values, in_cells = columns.numbers(index)
+        unit = columns.table.unit_of(index, quantity) or in_cells
+        factor = unit_factor('length', unit) if unit else None
+        if factor is None:
+            factor, why = _stem_unit(values / over, columns, is_in_states)
+            name = columns.table.columns[index]
+            columns.note(f'{name} is taken as {_SAID[factor]}{why}')
+        own = values * factor / over
+        own[~((own > 0.0) & (own <= THICKEST))] = np.nan
+        found = own if found is None else np.where(np.isnan(found), own, found)
+    return found
+
+
+def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) -> tuple[float, str]:
+    """Choose the unit of diameters that have none, and say why if it is inches."""
+    positive = values[values > 0.0]
+    middle = float(np.median(positive)) if len(positive) else 30.0
+    if middle <= 3.0:
+        return 1.0, ''
+    if middle > 250.0:
+        return _MM, ''
+    if is_in_states:
+        return _INCH, ', as the trees stand in the United States'
+    index = columns.index_of('height')
+    if index is None:
+        return _CM, ''
+    height, in_cells = columns.numbers(index)
+    unit = columns.table.unit_of(index, 'height') or in_cells
+    factor = unit_factor('length', unit) if unit else None
+    if factor == _FOOT:
+        return _INCH, ', as heights are in feet'
+    ratio = _slenderness(height * (factor or 1.0), values * _CM)
+    if ratio > _SLENDER[1] and _SLENDER[0] < ratio * _CM / _INCH < _SLENDER[1]:
+        return _INCH, ', by height over it'
+    return _CM, ''
+
+
+def _slenderness(height: Floats, diameter: Floats) -> float:
+    known = (height > 0.0) & (diameter > 0.0)
+    return float(np.median(height[known] / diameter[known])) if known.any() else 0.0
+
+
+def heights_of(columns: InventoryColumns, diameter: Floats | None) -> Floats | None:
+    """Heights [m], NaN without one; None if no column has them."""
+    index = columns.index_of('height')
+    if index is None:
+        return None
+    values, in_cells = columns.numbers(index)
+    unit = columns.table.unit_of(index, 'height') or in_cells
+    factor = unit_factor('length', unit) if unit else None
+    name = columns.table.columns[index]
+    if factor is None:
+        factor = 1.0
+        ratio = 0.0 if diameter is None else _slenderness(values, diameter)
+        if ratio > _SLENDER[1] and _SLENDER[0] < ratio * _FOOT < _SLENDER[1]:
+            factor = _FOOT
+            columns.note(f'{name} is taken as feet, by height over diameter')
+    height = values * factor
+    for row in np.flatnonzero(height > TALLEST).tolist():
+        detail = f'{name} is {values[row]:g}, a height of {height[row]:g} m'
+        columns.leave_out(row, 'too high', f'{detail}; give its unit, as in height [cm]')
+    for row in np.flatnonzero(height < 0.0).tolist():
+        columns.leave_out(row, 'no height', f'a height of {height[row]:g} m')
+    height[~((height > 0.0) & (height <= TALLEST))] = np.nan
+    return height
+
+
+def fill_heights(
+    columns: InventoryColumns, height: Floats, diameter: Floats | None, keys: list[str]
+) -> list[bool]:
+    """
+    Give each kept row without a height that of a grown tree of its stem, in place.
+
+    Returns whether a row's height is such. Rows without a stem as well are left out.
+    """
+    stems = np.full(len(height), np.nan) if diameter is None else diameter
+    missing = np.isnan(height) & columns.is_kept
+    is_found = missing & np.isfinite(stems)
+    for row in np.flatnonzero(missing & ~np.isfinite(stems)).tolist():
+        columns.leave_out(row, 'no height and no stem', _why_no_size(columns, row))
+    by_stem = {(keys[row], float(stems[row])): 0.0 for row in np.flatnonzero(is_found).tolist()}
+    for key, stem in by_stem:
+        by_stem[key, stem] = height_of_stem(key, stem)
+    for row in np.flatnonzero(is_found).tolist():
+        height[row] = by_stem[keys[row], float(stems[row])]
+    n_found, n_kept = int(is_found.sum()), int(columns.is_kept.sum())
+    if n_found:
+        which = 'heights' if n_found == n_kept else f'{n_found} of {n_kept} heights'
+        columns.note(f'{which} are those of grown trees of these stems, as the table has none')
+    return is_found.tolist()
+
+
+def _why_no_size(columns: InventoryColumns, row: int) -> str:
+    cells = []
+    for quantity in ('height', 'diameter', 'girth'):
+        index = columns.index_of(quantity)
+        if index is not None:
+            text = columns.table.cells(index, [row])[0]
+            cells.append(f"{columns.table.columns[index]} is '{text[:40]}'")
+    return ' and '.join(cells) or 'no column of a size'

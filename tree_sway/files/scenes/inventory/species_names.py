@@ -1,0 +1,70 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Species of the trees of an inventory: from columns of Latin and other names."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+
+from tree_sway.core.tree.species import Species, species_like, species_named
+from tree_sway.errors import SpeciesError
+from tree_sway.files.scenes.inventory.columns import InventoryColumns
+
+UNKNOWN = 'broadleaf'
+"""Name of a tree without one."""
+_MOST_NOTES = 20
+
+
+def species_of_rows(
+    columns: InventoryColumns, given: Mapping[str, object]
+) -> tuple[list[str], dict[str, Species]]:
+    """
+    Return the name of each row's species, and the species of each name.
+
+    Of several columns the first with a name that is known counts, Latin ones first; genus and
+    epithet in two columns are joined. Names in ``given`` are left as they are.
+    """
+    tables = [columns.texts(index) for index in columns.find_all('species')]
+    genus, epithet = columns.table.find('genus'), columns.table.find('epithet')
+    if genus is not None:
+        first = columns.texts(genus.index)
+        second = columns.texts(epithet.index) if epithet else [''] * len(first)
+        tables.append([_joined(a, b) for a, b in zip(first, second, strict=True)])
+    rows = list(zip(*tables, strict=True)) if tables else [('',)] * columns.n_rows
+    chosen = {each: _chosen(each, given) for each in dict.fromkeys(rows)}
+    names = [chosen[each] for each in rows]
+    known: dict[str, Species] = {}
+    counts = Counter(names)
+    notes = []
+    for name, count in counts.most_common():
+        if name in given:
+            continue
+        known[name], note = (species_named(UNKNOWN), '') if not name else species_like(name)
+        if not name:
+            note = 'trees without a species are taken as a broadleaf of no known species'
+        notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})' if note else '')
+    columns.note(*[note for note in notes if note][:_MOST_NOTES])
+    return names, known
+
+
+def _joined(genus: str, epithet: str) -> str:
+    """Return a Latin name; the second cell alone if it has the genus too."""
+    if not genus or epithet.lower().startswith(genus.lower()):
+        return epithet
+    return f'{genus} {epithet}'.strip()
+
+
+def _chosen(cells: tuple[str, ...], given: Mapping[str, object]) -> str:
+    """First name that is known, else the first that is not empty."""
+    parts = [part.strip() for cell in cells for part in cell.split('::') if part.strip()]
+    for name in parts:
+        if name in given:
+            return name
+    for name in parts:
+        try:
+            species_named(name)
+        except SpeciesError:
+            continue
+        return name
+    return parts[0] if parts else ''

@@ -1,0 +1,51 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Spreadsheets (.xlsx) as tables: the first sheet with a header of an inventory."""
+
+from __future__ import annotations
+
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from tree_sway.errors import FormatError, MissingDependencyError
+from tree_sway.extras import cure_of_missing
+from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.table_file import TextTable
+from tree_sway.files.text_file import MAX_LINES, reason_of
+
+_HEADER = 20
+"""Rows that may stand above the header, such as a title."""
+
+
+def read_spreadsheet(path: Path) -> TextTable:
+    """
+    Return the first sheet with a row of at least three names, and rows below.
+
+    Raises a `FormatError` for a broken file or no such sheet, and a `MissingDependencyError`
+    without openpyxl.
+    """
+    try:
+        from openpyxl import load_workbook
+    except ModuleNotFoundError:
+        cure = cure_of_missing('openpyxl')
+        raise MissingDependencyError("No module named 'openpyxl'", cure=cure) from None
+    try:
+        book = load_workbook(path, read_only=True, data_only=True)
+        sheets = [list(_rows(sheet)) for sheet in book.worksheets]
+    except Exception as error:  # of zip, of XML, of the format: openpyxl has no root of its own
+        what = f'no spreadsheet that can be read: {reason_of(error)}'
+        raise FormatError(what, where=str(path), cure='save it as .xlsx or .csv again') from None
+    for rows in sheets:
+        for number, cells in enumerate(rows[:_HEADER]):
+            if sum(bool(cell) for cell in cells) >= 3 and number + 1 < len(rows):
+                below = [row for row in rows[number + 1 :] if any(row)]
+                lines = [n for n, row in enumerate(rows, start=1) if n > number + 1 and any(row)]
+                return table_of_cells(cells, below, str(path), lines)
+    raise FormatError('no sheet with a header and rows', where=str(path))
+
+
+def _rows(sheet: Any) -> Any:
+    """Texts of the cells of each row."""
+    for row in islice(sheet.iter_rows(values_only=True), MAX_LINES):
+        yield ['' if cell is None else str(cell).replace('\x1f', ' ') for cell in row]
