@@ -5,6 +5,7 @@
 import contextlib
 import faulthandler
 import gc
+from importlib.metadata import EntryPoint
 import os
 from pathlib import Path
 import random
@@ -23,11 +24,17 @@ from hypothesis import settings  # noqa: E402
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
 
-from tree_sway.cache.model_cache import SET_UPS  # noqa: E402
+from tree_sway.cache.model_cache import MODELS as ON_DISK  # noqa: E402
 from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
+from tree_sway.core.model.model_cache import PREPARED  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
 from tree_sway.errors import MissingDependencyError  # noqa: E402
+from tree_sway.installed_models import GROUP, installed_models  # noqa: E402
+
+# The laboratory of this checkout may not be installed, or have been before it had models.
+_FULL = EntryPoint('full', 'tree_sway_lab.full.assembly:full_bank', GROUP)
+installed_models().setdefault('full', _FULL)
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)
@@ -151,13 +158,14 @@ def shared_folder(tmp_path_factory):
 
 
 @pytest.fixture(scope='session', autouse=True)
-def set_ups_are_made_once(shared_folder):
-    """Keep all set-ups of trees in a folder of the run: many tests simulate the same ones."""
-    kept = SET_UPS.folder, SET_UPS.most
-    SET_UPS.folder, SET_UPS.most = shared_folder / 'set_ups', 10_000
-    SET_UPS.folder.mkdir(exist_ok=True)
+def models_are_prepared_once(shared_folder):
+    """Keep all prepared models in a folder of the run: many tests simulate the same trees."""
+    kept = ON_DISK.folder, ON_DISK.most, PREPARED.behind
+    ON_DISK.folder, ON_DISK.most = shared_folder / 'prepared_models', 10_000
+    ON_DISK.folder.mkdir(exist_ok=True)
+    PREPARED.behind = ON_DISK
     yield
-    SET_UPS.folder, SET_UPS.most = kept
+    ON_DISK.folder, ON_DISK.most, PREPARED.behind = kept
 
 
 MODELS = ('60', 'full', 'branch')

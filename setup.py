@@ -54,6 +54,14 @@ if 'bdist_wheel' in sys.argv:
     data_files.append((f'lib/{PACKAGE}', launchers()))
 
 LINUX = '; sys_platform == "linux" and platform_machine == "x86_64"'
+#: Where numba has wheels; elsewhere pip would try to compile it, and a tree runs on numpy.
+NUMBA = (
+    'numba>=0.59; platform_python_implementation == "CPython" and python_version < "3.15" and '
+    '(sys_platform == "linux" and platform_machine == "x86_64" or '
+    'sys_platform == "linux" and platform_machine == "aarch64" or '
+    'sys_platform == "win32" and platform_machine == "AMD64" or '
+    'sys_platform == "darwin" and platform_machine == "arm64")'
+)
 extras = {
     # Compiled kernels; without numba the same model runs on numpy, slower (doc/faq.md).
     'fast': ['numba>=0.59'],
@@ -121,6 +129,8 @@ setup(
         'PyYAML>=6',
         'jsonschema>=4.10',
         'aiohttp>=3.8',
+        'tqdm>=4.60',
+        NUMBA,
     ],
     extras_require=extras,
     zip_safe=False,

@@ -19,6 +19,7 @@ from xml.etree import ElementTree
 import zipfile
 
 import pytest
+import yaml
 
 import tree_sway
 
@@ -87,6 +88,8 @@ OPTIONAL = {
     'mpmath',
     'mujoco',
     'dartpy',
+    'netCDF4',
+    'openpyxl',
     'numba',
     'pyarrow',
     'rosbags',
@@ -122,10 +125,23 @@ def test_setup_finds_its_files_from_any_folder(setup_words: dict[str, Any]) -> N
     assert {'package.xml', 'launch/sway.launch.py', 'config/solver.yaml'} <= set(shared)
 
 
-def test_numba_is_wanted_and_not_needed(setup_words: dict[str, Any]) -> None:
-    needed = ' '.join(setup_words['install_requires'])
-    assert 'numba' not in needed
-    assert 'numpy' in needed
+def test_numba_comes_where_it_has_a_wheel_and_is_not_needed(setup_words: dict[str, Any]) -> None:
+    requirements = pytest.importorskip('packaging.requirements')
+    needed = {
+        each.name: each for each in map(requirements.Requirement, setup_words['install_requires'])
+    }
+    assert {'numpy', 'scipy', 'aiohttp', 'tqdm'} <= set(needed)
+    here = {'platform_python_implementation': 'CPython', 'python_version': '3.12'}
+    for system, machine, comes in (
+        ('linux', 'x86_64', True),
+        ('linux', 'aarch64', True),
+        ('linux', 'armv7l', False),
+        ('win32', 'AMD64', True),
+        ('darwin', 'arm64', True),
+        ('darwin', 'x86_64', False),
+    ):
+        machine_here = {**here, 'sys_platform': system, 'platform_machine': machine}
+        assert needed['numba'].marker.evaluate(machine_here) is comes, (system, machine)
     assert setup_words['extras_require']['fast'] == ['numba>=0.59']
 
 
@@ -142,16 +158,84 @@ def copy_of_source(folder: Path) -> Path:
     return Path(shutil.copytree(ROOT, folder / 'source', ignore=ignored))
 
 
-@pytest.mark.long
-def test_a_wheel_brings_executables_to_where_ros2_run_looks(tmp_path: Path) -> None:
-    source = copy_of_source(tmp_path)
+def wheel_of(folder: Path) -> Path:
+    """Build the wheel of the checkout."""
     pip = [sys.executable, '-m', 'pip', '--disable-pip-version-check', 'wheel', '--no-deps']
-    pip += ['--quiet', '--no-build-isolation', '-w', str(tmp_path), str(source)]
+    pip += ['--quiet', '--no-build-isolation', '-w', str(folder), str(copy_of_source(folder))]
     built = subprocess.run(pip, capture_output=True, text=True, check=False)
     if any(sign in built.stderr for sign in NO_BUILDER):
         pytest.skip('setuptools 70.1 or newer is not installed here, so no wheel can be built')
     assert built.returncode == 0, built.stderr
-    (wheel,) = tmp_path.glob('*.whl')
+    (wheel,) = folder.glob('*.whl')
+    return wheel
+
+
+@pytest.mark.long
+@pytest.mark.parametrize('installer', ['pip', 'uvx'])
+def test_the_wheel_shows_a_tree_in_a_fresh_environment(tmp_path: Path, installer: str) -> None:
+    """In one line: numba, bars and the page come along, and nothing of the checkout is there."""
+    wheel = wheel_of(tmp_path)
+    venv.create(tmp_path / 'fresh', with_pip=True)
+    programs = tmp_path / 'fresh' / ('Scripts' if os.name == 'nt' else 'bin')
+    wanted = str(wheel) if installer == 'pip' else 'uv'
+    got = subprocess.run(
+        [programs / 'pip', 'install', '-q', wanted], capture_output=True, text=True, check=False
+    )
+    if got.returncode != 0 and installer == 'uvx':
+        pytest.skip('uv is not to be had here')
+    assert got.returncode == 0, got.stderr
+    line = [str(programs / 'tree-sway')]
+    if installer == 'uvx':
+        line = [
+            str(programs / 'uvx'),
+            '--python',
+            sys.executable,
+            '--from',
+            str(wheel),
+            'tree-sway',
+        ]
+    environment = {**os.environ, 'TREE_SWAY_CACHE': str(tmp_path / 'kernels')}
+    environment['UV_CACHE_DIR'] = str(tmp_path / 'uv')
+    shown = subprocess.run(
+        [*line, 'show', 'goldcrest', '--seconds', '2', '--port', '0'],
+        capture_output=True, text=True, check=False, cwd=tmp_path, env=environment, timeout=280,
+    )  # fmt: skip
+    if installer == 'uvx' and 'error sending request' in shown.stderr:
+        pytest.skip('uv reaches no package index here')
+    assert shown.returncode == 0, shown.stderr
+    assert 'open http://127.0.0.1:' in shown.stdout
+    assert list((tmp_path / 'kernels').rglob('*.kernel')), 'numba compiled nothing'
+
+
+def test_a_release_is_tested_before_it_is_published_without_a_token() -> None:
+    text = (ROOT / '.github' / 'workflows' / 'release.yml').read_text(encoding='utf-8')
+    jobs = yaml.safe_load(text)['jobs']
+    assert {'fresh', 'uvx'} <= set(jobs['publish']['needs'])
+    assert jobs['publish']['permissions'] == {'id-token': 'write'}
+    assert jobs['publish']['if'].startswith("startsWith(github.ref, 'refs/tags/v')")
+    assert jobs['fresh']['needs'] == 'build'
+    systems = {name.split('-')[0] for name in jobs['fresh']['strategy']['matrix']['os']}
+    assert systems == {'ubuntu', 'macos', 'windows'}
+    assert 'secrets.' not in text
+    assert 'password' not in text
+
+
+def test_pixi_has_what_setup_asks_for(setup_words: dict[str, Any]) -> None:
+    tomllib = pytest.importorskip('tomllib', reason='it came with Python 3.11')
+    pixi = tomllib.loads((ROOT / 'pixi.toml').read_text(encoding='utf-8'))
+    asked = {re.split('[>=; ]', each)[0].lower() for each in setup_words['install_requires']}
+    sensors = {re.split('[>=; ]', each)[0] for each in setup_words['extras_require']['sensors']}
+    assert asked | sensors <= set(pixi['dependencies'])
+    for distribution in ('jazzy', 'lyrical'):
+        feature = pixi['feature'][distribution]
+        assert feature['tasks']['demo'] == 'tree-sway demo'
+        assert f'ros-{distribution}-rclpy' in feature['dependencies']
+        assert pixi['environments'][distribution] == [distribution]
+
+
+@pytest.mark.long
+def test_a_wheel_brings_executables_to_where_ros2_run_looks(tmp_path: Path) -> None:
+    wheel = wheel_of(tmp_path)
     with zipfile.ZipFile(wheel) as archive:
         infos = {re.sub(r'.*\.data/data/', '', info.filename): info for info in archive.infolist()}
     for node in NODES:

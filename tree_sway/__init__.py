@@ -23,12 +23,14 @@ if TYPE_CHECKING:
     from tree_sway.core.growth.grow import grow as grow
     from tree_sway.core.identification.calibration import calibrate as calibrate
     from tree_sway.core.model.settings import Settings as Settings
+    from tree_sway.core.model.sway_model import SwayModel as SwayModel
     from tree_sway.core.scene.make import make_simulator as make_simulator
     from tree_sway.core.scene.placed_tree import PlacedTree as PlacedTree
     from tree_sway.core.scene.scene import Scene as Scene
     from tree_sway.core.scene.scene_simulator import Simulator as Simulator
     from tree_sway.core.scene.simulate import simulate as simulate
     from tree_sway.core.scene.sway_record import SwayRecord as SwayRecord
+    from tree_sway.core.setup.prepare import prepare as prepare
     from tree_sway.core.tree.building import tree_from_segments as tree_from_segments
     from tree_sway.core.tree.species import species_named as species_named
     from tree_sway.core.tree.tree import Tree as Tree
@@ -37,6 +39,8 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.simulated.turbulence import simulate_turbulence as simulate_turbulence
     from tree_sway.errors import TreeSwayError as TreeSwayError
     from tree_sway.files.export.tree_export import write_tree as write_tree
+    from tree_sway.files.models.model_file import read_model as read_model
+    from tree_sway.files.models.model_file import write_model as write_model
     from tree_sway.files.trees.source import open_scene as open_scene
     from tree_sway.files.trees.source import open_tree as open_tree
     from tree_sway.files.wind.wind_file import read_wind as read_wind
@@ -48,10 +52,13 @@ _HOMES = {
     'PlacedTree': 'core.scene.placed_tree', 'Scene': 'core.scene.scene',
     'Settings': 'core.model.settings', 'Simulator': 'core.scene.scene_simulator',
     'Species': 'core.tree.wood', 'StreamClient': 'stream.client',
-    'SwayRecord': 'core.scene.sway_record', 'Tree': 'core.tree.tree', 'TreeSwayError': 'errors',
+    'SwayModel': 'core.model.sway_model', 'SwayRecord': 'core.scene.sway_record',
+    'Tree': 'core.tree.tree', 'TreeSwayError': 'errors',
     'WindAverage': 'core.wind.averaging', 'calibrate': 'core.identification.calibration',
     'grow': 'core.growth.grow', 'make_simulator': 'core.scene.make',
-    'open_scene': 'files.trees.source', 'open_tree': 'files.trees.source',
+    'prepare': 'core.setup.prepare', 'read_model': 'files.models.model_file',
+    'write_model': 'files.models.model_file', 'open_scene': 'files.trees.source',
+    'open_tree': 'files.trees.source',
     'read_wind': 'files.wind.wind_file', 'simulate': 'core.scene.simulate',
     'simulate_turbulence': 'core.wind.simulated.turbulence', 'species_named': 'core.tree.species',
     'tree_from_segments': 'core.tree.building', 'write_tree': 'files.export.tree_export',

@@ -11,7 +11,7 @@ import pytest
 from tree_sway_lab.resegment import MOST_SEGMENTS, resegment
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.wind.simulated.turbulence import Turbulence
 from tree_sway.errors import ParameterError
@@ -28,7 +28,7 @@ def gusty():
 
 
 def tip_motion(tree, model, winds):
-    sim = SwaySimulator(tree, model=model)
+    sim = make_simulator(tree, model=model)
     tips = np.empty((len(winds), 3))
     for i, wind in enumerate(winds):
         sim.step(wind, 1.0 / RATE)
@@ -68,7 +68,7 @@ def test_the_tip_moves_the_same_however_finely_a_tree_is_cut(stem, sketch, gusty
 def test_finer_cuts_change_no_frequency(fork, model):
     tree = fork()
     for cut in (4, 7, 24):
-        sims = [SwaySimulator(each, model=model) for each in (tree, resegment(tree, cut))]
+        sims = [make_simulator(each, model=model) for each in (tree, resegment(tree, cut))]
         coarse, fine = (sim.frequencies(6) for sim in sims)
         assert fine == pytest.approx(coarse, rel=1e-6)
 

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Set-ups of trees on disk: the same bits, and never a reason to fail."""
+"""Prepared models of trees on disk: the same bits, and never a reason to fail."""
 
 import os
 import re
@@ -8,17 +8,17 @@ import re
 import numpy as np
 import pytest
 
-from tree_sway.cache import model_cache as set_up_files
-from tree_sway.cache.model_cache import SetUpFiles
-from tree_sway.core.run import assembly
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.cache import model_cache
+from tree_sway.cache.model_cache import ModelFiles
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup import prepare
 
 WIND = (6.0, 3.0, 0.5)
 
 
 @pytest.fixture
 def kept(tmp_path):
-    return SetUpFiles(tmp_path)
+    return ModelFiles(tmp_path)
 
 
 @pytest.fixture
@@ -43,18 +43,17 @@ def none_is_made(monkeypatch):
     """Fail where a tree is reduced, or asked for its loads, after all."""
 
     def start():
-        for name in ('_modal_arrays', '_table'):
-            monkeypatch.setattr(assembly, name, lambda *_: pytest.fail('made again'))
+        monkeypatch.setattr(prepare, '_coupled_tree', lambda *_: pytest.fail('made again'))
 
     return start
 
 
 @pytest.mark.parametrize('model', ['full', 12])
 def test_a_set_up_that_is_kept_gives_the_same_bits(fork, kept, files, none_is_made, model):
-    alone, first = (SwaySimulator(fork(), model=model, **given) for given in ({}, {'cache': kept}))
+    alone, first = (make_simulator(fork(), model=model, cache=each) for each in (None, kept))
     assert len(files()) == 1
     none_is_made()
-    second = SwaySimulator(fork(), model=model, cache=kept)
+    second = make_simulator(fork(), model=model, cache=kept)
     assert poses_of(alone) == poses_of(first) == poses_of(second)
     assert second.mass == alone.mass
     assert second.frequencies().tobytes() == alone.frequencies().tobytes()
@@ -74,14 +73,14 @@ def test_another_tree_or_setting_has_another_set_up(fork, stem, kept, files):
         ],
         start=1,
     ):
-        SwaySimulator(tree, cache=kept, **given)
+        make_simulator(tree, cache=kept, **given)
         assert len(files()) == count
 
 
 def test_a_set_up_of_other_source_is_not_taken(fork, kept, files, monkeypatch):
-    SwaySimulator(fork(), cache=kept)
-    monkeypatch.setattr(set_up_files, 'source_digest', lambda _path: 'of an edited file')
-    SwaySimulator(fork(), cache=kept)
+    make_simulator(fork(), cache=kept)
+    monkeypatch.setattr(model_cache, 'source_digest', lambda _path: 'of an edited file')
+    make_simulator(fork(), cache=kept)
     assert len(files()) == 2
 
 
@@ -110,31 +109,31 @@ def one_array(path):
     ids=['empty', 'text', 'cut off', 'altered', 'pickle', 'one array'],
 )
 def test_a_damaged_set_up_is_made_again(fork, kept, files, none_is_made, damage):
-    expected = poses_of(SwaySimulator(fork(), cache=kept))
+    expected = poses_of(make_simulator(fork(), cache=kept))
     (path,) = files()
     damage(path)
-    assert poses_of(SwaySimulator(fork(), cache=kept)) == expected
+    assert poses_of(make_simulator(fork(), cache=kept)) == expected
     none_is_made()
-    assert poses_of(SwaySimulator(fork(), cache=kept)) == expected
+    assert poses_of(make_simulator(fork(), cache=kept)) == expected
 
 
 def test_a_set_up_under_the_name_of_another_is_not_taken(fork, stem, kept, files):
-    SwaySimulator(fork(), cache=kept)
+    make_simulator(fork(), cache=kept)
     (one,) = files()
-    SwaySimulator(stem(), cache=kept)
+    make_simulator(stem(), cache=kept)
     (other,) = set(files()) - {one}
     one.replace(other)
-    assert poses_of(SwaySimulator(stem(), cache=kept)) == poses_of(SwaySimulator(stem()))
+    assert poses_of(make_simulator(stem(), cache=kept)) == poses_of(make_simulator(stem()))
 
 
 def test_what_cannot_be_written_is_left(fork, tmp_path):
-    nowhere = SetUpFiles(tmp_path / 'is not there')
-    assert poses_of(SwaySimulator(fork(), cache=nowhere)) == poses_of(SwaySimulator(fork()))
+    nowhere = ModelFiles(tmp_path / 'is not there')
+    assert poses_of(make_simulator(fork(), cache=nowhere)) == poses_of(make_simulator(fork()))
 
 
 def test_what_is_too_large_is_not_written(fork, kept, files, monkeypatch):
-    monkeypatch.setattr(set_up_files, 'LARGEST', 1 << 16)
-    SwaySimulator(fork(), cache=kept)
+    monkeypatch.setattr(model_cache, 'LARGEST', 1 << 16)
+    make_simulator(fork(), cache=kept)
     assert not files()
     kept.write('small', {'number': np.zeros(8)})
     assert len(files()) == 1
@@ -145,7 +144,7 @@ def test_the_oldest_go_first(kept, files, monkeypatch, bound):
     if bound == 'files':
         kept.most = 2
     else:
-        monkeypatch.setattr(set_up_files, 'MOST_BYTES', 1300)
+        monkeypatch.setattr(model_cache, 'MOST_BYTES', 1300)
     for age, digest in enumerate(('one', 'two', 'three')):
         kept.write(digest, {'number': np.array(age)})
         for path in files():
@@ -155,7 +154,7 @@ def test_the_oldest_go_first(kept, files, monkeypatch, bound):
 
 
 def test_what_is_used_stays(kept, files, monkeypatch):
-    monkeypatch.setattr(set_up_files, 'MOST', 2)
+    monkeypatch.setattr(model_cache, 'MOST', 2)
 
     def write(digest):
         for path in files():  # everything there is a second older than what comes

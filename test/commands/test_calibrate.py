@@ -13,6 +13,7 @@ import pytest
 
 from tree_sway.commands import cli
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.files.trees.source import open_tree
 
 TREE = """
@@ -88,7 +89,7 @@ def test_a_pull_and_release_gives_the_tree_back(
 ) -> None:
     """A wind holds the tree aside and stops; the record leads from another guess to its wood."""
     truth = open_tree(tree)
-    sim = SwaySimulator(truth.tree, truth.species, model=12)
+    sim = make_simulator(truth.tree, truth.species, model=12)
     pulled, free = round(15.0 / DT), round(20.0 / DT)
     winds = np.repeat([[4.0, 1.5, 0.0], [0.0, 0.0, 0.0]], [pulled, free], axis=0)
     record(tmp_path / 'pull.csv', sim, winds, DT, pulled=pulled - 150)

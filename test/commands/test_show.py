@@ -97,3 +97,24 @@ def test_a_stand_of_a_file_offers_neither_a_model_nor_a_number_of_trees() -> Non
     of_a_tree = {each.name for each in show._controls(choices, wind)}
     of_a_stand = {each.name for each in show._controls(choices, wind, is_one_tree=False)}
     assert of_a_tree - of_a_stand == {'model', 'count'}
+
+
+def test_a_table_of_risk_colours_the_trees_that_it_names(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tmp_path / 'risk.csv'
+    table.write_text('name,low_80 [m/s],high_80 [m/s]\nseedling,20,30\nother,,\n')
+    assert show._critical_winds(str(table), ('seedling', 'other')) == {'seedling': (20.0, 30.0)}
+    assert show._critical_winds(None, ('seedling',)) is None
+    for text, message in (
+        (
+            'name,low_80 [m/s],high_80 [m/s]\na,1,2\n',
+            'no tree is called as one of the table, such as',
+        ),
+        ('name,speed\na,1\n', "no column 'low_80 [m/s]'"),
+        ('name,low_80 [m/s],high_80 [m/s]\nseedling,1,x\n', "line 2: 'x' is no wind speed"),
+    ):
+        table.write_text(text)
+        arguments = ['show', str(SEEDLING), '--risk', str(table), '--port', '0', '--seconds', '1']
+        assert main(arguments) == 2
+        assert message in capsys.readouterr().err

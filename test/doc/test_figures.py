@@ -51,7 +51,7 @@ FIGURES = {
             species_named('oak').modulus / 1e9, species_named('oak').density,
         ],
     },
-    'doc/faq.md': {r'the set-ups of the (\d+) trees': [MOST]},
+    'doc/faq.md': {r'prepared models of the last (\d+) trees': [MOST]},
     'doc/streaming.md': {
         r'Up to (\d+) MiB with a header of (\d+) MiB': [
             protocol.LARGEST_DESCRIPTION / MIB, protocol.LARGEST_HEADER / MIB,
@@ -99,7 +99,7 @@ NAMED = {
 }  # fmt: skip
 """Formats that pages name, and the program's name of each."""
 NOT_HERE = re.compile(
-    r'\b(OBJ|FBX|PLY|LAS|LAZ|STL|DXF|IFC|HDF5|GRIB2?|Alembic|KML|GPX|'
+    r'\b(FBX|PLY|LAS|LAZ|STL|DXF|IFC|HDF5|GRIB2?|Alembic|KML|GPX|'
     r'Collada|URDF|AVI|WebM|E57|VTK|Feather|ORC|shapefile)\b',
     re.IGNORECASE,
 )

@@ -78,6 +78,7 @@ def test_every_topic_may_be_said_by_somebody():
         'camera',
         '~/push',
         '~/pull',
+        '~/wind_at',
     }  # of others
 
 

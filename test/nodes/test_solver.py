@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from functools import partial
 import json
+import math
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.serialization import deserialize_message  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
-from tree_sway.core.run.simulator import SwaySimulator  # noqa: E402
+from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.wind.averaging import WindAverage  # noqa: E402
 from tree_sway.errors import ParameterError, TreeSwayError  # noqa: E402, E501
 from tree_sway.files.trees.source import open_tree  # noqa: E402
@@ -63,7 +64,7 @@ def test_without_wind_the_rest_pose_comes_at_the_full_rate(compose, observer, st
     compose(solver={'tree': tree_file})
     frames = observer.listen(SEGMENT_POSES)
     observer.until(lambda: len(frames) > 60, 'a second of frames')
-    rest = SwaySimulator(open_tree(tree_file).tree).place()
+    rest = make_simulator(open_tree(tree_file).tree).place()
     assert frames[0].header.frame_id == 'map'
     np.testing.assert_array_equal(block(frames[0]), rest)
     np.testing.assert_array_equal(block(frames[60]), rest)
@@ -313,3 +314,42 @@ def test_two_trees_stand_in_one_frame_each_in_its_place(compose, observer, tree_
     np.testing.assert_allclose(block(elm[0])[0, :3], (0.0, -2.0, 0.0), atol=1e-12)
     assert elm[0].header.frame_id == 'map'
     assert json.loads(described[0].data)['frame_id'] == 'map'
+
+
+def test_it_answers_what_the_wind_at_a_place_is(compose, observer, statuses, tree_file):
+    from geometry_msgs.msg import PointStamped
+
+    from tree_sway_ros.process.topics import WIND_AT, WIND_THERE
+
+    nodes = compose(
+        solver={'tree': tree_file, 'model': '4', 'profile': 'log'},
+        anemometer={'mean_speed': 8.0, 'intensity': 0.0},
+        wind={},
+    )
+    answers = observer.listen(WIND_THERE, name='solver/wind_there')
+    ask = observer.publisher(WIND_AT, name='solver/wind_at')
+    frames = observer.listen(WIND_FILTERED)
+    observer.until(lambda: len(frames) > 20, 'wind')
+    question = PointStamped()
+    question.header.stamp.sec = 7
+
+    def is_answered(height):
+        question.point.z, question.header.stamp.nanosec = float(height), height
+        ask.publish(question)
+        return any(each.header.stamp.nanosec == height for each in answers)
+
+    for height in (10, 2):
+        observer.until(partial(is_answered, height), 'an answer', poll=0.1)
+    speeds = {each.header.stamp.nanosec: each.vector for each in answers}
+    assert {each.header.stamp.sec for each in answers} == {7}
+    ratio = math.log(2.0 / 0.03) / math.log(10.0 / 0.03)
+    high = math.hypot(speeds[10].x, speeds[10].y)
+    assert high == pytest.approx(8.0, rel=0.2)
+    assert math.hypot(speeds[2].x, speeds[2].y) / high == pytest.approx(ratio, rel=0.1)
+    question.header.frame_id = 'moon'
+    observer.until(
+        lambda: ask.publish(question)
+        or ((status := statuses('solver: wind_at')) and status.level[0] == WARN),
+        'a warning', poll=0.1,
+    )  # fmt: skip
+    assert nodes['solver'].is_active

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tree_sway.core.setup import fill_records
+from tree_sway.core.model import fill_records
 from tree_sway.errors import FormatError
 from tree_sway.stream import placing as placer
 from tree_sway.stream.placing import Placer

@@ -26,7 +26,7 @@ from tree_sway_lab.bench.bench_tree import bench_tree  # noqa: E402
 from tree_sway.cache.kernel_cache import PLAIN_VARIABLE  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.core.model.settings import Settings  # noqa: E402
-from tree_sway.core.run.simulator import SwaySimulator  # noqa: E402
+from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.errors import ParameterError  # noqa: E402
 from tree_sway.page.one_file import page_of_scene  # noqa: E402
 
@@ -180,7 +180,7 @@ def test_a_browser_without_webgl_says_what_to_do(file: Path, browser_class: Any)
 @pytest.mark.parametrize('changes', [{'model': 'branch'}, {'model': 20, 'crown_coherence': 0.5}])
 def test_a_model_without_a_table_is_refused(changes: dict[str, Any]) -> None:
     # A page has one wind for a tree, and none of each limb.
-    simulator = SwaySimulator(bench_tree(), settings=Settings(**changes))
+    simulator = make_simulator(bench_tree(), settings=Settings(**changes))
     with pytest.raises(ParameterError, match='no table to solve it by'):
         page_of_scene(simulator)
 

@@ -452,6 +452,77 @@ def test_it_speaks_languages(visit: Visit) -> None:
     visit(script)
 
 
+@pytest.mark.parametrize(
+    ('source', 'text'),
+    [
+        ({'name': 'Berlin, open-meteo', 'state': 'live', 'speed': 6.4, 'wind': [6.4, 0.0],
+          'age': 180.0, 'is_mean': True},
+         'Live: Berlin, open-meteo, 6.4 m/s from W (270°), 3 min ago, gusts simulated about its '
+         'mean'),
+        ({'name': 'Mast', 'state': 'live', 'speed': 6.44, 'wind': [0.0, -6.4], 'age': 0.1},
+         'Live: Mast, 6.4 m/s from N (0°)'),
+        ({'name': 'cup', 'state': 'stale', 'speed': 5.0, 'wind': [5.0, 0.0], 'age': 40.0,
+          'lacks_direction': True},
+         'Live: cup, 5.0 m/s from W (270°), 40 s ago, direction assumed, too old'),
+        ({'name': 'EDDB', 'state': 'live', 'speed': 0.0, 'wind': [0.0, 0.0], 'age': 7300.0},
+         'Live: EDDB, 0.0 m/s, 2 h ago'),
+        ({'name': 'udp://:1', 'state': 'waiting'}, 'Live: udp://:1, no wind yet'),
+        ({'name': 'udp://:1', 'state': 'unknown'}, 'Live: udp://:1, messages not understood'),
+        ({'name': 'wind', 'rate': 19.9}, 'Live: wind, 20 Hz'),
+    ],
+)  # fmt: skip
+def test_the_head_names_the_live_wind_its_speed_and_its_age(
+    visit: Visit, source: dict[str, Any], text: str
+) -> None:
+    async def script(browser: Browser) -> None:
+        described = json.dumps({'kind': 'live', **source})
+        said = f"import('/static/words.js').then((m) => m.windSource({described}))"
+        assert await browser.run(said) == text
+
+    visit(script)
+
+
+def test_trees_are_coloured_by_a_storm(live: Live, browser_class: Any) -> None:
+    """Goldcrest's band is 20 to 30 m/s: a storm is below, within or above it."""
+    server = PageServer(
+        PageSettings(), ControlPanel(), live.session.status, critical_winds={'goldcrest': (20, 30)}
+    )
+
+    async def look() -> None:
+        async with browser_class() as browser:
+            await browser.open(server.url)
+            await browser.until("window.treeSway && treeSway.state === 'live'")
+            await browser.until("!document.getElementById('risk').hidden")
+            counts, pictures = {}, {}
+            for storm in (10, 25, 40):
+                await browser.run(
+                    f'document.getElementById("storm").value = {storm};'
+                    'document.getElementById("storm").dispatchEvent(new Event("input")); 1'
+                )
+                counts[storm] = await browser.run(
+                    '[...document.querySelectorAll("#risk-counts li:not([hidden])")]'
+                    '.map((each) => parseInt(each.textContent))'
+                )
+                await browser.run('new Promise((done) => setTimeout(() => done(1), 500))')
+                pictures[storm] = picture(await browser.screenshot())
+            assert counts == {10: [1, 0, 0], 25: [0, 1, 0], 40: [0, 0, 1]}
+            painted = np.abs(pictures[40] - pictures[10]).max(axis=2) > 60
+            assert painted.mean() > 0.01
+            colors = {storm: each[painted].mean(axis=0) for storm, each in pictures.items()}
+            assert np.argmax(colors[10]) == 2
+            assert colors[25][0] > colors[25][1] > 1.5 * colors[25][2]
+            assert colors[40][0] > 1.5 * colors[40][1]
+            assert 'afe' not in await browser.run('document.getElementById("risk").innerText')
+            assert browser.console == []
+
+    with server:
+        live.session.serve(server)
+        try:
+            asyncio.run(look())
+        finally:
+            live.session.serve(live.server)
+
+
 def test_text_contrasts_with_its_ground(visit: Visit) -> None:
     """By 4.5 to 1, as WCAG 2 asks."""
 

@@ -66,7 +66,8 @@ def tall() -> tuple[SceneState, list[bytes], list[Any]]:
     tree = grow('broadleaf', 8.0, rng=np.random.default_rng(0))
     simulator = make_simulator(tree, species_named(tree.species), model=12)
     state = SceneState(simulator)
-    assert (np.diff(simulator.bank.branches['first']) < 0).any()  # key segments in another order
+    keys = simulator.bank.branches['coordinate']
+    assert (np.diff(keys) < 0).any()  # key segments in another order than their coordinates
     return state, *swayed(simulator, state, 7.0)
 
 

@@ -20,17 +20,17 @@ import pytest
 from tree_sway.commands import cli
 from tree_sway.core.model.settings import USUAL
 from tree_sway.errors import FormatError, TreeSwayError
-from tree_sway.studies import runner
+from tree_sway.studies import cluster, runner
+from tree_sway.studies.cluster import delayed_interrupt
 from tree_sway.studies.compute import compute
 from tree_sway.studies.plan import Case, read_study
 from tree_sway.studies.runner import (
-    _delayed_interrupt,
     batches,
     compute_batch,
-    compute_to_file,
     estimated_time,
     result_path,
     run_study,
+    store_row,
 )
 from tree_sway.studies.table import write_table
 
@@ -38,6 +38,10 @@ pytest.importorskip('distributed', reason='needs dask.distributed')
 pytest.importorskip('cryptography', reason='needs cryptography')
 
 SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
+
+
+def compute_to_file(case, folder):
+    store_row(case, compute(case), folder)
 
 
 def cases(seeds=4, **changes):
@@ -107,10 +111,11 @@ def test_the_time_is_estimated_before_anything_is_computed(tmp_path, capsys, mon
     compute_to_file(read_study(study)[0], folder)
     said = []
 
-    def outcomes(missing, folder, workers):
+    def outcomes(missing, workers, scheduler):
         said.append(capsys.readouterr().err)
         assert workers == 2
-        return compute_batch(missing, folder)  # in this process: others take long to start
+        assert scheduler is None
+        return compute_batch(missing, {})  # in this process: others take long to start
 
     monkeypatch.setattr(runner, '_outcomes', outcomes)
     assert cli.main(['study', str(study), '-o', str(table), '--workers', '2']) == 0
@@ -170,7 +175,7 @@ def test_ctrl_c_waits_until_what_is_begun_is_whole():
     over = threading.Event()
     threading.Thread(target=over.wait).start()  # not blocked there: it may receive the signal
     before = signal.getsignal(signal.SIGINT)
-    with _delayed_interrupt() as delayed:
+    with delayed_interrupt() as delayed:
         os.kill(os.getpid(), signal.SIGINT)
         until(lambda: signal.SIGINT in signal.sigpending(), 10.0)
         with pytest.raises(KeyboardInterrupt):
@@ -273,7 +278,7 @@ def test_the_command_resumes_its_own_table_and_writes_over_no_other(tmp_path, ca
 def test_no_page_of_the_cluster_answers_other_users() -> None:
     psutil = pytest.importorskip('psutil', reason='needs psutil')
     answered = {}
-    with runner._cluster(1):
+    with cluster._processes_here(1):
         me = psutil.Process()
         sockets = (each for one in [me, *me.children(recursive=True)] for each in
                    one.net_connections(kind='tcp'))  # fmt: skip

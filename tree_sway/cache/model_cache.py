@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Set-ups of trees on disk, so that a solver restarts faster.
+Prepared models of trees on disk, so that a solver restarts faster.
 
 They are beside the compiled kernels, in numpy's own format, which is read without pickles. A file
 is found by a digest of the tree, its species and settings, of the source of the core, of the
@@ -27,27 +27,27 @@ from tree_sway.cache.kernel_cache import ROOT, source_digest
 from tree_sway.cache.kernel_folder import kernel_folder, write_own
 
 MOST = 32
-"""Largest number of set-ups on disk; those not read for longest are removed first."""
+"""Largest number of models on disk; those not read for longest are removed first."""
 
 MOST_BYTES = 1 << 29
-"""Largest size of all set-ups on disk [bytes], some forty large trees."""
+"""Largest size of all models on disk [bytes], some forty large trees."""
 
 LARGEST = 1 << 27
-"""Largest size of a set-up on disk [bytes]: all modes of a large tree are more."""
+"""Largest size of a model on disk [bytes]: all modes of a large tree are more."""
 
-_SUFFIX = '.set_up.npz'
+_SUFFIX = '.model.npz'
 
 
-class SetUpFiles:
+class ModelFiles:
     """
-    Set-ups as the ``cache`` of simulators.
+    Prepared models as the ``cache`` of simulators.
 
     Parameters
     ----------
     folder
         Folder of the files; that of the kernels if None.
     most
-        Largest number of set-ups in it.
+        Largest number of models in it.
 
     """
 
@@ -89,12 +89,12 @@ class SetUpFiles:
                     path.unlink()
 
 
-SET_UPS = SetUpFiles()
-"""Default place of set-ups."""
+MODELS = ModelFiles()
+"""Default place of prepared models."""
 
 
 def _key(digest: str) -> str:
-    """Name of a set-up, which is stored inside as well."""
+    """Name of a model, which is stored inside as well."""
     versions = np.__version__, scipy.__version__
     parts = digest, source_digest(ROOT / 'core'), platform.node(), *versions
     return hashlib.blake2b('\0'.join(parts).encode(), digest_size=16).hexdigest()

@@ -15,23 +15,31 @@ from tree_sway.commands.arguments import (
     add_model_argument,
     add_output_arguments,
     add_tree_arguments,
+    add_wind_arguments,
     chosen_leaves,
     drawn_leaves,
     opened_scene,
+    opened_wind,
     OUTPUT_HELP,
     output_path,
     what_was_written,
 )
+from tree_sway.commands.moments import at_moments, moments_of, numbered_paths
 from tree_sway.commands.progress import waiting
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator, solved
 from tree_sway.core.scene.scene import Scene
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
+from tree_sway.files.export.obj_scene import ObjScene
 from tree_sway.files.export.tree_export import SUFFIXES, write_gltf, write_tree
 from tree_sway.files.export.usd_tree import usd_of_tree
+from tree_sway.files.models.model_file import SUFFIX as MODEL_SUFFIX
+from tree_sway.files.models.model_file import write_model
 from tree_sway.files.whole_file import write_text_whole
 
 
@@ -41,7 +49,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_exact_argument(parser)
     add_leaves_argument(parser)
     add_model_argument(parser)
-    add_output_arguments(parser, f'{OUTPUT_HELP}, .html, .usda, .xml (MJCF), .sdf')
+    add_wind_arguments(parser, 'wind recording that trees sway in until --at')
+    add_output_arguments(parser, f'{OUTPUT_HELP}, .npz, .html, .usda, .xml (MJCF), .sdf, .obj')
+    parser.add_argument(
+        '--at',
+        metavar='SECONDS',
+        help='.obj of a tree or a forest in wind: at a time, or from, to and every, such as '
+        '-o scene_%%03d.obj --at 0:10:0.1; at rest without it',
+    )
     parser.add_argument(
         '--sway',
         nargs='?',
@@ -60,22 +75,31 @@ def run(arguments: argparse.Namespace) -> int:
         names = ', '.join('.xml (MJCF)' if each == '.xml' else each for each in _FORMATS)
         what = f"cannot write '{Path(output).suffix}'"
         raise FormatError(what, where=output, cure=f'use {names}')
+    if arguments.at is not None and suffix != '.obj':
+        cure = 'write .obj files'
+        raise ParameterError(f"'{output}' is of no moment", where='--at', cure=cure)
     if arguments.sway is not None and suffix != '.glb':
         raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
+    moments = None if arguments.at is None else moments_of(arguments.at)
+    count = len(moments or (0.0,))
+    paths = numbered_paths(output, count, may_overwrite=suffix != '.obj' or arguments.force)
     scene = opened_scene(arguments)
     for note in scene.notes:
         print(f'note: {note}', file=sys.stderr)
     for oddity in scene.warnings:
         print(f'warning: {oddity}', file=sys.stderr)
-    if suffix == '.html':
+    if suffix == '.obj':
+        _write_moments(scene, arguments, moments, paths)
+    elif suffix == '.html':
         _write_page(scene, arguments)
-    elif suffix in _OF_ONE_TREE or arguments.sway == 'morph':
+    elif suffix in _OF_ONE_TREE or suffix == MODEL_SUFFIX or arguments.sway == 'morph':
         _write_swaying(scene, arguments, suffix)
     else:
         species = scene.species if scene.is_one_tree else None
         leaves = drawn_leaves(scene, arguments) if suffix == '.glb' else None
         write_tree(output, scene.tree, species, leaves)
-    print(what_was_written(output, scene.tree))
+    written = output if count == 1 else f'{paths[0]} to {paths[-1].name}, {count} moments'
+    print(what_was_written(written, scene.tree))
     return 0
 
 
@@ -86,7 +110,24 @@ _OF_ONE_TREE: dict[str, Callable[[SwaySimulator, LeafClusters | None], str]] = {
 }
 
 
-_FORMATS = (*SUFFIXES, '.html', *_OF_ONE_TREE)
+_FORMATS = (*SUFFIXES, MODEL_SUFFIX, '.html', *_OF_ONE_TREE, '.obj')
+
+
+def _write_moments(
+    scene: Scene, arguments: argparse.Namespace, moments: list[float] | None, paths: list[Path]
+) -> None:
+    """Write the triangles of a scene at rest, or of each moment in wind to its file."""
+    files, name = ObjScene(scene.tree, drawn_leaves(scene, arguments)), scene.name
+    axes = 'metres, x east, y north, z up'
+    if moments is None:
+        write_text_whole(paths[0], files.text(scene.tree.rest_poses, f'{name} at rest; {axes}'))
+        return
+    wind = opened_wind(arguments)
+    with waiting('setting up the tree'):
+        simulator = scene.simulator(in_leaf=chosen_leaves(arguments), model=arguments.model)
+    for number, time in at_moments(simulator, wind, moments):
+        comment = f'{name} at {time:.4f} s; {axes}'
+        write_text_whole(paths[number], files.text(simulator.place(), comment))
 
 
 def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
@@ -109,8 +150,12 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
             cure='convert its trees one by one',
         )
     settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
+    if suffix == MODEL_SUFFIX:
+        with waiting('preparing the tree'):
+            write_model(arguments.output, prepare(scene.tree, scene.species, solved(settings)))
+        return
     with waiting('finding what sways'):
-        simulator = SwaySimulator(scene.tree, scene.species, settings)
+        simulator = make_simulator(scene.tree, scene.species, settings)
         leaves = drawn_leaves(scene, arguments)
         if suffix == '.glb':
             write_gltf(arguments.output, morphing_tree(simulator, leaves))

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.assembly import assembled
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
@@ -36,4 +35,4 @@ def mode_table(
         }
         for frequency, shape in zip(modes.frequencies.tolist(), modes.shapes.T, strict=True)
     ]
-    return rows, assembled(whole, 0).mass
+    return rows, float(reduced.mass.sum())

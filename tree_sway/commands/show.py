@@ -23,12 +23,14 @@ from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
-from tree_sway.core.model.settings import MODELS, Settings, USUAL
+from tree_sway.core.model.settings import Settings, USUAL
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import ParameterError
+from tree_sway.files.scenes.critical_winds import read_critical_winds
 from tree_sway.files.trees.source import open_scene
+from tree_sway.installed_models import installed_models
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.page.session import Choices, Session
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
@@ -60,6 +62,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='show this many trees as a stand (%(default)s)',
     )
     parser.add_argument(
+        '--risk',
+        metavar='FILE',
+        help='table of tree-sway risk of the inventory: a slider of the storm colours the trees',
+    )
+    parser.add_argument(
         '--seconds', type=float, metavar='N', help='end after this time [s]; without it, at Ctrl-C'
     )
     parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
@@ -71,6 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Serve the page until the time is over or Ctrl-C."""
     settings = page_settings(arguments)
     within('--stand', arguments.stand, 1, 1e5)
+    if arguments.risk is not None:
+        read_critical_winds(arguments.risk)  # what is wrong with it is said before all else
     if arguments.sensor is None:
         return _serve(arguments, settings, opened_wind(arguments))
     with listening(arguments) as wind:
@@ -82,13 +91,15 @@ def _serve(arguments: argparse.Namespace, settings: PageSettings, wind: WindSour
     print(f'{arguments.tree}: starting (the first start compiles, up to a minute)', flush=True)
     choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
     session = Session(lambda wanted: build_scene(wanted, arguments), choices, wind)
+    critical_winds = _critical_winds(arguments.risk, session.names)
     panel = ControlPanel()
     if not arguments.read_only:
         is_one_tree = session.status()['trees'] == arguments.stand
         controls = _controls(choices, wind, is_one_tree=is_one_tree)
         panel = ControlPanel(controls, session.apply, session.pull)
         panel.update(session.values())
-    with PageServer(settings, panel, session.status, session.written) as server:
+    pages = PageServer(settings, panel, session.status, session.written, critical_winds)
+    with pages as server:
         session.serve(server)
         print_address(server, 'open')
         print('Ctrl-C ends', flush=True)
@@ -105,6 +116,21 @@ def _serve(arguments: argparse.Namespace, settings: PageSettings, wind: WindSour
         if session.failure is not None:
             raise session.failure
     return 0
+
+
+def _critical_winds(
+    risk: str | None, names: tuple[str, ...]
+) -> dict[str, tuple[float, float]] | None:
+    """Critical winds of the trees of a page, from a table; None without one."""
+    if risk is None:
+        return None
+    winds = read_critical_winds(risk)
+    found = {name: winds[name] for name in names if name in winds}
+    if not found:
+        what = f"no tree is called as one of the table, such as '{next(iter(winds), '')}'"
+        cure = 'name the inventory of which tree-sway risk wrote the table'
+        raise ParameterError(what, where='--risk', cure=cure)
+    return found
 
 
 def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
@@ -157,7 +183,8 @@ def _controls(
         span = 's', 0.0, wind.length
         controls.append(Control('record_time', 'Time', 0.0, 'Of the record.', *span))
     if is_one_tree:
-        models = tuple(dict.fromkeys(('auto', *map(str, DIAL), *MODELS[1:], choices.model)))
+        named = 'branch', *installed_models(), choices.model
+        models = tuple(dict.fromkeys(('auto', *map(str, DIAL), *named)))
         controls.append(replace(Control.of(SWAY['model'], 'Model', choices.model), choices=models))
     controls += [Control.of(SWAY[name], _LABELS[name]) for name in ('tolerance', 'damping_ratio')]
     trees = (*BUILTIN_TREES, *(() if choices.tree in BUILTIN_TREES else (choices.tree,)))

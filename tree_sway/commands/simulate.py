@@ -22,6 +22,7 @@ from tree_sway.commands.arguments import (
     output_path,
 )
 from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
+from tree_sway.commands.motion_arguments import add_motion_arguments, placed_motion
 from tree_sway.commands.progress import waiting
 from tree_sway.commands.sensor_arguments import add_sensor_argument, live_record
 from tree_sway.core.scene.simulate import simulate, WindSamples
@@ -49,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='N',
         help='duration [s]; without it, all of a recording, or 60 s',
     )
+    add_motion_arguments(parser)
     add_output_arguments(parser, 'table to write: .csv, .parquet or .json')
 
 
@@ -65,12 +67,13 @@ def run(arguments: argparse.Namespace) -> int:
     exposure = chosen_exposure(arguments, tree_file.tree, tree_file.species)
     ground = float(tree_file.tree.start[0, 2])
     wind = _wind(arguments, exposure)
+    motion = placed_motion(arguments, tree_file.tree, getattr(wind, 'epoch', None))
     with waiting('simulating'):
         record = simulate(
             tree_file, wind, rate=arguments.rate, seconds=arguments.seconds,
             branches=[names.index(name) for name in arguments.branch] or None,
             model=arguments.model, in_leaf=chosen_leaves(arguments),
-            profile=exposure.profile(ground),
+            profile=exposure.profile(ground), motion=motion,
         )  # fmt: skip
     write_columns({name: each.tolist() for name, each in record.columns().items()}, output)
     for note in record.notes:

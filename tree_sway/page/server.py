@@ -178,6 +178,8 @@ class PageServer:
     written
         Function called with ``glb`` or ``html`` on a separate thread for the tree as a file;
         raises a `TreeSwayError` to refuse.
+    critical_winds
+        Band of the critical wind of each tree by its name [m/s], by which viewers colour trees.
 
     Examples
     --------
@@ -193,12 +195,14 @@ class PageServer:
         panel: ControlPanel | None = None,
         status: Callable[[], Mapping[str, object]] | None = None,
         written: Callable[[str], bytes] | None = None,
+        critical_winds: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
         self.settings = settings
         self._token = settings.token or read_token(settings.token_file)
         require_token(settings.address, self._token)
         self._panel = panel or ControlPanel()
         self._status, self._written = status or dict, written
+        self._critical_winds = critical_winds
         self._writing, self._waiting = asyncio.Lock(), 0
         self._guesses = Guesses()
         self._description = b''
@@ -521,6 +525,7 @@ class PageServer:
             'can_pull': self._panel.can_pull and may,
             'address': self.settings.address,
             'viewers_token': self.viewers_token,
+            'critical_winds': self._critical_winds,
         }
 
     def _take(self, client: _Client, text: str) -> None:

@@ -124,6 +124,11 @@ class Session:
         if not self._thread.is_alive():
             self._thread.start()
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the trees."""
+        return self._scene.names
+
     def wait(self, seconds: float) -> None:
         """Wait some seconds [s], or until the session has failed."""
         self._thread.join(max(0.0, seconds))
@@ -178,7 +183,7 @@ class Session:
 
     def values(self) -> dict[str, Value]:
         """Return the choices as they are shown: the damping ratio in use, not 0 for the usual."""
-        damping = self._scene.kinds[0].simulator.reductions.damping_ratio
+        damping = self._scene.kinds[0].simulator.prepared.damping_ratio
         return {**vars(self.choices), 'damping_ratio': damping}
 
     def status(self) -> dict[str, object]:

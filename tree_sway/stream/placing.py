@@ -10,6 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.model.fill_records import (
+    assign_slots,
+    block_records,
+    fill_places,
+    Places,
+    segment_records,
+)
 from tree_sway.core.model.records import (
     block_layout,
     branch_layout,
@@ -17,13 +24,6 @@ from tree_sway.core.model.records import (
     segment_layout,
 )
 from tree_sway.core.run.placing_by_keys import placing_by_keys, PlacingByKeys
-from tree_sway.core.setup.fill_records import (
-    assign_slots,
-    block_records,
-    fill_places,
-    Places,
-    segment_records,
-)
 from tree_sway.errors import FormatError
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import Description

@@ -53,7 +53,7 @@ def scene_kinds(simulator: Simulator) -> list[SceneKind]:
         return [_alone(0, each) for each in simulator.simulators]
     kinds, trees = [], simulator.scene.trees
     for model, bank, numbers in simulator.shared:
-        basis = model.bank.basis
+        basis = model.basis
         per_shape = bank.all_shapes @ basis.projection.T
 
         def found(numbers: Ints = numbers, per_shape: Floats = per_shape) -> Floats:
@@ -67,7 +67,7 @@ def scene_kinds(simulator: Simulator) -> list[SceneKind]:
 
 def _alone(number: int, simulator: SwaySimulator) -> SceneKind:
     """Return the kind of a single tree, described at its place."""
-    basis = simulator.bank.basis
+    basis = simulator.basis
     x, y, z = simulator.tree.start[0].tolist()
 
     def found() -> Floats:

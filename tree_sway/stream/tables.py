@@ -48,7 +48,7 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
         model = kind.simulator
         bank = model.bank.oscillators
         assert isinstance(bank, WindBasisBank)
-        numbers, own = exported_table(bank.table.record, bank.modal.damping)
+        numbers, own = exported_table(model.prepared, bank.modal.damping)
         state = bank.all_shapes @ kind.basis.projection.T
         # Motion of a correction of the coordinates with the least energy.
         root = np.sqrt(bank.modal.stiffness)

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import time
 
@@ -13,8 +12,9 @@ from tree_sway.commands.arguments import refuse_overwriting
 from tree_sway.core.checks import within
 from tree_sway.files.export.table_writing import refuse_no_table
 from tree_sway.files.text_file import path_of
+from tree_sway.studies.cluster import refuse_wrong_address
 from tree_sway.studies.plan import read_study
-from tree_sway.studies.runner import estimated_time, missing_cases, run_study
+from tree_sway.studies.runner import cores, estimated_time, missing_cases, run_study
 from tree_sway.studies.table import write_table
 
 
@@ -28,29 +28,42 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--workers', type=int, metavar='N', help='processes; one per core if left out'
     )
+    add_scheduler_argument(parser)
     parser.add_argument(
         '--force', action='store_true', help='write over a table of a different study'
     )
+
+
+def add_scheduler_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the address of a cluster."""
+    parser.add_argument(
+        '--scheduler', metavar='ADDRESS',
+        help='Dask scheduler whose workers compute instead, tcp://host:8786 or tls://host:8786',
+    )  # fmt: skip
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Compute missing cases, write the table."""
     if arguments.workers is not None:
         within('--workers', arguments.workers, 1, 1024)
+    if arguments.scheduler is not None:
+        refuse_wrong_address(arguments.scheduler)
     output = path_of(arguments.output)
     refuse_no_table(output)
     cases = read_study(arguments.study)
     cache = output.with_suffix('.cases')
     if not (arguments.force or cache.is_dir()):
         refuse_overwriting(output, '--output')
-    missing, workers = missing_cases(cases, cache), arguments.workers or os.cpu_count() or 1
+    missing, workers = missing_cases(cases, cache), arguments.workers or cores()
     print(
         f'{len(missing)} of {len(cases)} cases to compute: some '
-        f'{estimated_time(missing, workers):.0f} s on {workers} cores, if trees have 900 branches',
+        f'{estimated_time(missing, workers):.0f} s on {workers} cores, if trees have 900 branches'
+        if arguments.scheduler is None
+        else f'{len(missing)} of {len(cases)} cases to compute by {arguments.scheduler}',
         file=sys.stderr, flush=True,
     )  # fmt: skip
     began = time.monotonic()
-    rows = run_study(cases, cache, workers=arguments.workers)
+    rows = run_study(cases, cache, workers=arguments.workers, scheduler=arguments.scheduler)
     write_table(rows, output)
     print(f'{output}: {len(rows)} cases in {time.monotonic() - began:.1f} s')
     return 0

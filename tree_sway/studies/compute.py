@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from dataclasses import replace
-from functools import lru_cache
 import json
 
 import numpy as np
@@ -15,6 +15,7 @@ from tree_sway.core.growth.grow import grow
 from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.files.models.disk_cache import use_disk_cache
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_tree
 from tree_sway.files.wind.record import WindRecord
@@ -24,7 +25,7 @@ from tree_sway.studies.plan import Case, Plain
 _UNITS = {'height': ' [m]', 'speed': ' [m/s]', 'intensity': ' [-]', 'scale': ' [-]'}
 
 
-def compute(case: Case) -> Plain:
+def compute(case: Case, *, tree: TreeFile | None = None, wind: WindRecord | None = None) -> Plain:
     """
     Compute a case.
 
@@ -32,6 +33,8 @@ def compute(case: Case) -> Plain:
     ----------
     case
         Case to compute.
+    tree, wind
+        Contents of its files where they were read before; read here if None.
 
     Returns
     -------
@@ -44,13 +47,13 @@ def compute(case: Case) -> Plain:
         An impossible tree, wind or setting.
 
     """
-    rig, frequency = _rig(json.dumps([case.tree, case.settings, case.digest], sort_keys=True))
-    tree = rig.tree
-    record = rig.run(_wind(case), rate=case.rate, seconds=case.seconds)
+    rig, frequency = _rig(case, tree)
+    record = rig.run(_wind(case, wind), rate=case.rate, seconds=case.seconds)
     row: Plain = {**_prefixed('tree', case.tree), **_prefixed('wind', case.wind), **case.settings}
     row |= {
-        'length [s]': case.seconds, 'branches': tree.n_branches, 'segments': tree.n_segments,
-        'height [m]': tree.height, 'model': record.model, 'frequency [Hz]': frequency,
+        'length [s]': case.seconds, 'branches': rig.tree.n_branches,
+        'segments': rig.tree.n_segments, 'height [m]': rig.tree.height,
+        'model': record.model, 'frequency [Hz]': frequency,
         'wind_mean [m/s]': float(np.linalg.norm(record.wind.mean(axis=0))),
         'wind_largest [m/s]': float(np.linalg.norm(record.wind, axis=1).max()),
     }  # fmt: skip
@@ -60,12 +63,21 @@ def compute(case: Case) -> Plain:
     return row
 
 
-@lru_cache(maxsize=2)
-def _rig(asked: str) -> tuple[Rig, float]:
-    """Set up a tree and its frequency in [Hz], cached as the next case often has the same."""
-    tree, settings, _ = json.loads(asked)
-    rig = Rig(_tree(tree), **settings)
-    return rig, float(rig.reductions.natural_frequencies(1)[0])
+_MOST_RIGS = 2
+_RIGS: OrderedDict[str, tuple[Rig, float]] = OrderedDict()
+"""The last set-ups of this process, by tree and settings."""
+
+
+def _rig(case: Case, tree: TreeFile | None) -> tuple[Rig, float]:
+    """Set up a tree and its frequency in [Hz]; the next case often has the same."""
+    asked = json.dumps([case.tree, case.settings, case.digest], sort_keys=True)
+    if asked not in _RIGS:
+        use_disk_cache()  # in each process of a study
+        rig = Rig(_tree(case.tree) if tree is None else tree, **case.settings)
+        _RIGS[asked] = rig, float(rig.reductions.natural_frequencies(1)[0])
+        while len(_RIGS) > _MOST_RIGS:
+            _RIGS.popitem(last=False)
+    return _RIGS[asked]
 
 
 def _tree(asked: Plain) -> TreeFile:
@@ -76,9 +88,9 @@ def _tree(asked: Plain) -> TreeFile:
     return open_tree(asked.get('file') or asked['name'])
 
 
-def _wind(case: Case) -> WindRecord | Floats:
+def _wind(case: Case, record: WindRecord | None = None) -> WindRecord | Floats:
     if 'file' in case.wind:
-        record = read_wind(case.wind['file'])
+        record = read_wind(case.wind['file']) if record is None else record
         return replace(record, velocity=case.wind['scale'] * record.velocity)
     rng = np.random.default_rng(case.wind['seed'])
     return simulate_turbulence(

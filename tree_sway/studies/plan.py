@@ -26,6 +26,7 @@ from tree_sway.errors import FormatError, nearest, ParameterError
 from tree_sway.files.text_file import is_file, path_of, read_bytes, read_text
 from tree_sway.files.wind.wind_file import EXAMPLES
 from tree_sway.files.yaml_document import read_yaml
+from tree_sway.studies.cluster import ROOMS
 
 Plain = dict[str, Any]
 
@@ -36,9 +37,6 @@ MAX_CASES = 100_000
 """Largest number of cases of a study, which are all planned before the first is computed."""
 MAX_STEPS = 6_000_000
 """Largest number of steps of a case, all of which are in the memory."""
-
-_ROOMS = 'core', 'files', 'studies'
-"""Rooms whose source and tables determine the results."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +110,7 @@ def read_study(path: str | Path) -> list[Case]:
     common = {key: study[key] for key in ('seconds', 'rate') if key in study}
     _refuse_large(study, Case({}, {}, **common), str(path))
     varied = _settings(study.get('settings', {}), path)
-    code = ''.join(source_digest(ROOT / room) for room in _ROOMS).encode()
+    code = ''.join(source_digest(ROOT / room) for room in ROOMS).encode()
     cases = []
     contents = cache(_content)
     for tree, wind, settings in itertools.product(

@@ -3,37 +3,42 @@
 """
 Cases over all cores, or over a cluster, each once.
 
-A finished case is a file, written atomically; a study that is run again computes missing cases.
-The case of a killed worker is computed by a different one.
-
+A finished case is a file here, written atomically; a study that is run again computes missing
+cases. Workers get the trees and winds of files with the cases of a batch, and return rows. The
+cases of a lost worker are computed by a different one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager, ExitStack
-from importlib import import_module
+from collections.abc import Iterator, Sequence
 import json
-from multiprocessing import resource_tracker
-import os
 from pathlib import Path
-import signal
-import threading
 from typing import Any
 
 from tree_sway.commands.progress import bar
-from tree_sway.errors import TransportError, TreeSwayError
+from tree_sway.errors import TreeSwayError
+from tree_sway.files.trees.source import open_tree
 from tree_sway.files.whole_file import write_text_whole
+from tree_sway.files.wind.wind_file import read_wind
+from tree_sway.studies.cluster import cluster, run_all
 from tree_sway.studies.plan import Case, Plain
-
-ATTEMPTS = 4
-"""Number of workers that a case may end before the study ends."""
 
 _START, _SET_UP, _STEP = 4.0, 2.5, 2e-4
 """Time to start workers, to set up a tree of 900 branches, and for each of its steps [s]."""
+_LARGEST_BATCH = 8
+"""Number of cases at most that a lost worker takes with it."""
+
+Outcome = tuple[Case, Plain | TreeSwayError]
+"""A case with its row, or with its error."""
 
 
-def run_study(cases: list[Case], folder: Path, *, workers: int | None = None) -> list[Plain]:
+def run_study(
+    cases: list[Case],
+    folder: Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+) -> list[Plain]:
     """
     Compute missing cases of a study, and return all rows.
 
@@ -44,7 +49,9 @@ def run_study(cases: list[Case], folder: Path, *, workers: int | None = None) ->
     folder
         Folder of finished cases.
     workers
-        Number of processes; one per core if None.
+        Number of processes here; one per core if None.
+    scheduler
+        Address of a Dask scheduler whose workers compute instead, such as ``tcp://host:8786``.
 
     Returns
     -------
@@ -56,15 +63,20 @@ def run_study(cases: list[Case], folder: Path, *, workers: int | None = None) ->
     TreeSwayError
         The first case that failed, with its name; the others are stored.
     TransportError
-        Workers that end repeatedly.
+        Workers that end repeatedly, no scheduler, or workers of another version.
     ModuleNotFoundError
         Cases to compute without dask.
 
     """
     folder.mkdir(parents=True, exist_ok=True)
     missing = missing_cases(cases, folder)
-    outcomes = _outcomes(missing, folder, workers or os.cpu_count() or 1) if missing else iter(())
-    failed = [each for _, each in zip(bar(missing, 'cases'), outcomes, strict=True) if each]
+    outcomes = _outcomes(missing, workers or cores(), scheduler) if missing else iter(())
+    failed = list[TreeSwayError]()
+    for _, (case, row) in zip(bar(missing, 'cases'), outcomes, strict=True):
+        if isinstance(row, TreeSwayError):
+            failed.append(row)
+        else:
+            store_row(case, row, folder)
     if failed:
         raise failed[0]
     return [json.loads(result_path(folder, case).read_text(encoding='utf-8')) for case in cases]
@@ -87,24 +99,23 @@ def result_path(folder: Path, case: Case) -> Path:
     return folder / f'{case.name}.json'
 
 
-def compute_to_file(case: Case, folder: Path) -> None:
-    """Compute one case and store its row."""
+def store_row(case: Case, row: Plain, folder: Path) -> None:
+    """Store the row of a finished case."""
+    write_text_whole(result_path(folder, case), json.dumps(row))
+
+
+def compute_batch(cases: list[Case], files: dict[str, Any]) -> list[Outcome]:
+    """Compute cases one after the other; the contents of their files are by their path."""
     from tree_sway.studies.compute import compute
 
-    if result_path(folder, case).is_file():  # a killed worker had finished it
-        return
-    write_text_whole(result_path(folder, case), json.dumps(compute(case)))
-
-
-def compute_batch(cases: list[Case], folder: Path) -> list[TreeSwayError | None]:
-    """Compute cases one after the other; return the error of each, or None."""
-    outcomes: list[TreeSwayError | None] = []
+    outcomes: list[Outcome] = []
     for case in cases:
+        tree, wind = (files.get(part.get('file', '')) for part in (case.tree, case.wind))
         try:
-            compute_to_file(case, folder)
-            outcomes.append(None)
+            outcomes.append((case, compute(case, tree=tree, wind=wind)))
         except TreeSwayError as error:
-            outcomes.append(TreeSwayError(str(error), where=f'tree {case.tree}, wind {case.wind}'))
+            where = f'tree {case.tree}, wind {case.wind}'
+            outcomes.append((case, TreeSwayError(str(error), where=where)))
     return outcomes
 
 
@@ -113,79 +124,42 @@ def batches(cases: list[Case], workers: int) -> list[list[Case]]:
     Group cases of one tree with one set of settings.
 
     Its set-up takes longer than a minute of wind. A tree in many winds is divided into parts, so
-    that all workers have work.
+    that all workers have work, and little is lost with one.
 
     """
-    most = -(-len(cases) // (4 * workers))
+    most = min(-(-len(cases) // (4 * workers)), _LARGEST_BATCH)
     found: dict[str, list[Case]] = {}
     for case in cases:
         found.setdefault(json.dumps([case.tree, case.settings], sort_keys=True), []).append(case)
     return [same[k : k + most] for same in found.values() for k in range(0, len(same), most)]
 
 
-def _outcomes(cases: list[Case], folder: Path, workers: int) -> Iterator[TreeSwayError | None]:
-    """Yield the result of each finished case: None, or its error."""
-    with _cluster(workers) as (distributed, client):
-        futures = [
-            client.submit(compute_batch, part, folder.resolve(), key=part[0].name)
-            for part in batches(cases, workers)
-        ]
-        try:
-            for future in distributed.as_completed(futures):
-                yield from future.result()
-        except distributed.KilledWorker as error:
-            raise TransportError(
-                f'a case took down {ATTEMPTS} workers in turn',
-                where=f'case {error.task}',
-                cure='find out what ends them (memory?), use fewer --workers, and run it again',
-            ) from None
-
-
-@contextmanager
-def _cluster(workers: int) -> Iterator[tuple[Any, Any]]:
-    """
-    Dask and a client of separate processes, which end at once with the study.
-
-    Only this process handles Ctrl-C, and not before dask is loaded and the cluster up, half of
-    which it would leave open. Its log is silent until the last of its threads has ended.
-    """
-    settings: Plain = {
-        'distributed.nanny.pre-spawn-environ.DASK_LOGGING__DISTRIBUTED': 'critical',
-        # Pages of dask have no password: neither the scheduler nor the workers have any.
-        'distributed.scheduler.http.routes': [],
-        'distributed.worker.http.routes': [],
-    }
-    page = {'dashboard': False, 'dashboard_address': '127.0.0.1:0'}  # none, and at a free port
-    with _delayed_interrupt() as delayed:
-        dask, distributed = import_module('dask'), import_module('distributed')
-        import_module('cryptography')  # keys that exclude other users of this machine
-        with (
-            dask.config.set(settings),
-            distributed.utils.silence_logging_cmgr('CRITICAL'),
-            distributed.LocalCluster(
-                n_workers=workers, threads_per_worker=1, memory_limit=0, silence_logs='CRITICAL',
-                scheduler_kwargs={'allowed_failures': ATTEMPTS - 1, **page}, security=True,
-            ) as local,
-            distributed.Client(local) as client,
-        ):  # fmt: skip
+def files_of(cases: Sequence[Case], opened: dict[str, Any]) -> dict[str, Any]:
+    """Trees and winds of the files of some cases, by their path; each is opened once."""
+    for case in cases:
+        for part, read in ((case.tree, open_tree), (case.wind, read_wind)):
+            path = part.get('file')
+            if path is None or path in opened:
+                continue
             try:
-                delayed.close()
-                yield distributed, client
-            except BaseException:  # Ctrl-C: running cases are computed in the next run
-                for worker in local.workers.values():
-                    os.kill(worker.pid, signal.SIGKILL)
-                raise
+                opened[path] = read(path)
+            except TreeSwayError:
+                opened[path] = None  # the worker finds the same error, of the case alone
+    paths = {part.get('file') for case in cases for part in (case.tree, case.wind)}
+    return {path: opened[path] for path in paths if path is not None}
 
 
-def _delayed_interrupt() -> ExitStack:
-    """Delay Ctrl-C until closed; threads and processes started before then never get it."""
-    delayed = ExitStack()
-    if hasattr(signal, 'pthread_sigmask'):
-        resource_tracker.ensure_running()  # it would unblock the signal as it starts
-        signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
-        delayed.callback(signal.pthread_sigmask, signal.SIG_UNBLOCK, [signal.SIGINT])
-        if threading.current_thread() is threading.main_thread():
-            # An earlier thread may receive it, for Python to handle here: then it waits here.
-            usual = signal.signal(signal.SIGINT, lambda number, _: signal.raise_signal(number))
-            delayed.callback(signal.signal, signal.SIGINT, usual)
-    return delayed
+def _outcomes(cases: list[Case], workers: int, scheduler: str | None) -> Iterator[Outcome]:
+    """Yield each finished case with its row or its error."""
+    opened: dict[str, Any] = {}
+    work = [(part[0].name, (part, files_of(part, opened))) for part in batches(cases, workers)]
+    with cluster(workers, scheduler) as (distributed, client):
+        for outcomes in run_all(distributed, client, compute_batch, work):
+            yield from outcomes
+
+
+def cores() -> int:
+    """Return the number of cores of this machine."""
+    import os
+
+    return os.cpu_count() or 1

@@ -11,6 +11,7 @@ import threading
 import time
 from typing import Any
 
+from geometry_msgs.msg import Vector3Stamped
 from scipy.spatial.transform import Rotation
 from std_srvs.srv import SetBool, Trigger
 
@@ -20,6 +21,7 @@ from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.scene.shard import shard_of
+from tree_sway.core.scene.wind_at import wind_at
 from tree_sway.core.setup.season import LEAVES
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.averaging import WindAverage
@@ -30,7 +32,15 @@ from tree_sway.files.trees.source import open_scene
 from tree_sway.stream.controls import ControlPanel, Refused
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import CAMERA, PULL, PUSH, SEGMENT_POSES, WIND_FILTERED
+from tree_sway_ros.process.topics import (
+    CAMERA,
+    PULL,
+    PUSH,
+    SEGMENT_POSES,
+    WIND_AT,
+    WIND_FILTERED,
+    WIND_THERE,
+)
 from tree_sway_ros.reports.diagnostics import OK, Status, WARN
 from tree_sway_ros.reports.sway_report import SwayReport
 from tree_sway_ros.timing.pacer import Tick
@@ -54,7 +64,7 @@ _LOOK = 0.05
 
 
 class SolverNode(TreeSwayNode):
-    """Subscribes `wind/filtered`; publishes poses, markers and state, and their description."""
+    """Subscribes `wind/filtered`; publishes poses, markers and state; tells the wind at places."""
 
     def configure(self) -> None:
         """Open the tree, reduce it and prepare its kernels."""
@@ -103,7 +113,7 @@ class SolverNode(TreeSwayNode):
             self.simulator.tune(**self.values('stiffness_factor'))
         self._camera: Any = None
         self._tuned: dict[str, float] = {}
-        self._refused = dict.fromkeys(('camera', 'push', 'pull', 'change'), (0, ''))
+        self._refused = dict.fromkeys(('camera', 'push', 'pull', 'wind_at', 'change'), (0, ''))
         self._arrived = threading.Event()
         self._missed: int | None = -1
         self.pacer = self.pacer_of(self._tick)
@@ -126,6 +136,8 @@ class SolverNode(TreeSwayNode):
         self._hands = ControlPanel(pull=self._pull)
         self.subscription(PUSH, self._take_push)
         self.subscription(PULL, self._take_pull)
+        self._wind_there = self.publisher(WIND_THERE)
+        self.subscription(WIND_AT, self._answer)
         self.create_service(Trigger, '~/reset', self._reset)
         self.create_service(SetBool, '~/pause', self._pause)
         self.report_with(source.tree.name, self._statuses)
@@ -146,6 +158,23 @@ class SolverNode(TreeSwayNode):
             return
         self._camera = camera
         self.on_change({})
+
+    def _answer(self, message: Any) -> None:
+        """Publish the wind at the place of a question, with its stamp."""
+        frame_id, known = message.header.frame_id, self.values['frame_id']
+        if frame_id not in ('', known):
+            self._refuse('wind_at', f"'{frame_id}' is not the frame of the poses, '{known}'")
+            return
+        at = message.point
+        try:
+            wind = wind_at(self.simulator, (at.x, at.y, at.z))
+        except ParameterError as error:
+            self._refuse('wind_at', str(error))
+            return
+        answer = Vector3Stamped(header=message.header)
+        answer.header.frame_id = known
+        answer.vector.x, answer.vector.y, answer.vector.z = wind.tolist()
+        self._wind_there.publish(answer)
 
     def _take_push(self, message: Any) -> None:
         frames, frame_id = self.stream.tree_frames, message.header.frame_id

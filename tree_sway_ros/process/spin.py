@@ -20,6 +20,7 @@ from typing import Any
 
 from tree_sway.commands.ending import Ending
 from tree_sway.errors import MissingDependencyError, TransportError, TreeSwayError
+from tree_sway.files.models.disk_cache import use_disk_cache
 
 _REFUSALS = ('InvalidNamespaceException', 'InvalidNodeNameException', 'RCLError')
 _CHECK_PERIOD = 0.2
@@ -39,6 +40,7 @@ def run(module: str, node_class: str, args: Sequence[str] | None = None) -> int:
     gc.disable()  # modules loaded at the start stay
     try:
         rclpy = require_rclpy()
+        use_disk_cache()
         _spin(rclpy, module, node_class, args)
     except TreeSwayError as error:
         print(f'{module.rsplit(".", 1)[-1]}: {error}', file=sys.stderr)

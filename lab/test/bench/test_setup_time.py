@@ -11,14 +11,14 @@ from tree_sway_lab.bench.bench_tree import bench_tree
 
 def test_every_model_is_set_up_from_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     built = []
-    honest = bench_setup.SwaySimulator
+    honest = bench_setup.make_simulator
 
     def noted(tree, **settings):
         simulator = honest(tree, **settings)
         built.append((tree.n_branches, simulator.model))
         return simulator
 
-    monkeypatch.setattr(bench_setup, 'SwaySimulator', noted)
+    monkeypatch.setattr(bench_setup, 'make_simulator', noted)
     times = bench_setup.time_setups(bench_tree(3, (4, 2)), ('branch', 20))
     assert [each for each in built if each[0] == 13] == [(13, 'branch'), (13, '20')]
     assert list(times) == ['branch', 20]

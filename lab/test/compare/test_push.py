@@ -11,7 +11,7 @@ from tree_sway_lab.kinds.kinds import kind_called
 
 from tree_sway.core.identification.free_decay import free_decay
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import Species
 
 WOOD = Species('example', 'example', 8.0e9, 900.0)
@@ -97,7 +97,7 @@ def test_let_go_it_swings_and_decays_as_every_segment_solved(name):
         sims = []
         for ratio in (0.5, DAMPING):
             settings = Settings(model=model, gravity=0.0, damping_ratio=ratio, in_leaf=False)
-            sims.append(SwaySimulator(tree, WOOD, settings))
+            sims.append(make_simulator(tree, WOOD, settings))
         for _ in range(1200):
             sims[0].push(segment, force, 1.0)
             sims[0].step((0.0, 0.0, 0.0), DT)
@@ -131,7 +131,7 @@ def test_a_pull_moves_the_tree_as_every_segment_solved(name):
     assert 0.08 < np.linalg.norm(moved) / tree.height < 0.13
     for model in (60, 'full'):
         settings = Settings(model=model, gravity=0.0, damping_ratio=0.5, in_leaf=False)
-        simulator = SwaySimulator(tree, WOOD, settings)
+        simulator = make_simulator(tree, WOOD, settings)
         for _ in range(1200):
             simulator.push(segment, force, 1.0)
             simulator.step((0.0, 0.0, 0.0), 1.0 / 60.0)

@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.bench.step import gusts
 from tree_sway_lab.resegment import resegment
@@ -41,7 +41,7 @@ def time_cuts(model: int | str, rounds: int, cuts: Sequence[int] = CUTS) -> dict
 
     """
     tree = bench_tree()
-    simulators = [SwaySimulator(resegment(tree, cut), model=model) for cut in cuts]
+    simulators = [make_simulator(resegment(tree, cut), model=model) for cut in cuts]
     winds = gusts(_STEPS_A_ROUND)
     spent = np.empty((rounds, len(cuts)))
     for row in spent:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import time
 
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway_lab.bench.bench_tree import bench_tree
 
@@ -42,9 +42,9 @@ def time_setups(tree: Tree, models: Sequence[int | str]) -> dict[int | str, floa
     small = bench_tree(3, _SMALL)
     spent: dict[int | str, float] = {}
     for model in models:
-        SwaySimulator(small, model=model)
+        make_simulator(small, model=model)
         begin = time.process_time()
-        SwaySimulator(tree, model=model, cache=None)
+        make_simulator(tree, model=model, cache=None)
         spent[model] = time.process_time() - begin
     return spent
 

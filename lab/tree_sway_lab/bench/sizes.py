@@ -19,6 +19,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import fused
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.run.table_model import step_instance, WindBasisBank
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
@@ -55,11 +56,11 @@ def time_sizes(trees: Sequence[Tree] = ()) -> list[Measured]:
     """
     if not trees:
         trees = [bench_tree(2, children, bears=True) for children in SIZES.values()]
-    SwaySimulator(bench_tree(2))  # kernels are there
+    make_simulator(bench_tree(2))  # kernels are there
     simulators, set_up = [], []
     for tree in bar(trees, 'tables of winds'):
         begun = time.process_time()
-        simulators.append(SwaySimulator(tree))
+        simulators.append(make_simulator(tree))
         set_up.append(time.process_time() - begun)
     winds = gusts(_STEPS)
     least = np.full((len(trees), 3), np.inf)
@@ -100,7 +101,7 @@ def errors(simulators: Sequence[SwaySimulator]) -> list[Measured]:
     for simulator in bar(simulators, 'against full'):
         tree = simulator.tree
         try:
-            other = SwaySimulator(tree, simulator.species, simulator.settings, model='full')
+            other = make_simulator(tree, simulator.species, simulator.settings, model='full')
         except ParameterError:  # more coordinates than `full` takes
             continue
         for speed in _SPEEDS:

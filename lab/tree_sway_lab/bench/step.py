@@ -18,6 +18,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TreeSwayError
 
@@ -83,8 +84,8 @@ def time_steps(tree: Tree, model: int | str, rounds: int) -> StepTiming:
         If the two disagree, so that there is nothing to compare.
 
     """
-    simulator = SwaySimulator(tree, model=model)
-    twin = SwaySimulator(tree, settings=simulator.settings, plain=True)
+    simulator = make_simulator(tree, model=model)
+    twin = make_simulator(tree, settings=simulator.settings, plain=True)
     winds = gusts(_STEPS_A_ROUND)
     poses = np.zeros((tree.n_segments, 7))
     difference = _agree(simulator, twin, winds, poses)

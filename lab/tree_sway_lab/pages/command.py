@@ -20,6 +20,7 @@ from pathlib import Path
 import re
 
 from tree_sway.commands import cli
+from tree_sway.core.model.sway_model import MEANINGS, TYPES
 from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import FormatError
 from tree_sway.files.trees.tree_file import TREE_FORMATS
@@ -33,7 +34,7 @@ from tree_sway_ros.commands.table import COMMANDS as ROS_COMMANDS
 from tree_sway_ros.parameters.node_parameters import NODE_PARAMETERS
 from tree_sway_ros.process.topics import TOPICS
 
-PAGES = ('README.md', 'doc/models.md', 'doc/reference.md', 'doc/trees.md')
+PAGES = ('README.md', 'doc/models.md', 'doc/reference.md', 'doc/sway_model.md', 'doc/trees.md')
 """Pages with tables."""
 
 FIGURES = 'doc/pictures/fidelity.csv'
@@ -131,10 +132,25 @@ def markdown_tables() -> dict[str, str]:
         'tree_formats': formats_table(),
         'fidelity': fidelity_table(),
         'fidelity_range': fidelity_range(),
+        'sway_model': model_table(),
     }
     for node, table in NODE_PARAMETERS.items():
         tables[node] = parameters_table(table)
     return tables
+
+
+def model_table() -> str:
+    """Every array of a prepared model, group by group."""
+    rows = ['| array | shape | unit | meaning |', '|---|---|---|---|']
+    group = ''
+    for name, meaning in MEANINGS.items():
+        if meaning.group != group:
+            group = meaning.group
+            rows.append(f'| **{group}** | | | |')
+        kind = {'int64': ' int', 'float32': ' float32'}.get(TYPES[name].__name__, '')
+        shape = ', '.join(map(str, meaning.shape)) + (',' if len(meaning.shape) == 1 else '')
+        rows.append(f'| `{name}` | ({shape}){kind} | {meaning.unit} | {meaning.text} |')
+    return '\n'.join(rows) + '\n'
 
 
 def commands_table() -> str:

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from tree_sway.core.beams.beam import Attachments, BranchBeam, RotationField, SlopeShape
 from tree_sway.core.beams.branch_model import TreeBeams
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 
 NONE = np.zeros(0)
@@ -209,7 +209,7 @@ def test_the_ritz_solution_is_that_of_the_books():
 
 @pytest.mark.parametrize('model', ['branch', 'full'])
 def test_a_simulated_uniform_stem_has_the_beams_frequency(stem, model):
-    sim = SwaySimulator(
+    sim = make_simulator(
         stem(length=2.0, base=0.02, cuts=3), model=model, gravity=0.0, enrich='stem'
     )
     wood = species_named('broadleaf')
@@ -223,7 +223,7 @@ def test_a_simulated_uniform_stem_has_the_beams_frequency(stem, model):
 @pytest.mark.parametrize('ratio', [0.02, 0.05, 0.12, 0.24])
 def test_free_decay_has_the_damping_and_the_frequency_asked_for(stem, ratio):
     tree = stem(length=1.5, base=0.02, tip=0.01)
-    sim = SwaySimulator(tree, model='branch', damping_ratio=ratio, gravity=0.0)
+    sim = make_simulator(tree, model='branch', damping_ratio=ratio, gravity=0.0)
     dt = 1.0 / 240.0
     for _ in range(10):
         sim.step([0.3, 0.0, 0.0], dt)

@@ -11,7 +11,7 @@ import pytest
 from tree_sway_lab.example_trees import forked_tree
 
 from tree_sway.core.beams.branch_model import TreeBeams
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
 
 
@@ -99,7 +99,7 @@ def test_a_long_limb_needs_shapes_though_what_it_carries_is_bare():
     """Limbs of twigs alone swayed 3 to 5 % too often as long as their order decided."""
     tree = _limbs_of_twigs()
     found = {
-        choice: SwaySimulator(tree, model='full', enrich=choice).frequencies(6)
+        choice: make_simulator(tree, model='full', enrich=choice).frequencies(6)
         for choice in ('stem', 'needed', 'all')
     }
     gap = {choice: np.abs(found[choice] / found['all'] - 1.0).max() for choice in found}

@@ -10,7 +10,7 @@ from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 from tree_sway.core.beams.cutting import CARRIED, cut_tree, pieces_by_turn
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import Species
 
 WOOD = Species('w', 'w', 8e9, 900.0, damping_bare=0.05)
@@ -20,7 +20,7 @@ WOOD = Species('w', 'w', 8e9, 900.0, damping_bare=0.05)
 def test_a_tree_at_rest_has_every_segment_where_the_file_has_it(seed):
     tree = crooked_tree(seed)
     for model in (60, 'full'):
-        poses = SwaySimulator(tree, WOOD, model=model).place()
+        poses = make_simulator(tree, WOOD, model=model).place()
         assert poses == pytest.approx(tree.rest_poses, abs=1e-12)
 
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
-from tree_sway.core.fidelity.adaptive import AdaptiveSimulator, LEAVE_IN, REVIEW
-from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
+from tree_sway.core.fidelity.adaptive import LEAVE_IN, REVIEW
+from tree_sway.core.run.simulator import RESTARTED
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
@@ -20,7 +21,7 @@ TREE = bench_tree()
 
 
 def adaptive(tolerance, **changes):
-    return AdaptiveSimulator(TREE, tolerance=tolerance, **changes)
+    return make_simulator(TREE, tolerance=tolerance, model='auto', **changes)
 
 
 def turbulent(speed, seconds, seed=0):
@@ -56,7 +57,7 @@ def test_a_budget_comes_before_the_tolerance():
 
 
 def test_a_gust_from_calm_is_met_at_once_and_the_picture_does_not_jump():
-    sim, truth = adaptive(0.02), SwaySimulator(TREE)
+    sim, truth = adaptive(0.02), make_simulator(TREE)
     for _ in range(round(70.0 / DT)):
         sim.step((0.5, 0.0, 0.0), DT), truth.step((0.5, 0.0, 0.0), DT)
     assert number(sim) < 6
@@ -94,7 +95,7 @@ def test_it_goes_down_slowly_and_unseen():
 
 
 def test_wind_straight_up_moves_it_and_is_in_its_estimate():
-    sim, truth = adaptive(0.003), SwaySimulator(TREE)
+    sim, truth = adaptive(0.003), make_simulator(TREE)
     for k in range(600):
         wind = (0.0, 0.0, 0.0 if k < 120 else 6.0)
         sim.step(wind, DT), truth.step(wind, DT)
@@ -111,7 +112,7 @@ def test_wind_straight_up_moves_it_and_is_in_its_estimate():
 ])  # fmt: skip
 def test_a_change_reaches_what_sways_and_what_is_estimated(changes):
     sim = adaptive(1e-9)
-    plain = SwaySimulator(TREE)
+    plain = make_simulator(TREE)
     for each in (sim, plain):
         each.tune(**changes)
     for wind in turbulent(5.0, 3.0):
@@ -139,7 +140,7 @@ def test_a_state_goes_on_bit_for_bit_in_the_midst_of_a_change():
     other.set_state(sim.state())
     assert (other.place() == sim.place()).all()
     with pytest.raises(StateError):
-        SwaySimulator(TREE).set_state(sim.state())
+        make_simulator(TREE).set_state(sim.state())
 
 
 def test_reset_is_back_to_the_expected_wind():

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
-from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway.core.fidelity.estimate import ErrorEstimator, frame_cost
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
@@ -22,7 +21,7 @@ DT = 1.0 / 60.0
 
 @pytest.fixture(scope='module')
 def sim():
-    return SwaySimulator(bench_tree())
+    return make_simulator(bench_tree())
 
 
 @pytest.fixture(scope='module')
@@ -90,7 +89,7 @@ def test_still_air_and_a_wind_straight_up_is_no_calm(estimator):
 
 
 def test_estimates_are_those_of_the_tree_as_it_is_tuned():
-    sim = AdaptiveSimulator(bench_tree())
+    sim = make_simulator(bench_tree(), model='auto')
     climate = climate_of(6.0)
     before = sim.estimates(climate)
     sim.tune(stiffness_factor=3.0)
@@ -101,5 +100,7 @@ def test_estimates_are_those_of_the_tree_as_it_is_tuned():
 
 
 def test_a_branch_by_itself_costs_less_than_the_load_on_every_branch():
-    few, all_of_them = (frame_cost(SwaySimulator(bench_tree(), model=m).bank) for m in (6, 'full'))
+    few, all_of_them = (
+        frame_cost(make_simulator(bench_tree(), model=model).bank) for model in (6, 'full')
+    )
     assert few < all_of_them

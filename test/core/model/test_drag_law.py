@@ -13,9 +13,9 @@ from scipy.integrate import quad
 from tree_sway.core.model.drag_law import AIR_DENSITY, pressure
 from tree_sway.core.model.drag_law import drag as drag_and_slip
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.assembly import assembled
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.run.assembly import bank_of
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.height_profile import WindProfile
 
@@ -30,7 +30,7 @@ def drag(record, per_speed_squared, *wind, compliance=0.0):
 
 def record_of(tree, **changes):
     chosen = Settings(model='branch', gravity=0.0, **changes)
-    return assembled(TreeReductions(tree, species_named('broadleaf'), chosen)).branches[0]
+    return bank_of(prepare(tree, species_named('broadleaf'), chosen)).branches[0]
 
 
 @pytest.mark.parametrize('direction', [(0, 0, 1), (1, 0, 0), (1, -2, 0.5)])
@@ -99,7 +99,7 @@ def test_without_compliance_drag_is_explicit(stem_record):
 @pytest.mark.parametrize('dt', [1e-4, 1 / 60, 1.0])
 def test_a_hair_in_a_storm_follows_the_air_and_does_not_shake(stem, dt):
     tree = stem(length=0.2, base=2e-4, tip=1e-4, cuts=2, direction=(0, 1, 0))
-    sim = SwaySimulator(tree, model='branch', gravity=0.0)
+    sim = make_simulator(tree, model='branch', gravity=0.0)
     for k in range(200):
         before = sim.place().copy()
         sim.step([100.0 * (-1) ** (k // 20), 30.0, 5.0], dt)
@@ -140,7 +140,7 @@ def test_a_branch_in_still_air_is_damped_as_its_pieces_are(model, stem):
     """
     length, width = 2.0, 0.02
     tree, wood = stem(length=length, base=width, cuts=8), species_named('broadleaf')
-    sim = SwaySimulator(
+    sim = make_simulator(
         tree, model=model, gravity=0.0, damping_ratio=0.0, in_leaf=False, enrich='none'
     )
     s = np.linspace(0.0, 1.0, 2001)

@@ -11,7 +11,6 @@ import pytest
 
 from tree_sway.core.model.settings import MODELS, Settings
 from tree_sway.core.model.tree_state import digest_of
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.wind.height_profile import WindProfile
@@ -61,7 +60,7 @@ def foreign(state):
 
 
 def test_a_foreign_state_is_refused_by_name_and_the_old_one_stays(fork):
-    sim = SwaySimulator(fork(), model='branch')
+    sim = make_simulator(fork(), model='branch')
     for wind in winds(10):
         sim.step(wind, DT)
     before = sim.state()
@@ -80,7 +79,7 @@ def test_a_tree_that_chooses_its_model_refuses_a_foreign_state(fork):
 
 
 def test_the_digest_differs_between_trees_and_settings(fork, stem):
-    tree, sim = fork(), SwaySimulator(fork())
+    tree, sim = fork(), make_simulator(fork())
     own = digest_of(tree, sim.settings)
     assert own == digest_of(replace(fork(), name='of another name'), sim.settings)
     assert own != digest_of(stem(), sim.settings)

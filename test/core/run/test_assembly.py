@@ -12,9 +12,9 @@ import pytest
 from tree_sway.core.beams.shape_functions import ROOMS
 from tree_sway.core.model.records import branch_layout, room_for_fields, segment_layout, WORK
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.assembly import assembled
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.run import assembly
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import species_named
 from tree_sway.errors import TreeError
@@ -24,11 +24,11 @@ OAK = species_named('oak')
 
 def bank_of(tree, **changes):
     chosen = Settings(**changes)
-    return assembled(TreeReductions(tree, OAK, chosen), chosen.model)
+    return assembly.bank_of(prepare(tree, OAK, chosen))
 
 
 def frequencies(tree, species=OAK, count=100, **changes):
-    return SwaySimulator(tree, species, **changes).frequencies(count)
+    return make_simulator(tree, species, **changes).frequencies(count)
 
 
 def test_a_lone_stem_is_the_same_on_every_model(stem):
@@ -119,7 +119,7 @@ def test_enriching_makes_no_mode_faster(fork):
 
 
 def test_a_steady_wind_bends_the_coupled_tree_as_its_stiffness_says(fork):
-    sim = SwaySimulator(fork(), model='full', gravity=0.0, damping_ratio=0.5)
+    sim = make_simulator(fork(), model='full', gravity=0.0, damping_ratio=0.5)
     for _ in range(1500):
         sim.step([1.0, 0.4, 0.0], 1 / 30)
     bank = sim.bank.oscillators

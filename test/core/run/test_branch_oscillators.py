@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
-from tree_sway.core.run.assembly import assembled
-from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.run.assembly import bank_of
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import species_named
 
 WOOD = species_named('broadleaf')
@@ -20,7 +20,7 @@ DRAG = 0.5 * 1.225 * WOOD.drag_coefficient
 
 def oscillators(tree, dt=1 / 60, **changes):
     chosen = {'model': 'branch', 'gravity': 0.0} | changes
-    bank = assembled(TreeReductions(tree, WOOD, Settings(**chosen))).oscillators
+    bank = bank_of(prepare(tree, WOOD, Settings(**chosen))).oscillators
     bank.set_step(dt)
     return bank
 

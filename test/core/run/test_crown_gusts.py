@@ -13,7 +13,6 @@ from tree_sway_lab.validation.truth import WOOD
 from tree_sway_lab.validation.winds import turbulent
 
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
@@ -29,8 +28,8 @@ def tree():
 @pytest.mark.parametrize(('model', 'most'), [('branch', 1e-9), ('full', 1e-9), (20, 1e-6)])
 def test_numpy_meets_the_same_gusts(tree, model, most):
     settings = Settings(model=model, crown_coherence=0.5)
-    sim = SwaySimulator(tree, WOOD, settings)
-    twin = SwaySimulator(tree, WOOD, sim.settings, plain=True)
+    sim = make_simulator(tree, WOOD, settings)
+    twin = make_simulator(tree, WOOD, sim.settings, plain=True)
     for x in turbulent(6.0, 2.0, 1):
         sim.step(x, FRAME)
         twin.step(x, FRAME)
@@ -54,13 +53,13 @@ def test_a_state_goes_on_bit_for_bit(model):
 @pytest.mark.parametrize('speed', [3.0, 9.0])
 def test_a_table_meets_the_gusts_limb_by_limb(tree, speed):
     settings = Settings(crown_coherence=0.3)
-    full, table = (SwaySimulator(tree, WOOD, settings, model=each) for each in ('full', 60))
+    full, table = (make_simulator(tree, WOOD, settings, model=each) for each in ('full', 60))
     wind = turbulent(speed, 12.0, 3)
     assert against(table, full, wind) < 0.03  # 0.3 to 0.5 with the mean of the limbs' winds
 
 
 def test_trees_of_a_scene_meet_them_too(tree):
-    alone = SwaySimulator(tree, WOOD, model=20, crown_coherence=0.3)
+    alone = make_simulator(tree, WOOD, model=20, crown_coherence=0.3)
     two = [PlacedTree('one', tree, species=WOOD), PlacedTree('two', tree, 6.0, species=WOOD)]
     scene = Scene(two).simulator(model=20, crown_coherence=0.3)
     for x in turbulent(6.0, 2.0, 1):

@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 
 pytestmark = pytest.mark.compiled
 
@@ -45,7 +45,7 @@ def sway(simulator, out, rounds):
 
 @pytest.mark.parametrize('model', MODELS)
 def test_no_step_asks_for_memory(fork, model, allocations):
-    simulator = SwaySimulator(fork(), model=model)
+    simulator = make_simulator(fork(), model=model)
     out = np.zeros((simulator.tree.n_segments, 7))
     sway(simulator, out, 2)
     arrays, blocks = allocations(), sys.getallocatedblocks()
@@ -57,7 +57,7 @@ def test_no_step_asks_for_memory(fork, model, allocations):
 
 @pytest.mark.long
 def test_a_million_steps_take_no_memory(fork):
-    simulator = SwaySimulator(fork(), model=20)
+    simulator = make_simulator(fork(), model=20)
     out = np.zeros((simulator.tree.n_segments, 7))
     sway(simulator, out, 50)
     before = resident()

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tree_sway.core.run import table_model
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.run.table_model import fill_time_step, propagators_of
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.tree.wood import Species
@@ -51,7 +51,7 @@ def sapling():
 def simulator(tree, model):
     on_petioles = np.ones(tree.n_branches)
     on_petioles[0] = 0.0
-    return SwaySimulator(
+    return make_simulator(
         tree, WOOD, model=model, in_leaf=True, cache=None,
         leaf_mass=LEAF_MASS * on_petioles, leaf_area=LEAF_AREA * on_petioles,
     )  # fmt: skip

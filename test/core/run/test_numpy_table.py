@@ -18,8 +18,8 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.run import numpy_stand
 from tree_sway.core.run.numpy_placing import NumpyPlacing
 from tree_sway.core.run.placing import GIVEN, place, room_for
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.run.stand import PLACEMENT, step_stand
+from tree_sway.core.scene.make import make_simulator
 
 FRAME = 1.0 / 60.0
 
@@ -31,13 +31,13 @@ def pair():
     """Return the oscillators of a tree on its table, compiled, and in numpy on the same table."""
     from tree_sway.core.run.numpy_table import NumpyTableBank
 
-    bank = SwaySimulator(bench_tree(), model=60).bank.oscillators
+    bank = make_simulator(bench_tree(), model=60).bank.oscillators
     return bank, NumpyTableBank(bank.modal, bank.table)
 
 
 def random_state(bank, rng, size):
     """Return displacements, rates and forces whose energy is a share of the largest of winds."""
-    table = bank.table.record[0]
+    table = bank.table[0]
     n_modes = int(table['n_modes'])
     stiffness = table['stiffness'][:n_modes]
     state = np.zeros((3, len(table['stiffness'])))
@@ -130,7 +130,7 @@ def test_a_step_of_a_stand_in_numpy_is_that_of_the_kernel(pair):
 @pytest.mark.parametrize('name', ['bench', 'benjamina'])
 def test_a_tree_that_is_turned_and_scaled_is_placed_as_by_the_kernel(name):
     tree = bench_tree() if name == 'bench' else builtin_tree(name)
-    bank = SwaySimulator(tree, model=12).bank
+    bank = make_simulator(tree, model=12).bank
     rng = np.random.default_rng(3)
     rotations = rng.normal(0.0, 0.1, int(bank.branches['n_coordinates'].sum()))
     origin, turned = np.array([4.0, -2.0, 1.0]), (np.cos(0.6), np.sin(0.6), 1.7)

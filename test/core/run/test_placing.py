@@ -12,8 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.beams.shape_functions import across
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.assembly import assembled
-from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.run.assembly import bank_of
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import species_named
 
@@ -28,7 +28,7 @@ class Puppet:
     def __init__(self, tree, model='full', enrich='none'):
         chosen = Settings(model=model, enrich=enrich, gravity=0.0)
         self.tree = tree
-        self.bank = assembled(TreeReductions(tree, species_named('broadleaf'), chosen))
+        self.bank = bank_of(prepare(tree, species_named('broadleaf'), chosen))
         self.n = len(self.bank.oscillators.rotations())
 
     def poses(self, x):

@@ -15,6 +15,7 @@ from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.pushes import MOST_PUSHES, Spring, Touch
 from tree_sway.core.run.simulator import LOAD_CLAMPED
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
 from tree_sway.stream.placing import Placer
@@ -244,7 +245,8 @@ def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
     sim = open_scene(name).simulator(Settings(damping_ratio=0.5), model=60)
     tree, state = sim.tree, SceneState(sim)
     described = decode_description(state.description)
-    factors, n_rotations = sim.reductions.with_subtrees.reduction.factors, len(sim.rotations())
+    reductions = TreeReductions(sim.tree, sim.species, sim.settings)
+    factors, n_rotations = reductions.with_subtrees.reduction.factors, len(sim.rotations())
     lengths = np.add.reduceat(tree.length, tree.branch_first[:-1])
     limbs = np.flatnonzero(tree.branch_parent == 0)
     longest = limbs[np.argsort(lengths[limbs])[::-1][:13:3]]

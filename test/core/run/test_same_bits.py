@@ -19,9 +19,10 @@ import hashlib
 import numpy as np
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 tree = builtin_tree("benjamina")
 for model in (20, "full"):
-    sim, digest = SwaySimulator(tree, model=model), hashlib.blake2b(digest_size=8)
+    sim, digest = make_simulator(tree, model=model), hashlib.blake2b(digest_size=8)
     for wind in np.random.default_rng(1).normal(4.0, 2.0, (100, 3)):
         sim.step(wind, 1.0 / 60.0)
         digest.update(sim.place().tobytes())

@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import quad
 
 from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.errors import ParameterError, SpeciesError
 
@@ -43,7 +43,7 @@ def model(request):
 
 
 def swaying(tree, model, **changes):
-    return SwaySimulator(tree, model=model, **changes)
+    return make_simulator(tree, model=model, **changes)
 
 
 def test_the_same_wind_gives_the_same_bits(fork, model):
@@ -79,7 +79,7 @@ def test_a_westerly_bends_every_tree_on_every_model_to_the_east(name, model):
 
 
 def bends_east(tree, model, **changes):
-    sim = SwaySimulator(tree, model=model, damping_ratio=0.5, **changes)
+    sim = make_simulator(tree, model=model, damping_ratio=0.5, **changes)
     rest = sim.place()[:, :3].copy()
     for _ in range(240):
         sim.step([6.0, 0.0, 0.0], DT)
@@ -212,9 +212,9 @@ def test_what_it_says_of_the_tree(fork):
 
 def test_errors_of_a_simulator(fork):
     with pytest.raises(SpeciesError, match="unknown species 'plastic'"):
-        SwaySimulator(plastic(fork()))
+        make_simulator(plastic(fork()))
     with pytest.raises(ParameterError, match='no_such_setting'):
-        SwaySimulator(fork(), no_such_setting=1)
+        make_simulator(fork(), no_such_setting=1)
 
 
 def plastic(tree):

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from tree_sway.core.run.simulator import LOAD_CLAMPED, OK, SwaySimulator, WIND_REFUSED
+from tree_sway.core.run.simulator import LOAD_CLAMPED, OK, WIND_REFUSED
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.errors import ParameterError
 
 DT = 1.0 / 60.0
@@ -35,7 +36,7 @@ def model(request):
 
 
 def swaying(tree, model, **changes):
-    return SwaySimulator(tree, model=model, **changes)
+    return make_simulator(tree, model=model, **changes)
 
 
 @pytest.mark.parametrize(
@@ -84,7 +85,7 @@ def test_no_wind_ever_poisons_a_tree(wild_sim, wind):
 
 @pytest.fixture(scope='module')
 def wild_sim(fork):
-    return SwaySimulator(fork(), model='branch', gravity=0.0)
+    return make_simulator(fork(), model='branch', gravity=0.0)
 
 
 def test_late_and_uneven_steps_end_at_the_same_place(fork, model):
@@ -144,7 +145,7 @@ def test_reset_goes_back_to_rest_and_repeats(fork, model):
 
 
 def test_a_storm_that_is_held_says_so(stem):
-    sim = SwaySimulator(stem(length=1.0, base=0.002, cuts=4), model='branch', gravity=0.0)
+    sim = make_simulator(stem(length=1.0, base=0.002, cuts=4), model='branch', gravity=0.0)
     status = [sim.step([140.0, 0.0, 0.0], DT) for _ in range(30)]
     assert set(status) <= {OK, LOAD_CLAMPED}
     assert LOAD_CLAMPED in status

@@ -14,7 +14,8 @@ from tree_sway_lab.example_trees import branch_order
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.model.drag_law import DragLaw, pressure
 from tree_sway.core.model.records import N_AZIMUTHS
-from tree_sway.core.run.simulator import SwaySimulator, WIND_REFUSED
+from tree_sway.core.run.simulator import WIND_REFUSED
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.load_table import direction, SPEEDS
 from tree_sway.core.setup.static_responses import WindMoments
 from tree_sway.core.tree.building import tree_from_segments
@@ -75,7 +76,7 @@ gusty = gusts_and_turns
 
 def against_all(tree, winds):
     """Gap to all coordinates on the loads of all branches over the motion of all segments."""
-    one, other = SwaySimulator(tree, model=60), SwaySimulator(tree, model='full')
+    one, other = make_simulator(tree, model=60), make_simulator(tree, model='full')
     return against(one, other, winds)
 
 
@@ -104,7 +105,7 @@ def test_it_sways_as_all_coordinates_do(name):
 
 @pytest.mark.parametrize('wind', [(0.5, 0.2, 6.0), (-0.5, 0.1, -6.0), (3.0, 2.0, 5.0)])
 def test_a_steep_wind_is_in_the_table(wind):
-    one, other = (SwaySimulator(crooked(1), model=m) for m in (60, 'full'))
+    one, other = (make_simulator(crooked(1), model=m) for m in (60, 'full'))
     for _ in range(600):
         one.step(wind, DT), other.step(wind, DT)
     assert one.bank.oscillators.n_outside == 0
@@ -122,7 +123,7 @@ def test_a_steep_wind_is_in_the_table(wind):
     ),
 )
 def test_a_step_of_the_wind_moves_no_tip_at_once(name):
-    one, other = (SwaySimulator(TREES[name](), model=m) for m in (60, 'full'))
+    one, other = (make_simulator(TREES[name](), model=m) for m in (60, 'full'))
     moved = []
     for sim in (one, other):
         for _ in range(300):
@@ -134,8 +135,8 @@ def test_a_step_of_the_wind_moves_no_tip_at_once(name):
 
 
 def test_a_gentle_wind_from_any_elevation_is_in_the_table(fork):
-    one = SwaySimulator(fork(), model=12)
-    other = SwaySimulator(fork(), model=9)
+    one = make_simulator(fork(), model=12)
+    other = make_simulator(fork(), model=9)
     for k in range(200):
         turn = 0.05 * k
         wind = [0.1 * np.cos(turn), 0.1 * np.sin(turn), 0.6 * (-1.0) ** (k // 50)]
@@ -170,7 +171,7 @@ def test_a_storm_beyond_the_table_is_clamped_and_flings_no_tip(seed, most):
 
     All coordinates move it by 0.59, 1.9 or 7.2, 1.4 or 4.5, and 0.64 m: their last bits decide.
     """
-    sim = SwaySimulator(crooked(seed), model=60)
+    sim = make_simulator(crooked(seed), model=60)
     moved = moves(sim, 1.8 * gusty(35.0))
     assert sim.bank.oscillators.n_outside > 0
     assert sim.counts.clamped == sim.bank.oscillators.n_outside
@@ -182,20 +183,20 @@ def test_a_storm_beyond_the_table_is_clamped_and_flings_no_tip(seed, most):
 
 @pytest.mark.xfail(strict=True, reason='the table moves it by 0.66 m, all coordinates by 0.58')
 def test_a_storm_moves_no_segment_further_than_all_coordinates_do():
-    assert moves(SwaySimulator(crooked(1), model=60), 1.8 * gusty(35.0)) < 0.6
+    assert moves(make_simulator(crooked(1), model=60), 1.8 * gusty(35.0)) < 0.6
 
 
 @pytest.mark.parametrize('seed', marked([7, 11, 41, 42, 43, 44], 7, 44))
 def test_a_gale_moves_a_tree_as_all_coordinates_do(seed):
-    one, other = (SwaySimulator(crooked(seed), model=m) for m in (60, 'full'))
+    one, other = (make_simulator(crooked(seed), model=m) for m in (60, 'full'))
     assert moves(one, gusty(16.0)) < 1.3 * moves(other, gusty(16.0))
 
 
 @pytest.mark.parametrize('seed', marked([1, 2, 4, 7, 11], 1, 4))
 def test_steady_storms_find_a_tree_at_rest_from_every_azimuth(seed):
     """Where a branch flips over, too: the pose beside it is no rest, and its slopes fling it."""
-    bank = SwaySimulator(crooked(seed), model=60).bank.oscillators
-    table, law = bank.record[0], DragLaw(*SwaySimulator(crooked(seed), model=3).drag_law)
+    bank = make_simulator(crooked(seed), model=60).bank.oscillators
+    table, law = bank.record[0], DragLaw(*make_simulator(crooked(seed), model=3).drag_law)
     moments = WindMoments(bank.branches)
     still = np.zeros(len(bank.modal.shapes))
     for azimuth in range(0, N_AZIMUTHS, 2):
@@ -215,7 +216,7 @@ def test_steady_storms_find_a_tree_at_rest_from_every_azimuth(seed):
 
 
 def test_the_base_moment_is_that_of_all_coordinates():
-    one, other = (SwaySimulator(crooked(1), model=m) for m in (60, 'full'))
+    one, other = (make_simulator(crooked(1), model=m) for m in (60, 'full'))
     for wind in gusty(6.0, seconds=3.0):
         one.step(wind, DT), other.step(wind, DT)
     before = one.place()
@@ -228,13 +229,13 @@ def test_the_base_moment_is_that_of_all_coordinates():
 def test_a_step_works_on_as_much_whatever_the_size():
     sizes = set()
     for tree in (crooked(1, n_branches=20), crooked(1)):
-        bank = SwaySimulator(tree, model=60).bank.oscillators
+        bank = make_simulator(tree, model=60).bank.oscillators
         sizes.add((bank.record.nbytes, bank.time_step.nbytes, bank.instance.nbytes))
     assert len(sizes) == 1
 
 
 def test_a_step_in_one_call_is_that_of_its_parts(fork):
-    sim, parts = (SwaySimulator(fork(), model=60) for _ in range(2))
+    sim, parts = (make_simulator(fork(), model=60) for _ in range(2))
     bank = parts.bank.oscillators
     for wind in gusty(4.0)[:240]:
         assert sim.step(wind, DT) == 0
@@ -247,7 +248,7 @@ def test_a_step_in_one_call_is_that_of_its_parts(fork):
 
 @pytest.mark.parametrize('bad', [(np.nan, 0.0, 0.0), (0.0, -np.inf, 0.0), (1e3, 0.0, 0.0)])
 def test_a_step_in_one_call_keeps_the_wind_that_was(fork, bad):
-    sim, other = (SwaySimulator(fork(), model=60) for _ in range(2))
+    sim, other = (make_simulator(fork(), model=60) for _ in range(2))
     good = (3.0, -1.0, 0.2)
     assert sim.step(good, DT) == other.step(good, DT) == 0
     assert sim.step(bad, DT) == WIND_REFUSED

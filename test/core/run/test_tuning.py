@@ -9,7 +9,6 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 from tree_sway_lab.validation.truth import WOOD
 
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.run.tuning import GLIDE
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
@@ -150,7 +149,7 @@ def test_no_pose_jumps(tree, model):
     ],
 )
 def test_what_cannot_be_is_refused_and_nothing_changes(tree, changes, why):
-    sim, other = (SwaySimulator(tree, WOOD) for _ in range(2))
+    sim, other = (make_simulator(tree, WOOD) for _ in range(2))
     with pytest.raises(ParameterError, match=why):
         sim.tune(**changes)
     for _ in range(90):
@@ -161,7 +160,7 @@ def test_what_cannot_be_is_refused_and_nothing_changes(tree, changes, why):
 
 def test_weight_needs_a_tree_that_was_made_with_it(tree):
     with pytest.raises(ParameterError, match='without weight'):
-        SwaySimulator(tree, WOOD, gravity=0.0).tune(gravity=9.81)
+        make_simulator(tree, WOOD, gravity=0.0).tune(gravity=9.81)
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
+from tree_sway.core.run.simulator import RESTARTED
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
@@ -27,10 +26,10 @@ KINDS = (0, 4, 'branch', 'full', 'auto', 'forest')
 def simulator(tree, kind, **changes):
     wood = species_named('broadleaf')
     if kind == 'auto':
-        return AdaptiveSimulator(tree, wood, Settings(**changes))
+        return make_simulator(tree, wood, Settings(**(changes | {'model': 'auto'})))
     if kind == 'forest':
         return Scene([PlacedTree('one', tree), PlacedTree('two', tree, 3.0)]).simulator()
-    return SwaySimulator(tree, wood, Settings(model=kind, **changes))
+    return make_simulator(tree, wood, Settings(model=kind, **changes))
 
 
 @pytest.fixture(scope='module', params=KINDS)

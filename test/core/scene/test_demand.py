@@ -6,10 +6,9 @@ from __future__ import annotations
 
 import pytest
 
-from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.run import Run
 from tree_sway.core.tree.species import species_named
 
@@ -19,11 +18,11 @@ OAK = species_named('oak')
 @pytest.fixture(scope='module')
 def pair(fork):
     trees = fork(), fork(3)
-    return [AdaptiveSimulator(tree, OAK, Settings()) for tree in trees]
+    return [make_simulator(tree, OAK, Settings(model='auto')) for tree in trees]
 
 
 def test_each_tree_gets_its_share_of_the_budget(pair):
-    pinned = SwaySimulator(pair[0].tree, OAK)
+    pinned = make_simulator(pair[0].tree, OAK)
     set_demand([*pair, pinned], tolerance=0.01, budget=40.0)
     assert [each.budget for each in pair] == pytest.approx([10.0, 30.0])
     assert [each.tolerance for each in pair] == [0.01, 0.01]
@@ -38,7 +37,7 @@ def test_a_camera_turns_angles_into_metres(pair):
 
 
 def test_the_cost_scale_is_that_of_the_trees_that_choose_alone(pair):
-    pinned = SwaySimulator(pair[0].tree, OAK)
+    pinned = make_simulator(pair[0].tree, OAK)
     for _ in range(2):
         set_cost_scale([*pair, pinned], 1234.0)
     assert sum(each.frame_cost for each in pair) == pytest.approx(1234.0)
@@ -46,7 +45,7 @@ def test_the_cost_scale_is_that_of_the_trees_that_choose_alone(pair):
 
 
 def test_warming_up_times_the_trees_that_choose_alone(pair):
-    reads, pinned = [], SwaySimulator(pair[0].tree, OAK)
+    reads, pinned = [], make_simulator(pair[0].tree, OAK)
 
     class Both:
         simulators = (*pair, pinned)

@@ -11,8 +11,8 @@ import pytest
 from tree_sway_lab.example_trees import tapered_stem
 
 from tree_sway.core.model.settings import MODELS, Settings
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import ParameterError
 
@@ -69,9 +69,17 @@ def test_a_tree_is_used_like_a_forest_of_one(stem, model):
     assert sim.wind == pytest.approx([3.0, 1.0, 0.0])
 
 
-def test_a_simulator_of_one_number_is_not_auto(stem):
+def test_one_prepared_model_is_not_auto(stem):
     with pytest.raises(ParameterError, match=r"model 'auto' .* make it by make_simulator"):
-        SwaySimulator(stem, WOOD, model='auto')
+        prepare(stem, WOOD, model='auto')
+
+
+def test_a_prepared_model_has_its_own_settings(stem):
+    model = prepare(stem, WOOD, model=4)
+    assert make_simulator(model).model == '4'
+    for other in ({'model': 6}, {'settings': Settings()}, {'species': WOOD}):
+        with pytest.raises(ParameterError, match=r'prepared model .* prepare the tree again'):
+            make_simulator(model, **other)
 
 
 def test_the_model_is_that_of_the_settings(stem):

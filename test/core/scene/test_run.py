@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.run import LONGEST_JUMP, Run
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.wind.averaging import WindAverage
@@ -79,14 +79,14 @@ def test_each_period_is_a_step():
 def test_late_ticks_leave_no_trace_in_the_motion():
     poses = []
     for lateness in ([1] * 600, [4] * 150, [1, 7, 2, 20, 3, 5, 8, 4] * 12):
-        simulator = SwaySimulator(TREE, model='branch')
+        simulator = make_simulator(TREE, model='branch')
         made = running(simulator, timer=lambda: 0.0)  # expensive steps would be joined
         made.warm_up()
         play(made, lateness)
         poses.append(simulator.place().copy())
     np.testing.assert_array_equal(poses[0], poses[1])
     np.testing.assert_array_equal(poses[0], poses[2])
-    assert np.abs(poses[0] - SwaySimulator(TREE).place()).max() > 1e-4
+    assert np.abs(poses[0] - make_simulator(TREE).place()).max() > 1e-4
 
 
 def test_a_slow_simulator_takes_one_long_step_instead_of_a_backlog():
@@ -173,7 +173,7 @@ def test_a_request_that_fails_is_counted_and_reported_and_the_steps_continue():
 
 
 def test_warming_up_leaves_a_tree_at_rest():
-    simulator = SwaySimulator(TREE)
+    simulator = make_simulator(TREE)
     rest = simulator.place().copy()
     Run(simulator).warm_up()
     np.testing.assert_array_equal(simulator.place(), rest)
@@ -207,7 +207,7 @@ def test_a_sample_that_says_2038_holds_nothing():
 def largest_moves(seed, gate):
     """Largest move of the tip per frame [m] in and after a spike of a second, and the winds."""
     sensor, faults = AnemometerModel(6.0, rate=20.0, seed=seed), SensorFaults('spike', 15.0, 1.0)
-    simulator, tips, winds = SwaySimulator(TREE, model=12, damping_ratio=0.05), [], []
+    simulator, tips, winds = make_simulator(TREE, model=12, damping_ratio=0.05), [], []
 
     def note(end, wind):
         tips.append(simulator.tip_displacement)

@@ -11,7 +11,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.simulator import OK, SwaySimulator, WIND_REFUSED
+from tree_sway.core.run.simulator import OK, WIND_REFUSED
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
@@ -43,7 +44,7 @@ def test_one_tree_at_the_anemometer_moves_as_alone(fork):
     tree = fork()
     forest, alone = (
         swaying([PlacedTree('tree', tree)], model='branch'),
-        SwaySimulator(tree, model='branch'),
+        make_simulator(tree, model='branch'),
     )
     for wind in gusts(120):
         assert forest.step(wind, DT) == alone.step(wind, DT) == OK
@@ -72,7 +73,7 @@ def _turned_moves_as_alone(fork, yaw, x, y, model):
     tree = fork()
     one_wind = {'convection_ratio': np.inf, 'model': model}
     forest = swaying([PlacedTree('tree', tree, x=x, y=y, z=2.0, yaw=yaw)], **one_wind)
-    alone = SwaySimulator(tree, model=model)
+    alone = make_simulator(tree, model=model)
     for wind in gusts(30):
         forest.step(wind, DT)
         alone.step(turned(wind, yaw), DT)
@@ -174,7 +175,7 @@ def test_trees_in_leaf_sway_as_alone_in_leaf(fork):
         PlacedTree('as asked', tree),
     ]
     forest = swaying(trees, in_leaf=True, convection_ratio=np.inf)
-    alone = SwaySimulator(tree, in_leaf=True)
+    alone = make_simulator(tree, in_leaf=True)
     for wind in gusts(60):
         forest.step(wind, DT)
         alone.step(wind, DT)

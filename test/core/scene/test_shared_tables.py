@@ -13,9 +13,9 @@ from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import (
     LOAD_CLAMPED,
     RESTARTED,
-    SwaySimulator,
     WIND_REFUSED,
 )
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import SceneSimulator
@@ -51,13 +51,14 @@ def test_a_tree_of_a_stand_sways_as_it_does_alone(kinds):
     stand = swaying(
         [PlacedTree('a', kinds['twin']), PlacedTree('b', kinds['fork'], 4.0, 2.0, 0.5)], **EVEN
     )
-    alone = SwaySimulator(kinds['fork'], model=60)
+    alone = make_simulator(kinds['fork'], model=60)
     for wind in winds(120):
         assert stand.step(wind, DT) == 0
         alone.step(wind, DT)
     placed = stand.place()[stand.segments_of('b')]
-    assert placed[:, :3] - [4.0, 2.0, 0.5] == pytest.approx(alone.place()[:, :3], abs=1e-12)
-    assert placed[:, 3:] == pytest.approx(alone.place()[:, 3:], abs=1e-12)
+    # Rounding: without the compiler, BLAS adds the products of a batch in an order of its own.
+    assert placed[:, :3] - [4.0, 2.0, 0.5] == pytest.approx(alone.place()[:, :3], abs=1e-11)
+    assert placed[:, 3:] == pytest.approx(alone.place()[:, 3:], abs=1e-11)
 
 
 def test_a_turned_tree_in_a_turned_wind_is_the_same_tree_turned(kinds):
@@ -84,7 +85,7 @@ def test_a_turned_tree_in_a_turned_wind_is_the_same_tree_turned(kinds):
 def test_a_scaled_tree_sways_as_one_that_is_calibrated_at_its_size(kinds):
     bare = Settings(gravity=0.0)
     stand = swaying([PlacedTree('big', kinds['fork'], scale=1.8)], **vars(bare), **EVEN)
-    alone = SwaySimulator(stand.scene.trees[0].placed(), settings=bare, model=60)
+    alone = make_simulator(stand.scene.trees[0].placed(), settings=bare, model=60)
     rest = alone.place()[:, :3].copy()
     for wind in winds(240):
         stand.step(wind, DT)
@@ -136,7 +137,7 @@ def test_every_tree_has_its_own_model(kinds):
         **EVEN,
     )
     rest = stand.place()
-    alone = SwaySimulator(kinds['fork'], model='branch')
+    alone = make_simulator(kinds['fork'], model='branch')
     for wind in winds(60):
         stand.step(wind, DT)
         alone.step(wind, DT)

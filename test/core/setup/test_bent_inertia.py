@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tree_sway_lab.kinds.kinds import kind_called
 
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.bent_inertia import inertia_change, MOST_CHANGE
 from tree_sway.core.tree.segment_frame import ends_of_poses
 
@@ -35,7 +35,7 @@ def inertia(sim, shapes, at, count):
 @pytest.mark.parametrize('name', ['fork', 'crooked 8', 'limbs4'])
 def test_the_inertia_is_that_of_the_kinetic_energy(name, fork):
     tree = fork() if name == 'fork' else kind_called(name)
-    sim = SwaySimulator(tree, model='full', in_leaf=False, cache=None)
+    sim = make_simulator(tree, model='full', in_leaf=False, cache=None)
     shapes, slopes = sim.bank.oscillators.shapes, sim.bank.oscillators.inertia_slopes
     count = len(slopes)
     assert count == 12
@@ -49,7 +49,7 @@ def test_the_inertia_is_that_of_the_kinetic_energy(name, fork):
 
 
 def test_a_change_of_the_inertia_is_bounded(fork):
-    slopes = slopes_of(SwaySimulator(fork(), model=20, in_leaf=False, cache=None))
+    slopes = slopes_of(make_simulator(fork(), model=20, in_leaf=False, cache=None))
     at = np.ones(20)
     small = inertia_change(slopes, 1e-6 * at)
     np.testing.assert_allclose(small, 1e-6 * (slopes @ at[: len(slopes)]), rtol=1e-12)
@@ -57,7 +57,7 @@ def test_a_change_of_the_inertia_is_bounded(fork):
 
 
 def test_the_inertia_remains_symmetric_on_few_coordinates():
-    still = SwaySimulator(kind_called('leaning'), model=3, in_leaf=False, cache=None)
+    still = make_simulator(kind_called('leaning'), model=3, in_leaf=False, cache=None)
     slopes = slopes_of(still)
     assert slopes.shape == (3, 3, 3)
     np.testing.assert_allclose(slopes, slopes.swapaxes(0, 1), atol=1e-12 * np.abs(slopes).max())

@@ -10,11 +10,12 @@ from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 from tree_sway.core.beams.beam import cross_matrix
 from tree_sway.core.kernel import fused
+from tree_sway.core.model.fill_records import load_records
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.rotation import turned
-from tree_sway.core.run.assembly import assembled
+from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup import branch_loads
-from tree_sway.core.setup.fill_records import load_records
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import species_named
 
@@ -34,7 +35,7 @@ class Loaded:
 
     def __init__(self, tree, enrich='none'):
         chosen = Settings(model='full', enrich=enrich, gravity=0.0)
-        bank = assembled(TreeReductions(tree, species_named('broadleaf'), chosen))
+        bank = bank_of(prepare(tree, species_named('broadleaf'), chosen))
         bank.oscillators.set_step(1 / 60)
         self.tree, self.branches, self.work = tree, bank.branches, bank.oscillators.work
         self.loads = load_records(self.branches)

@@ -9,8 +9,9 @@ import pytest
 from tree_sway_lab.bench.sizes import gusts_and_turns
 from tree_sway_lab.kinds.kinds import kind_called
 
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.gust_responses import gust_slopes
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.setup.tree_motion import tip_motion
 
 DT = 1.0 / 60.0
@@ -19,12 +20,18 @@ DT = 1.0 / 60.0
 @pytest.fixture(scope='module')
 def spire():
     """Return all coordinates of a conifer whose whorls swing alike."""
-    return SwaySimulator(kind_called('spire'), model='full', damping_ratio=0.05)
+    return make_simulator(kind_called('spire'), model='full', damping_ratio=0.05)
+
+
+@pytest.fixture(scope='module')
+def reduced(spire):
+    """Return its reductions."""
+    return TreeReductions(spire.tree, spire.species, spire.settings)
 
 
 @pytest.mark.parametrize('azimuth', [0.3, 2.0])
-def test_slopes_are_those_of_the_load(spire, azimuth):
-    reductions, size = spire.reductions, 1e-3
+def test_slopes_are_those_of_the_load(reduced, azimuth):
+    reductions, size = reduced, 1e-3
     moments, shapes = reductions.wind_moments, reductions.natural_modes(20).shapes
     still, ahead = np.zeros(len(shapes)), np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
     ((load, air),) = gust_slopes(reductions.with_subtrees.branches, shapes, ahead)
@@ -38,14 +45,16 @@ def test_slopes_are_those_of_the_load(spire, azimuth):
 
 
 @pytest.mark.parametrize(('count', 'most'), [(20, 0.6), (60, 0.6)])
-def test_as_many_coordinates_hold_more_of_the_motion_than_natural_modes(spire, count, most):
+def test_as_many_coordinates_hold_more_of_the_motion_than_natural_modes(
+    spire, reduced, count, most
+):
     """What the tips of all coordinates do in turbulence, and how much of it lies in some."""
     spire.reset()
     turns = []
     for blowing in gusts_and_turns(3.0, 300, seed=7):
         spire.step(blowing, DT)
         turns.append(spire.rotations().copy())
-    turns, reductions = np.array(turns[60:]).T, spire.reductions
+    turns, reductions = np.array(turns[60:]).T, reduced
     mass, branches = reductions.with_subtrees.reduction.mass, reductions.with_subtrees.branches
 
     def left_out(shapes):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tree_sway_lab.kinds.kinds import kind_called
 
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.static_responses import WindMoments
 
 pytestmark = pytest.mark.compiled
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.compiled
 @pytest.fixture
 def bent():
     """Return the loads of a crooked tree, some of its modes, and a pose far from rest."""
-    simulator = SwaySimulator(kind_called('crooked 8'), model=12)
+    simulator = make_simulator(kind_called('crooked 8'), model=12)
     modal = simulator.bank.oscillators.modal
     load = WindMoments(modal.branches)
     rng = np.random.default_rng(2)

@@ -15,7 +15,7 @@ from tree_sway_lab.segments.articulated import ArticulatedTree
 from tree_sway.core.beams.branch_model import TreeBeams
 from tree_sway.core.beams.greenhill import greenhill_length
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup import modes as modes_module
 from tree_sway.core.setup.matrices import Factors, reduce_tree
 from tree_sway.core.setup.modes import buckling_factor, natural_modes, refuse_buckling
@@ -84,8 +84,8 @@ def test_lanczos_finds_what_the_dense_problem_has(sketch, monkeypatch):
 def test_weight_slows_an_upright_stem(stem, model, share, ratio):
     """Greenhill (1881): at these shares of the length at which it buckles."""
     tree, wood = flagpole(stem, share)
-    there = SwaySimulator(tree, wood, model=model).frequencies(1)[0]
-    without = SwaySimulator(tree, wood, model=model, gravity=0.0).frequencies(1)[0]
+    there = make_simulator(tree, wood, model=model).frequencies(1)[0]
+    without = make_simulator(tree, wood, model=model, gravity=0.0).frequencies(1)[0]
     assert there / without == pytest.approx(ratio, rel=0.03)
 
 
@@ -95,9 +95,9 @@ def test_a_stem_beyond_greenhills_length_is_refused_by_name(stem, model):
     with pytest.raises(
         TreeError, match=r"branch 'stem': buckles under its own weight.*thick"
     ) as error:
-        SwaySimulator(tree, wood, model=model)
+        make_simulator(tree, wood, model=model)
     assert '9' in error.value.what
-    assert SwaySimulator(tree, wood, model=model, gravity=0.0).frequencies(1)[0] > 0.0
+    assert make_simulator(tree, wood, model=model, gravity=0.0).frequencies(1)[0] > 0.0
 
 
 def flagpole(stem, share):
@@ -124,7 +124,7 @@ def test_a_thin_branch_that_buckles_is_the_one_that_is_named(sketch):
     drawn.add(0, 2, (1, 0, 1), 0.5, 0.02, 0.01, 2)
     drawn.add(0, 4, (0, 0.01, 1), 3.0, 0.004, 0.004, 3)
     with pytest.raises(TreeError, match="branch 'b2': buckles"):
-        SwaySimulator(drawn.tree(), model='full')
+        make_simulator(drawn.tree(), model='full')
 
 
 def test_the_cure_in_the_refusal_cures(stem):
@@ -142,7 +142,7 @@ def test_the_cure_in_the_refusal_cures(stem):
 def test_a_branch_without_mass_is_refused_by_name(stem):
     weightless = Species('air', 'air', modulus=1e9, density=0.0)
     with pytest.raises(TreeError, match="branch 'stem': massless"):
-        SwaySimulator(stem(), weightless, model='full')
+        make_simulator(stem(), weightless, model='full')
 
 
 @pytest.mark.parametrize('count', [0, -1, 3])
@@ -154,8 +154,8 @@ def test_a_count_of_modes_that_is_not_there_is_refused(stem, count):
 
 @pytest.mark.parametrize('direction', [(0, 0, 1), (1, 0, 0), (1, 2, 0.3)])
 def test_frequencies_do_not_depend_on_where_a_stem_points(stem, direction):
-    sim = SwaySimulator(stem(direction=direction), model='full', gravity=0.0)
-    upright = SwaySimulator(stem(), model='full', gravity=0.0)
+    sim = make_simulator(stem(direction=direction), model='full', gravity=0.0)
+    upright = make_simulator(stem(), model='full', gravity=0.0)
     assert sim.frequencies() == pytest.approx(upright.frequencies(), rel=1e-9)
 
 
@@ -193,7 +193,7 @@ def test_a_mass_at_the_tip_slows_a_stem_as_the_books_say(sketch):
     drawn.add(None, 0, (0, 0, 1), 1.0, 0.01, 0.01, 10)
     drawn.add(0, 10, (1, 0, 0), 0.02, 0.1, 0.1, 1)
     drawn.add(0, 10, (-1, 0, 0), 0.02, 0.1, 0.1, 1)
-    sim = SwaySimulator(drawn.tree(), model='full', gravity=0.0, enrich='all')
+    sim = make_simulator(drawn.tree(), model='full', gravity=0.0, enrich='all')
     wood = species_named('broadleaf')
     tip = 2 * wood.density * np.pi / 4 * 0.1**2 * 0.02
     own = wood.density * np.pi / 4 * 0.01**2

@@ -14,7 +14,6 @@ from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.leaves.foliage import foliage_of
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
@@ -60,7 +59,7 @@ def test_leaves_weigh_catch_and_damp(fork):
     assert leafy == replace(
         usual, in_leaf=True, leaf_mass=leafy.leaf_mass, leaf_area=leafy.leaf_area
     )
-    bare, full = (SwaySimulator(tree, settings=each) for each in (usual, leafy))
+    bare, full = (make_simulator(tree, settings=each) for each in (usual, leafy))
     assert full.mass - bare.mass == pytest.approx(foliage.mass.sum())
 
 
@@ -98,7 +97,6 @@ def test_needles_stay(key):
 
 SPRUCE = species_named('spruce')
 DOORS = {
-    'SwaySimulator': lambda tree, **how: SwaySimulator(tree, **how),
     'make_simulator': lambda tree, **how: make_simulator(tree, **how),
     'auto': lambda tree, **how: make_simulator(tree, model='auto', **how),
     'full': lambda tree, **how: make_simulator(tree, model='full', **how),
@@ -117,7 +115,7 @@ def test_an_evergreen_is_in_leaf_behind_every_door_unless_set_otherwise(door, fo
 def test_goldcrest_sways_as_slowly_as_its_leaves_make_it():
     tree = builtin_tree('goldcrest')
     leafy, bare = (
-        SwaySimulator(tree, model=1, **how).frequencies(1) for how in ({}, {'in_leaf': False})
+        make_simulator(tree, model=1, **how).frequencies(1) for how in ({}, {'in_leaf': False})
     )
     assert leafy == pytest.approx(3.49, abs=0.02)
     assert bare == pytest.approx(6.69, abs=0.02)
@@ -178,7 +176,7 @@ def test_leaves_damp():
 
 def growth_of_load(tree, settings):
     """Exponent p of the moment at the base, U^p."""
-    sim = SwaySimulator(tree, settings=replace(settings, damping_ratio=0.7))
+    sim = make_simulator(tree, settings=replace(settings, damping_ratio=0.7))
     moment = []
     for speed in SPEEDS:
         for _ in range(60):
@@ -204,7 +202,7 @@ def test_load_grows_with_the_square_of_the_wind_but_less_in_leaf(name):
 def test_the_base_moment_is_that_of_drag(stem):
     """A stem in a steady wind: pressure times area times the height of its middle."""
     tree = stem(length=2.0, base=0.05)
-    sim = SwaySimulator(tree, model='branch', damping_ratio=0.7)
+    sim = make_simulator(tree, model='branch', damping_ratio=0.7)
     for _ in range(200):
         sim.step((3.0, 0.0, 0.0), 0.1)
     pushed = 0.5 * 1.225 * 1.2 * 3.0**2 * (2.0 * 0.05)

@@ -90,9 +90,9 @@ def test_it_stands_with_its_leaves_and_without():
 
 
 def test_the_changes_are_found_again(tmp_path):
-    from tree_sway.cache.model_cache import SetUpFiles
+    from tree_sway.cache.model_cache import ModelFiles
 
-    tree, files = pole(1.2 * critical_length()), SetUpFiles(tmp_path)
+    tree, files = pole(1.2 * critical_length()), ModelFiles(tmp_path)
     first, second = (standing_tree(tree, WOOD, files) for _ in range(2))
     assert len(list(tmp_path.iterdir())) == 1
     assert (first[0].base_diameter == second[0].base_diameter).all()

@@ -15,7 +15,6 @@ from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.model.state_basis import FULL_SCALE
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.leaning_responses import leaning_responses, N_FREQUENCIES
 from tree_sway.core.setup.stream_basis import COUNTS, LEFT_OUT, principal_components
@@ -29,8 +28,8 @@ DT = 1.0 / 60.0
 @cache
 def with_basis(name):
     """Make a tree that sways, and its basis; once."""
-    sim = SwaySimulator(builtin_tree(name), model=60)
-    return sim, sim.bank.basis
+    sim = make_simulator(builtin_tree(name), model=60)
+    return sim, sim.basis
 
 
 @pytest.fixture
@@ -95,7 +94,7 @@ def test_what_is_beyond_full_scale_is_held(basis):
 
 
 def test_forces_on_tips_do_the_work_that_moments_do(fork):
-    joints = SwaySimulator(fork(), model='full', enrich='all').joints
+    joints = make_simulator(fork(), model='full', enrich='all').joints
     rng = np.random.default_rng(3)
     x = rng.normal(size=(int(joints['n_coordinates'].sum()), 4))
     forces = rng.normal(size=(len(joints), 3, 5))
@@ -127,7 +126,7 @@ def test_motions_that_are_too_many_for_a_frame_take_the_most_that_it_has():
 @pytest.mark.parametrize('model', ['branch', 'full', 'auto', 12])
 def test_the_motion_of_every_model_is_streamed(model):
     sim = make_simulator(bench_tree(), model=model)
-    gap, motion = gaps(sim, sim.bank.basis, 9.0)
+    gap, motion = gaps(sim, sim.basis, 9.0)
     assert np.sqrt(np.square(gap).mean()) < 0.01 * np.sqrt(np.square(motion).sum(axis=2).mean())
 
 
@@ -139,10 +138,12 @@ def test_a_frame_has_at_most_a_hundred_bytes(basis):
 def test_gusts_move_a_leaning_tree_as_they_do_when_it_is_stepped(what, component):
     """Small gusts of one frequency on a steady wind of 13 m/s, stepped until they repeat."""
     speed, azimuth = 13.0, 4  # of 24: 60 degrees
-    sim = SwaySimulator(bench_tree(), model=12)
+    sim = make_simulator(bench_tree(), model=12)
     bank = sim.bank.oscillators
     stiffness, damping = bank.modal.stiffness, bank.modal.damping
-    leaning = next(leaning_responses(bank.record[0], damping, sim.drag_law, (speed,)))
+    leaning = next(
+        leaning_responses(sim.prepared.arrays(), stiffness, damping, sim.drag_law, (speed,))
+    )
     slowest, fastest = np.sqrt([stiffness.min(), stiffness.max()])
     swept = np.geomspace(slowest / 1.5, 1.5 * fastest, N_FREQUENCIES)
     spectrum = np.maximum(swept, slowest) ** (-1.0 / 3.0)
@@ -169,15 +170,15 @@ def test_gusts_move_a_leaning_tree_as_they_do_when_it_is_stepped(what, component
 
 
 def test_a_tree_without_motion_has_a_basis(fork):
-    basis = SwaySimulator(fork(), model=0).bank.basis
+    basis = make_simulator(fork(), model=0).basis
     assert (basis.rotations(basis.coordinates(np.zeros(len(basis.matrix)))) == 0.0).all()
 
 
 def test_the_simulator_is_left_as_it_was(fork):
-    sim = SwaySimulator(fork(), model='branch')
+    sim = make_simulator(fork(), model='branch')
     sim.step((4.0, 1.0, 0.0), DT)
     before = sim.state().values.tobytes()
-    assert sim.bank.basis.n_coordinates > 0
+    assert sim.basis.n_coordinates > 0
     assert sim.state().values.tobytes() == before
 
 
@@ -185,9 +186,9 @@ PROGRAM = """
 import hashlib
 import numpy as np
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.run.simulator import SwaySimulator
-sim = SwaySimulator(builtin_tree("goldcrest"), model=60)
-basis = sim.bank.basis
+from tree_sway.core.scene.make import make_simulator
+sim = make_simulator(builtin_tree("goldcrest"), model=60)
+basis = sim.basis
 coordinates = np.linspace(-0.1, 0.1, basis.n_coordinates) * basis.scale
 poses = sim.place_rotations(basis.rotations(coordinates))
 print(basis.digest, hashlib.sha256(poses.tobytes()).hexdigest())

@@ -4,14 +4,14 @@
 
 from __future__ import annotations
 
-from functools import cache, partial
+from functools import cache
 
 import numpy as np
 import pytest
 
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.assembly import assembled
-from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.run import assembly
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.setup.tree_motion import branch_rotations, tip_motion
 from tree_sway.core.tree.species import species_named
 
@@ -21,7 +21,7 @@ DAMPED = Settings(gravity=0.0, damping_ratio=0.2)
 
 @pytest.fixture(scope='module')
 def bank_of(fork):
-    return cache(partial(assembled, TreeReductions(fork(), OAK, DAMPED)))
+    return cache(lambda model: assembly.bank_of(prepare(fork(), OAK, DAMPED, model=model)))
 
 
 def count(bank):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import tree_sway as sway
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.grown_tree import tree_and_species
 from tree_sway.errors import ParameterError, SpeciesError
 
@@ -19,7 +19,9 @@ WIND = np.full((3, 3), 4.0)
 SEEDLING = Path(__file__).parents[2] / 'files' / 'data' / 'seedling.yaml'
 DOORS = {
     'make_simulator': lambda tree, **options: sway.make_simulator(tree, model='branch', **options),
-    'SwaySimulator': lambda tree, **options: SwaySimulator(tree, model='branch', **options),
+    'prepare': lambda tree, **options: sway.make_simulator(
+        prepare(tree, model='branch', **options)
+    ),
     'simulate': lambda tree, **options: sway.simulate(tree, WIND, model='branch', **options),
     'Scene': lambda tree, **options: sway.Scene([sway.PlacedTree('one', tree)]).simulator(
         model='branch', **options
@@ -45,7 +47,9 @@ def test_an_opened_tree_may_be_given_as_it_is(opened, door):
     made = DOORS[door](opened)
     apart = {
         'make_simulator': lambda: sway.make_simulator(opened.tree, opened.species, model='branch'),
-        'SwaySimulator': lambda: SwaySimulator(opened.tree, opened.species, model='branch'),
+        'prepare': lambda: sway.make_simulator(
+            prepare(opened.tree, opened.species, model='branch')
+        ),
         'simulate': lambda: sway.simulate(opened, WIND, model='branch'),
         'Scene': lambda: sway.Scene(
             [sway.PlacedTree('one', opened.tree, species=opened.species)]
@@ -76,7 +80,7 @@ def test_what_are_no_settings_is_refused_everywhere(opened, door):
 
 
 def test_settings_in_the_place_of_the_species_are_refused(opened):
-    for door in (sway.make_simulator, SwaySimulator):
+    for door in (sway.make_simulator, prepare):
         with pytest.raises(ParameterError, match=r'species: a Settings, .* as settings='):
             door(opened, sway.Settings())
     with pytest.raises(ParameterError, match='species: a str, where a Species is expected'):

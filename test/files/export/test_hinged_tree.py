@@ -12,8 +12,10 @@ from scipy.sparse.linalg import eigsh, LinearOperator
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.core.model.drag_law import AIR_DENSITY
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.files.export.hinged_tree import hinged_tree, plain_names, poses_on_parents
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
 
@@ -145,6 +147,60 @@ def test_mujoco_is_stable_at_the_step_that_is_stated_and_not_at_twice_it(name):
         grown[times] = np.inf if unstable else np.abs(data.qpos).max()
     assert grown[1] < 0.5 * np.abs(begun).max()
     assert grown[2] > 1e3 * np.abs(begun).max()
+
+
+def held_moments(tree, drag_area, wind):
+    """Moment of our drag about the base of the tree at rest [N m], (3,)."""
+    axis = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()[:, :, 0]
+    across = wind - (axis @ wind)[:, None] * axis
+    speed = np.linalg.norm(across, axis=1, keepdims=True)
+    force = 0.5 * AIR_DENSITY * drag_area[:, None] * speed * across
+    return np.cross(0.5 * (tree.start + tree.end) - tree.start[0], force).sum(axis=0)
+
+
+@pytest.mark.parametrize('name', TREES)
+def test_the_wind_of_mujoco_pushes_a_held_tree_as_ours_does(name):
+    mujoco = pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
+    simulator = simulator_of(name)
+    tree, drag_area = simulator.tree, hinged_tree(simulator).drag_area
+    model = mujoco.MjModel.from_xml_string(mjcf_of_tree(simulator))
+    data = mujoco.MjData(model)
+    root = Rotation.from_quat(tree.rest_poses[0, 3:])
+    for bearing in (0.0, 1.0, 2.5, 4.0):
+        wind = 8.0 * np.array([np.cos(bearing), np.sin(bearing), 0.0])
+        model.opt.wind[:] = wind
+        mujoco.mj_forward(model, data)
+        ours = root.inv().apply(held_moments(tree, drag_area, wind))[1:]
+        gap = np.linalg.norm(data.qfrc_fluid[:2] - ours)
+        assert gap < 0.07 * np.linalg.norm(ours)
+
+
+@pytest.mark.long
+def test_the_wind_of_mujoco_sways_the_tree_as_ours_does():
+    """Mean and rms of the tip in gusts of 8 m/s, after 5 s."""
+    mujoco = pytest.importorskip('mujoco', reason='needs MuJoCo (pip install mujoco)')
+    rate, seconds = 60, 25.0
+    simulator = simulator_of('goldcrest')
+    tree = simulator.tree
+    model = mujoco.MjModel.from_xml_string(mjcf_of_tree(simulator))
+    data = mujoco.MjData(model)
+    tip = int(np.argmax(tree.start[:, 2]))
+    body = model.body(plain_names(tree)[tip]).id
+    gusts = simulate_turbulence(8.0, rate=rate, duration=seconds, rng=np.random.default_rng(3))
+    ours, theirs = [], []
+    for number, wind in enumerate(gusts):
+        simulator.step(wind, 1.0 / rate)
+        model.opt.wind[:] = wind
+        while data.time < (number + 1) / rate:
+            mujoco.mj_step(model, data)
+        ours.append(simulator.place()[tip, :3] - tree.start[tip])
+        theirs.append(data.xpos[body] - tree.start[tip])
+    ours, theirs = np.array(ours[5 * rate :]), np.array(theirs[5 * rate :])
+    mean = np.linalg.norm(theirs.mean(axis=0)) / np.linalg.norm(ours.mean(axis=0))
+    rms = np.sqrt((theirs**2).sum() / (ours**2).sum())
+    assert mean == pytest.approx(1.0, abs=0.08)
+    assert rms == pytest.approx(1.0, abs=0.08)
+    assert np.corrcoef(ours[:, 0], theirs[:, 0])[0, 1] > 0.98
 
 
 def test_sdf_has_the_elements_of_its_specification(simulator):

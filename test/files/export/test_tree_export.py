@@ -45,5 +45,5 @@ def test_a_failure_keeps_the_file_that_was_there(tmp_path, tree):
     path = tmp_path / 'tree.yaml'
     path.write_text('mine')
     with pytest.raises(SpeciesError):
-        write_tree(path, replace(tree, species='elm'))
+        write_tree(path, replace(tree, species='no such'))
     assert path.read_text() == 'mine'

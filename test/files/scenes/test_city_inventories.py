@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from tree_sway.errors import FormatError, MissingDependencyError
-from tree_sway.files.scenes.inventory.cell_number import cell_number
+from tree_sway.files.scenes.inventory.cell_number import cell_number, stems_number
 from tree_sway.files.scenes.inventory.inventory_file import inventory_table
 from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory_of
 from tree_sway.files.text_file import read_head
@@ -113,6 +113,17 @@ CITIES = {
         '0,0,oak,12,30,alive\n4,0,oak,,25,alive\n8,0,,11,,alive\n12,0,oak,,,alive\n'
         '16,0,oak,9,20,dead\n20,,oak,9,20,alive\n24,0,oak,,0,alive\n',
         [('oak', 12.0, 0.3), ('oak', None, 0.25), ('broadleaf', 11.0, None)],
+    ),
+    'young trees in inches, in whole numbers': (
+        'tree_id,tree_dbh,spc_latin,latitude,longitude\n'
+        '1,3,Acer rubrum,40.72,-73.84\n2,21,Quercus palustris,40.79,-73.81\n'
+        '3,3,Gleditsia triacanthos,40.71,-73.93\n',
+        [('red_maple', None, 0.076), ('oak', None, 0.533), ('honey_locust', None, 0.076)],
+    ),
+    'several stems, two columns of heights': (
+        'x,y,species,dbh,HEIGHT,TreeHeight\n0,0,English oak,650mm,,14 m\n'
+        '4,0,Silver birch,"320, 240",,11 m\n',
+        [('oak', 14.0, 0.65), ('birch', 11.0, 0.4)],
     ),
     'inches by height': (
         'x,y,species,height,dbh\n0,0,oak,18,12\n9,0,oak,20,13\n',
@@ -305,8 +316,19 @@ def test_spreadsheet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         ('ten', None),
         ('3 stems', None),
         ('-4', (-4.0, '')),
+        ('320, 280', None),
         ('nan', None),
     ],
 )
 def test_numbers_as_people_write_them(text: str, expected: tuple[float, str] | None) -> None:
     assert cell_number(text) == expected
+
+
+@pytest.mark.parametrize(
+    ('text', 'expected'),
+    [('30+40', (50.0, '')), ('320, 240 mm', (400.0, 'mm')), ('12,5', (12.5, '')), ('30+x', None)],
+)
+def test_several_stems_have_the_sum_of_their_sections(
+    text: str, expected: tuple[float, str] | None
+) -> None:
+    assert stems_number(text) == expected

@@ -11,7 +11,7 @@ from tree_sway_lab.segments.articulated import ArticulatedTree
 from tree_sway_lab.tip_error import record_tips, tip_error
 
 from tree_sway.core.model.drag_law import AIR_DENSITY
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import Species
 
 FRAME, DAMPING = 1.0 / 60.0, 0.05
@@ -55,12 +55,12 @@ def test_articulated_tree_is_the_same_mechanism(golden, tree, share):
 
 @pytest.mark.parametrize('model', [12, 'full'])
 def test_reduced_tree_errs_by_less_than_a_twentieth(golden, tree, model):
-    model = SwaySimulator(tree, SPECIES, model=model, damping_ratio=DAMPING, gravity=0.0)
+    model = make_simulator(tree, SPECIES, model=model, damping_ratio=DAMPING, gravity=0.0)
     assert error_of(model, tree, golden['wind'], golden['beam']) < 0.05
 
 
 def test_uncoupled_branches_are_caught(golden, tree):
-    model = SwaySimulator(tree, SPECIES, model='branch', damping_ratio=DAMPING, gravity=0.0)
+    model = make_simulator(tree, SPECIES, model='branch', damping_ratio=DAMPING, gravity=0.0)
     assert error_of(model, tree, golden['wind'], golden['beam']) > 0.5
 
 

@@ -23,7 +23,7 @@ import sys
 import numpy as np
 
 from tree_sway.core.growth.builtin import builtin_tree, BUILTIN_TREES
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
 FOLDER = Path(__file__).resolve().parent
@@ -39,7 +39,7 @@ def run(tree_name: str, model: str, seconds: int = SECONDS) -> tuple[str, np.nda
     """Return the digest of all frames of a run, and the sampled poses, (frames, segments, 7)."""
     tree = builtin_tree(tree_name)
     wind = simulate_turbulence(6.0, rate=RATE, duration=SECONDS, rng=np.random.default_rng(1))
-    sim = SwaySimulator(tree, model=model, in_leaf=False)
+    sim = make_simulator(tree, model=model, in_leaf=False)
     chosen = np.linspace(0, tree.n_segments - 1, SAMPLED).astype(int)
     digest, sampled = hashlib.blake2b(digest_size=16), []
     for count, sample in enumerate(wind[: RATE * seconds], 1):

@@ -26,6 +26,7 @@ from scipy.spatial.transform import Rotation
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import Tree
@@ -79,8 +80,8 @@ def simulators() -> list[SwaySimulator]:
     first, second = small_tree('left', 0.0), small_tree('right', 1.5)
     species = species_named(first.species)
     return [
-        SwaySimulator(first, species, SETTINGS),
-        SwaySimulator(second, species, replace(SETTINGS, enrich='stem')),
+        make_simulator(first, species, SETTINGS),
+        make_simulator(second, species, replace(SETTINGS, enrich='stem')),
     ]
 
 

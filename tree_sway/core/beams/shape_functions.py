@@ -13,7 +13,7 @@ fields: twist has no separate coordinate.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 import math
 from typing import NamedTuple
 
@@ -282,58 +282,87 @@ def _static_pair(
     return np.ascontiguousarray(pair), is_turned
 
 
-def _further(
-    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, shear_ratio: float,
-    pair: list[RotationField], n_pairs: int, n_turns: int,
-) -> list[RotationField]:  # fmt: skip
-    """Find fields beyond the static ones, orthogonal in energy, of unit slope."""
-    basis: list[Floats] = []
+class _EnergyBasis:
+    """Fields of one branch that are orthogonal in bending energy, added one by one."""
 
-    def rest_of(curvature: Floats) -> RotationField | None:
-        """Add the part of a curvature that is new to the basis, and return it."""
-        vector = _energy_vector(beam, curvature, shear_ratio)
+    def __init__(self, beam: BranchBeam, shear_ratio: float) -> None:
+        self.beam, self.shear_ratio = beam, shear_ratio
+        self.vectors: list[Floats] = []
+        """Orthonormal `_energy_vector` of each field."""
+
+    def add(self, curvature: Floats) -> RotationField | None:
+        """
+        Add the part of a curvature, (p, 5, 3), that is orthogonal to the fields before.
+
+        Returns it as a field whose largest rotation, or displacement, is 1; None where the part is
+        negligible.
+        """
+        vector = _energy_vector(self.beam, curvature, self.shear_ratio)
         whole = float(np.linalg.norm(vector))
-        for _ in range(2):
-            for other in basis:
+        for _ in range(2):  # twice, as rounding spoils the first pass of Gram and Schmidt
+            for other in self.vectors:
                 vector = vector - (other @ vector) * other
         size = float(np.linalg.norm(vector))
         if not size > _NEGLIGIBLE * whole:
             return None
-        basis.append(vector / size)
-        new = _curvature_of(beam, vector, shear_ratio)
-        slope, nodes, _ = beam.from_base(new)
-        return RotationField(beam, new / max(np.abs(slope).max(), np.abs(nodes).max()))
+        self.vectors.append(vector / size)
+        rest = _curvature_of(self.beam, vector, self.shear_ratio)
+        slope, nodes, _ = self.beam.from_base(rest)
+        return RotationField(self.beam, rest / max(np.abs(slope).max(), np.abs(nodes).max()))
 
-    for one in pair:
-        rest_of(one.curvature)
+    def add_all(self, curvatures: Iterable[Floats]) -> list[RotationField]:
+        """Add curvatures one by one; return the fields of those that are not negligible."""
+        found = (self.add(curvature) for curvature in curvatures)
+        return [field for field in found if field is not None]
+
+
+def _further(
+    beam: BranchBeam, mass: Floats, subtrees: SubtreeSums, shear_ratio: float,
+    pair: list[RotationField], n_pairs: int, n_turns: int,
+) -> list[RotationField]:  # fmt: skip
+    """
+    Find fields beyond the static ones, orthogonal in energy.
+
+    Block after block, each field is the response to the inertia of a field of the block before
+    (load-dependent Ritz vectors). The blocks begin with the static pair and, for a branch with
+    subtrees, with their rotation about its chord (None).
+    """
+
+    def responses(fields: Iterable[RotationField | None]) -> Iterator[Floats]:
+        for field in fields:
+            moment = inertial_moment(beam, mass, subtrees, field)
+            yield beam.curvature_in_space(moment[:, :, None], shear_ratio)[:, :, 0]
+
+    basis = _EnergyBasis(beam, shear_ratio)
+    basis.add_all(field.curvature for field in pair)
     found: list[RotationField] = []
-    sources: list[RotationField | None] = list(pair)
-    turning: list[RotationField | None] = [None] if len(subtrees.area) else []
+    by_pair: Sequence[RotationField] = pair
+    by_turn: Sequence[RotationField | None] = [None] if len(subtrees.area) else []
     for block in range(1, max(n_pairs, n_turns + 1)):
-        parts = (sources if block < n_pairs else []), (turning if block <= n_turns else [])
-        bent = [
-            [rest_of(beam.curvature_in_space(
-                inertial_moment(beam, mass, subtrees, one)[:, :, None], shear_ratio
-            )[:, :, 0]) for one in part]
-            for part in parts
-        ]  # fmt: skip
-        new = [[one for one in part if one is not None] for part in bent]
-        found += [*new[0], *new[1]]
-        sources, turning = [*new[0]], [*new[1]]
+        by_pair = basis.add_all(responses(by_pair)) if block < n_pairs else []
+        by_turn = basis.add_all(responses(by_turn)) if block <= n_turns else []
+        found += [*by_pair, *by_turn]
     if len(subtrees.area) > 1:
-        apart = np.moveaxis(beam.curvature_in_space(_apart(beam, subtrees), shear_ratio), 2, 0)
-        left = np.array([_energy_vector(beam, each, shear_ratio) for each in apart])
-        whole = float(np.square(left).sum())
-        for _ in range(2):
-            left -= (left @ np.array(basis).T) @ np.array(basis)
-        sizes, ways = np.linalg.svd(left, full_matrices=False)[1:]
-        missed = np.cumsum(np.square(sizes[::-1]))[::-1]
         most = max(_MOST_IN_ALL - len(pair) - len(found), _MOST_APART)
-        wanted = ways[missed > _LEFT_APART * whole][:most]
-        for way in wanted:
-            field = rest_of(_curvature_of(beam, way, shear_ratio))
-            found += [] if field is None else [field]
+        found += basis.add_all(_missed_apart(basis, subtrees, most))
     return found
+
+
+def _missed_apart(basis: _EnergyBasis, subtrees: SubtreeSums, most: int) -> Iterator[Floats]:
+    """Yield the curvatures by which limbs in antiphase bend the branch most beyond a basis."""
+    beam, shear_ratio = basis.beam, basis.shear_ratio
+    curvatures = beam.curvature_in_space(_apart(beam, subtrees), shear_ratio)
+    cases = np.moveaxis(curvatures, 2, 0)
+    missed = np.array([_energy_vector(beam, each, shear_ratio) for each in cases])
+    whole = float(np.square(missed).sum())
+    vectors = np.array(basis.vectors)
+    for _ in range(2):
+        missed -= (missed @ vectors.T) @ vectors
+    sizes, directions = np.linalg.svd(missed, full_matrices=False)[1:]
+    # Energy that is still missed if this direction and all weaker ones are left out.
+    left_out = np.cumsum(np.square(sizes[::-1]))[::-1]
+    for direction in directions[left_out > _LEFT_APART * whole][:most]:
+        yield _curvature_of(beam, direction, shear_ratio)
 
 
 def _apart(beam: BranchBeam, subtrees: SubtreeSums) -> Floats:

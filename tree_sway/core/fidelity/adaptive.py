@@ -30,16 +30,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import three_numbers
 from tree_sway.core.fidelity.estimate import dialled, ErrorEstimator, Estimate
-from tree_sway.core.model.settings import Settings, settings_with, USUAL
+from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.model.tree_state import TreeState
 from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.tree.grown_tree import GrownTree
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import ClimateTracker, WindClimate
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
@@ -80,8 +76,8 @@ class AdaptiveSimulator(SwaySimulator):
 
     Parameters
     ----------
-    tree, species, settings, cache
-        Arguments of `SwaySimulator`; the model of the settings does not matter.
+    prepared
+        Model of the tree on all coordinates that may be shown, such as `USUAL`.
     tolerance
         Largest error of the tips in [m], root mean square over time and tips.
     budget
@@ -94,17 +90,14 @@ class AdaptiveSimulator(SwaySimulator):
 
     def __init__(
         self,
-        tree: Tree | GrownTree,
-        species: Species | None = None,
-        settings: Settings | None = None,
+        prepared: SwayModel,
         *,
         tolerance: float = 0.005,
         budget: float = 0.0,
-        cache: SetUpFiles | None = SET_UPS,
+        plain: bool = False,
     ) -> None:
         """Make the tree on all coordinates, and choose for the expected wind."""
-        chosen = replace(settings_with(settings, {}), model=USUAL)
-        super().__init__(tree, species, chosen, cache=cache)
+        super().__init__(prepared, plain=plain)
         self._estimator = ErrorEstimator(self.tree, self.bank, self.drag_law)
         self.tolerance, self.budget = tolerance, budget
         self.cost_scale = 1.0

@@ -163,35 +163,42 @@ class ErrorEstimator:
     def estimates(self, climate: WindClimate) -> list[Estimate]:
         """Estimate every number of coordinates in a wind, the fewest first."""
         per_square = pressure(climate.speed, *self._law)
-        mean = climate.mean
-        # A wind that reverses has no mean direction: the root mean square counts.
-        squares, ways = np.linalg.eigh(np.outer(mean, mean) + climate.covariance)
-        steady = math.sqrt(max(squares[-1], 0.0)) * ways[:, -1]
+        steady, upward = _steady_wind(climate)
         bearing = int(np.rint(np.arctan2(steady[1], steady[0]) / _APART)) % len(_AXES)
-        axes = _AXES[bearing]
-        # The air damps at least as in a wind of the next lower of a few speeds.
-        slow = 2.0 ** math.floor(math.log2(climate.speed)) if climate.speed >= 1.0 else 0.0
-        grams = self._grams(slow, bearing)
-        power = axes @ climate.power(self._frequencies) @ axes.T
-        swings = np.maximum(grams @ power.ravel(), 0.0)
-        power[0] += np.outer(axes @ mean, axes @ mean)
-        squares = np.maximum(grams @ power.ravel(), 0.0)
+        swings, squares = self._tip_squares(climate, bearing)
         swing, offset = per_square * np.sqrt([swings[0], squares[0]])
-        turn, soft = self._largest_turns(self._loads[bearing] @ axes @ (per_square * steady))
+        load = self._loads[bearing] @ _AXES[bearing] @ (per_square * steady)
+        turn, soft = self._largest_turns(load)
         gusts = 1.0 + 2.0 * swing / max(offset, 1e-12)
         turn, soft = gusts * turn, gusts * soft
-        upward = abs(ways[2, -1])
-        share = FLOOR + TURN * turn**2 / (1.0 + MOST_TURN * turn**2) + SOFT * soft
-        share += (LIFT_FLOOR + LIFT * turn) * upward
+        nonlinear = FLOOR + TURN * turn**2 / (1.0 + MOST_TURN * turn**2) + SOFT * soft
+        nonlinear += (LIFT_FLOOR + LIFT * turn) * upward
         # A branch that rotates far yields to the wind, and moves no farther than its length.
         per_square /= math.sqrt(1.0 + turn**2 / 9.0)
         swing, offset = per_square * np.sqrt([swings[0], squares[0]])
-        beyond = min(share, _MOST) * offset
+        beyond = min(nonlinear, _MOST) * offset
         found = []
         for k, square, cost in zip(self.dial, squares, self._costs, strict=True):
             missed = MARGIN * per_square * math.sqrt(square) if k < self.dial[-1] else 0.0
-            found.append(Estimate(k, math.hypot(missed, beyond), float(swing), cost, float(turn)))
+            error = math.hypot(missed, beyond)
+            found.append(Estimate(k, error, float(swing), cost, float(turn)))
         return found
+
+    def _tip_squares(self, climate: WindClimate, bearing: int) -> tuple[Floats, Floats]:
+        """
+        Find the mean square motion of the tips by the coordinates left out, by number, (k,).
+
+        First the motion about the mean, then from rest; per squared `drag.pressure`.
+        """
+        axes = _AXES[bearing]
+        # Damped by the air at least as in a wind of the next lower of a few speeds.
+        slow = 2.0 ** math.floor(math.log2(climate.speed)) if climate.speed >= 1.0 else 0.0
+        grams = self._grams(slow, bearing)
+        power = axes @ climate.power(self._frequencies) @ axes.T
+        about_mean = np.maximum(grams @ power.ravel(), 0.0)
+        power[0] += np.outer(axes @ climate.mean, axes @ climate.mean)
+        from_rest = np.maximum(grams @ power.ravel(), 0.0)
+        return about_mean, from_rest
 
     def _largest_turns(self, load: Floats) -> tuple[float, float]:
         """Find the largest turn from rest [rad] under steady modal loads, and that by weight."""
@@ -213,6 +220,18 @@ class ErrorEstimator:
             moved = self._inner[k:, k:] @ left if left.size else left
             found.append(np.einsum('fmi,fmj->fij', left.conj(), moved).real.ravel())
         return np.stack(found)
+
+
+def _steady_wind(climate: WindClimate) -> tuple[Floats, float]:
+    """
+    Return a steady wind of the strength and axis of a climate, and how far the axis is vertical.
+
+    It is along the largest principal axis of the second moments, with their root mean square: a
+    wind that reverses has no mean direction.
+    """
+    second_moments = np.outer(climate.mean, climate.mean) + climate.covariance
+    squares, axes = np.linalg.eigh(second_moments)
+    return math.sqrt(max(squares[-1], 0.0)) * axes[:, -1], abs(float(axes[2, -1]))
 
 
 def dialled(bank: Bank) -> Dialled:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.model.records import table_layout
+from tree_sway.core.model.sway_model import SwayModel
 
 LEFT_OUT = 1e-2
 """
@@ -46,26 +47,21 @@ _QUANTISED = 12.0**-0.5
 
 
 def exported_table(
-    record: Records, damping: Floats
+    model: SwayModel, damping: Floats
 ) -> tuple[dict[str, float], dict[str, NDArray[Any]]]:
     """
-    Return numbers by name, and arrays of float32 and int16, of a table (1,) and its damping (m,).
+    Return numbers by name, and arrays of float32 and int16, of a model and its damping (m,).
 
-    Beside the `PLAIN` fields of m coordinates, as `table_layout` lists them, there are
-    ``own_damping`` (m,) and of each field of `SLOPES` its ``_rows`` and ``_shapes``.
+    Beside the `PLAIN` arrays of the model there are ``own_damping`` (m,), and of each one of
+    `SLOPES` its ``_rows`` and ``_shapes``.
     """
-    table, m = record[0], len(damping)
-    numbers = {name: float(table[name]) for name in NUMBERS}
-    width = len(table['stiffness'])
-    arrays = {
-        name: np.asarray(table[name][..., :m] if table[name].shape[-1] == width else table[name])
-        for name in PLAIN
-    }
-    arrays = {name: rounded(array, _ROUNDED.get(name, 0)) for name, array in arrays.items()}
+    numbers = {name: float(getattr(model, name)) for name in NUMBERS}
+    arrays = {name: rounded(getattr(model, name), _ROUNDED.get(name, 0)) for name in PLAIN}
     arrays['own_damping'] = damping.astype(np.float32)
+    m = len(damping)
     root = np.sqrt(arrays['stiffness'].astype(np.float64))
     for name in SLOPES:
-        slopes = table[name][..., :m, :m] / (root[:, None] * root)
+        slopes = getattr(model, name) / (root[:, None] * root)
         arrays[f'{name}_rows'], arrays[f'{name}_shapes'] = _factors(slopes.reshape(-1, m * m))
     return numbers, arrays
 

@@ -14,7 +14,6 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Records, Singles
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
 from tree_sway.core.model.drag_law import DragLaw
-from tree_sway.core.model.state_basis import StateBasis
 
 if TYPE_CHECKING:
     from tree_sway.core.run.branchwise import Tunable
@@ -26,7 +25,6 @@ class Oscillators(Protocol):
     n_outside: int
     """Steps outside of its table, if it has one."""
     branches: Records
-    work: Records
     shapes: Floats
     """Key rotations per unit of each coordinate, (N, m)."""
 
@@ -88,14 +86,7 @@ class Bank:
     segments: Records
     blocks: Records
     mass: float
-    find_basis: Callable[[], StateBasis]
-    """Find the basis in which the motion is streamed; no state is read or changed."""
     plain: bool = bool(WHY_PLAIN)
-
-    @cached_property
-    def basis(self) -> StateBasis:
-        """Return the basis in which the motion is streamed."""
-        return self.find_basis()
 
     @cached_property
     def bases(self) -> Floats:

@@ -23,52 +23,32 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.model.records import Instances, Table, Tables, TimeSteps
 from tree_sway.core.model.spherical_harmonics import fill_harmonics
+from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.numpy_table import harmonics, Views, views_of
-from tree_sway.core.setup.load_table import fit_harmonics
 from tree_sway.core.setup.numpy_branch_loads import into_slots
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.setup.static_responses import WindMoments
-from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.crown_wind import crown_delays, CrownDelays, CrownWind, N_DELAYS
-
-
-def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
-    """Assign delays to the branches of a tree, with leaves equivalent to areas (b,) of wood."""
-    first = tree.branch_first[:-1]
-    area = tree.length * 0.5 * (tree.base_diameter + tree.tip_diameter)
-    middle = 0.5 * (tree.start + tree.end) * area[:, None]
-    wood = np.add.reduceat(area, first)
-    centre = np.add.reduceat(middle, first, axis=0) / np.maximum(wood, 1e-12)[:, None]
-    return crown_delays(tree.branch_parent, centre, wood + leaf_area)
+from tree_sway.core.wind.crown_wind import CrownWind
 
 
 class CrownGusts:
     """The wind of a crown, and the model that is advanced in it."""
 
-    def __init__(self, reductions: TreeReductions, oscillators: Any) -> None:
+    def __init__(self, model: SwayModel, oscillators: Any, *, plain: bool = False) -> None:
         """Start without wind."""
-        settings = reductions.settings
-        whole = delays_of(reductions.tree, reductions.leaf_load_area)
-        pieces = reductions.reduced(settings.model).branch
-        self._delays = delays = whole._replace(of_branch=whole.of_branch[pieces])
-        self.wind = CrownWind(delays.spread, settings.crown_coherence)
+        self._delay, self._share = model.limb_delay, model.limb_share
+        self.wind = CrownWind(float(model.limb_spread[0]), model.settings.crown_coherence)
         self._oscillators = oscillators
         self._add_gusts: Callable[..., None] = add_gusts
         if oscillators.loads is None:
-            moments, shapes = [], oscillators.modal.shapes
-            for delay in range(N_DELAYS):
-                limbs = reductions.with_subtrees.branches.copy()
-                limbs['area'][delays.of_branch != delay] = 0.0
-                moments.append(fit_harmonics(WindMoments(limbs), shapes)[0])
+            moments = model.limb_harmonics
             arrays: tuple[NDArray[Any], ...] = (
-                oscillators.record, oscillators.time_step, oscillators.instance, np.array(moments),
+                oscillators.record, oscillators.time_step, oscillators.instance, moments,
                 self.wind.record['apart'][0], np.zeros((3, max(moments[0].shape))),
             )  # fmt: skip
-            if reductions.plain:
+            if plain:
                 table, time_step, instance = (views_of(records) for records in arrays[:3])
-                by_delay, apart = np.array(moments), self.wind.record['apart'][0]
+                apart = self.wind.record['apart'][0]
                 self._add_gusts = partial(
-                    add_gusts_in_numpy, table, time_step, instance, by_delay, apart
+                    add_gusts_in_numpy, table, time_step, instance, moments, apart
                 )
             else:
                 self._add_gusts = partial(entry_of(add_gusts, *arrays, *[0.0] * 7), *arrays)
@@ -77,9 +57,9 @@ class CrownGusts:
         """Advance a step of dt [s] in a mean wind [m/s]; the result is that of the model."""
         apart, oscillators = self.wind.push(x, y, z, dt), self._oscillators
         if oscillators.loads is not None:
-            into_slots(apart[self._delays.of_branch], oscillators.loads['gust'])
+            into_slots(apart[self._delay], oscillators.loads['gust'])
             return int(oscillators.advance(x, y, z, per_speed_squared))
-        ax, ay, az = (self._delays.share @ apart).tolist()
+        ax, ay, az = (self._share @ apart).tolist()
         outcome = int(oscillators.advance(x + ax, y + ay, z + az, per_speed_squared))
         self._add_gusts(x, y, z, ax, ay, az, per_speed_squared)
         return outcome

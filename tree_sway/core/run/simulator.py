@@ -6,13 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 import math
 from typing import Any, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.checks import (
     array_to_fill,
@@ -22,15 +22,12 @@ from tree_sway.core.checks import (
     within,
 )
 from tree_sway.core.model.drag_law import pressure
-from tree_sway.core.model.settings import Settings, settings_with
+from tree_sway.core.model.state_basis import StateBasis
+from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.model.tree_state import digest_of, TreeState
-from tree_sway.core.run.assembly import assembled
+from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.run.bank import Bank
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.species import Species
-from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import ParameterError, StateError
 
@@ -73,31 +70,14 @@ class SwaySimulator:
 
     Parameters
     ----------
-    tree
-        Tree, with or without its species.
-    species
-        Species for wood, damping and drag; the tree's own if None.
-    settings
-        Settings, on any model but ``auto``; `make_simulator` makes that too.
-    cache
-        Cache of set-ups, on disk by default; no cache if None.
+    prepared
+        Model of the tree, as `prepare` makes it; `make_simulator` does both.
     plain
         Whether to run in numpy, as where numba is missing.
-    **changes
-        Fields of the settings, as keywords: ``SwaySimulator(tree, model="branch")``.
-
-    Raises
-    ------
-    ParameterError
-        A setting out of its range.
-    SpeciesError
-        An unknown species.
-    TreeError
-        A tree that buckles under its own weight.
 
     Examples
     --------
-    >>> sim = SwaySimulator(tree, model="branch")
+    >>> sim = SwaySimulator(prepare(tree, model="branch"))
     >>> for wind in record:
     ...     sim.step(wind, 1 / 60)
     ...     poses = sim.place()
@@ -107,36 +87,28 @@ class SwaySimulator:
     gusts: GustHistory | None = None
     """No gusts travel within a tree."""
 
-    def __init__(
-        self,
-        tree: Tree | GrownTree,
-        species: Species | None = None,
-        settings: Settings | None = None,
-        *,
-        cache: SetUpFiles | None = SET_UPS,
-        plain: bool = False,
-        **changes: Any,
-    ) -> None:
-        """Reduce the tree; the first step only compiles."""
-        self.tree, self.species = tree, species = tree_and_species(tree, species)
-        chosen = settings_with(settings, changes)
-        self.reductions = TreeReductions(tree, species, chosen, plain=plain)
-        self.settings = self.reductions.settings
+    def __init__(self, prepared: SwayModel, *, plain: bool = False) -> None:
+        """Lay the model out; the first step only compiles."""
+        self.prepared = prepared
+        self.tree = tree = prepared.tree
+        self.species, self.settings = prepared.species, prepared.settings
         self.counts = Counts()
-        self.bank: Bank = assembled(self.reductions, cache=cache)
-        self.mass = self.bank.mass
+        self.bank: Bank = bank_of(prepared, plain=plain)
+        self.mass = prepared.mass
         """Mass of wood and leaves in [kg]."""
         self.joints: Records = self.bank.branches
         """Records of `Branch`, whose coordinates are the key rotations, (b,)."""
-        self.drag_law = self.reductions.drag_law
+        self.drag_law = prepared.drag_law
         self._advance = self.bank.oscillators.advance
         self._in_one_call: Callable[[float, float, float], int] | None = None
         self._max_wind = self.settings.max_wind
         self._gusts: CrownGusts | None = None
-        if self.settings.crown_coherence < 1.0:
+        if prepared.has_limbs:
             from tree_sway.core.run import crown_gusts
 
-            self._gusts = crown_gusts.CrownGusts(self.reductions, self.bank.oscillators)
+            self._gusts = crown_gusts.CrownGusts(
+                prepared, self.bank.oscillators, plain=self.bank.plain
+            )
         self._tuning: LiveTuning | None = None
         self.touch: Touch | None = None
         """Pushes, until their effect is gone."""
@@ -158,6 +130,15 @@ class SwaySimulator:
     def model(self) -> str:
         """Model in use: its name, or its number of coordinates."""
         return str(self.settings.model)
+
+    @cached_property
+    def basis(self) -> StateBasis:
+        """Return the basis in which the motion is streamed; no state is read or changed."""
+        if not self.prepared.is_isolated:
+            return self.prepared.basis
+        from tree_sway.core.setup.uncoupled_responses import basis_of_isolated
+
+        return basis_of_isolated(self.prepared, self.joints)
 
     @property
     def simulators(self) -> tuple[SwaySimulator, ...]:
@@ -181,7 +162,7 @@ class SwaySimulator:
             tunable = self.bank.oscillators.tunable
             circular = np.sort(np.sqrt(tunable.stiffness / tunable.inertia))[:count]
             return np.asarray(circular / (2.0 * np.pi))
-        return self.reductions.natural_frequencies(count)
+        return self.prepared.natural_frequencies[:count]
 
     def digest(self) -> str:
         """Digest of tree, species, settings and tuning."""
@@ -454,7 +435,7 @@ class SwaySimulator:
         from tree_sway.core.run.tuning import LiveTuning
 
         if self._tuning is None:
-            tunable, ratio = self.bank.oscillators.tunable, self.reductions.damping_ratio
+            tunable, ratio = self.bank.oscillators.tunable, self.prepared.damping_ratio
             self._tuning = LiveTuning(tunable, self.settings, ratio)
         return self._tuning.changed(**changes)
 

@@ -4,24 +4,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
-from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
-from tree_sway.core.model.settings import Settings, settings_with
+from tree_sway.core.model.model_cache import ModelCache, PREPARED
+from tree_sway.core.model.settings import Settings, settings_with, USUAL
+from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.setup.prepare import prepared
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import ParameterError
 
 
 def make_simulator(
-    tree: Tree | GrownTree,
+    tree: Tree | GrownTree | SwayModel,
     species: Species | None = None,
     settings: Settings | None = None,
     *,
     tolerance: float = 0.005,
     budget: float = 0.0,
-    cache: SetUpFiles | None = SET_UPS,
+    cache: ModelCache | None = PREPARED,
+    plain: bool = False,
     **changes: Any,
 ) -> SwaySimulator:
     """
@@ -29,15 +35,21 @@ def make_simulator(
 
     Parameters
     ----------
-    tree, species, settings
-        Arguments of `SwaySimulator`, for any model.
+    tree
+        Tree, with or without its species; or its prepared model, which has its own settings.
+    species
+        Species for wood, damping and drag; the tree's own if None.
+    settings
+        Settings, for any model.
     tolerance
         Largest error of the tips in [m] for ``auto``.
     budget
         Largest cost of a frame in [us] for ``auto``, with priority over the tolerance; 0 for no
         limit.
     cache
-        Where set-ups are written and found again, on disk if left out; nowhere if None.
+        Where prepared models are found again; nowhere if None.
+    plain
+        Whether to run in numpy, as where numba is missing.
     **changes
         Fields of the settings.
 
@@ -49,11 +61,34 @@ def make_simulator(
         A tree that buckles under its own weight.
 
     """
-    chosen = settings_with(settings, changes)
+    if isinstance(tree, SwayModel):
+        if species is not None or settings is not None or changes:
+            what = 'a prepared model with another species or other settings'
+            raise ParameterError(what, where=tree.tree.name, cure='prepare the tree again')
+        return SwaySimulator(tree, plain=plain)
     bare, wood = tree_and_species(tree, species)
-    if chosen.model == 'auto':
-        from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
+    chosen = settings_with(settings, changes)
+    how = {'tolerance': tolerance, 'budget': budget} if chosen.model == 'auto' else {}
+    reductions = TreeReductions(bare, wood, solved(chosen), plain=plain)
+    return simulator_of(reductions, cache=cache, **how)
 
-        asked = {'tolerance': tolerance, 'budget': budget}
-        return AdaptiveSimulator(bare, wood, chosen, **asked, cache=cache)
-    return SwaySimulator(bare, wood, chosen, cache=cache)
+
+def solved(settings: Settings) -> Settings:
+    """Return the settings of the model that is solved: ``auto`` chooses among `USUAL`."""
+    return replace(settings, model=USUAL) if settings.model == 'auto' else settings
+
+
+def simulator_of(
+    reductions: TreeReductions, *, cache: ModelCache | None = None, **auto: float
+) -> SwaySimulator:
+    """
+    Make a simulator of a tree whose reductions are needed otherwise too.
+
+    With the tolerance and the budget of ``auto``, it chooses its coordinates.
+    """
+    model = prepared(reductions, cache=cache)
+    if not auto:
+        return SwaySimulator(model, plain=reductions.plain)
+    from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
+
+    return AdaptiveSimulator(model, plain=reductions.plain, **auto)

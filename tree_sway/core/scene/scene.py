@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
 from tree_sway.core.leaves.foliage import foliage_of, joined_clusters, leaf_clusters, LeafClusters
+from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_tree import Kind
@@ -126,7 +126,7 @@ class Scene(PlacedTrees):
         settings: Settings | None = None,
         *,
         tolerance: float = 0.005,
-        cache: SetUpFiles | None = SET_UPS,
+        cache: ModelCache | None = PREPARED,
         progress: Callable[[int], object] = lambda done: None,
         **changes: Any,
     ) -> Simulator:

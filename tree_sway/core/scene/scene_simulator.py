@@ -21,10 +21,10 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import array_to_fill, array_to_read, refuse_time_step, three_numbers
 from tree_sway.core.kernel import WHY_PLAIN
+from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.records import instance_layout, time_step_layout, zeros_in_lines
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.clamp_watch import ClampWatch, fewer
@@ -50,6 +50,7 @@ from tree_sway.core.run.tuning import Tuning
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.placed_trees import PlacedTrees
 from tree_sway.core.scene.placement_records import own_steps, placement_records
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.gust_travel import GustHistory
@@ -93,7 +94,7 @@ class SceneSimulator:
         settings: Settings,
         *,
         tolerance: float = 0.005,
-        cache: SetUpFiles | None = SET_UPS,
+        cache: ModelCache | None = PREPARED,
         progress: Callable[[int], object] = lambda done: None,
     ) -> None:
         """Make a table for every kind that needs one, and a simulator for every other tree."""
@@ -112,7 +113,7 @@ class SceneSimulator:
             with inside(self.names[those[0]]):
                 tree, species, _ = scene.kinds[k]
                 chosen = replace(scene.kinds[k].settings(settings), model=most)
-                self._models.append(SwaySimulator(tree, species, chosen, cache=cache))
+                self._models.append(SwaySimulator(prepare(tree, species, chosen, cache=cache)))
             progress(len(self._models))
         self._banks: list[WindBasisBank] = [_oscillators(model) for model in self._models]
         places = [(each.x, each.y, each.z, each.yaw, each.scale) for each in trees]

@@ -9,21 +9,23 @@ from copy import deepcopy
 from dataclasses import replace
 import itertools
 import operator
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
-from tree_sway.core.model.settings import Settings
+from tree_sway.core.model.model_cache import ModelCache, PREPARED
+from tree_sway.core.model.settings import Settings, settings_with
+from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.run.simulator import Counts, SwaySimulator
-from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.make import simulator_of, solved
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.sway_record import SwayRecord
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.strength.strength_use import StrengthGauge, StrengthUse
-from tree_sway.core.tree.grown_tree import GrownTree
+from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.tree import tips_of_poses, Tree
 from tree_sway.core.wind.averaging import LONGEST_HOLD, WindAverage
 from tree_sway.core.wind.gate import WindGate
@@ -35,6 +37,21 @@ from tree_sway.errors import ParameterError
 
 _CHUNK = 4096
 """Number of samples of a record that are plain numbers at a time."""
+
+
+class PlacedMotion(NamedTuple):
+    """
+    Record of a motion sensor, and its place as `place_on` takes it.
+
+    Times are in [s] after the start of the wind, (n,); quantities those of `ObservedTree.replay`.
+    """
+
+    name: str
+    at: str | float
+    time: Floats
+    acceleration: Floats | None = None
+    rate: Floats | None = None
+    orientation: Floats | None = None
 
 
 @runtime_checkable
@@ -58,6 +75,7 @@ def simulate(
     seconds: float | None = None,
     branches: Sequence[int] | None = None,
     settings: Settings | None = None,
+    motion: Sequence[PlacedMotion] = (),
     **changes: Any,
 ) -> SwayRecord:
     """
@@ -78,6 +96,9 @@ def simulate(
         Branches whose tips are recorded; the one with the highest tip if None.
     settings, **changes
         Settings, as for `make_simulator`.
+    motion
+        Records of motion sensors on the real tree, which the motion then follows
+        (`ObservedTree`).
 
     Returns
     -------
@@ -93,7 +114,7 @@ def simulate(
         A tree that buckles.
 
     """
-    rig = Rig(tree, settings, **changes)
+    rig = Rig(tree, settings, motion=motion, **changes)
     return rig.run(wind, rate=rate, seconds=seconds, branches=branches)
 
 
@@ -101,11 +122,27 @@ class Rig:
     """A tree set up once for several simulations from rest, as by `simulate`."""
 
     def __init__(
-        self, tree: Tree | GrownTree, settings: Settings | None = None, **changes: Any
+        self,
+        tree: Tree | GrownTree,
+        settings: Settings | None = None,
+        motion: Sequence[PlacedMotion] = (),
+        *,
+        tolerance: float = 0.005,
+        cache: ModelCache | None = PREPARED,
+        **changes: Any,
     ) -> None:
         """Reduce the tree, once for the simulator and for its strain."""
-        self.simulator = make_simulator(tree, settings=settings, **changes)
-        self.tree, self.reductions = self.simulator.tree, self.simulator.reductions
+        bare, species = tree_and_species(tree)
+        chosen = settings_with(settings, changes)
+        self.tree, self.reductions = bare, TreeReductions(bare, species, solved(chosen))
+        self.motion = motion
+        self.simulator: SwaySimulator
+        if motion:
+            places = {each.name: each.at for each in motion}
+            self.simulator = ObservedTree(tree, settings=chosen, at=places, cache=cache)
+        else:
+            auto = {'tolerance': tolerance} if chosen.model == 'auto' else {}
+            self.simulator = simulator_of(self.reductions, cache=cache, **auto)
 
     def run(
         self,
@@ -117,6 +154,16 @@ class Rig:
     ) -> SwayRecord:
         """Sway the tree in a wind from rest, as `simulate`."""
         tree, simulator, chosen = self.tree, self.simulator, _chosen(self.tree, branches)
+        if isinstance(simulator, ObservedTree):
+            simulator.set_rate(rate)
+            for each in self.motion:
+                simulator.replay(
+                    each.name,
+                    each.time,
+                    acceleration=each.acceleration,
+                    rate=each.rate,
+                    orientation=each.orientation,
+                )
         simulator.reset()
         before = replace(simulator.counts)
         gauge, per_rotation = StrengthGauge(self.reductions), moment_per_rotation(self.reductions)
@@ -142,7 +189,7 @@ class Rig:
             tree.name, simulator.model, np.arange(1, count + 1) / rate, means, chosen,
             tuple(tree.branch_names[branch] for branch in chosen), tips, moment,
             per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1), strain, gauge.use(),
-            _doubts(simulator, before),
+            (*_doubts(simulator, before), *_said_by_sensors(simulator)),
         )  # fmt: skip
 
     def strength_curve(
@@ -173,6 +220,28 @@ class Rig:
             )  # fmt: skip
             used.append(self.run(wind).strength)
         return used
+
+
+def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
+    """Report which sensors moved the tree, and what they told, one sentence each."""
+    if not isinstance(simulator, ObservedTree):
+        return ()
+    found = list(simulator.problems)
+    for track in simulator.observer.tracks:
+        counts = track.sensor.counts
+        if track.in_use:
+            noted = '; '.join(track.alignment.notes) if track.alignment else ''
+            found.append(
+                f'{track.sensor.name}: {counts.accepted} samples followed, {counts.refused} '
+                f'refused{"; " + noted if noted else ""}'
+            )
+    if (fit := simulator.observer.fit) is not None:
+        found.append(
+            f'the tree is {fit.stiffness:.3g} times as stiff as the model, within '
+            f'{100.0 * fit.stiffness_error:.0f} %, its damping {fit.damping:.2g} times, within '
+            f'{100.0 * fit.damping_error:.0f} %'
+        )
+    return tuple(found)
 
 
 def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:

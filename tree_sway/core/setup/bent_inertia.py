@@ -14,7 +14,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.beams.beam import cross
-from tree_sway.core.setup.fill_records import Places
+from tree_sway.core.model.fill_records import Places
 from tree_sway.core.setup.tree_motion import levels_of, sum_outward
 from tree_sway.core.tree.tree import Tree
 

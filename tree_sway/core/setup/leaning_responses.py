@@ -18,7 +18,7 @@ frequency f, constant below the slowest coordinate.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,7 +58,11 @@ class Leaning(NamedTuple):
 
 
 def leaning_responses(
-    table: Any, damping: Floats, law: DragLaw, speeds: tuple[float, ...]
+    table: Mapping[str, Any],
+    stiffness: Floats,
+    damping: Floats,
+    law: DragLaw,
+    speeds: tuple[float, ...],
 ) -> Iterator[Leaning]:
     """
     Find the responses at the equilibria of some of the `SPEEDS` of a table.
@@ -66,9 +70,9 @@ def leaning_responses(
     Parameters
     ----------
     table
-        Record of `table_layout`.
-    damping
-        Damping of each coordinate in [1/s], (m,).
+        Arrays of a `SwayModel` of the group table.
+    stiffness, damping
+        Stiffness of each coordinate in [1/s^2] and its damping in [1/s], (m,).
     law
         Drag law of the tree.
     speeds
@@ -76,7 +80,6 @@ def leaning_responses(
 
     """
     m = len(damping)
-    stiffness = table['stiffness'][:m]
     slowest = float(np.sqrt(stiffness.min()))
     fastest = float(np.sqrt(stiffness.max()))
     swept = np.geomspace(slowest / _BEYOND, _BEYOND * fastest, N_FREQUENCIES)
@@ -89,12 +92,12 @@ def leaning_responses(
         level, per_speed = SPEEDS.index(speed), pressure(speed, *law)
         dynamic_pressure = per_speed * speed**2
         growth = _growth(speed, law)
-        poses = table['equilibrium'][:, level, :m]
+        poses = table['equilibrium'][:, level]
         turned = _by_azimuth(poses)
         gusts = np.zeros((N_AZIMUTHS, N_FREQUENCIES, m, 3), dtype=np.complex128)
         for azimuth, pose in enumerate(poses):
-            slopes = table['turning'][azimuth, level, :m, :m].T.astype(np.float64)
-            by_rates = table['damping'][azimuth, level, :m, :m].T.astype(np.float64)
+            slopes = table['turning'][azimuth, level].T.astype(np.float64)
+            by_rates = table['damping'][azimuth, level].T.astype(np.float64)
             springs = np.diag(stiffness) - dynamic_pressure * slopes
             dampers = np.diag(damping) - per_speed * speed * by_rates
             along, across = growth * stiffness * pose, springs @ turned[azimuth]
@@ -120,9 +123,9 @@ def _by_azimuth(poses: Floats) -> Floats:
     return np.asarray(np.fft.irfft(1j * order[:, None] * waves, len(poses), axis=0))
 
 
-def _by_elevation(table: Any, azimuth: int, pose: Floats) -> Floats:
+def _by_elevation(table: Mapping[str, Any], azimuth: int, pose: Floats) -> Floats:
     """Differentiate the load at a pose (m,) per dynamic pressure by the elevation [rad]."""
-    m, angle = len(pose), 2.0 * np.pi * azimuth / N_AZIMUTHS
+    angle = 2.0 * np.pi * azimuth / N_AZIMUTHS
     up, down = harmonics_at(direction([angle, angle], [_TURN, -_TURN]))
-    at_rest = (up - down) / (2.0 * _TURN) @ table['harmonics'][:, :m]
-    return np.asarray(at_rest + pose @ table['lean'][azimuth, :m, :m])
+    at_rest = (up - down) / (2.0 * _TURN) @ table['harmonics']
+    return np.asarray(at_rest + pose @ table['lean'][azimuth])

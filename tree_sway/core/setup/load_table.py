@@ -22,8 +22,7 @@ blended with those of vertical winds.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,7 +31,9 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.model.drag_law import DragLaw, pressure
 from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS, table_layout
 from tree_sway.core.model.spherical_harmonics import fill_harmonics, N_HARMONICS
+from tree_sway.core.model.table_record import arrays_of_record
 from tree_sway.core.setup.bent_inertia import inertia_change
+from tree_sway.core.setup.modal_arrays import Coordinates
 from tree_sway.core.setup.static_responses import WindMoments
 
 SPEEDS = (0.0, 3.0, 8.0, 13.0, 20.0, 36.0, 65.0)
@@ -60,18 +61,12 @@ _LARGE = 2000
 """Branches of a tree above which fewer azimuths suffice."""
 
 
-class Coordinates(Protocol):
-    """Coordinates of a tree that a table loads."""
-
-    shapes: Floats
-    """Key rotations per unit of each coordinate, (N, m)."""
-    stiffness: Floats
-    damping: Floats
-    inertia_slopes: Floats
-
-    @property
-    def mean_square_motion(self) -> Floats:
-        """Mean square motion of the loaded pieces, per unit of each coordinate, (m,)."""
+def load_table(
+    coordinates: Coordinates, wind_moments: WindMoments, drag_law: DragLaw
+) -> dict[str, Any]:
+    """Find the arrays and numbers of the table of a `SwayModel`."""
+    record = WindBasisTable(coordinates, wind_moments, drag_law).record
+    return arrays_of_record(record[0], len(coordinates.stiffness))
 
 
 class WindBasisTable:
@@ -81,7 +76,7 @@ class WindBasisTable:
     Parameters
     ----------
     bank
-        Bank of the coordinates of the tree.
+        Coordinates of the tree.
     wind_moments
         Loads of the tree.
     drag_law
@@ -93,13 +88,6 @@ class WindBasisTable:
         Record of `table_layout`, (1,).
 
     """
-
-    @classmethod
-    def of_arrays(cls, stored: Mapping[str, Any]) -> WindBasisTable:
-        """Return the table whose ``record`` is among stored arrays."""
-        made = object.__new__(cls)
-        made.record = stored['table']
-        return made
 
     def __init__(self, bank: Coordinates, wind_moments: WindMoments, drag_law: DragLaw) -> None:
         """Find the loads of the tree in all winds."""

@@ -135,49 +135,75 @@ def reduce_tree(
         Mass, gravity and stiffness.
 
     """
-    n_branches = tree.n_branches
-    first = np.concatenate([[0], np.cumsum([len(m.fields) for m in models])]).astype(np.int64)
-    momentum = np.zeros((first[-1], 6))
-    twist = np.zeros((n_branches, MAX_COORDINATES, 6))
-    body = np.zeros((n_branches, 6, 6))
-    compliance = np.zeros((first[-1], MAX_COORDINATES))
-    mass, weight, elastic, apart = _Blocks(), _Blocks(), _Blocks(), _Blocks()
+    assembly = _Assembly(tree, models, gravity)
     for branches, model in _together(models):
-        own = first[branches][..., None] + np.arange(len(model.fields))
-        fields = np.stack([one.points for one in model.fields], axis=-4)
-        moved = (model.mass * model.beam.weight)[..., None, :, :, None] * fields
-        slopes = np.stack([one.slope for one in model.fields], axis=-4)
-        spins = _spins(model, slopes)
-        own_mass = products(moved, fields, 3) + products(spins, slopes, 3)
-        turning = cross(model.beam.point[..., None, :, :, :], moved) + spins
-        momentum[own] = np.concatenate([moved, turning], axis=-1).sum(axis=(-3, -2))
-        children = model.children
-        own_weight = gravity * _own_geometric(model, body[children])
-        base_twists = _base_twists(model)
-        if len(children):
-            twist[children, : len(model.fields)] = base_twists
-        if len(children) and subtrees:
-            carried = base_twists @ body[children]
-            own_mass += (carried @ base_twists.swapaxes(-1, -2)).sum(axis=0)
-            momentum[own] += carried.sum(axis=0)
-            ends = first[tree.subtree_end[children]]
-            below = np.arange(first[children[0]], ends[-1])
-            moves = base_twists.repeat(ends - first[children], axis=0)
-            lift = momentum[below]
-            mass.add(own, below, (moves @ lift[..., None])[..., 0].T)
-            tilt = moves[:, :, 3] * lift[:, 1:2] - moves[:, :, 4] * lift[:, :1]
-            weight.add(own, below, gravity * tilt.T)
-        mass.add(own, own, own_mass)
-        weight.add(own, own, own_weight)
+        assembly.add(branches, model, modulus, shear_modulus, moves_subtrees=subtrees)
+    return assembly.reduction()
+
+
+class _Assembly:
+    """
+    Sums over the branches of a tree, children before their parents.
+
+    Row `own` of the matrices are the coordinates of a branch, `below` those of its subtrees.
+    """
+
+    def __init__(self, tree: Tree, models: list[BranchModel], gravity: float) -> None:
+        self.tree, self.gravity = tree, gravity
+        counts = [len(model.fields) for model in models]
+        self.first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        size = int(self.first[-1])
+        self.momentum = np.zeros((size, 6))
+        """Momentum H of each branch with its subtrees per unit rate of each coordinate."""
+        self.twist = np.zeros((tree.n_branches, MAX_COORDINATES, 6))
+        self.inertia = np.zeros((tree.n_branches, 6, 6))
+        """Inertia of each branch with its subtrees as a rigid body about the root."""
+        self.compliance = np.zeros((size, MAX_COORDINATES))
+        self.mass, self.weight, self.elastic, self.branchwise = (_Blocks() for _ in range(4))
+
+    def add(
+        self, branches: int | Ints, model: BranchModel, modulus: float, shear_modulus: float,
+        *, moves_subtrees: bool,
+    ) -> None:  # fmt: skip
+        """Add a branch, or several twigs that are alike."""
+        own = self.first[branches][..., None] + np.arange(len(model.fields))
+        own_mass, self.momentum[own] = _own_inertia(model)
+        bodies = self.inertia[model.children]
+        own_weight = self.gravity * _own_geometric(model, bodies)
+        if len(model.children):
+            base_twists = _base_twists(model)
+            self.twist[model.children, : len(model.fields)] = base_twists
+            if moves_subtrees:
+                carried = base_twists @ bodies
+                own_mass += (carried @ base_twists.swapaxes(-1, -2)).sum(axis=0)
+                self.momentum[own] += carried.sum(axis=0)
+                self._couple(own, model.children, base_twists)
+        self.mass.add(own, own, own_mass)
+        self.weight.add(own, own, own_weight)
         bent = energies(model.fields, modulus, shear_modulus)
-        elastic.add(own, own, bent)
-        apart.add(own, own, bent + own_weight)
-        compliance[own, : len(model.fields)] = np.linalg.inv(bent + own_weight)
-        if subtrees:
-            body[branches] = _spatial_inertia(model) + body[children].sum(axis=0)
-    shape = (int(first[-1]), int(first[-1]))
-    matrices = (each.symmetric(shape) for each in (mass, weight, elastic, apart))
-    return Reduction(first, twist, compliance, *matrices)
+        self.elastic.add(own, own, bent)
+        self.branchwise.add(own, own, bent + own_weight)
+        self.compliance[own, : len(model.fields)] = np.linalg.inv(bent + own_weight)
+        if moves_subtrees:
+            self.inertia[branches] = _spatial_inertia(model) + bodies.sum(axis=0)
+
+    def _couple(self, own: Ints, children: Ints, base_twists: Floats) -> None:
+        """Couple a branch with all coordinates of its subtrees, M_ij and Kg_ij of the module."""
+        ends = self.first[self.tree.subtree_end[children]]
+        below = np.arange(self.first[children[0]], ends[-1])
+        twists = base_twists.repeat(ends - self.first[children], axis=0)
+        momentum = self.momentum[below]
+        self.mass.add(own, below, (twists @ momentum[..., None])[..., 0].T)
+        # e_z . (w x p)
+        lift = twists[:, :, 3] * momentum[:, 1:2] - twists[:, :, 4] * momentum[:, :1]
+        self.weight.add(own, below, self.gravity * lift.T)
+
+    def reduction(self) -> Reduction:
+        """Return the matrices."""
+        size = int(self.first[-1])
+        blocks = self.mass, self.weight, self.elastic, self.branchwise
+        matrices = (each.symmetric((size, size)) for each in blocks)
+        return Reduction(self.first, self.twist, self.compliance, *matrices)
 
 
 class _Blocks:
@@ -233,6 +259,17 @@ def _base_twists(model: BranchModel) -> Floats:
     return np.stack(parts, axis=-2)
 
 
+def _own_inertia(model: BranchModel) -> tuple[Floats, Floats]:
+    """Mass matrix (k, k) of a branch without its subtrees, and its momentum about the root."""
+    fields = np.stack([field.points for field in model.fields], axis=-4)
+    slopes = np.stack([field.slope for field in model.fields], axis=-4)
+    momentum = (model.mass * model.beam.weight)[..., None, :, :, None] * fields
+    spins = _spins(model, slopes)
+    own_mass = products(momentum, fields, 3) + products(spins, slopes, 3)
+    angular = cross(model.beam.point[..., None, :, :, :], momentum) + spins
+    return own_mass, np.concatenate([momentum, angular], axis=-1).sum(axis=(-3, -2))
+
+
 def _spins(model: BranchModel, slopes: Floats) -> Floats:
     """Spin of cross-sections that rotate by slopes, (..., k, p, 5, 3) both (Rayleigh, 1877)."""
     beam = model.beam
@@ -264,27 +301,50 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     lateral buckling of beams: Timoshenko & Gere, 1961).
     """
     beam = model.beam
-    own, nodes, _ = beam.from_base(model.mass)
-    masses = bodies[:, 0, 0]
-    moment = np.stack([bodies[:, 5, 1], bodies[:, 3, 2], bodies[:, 4, 0]], axis=-1)
-    hanging = moment - masses[:, None] * beam.child_point
-    beyond = nodes[..., -1:, None] - own
-    if len(masses):
-        beyond = beyond + beam.child_lever[1] @ masses
-    lever = beyond[..., None] * beam.tangent[..., None, :]
-    outer = beam.from_base(lever)
-    hung = outer[1][..., -1:, None, :] - outer[0]
-    if len(masses):
-        hung += beam.child_lever[1] @ hanging
-    weight, shape = beam.weight[..., None], (*beam.chord.shape[:-1], -1, 3)
-    arms = np.concatenate([(weight * lever).reshape(shape), hanging], axis=-2)[..., None, :, :]
+    weight = beam.weight[..., None]
+    masses, hanging = _hanging(bodies, beam.child_point)
+    beyond, hung = _mass_beyond(model, masses, hanging)
+
+    # Arms: first moment of the mass beyond each point by length, then of each child's subtree.
+    shape = (*beam.chord.shape[:-1], -1, 3)
+    lever = weight * (beyond[..., None] * beam.tangent[..., None, :])
+    arms = np.concatenate([lever.reshape(shape), hanging], axis=-2)[..., None, :, :]
     turns = np.stack(
-        [np.concatenate([f.slope.reshape(shape), f.child_slope], axis=-2) for f in model.fields],
+        [
+            np.concatenate([field.slope.reshape(shape), field.child_slope], axis=-2)
+            for field in model.fields
+        ],
         axis=-3,
     )
-    once = turns[..., 2] @ (turns * arms).sum(axis=-1).swapaxes(-1, -2)
-    both = products(turns * arms[..., 2:], turns, 2)
-    borne = weight * np.stack([hung[..., 1], -hung[..., 0], 0.0 * hung[..., 0]], axis=-1)
-    about = np.stack([cross(borne, one.slope) for one in model.fields], axis=-4)
-    once += products(about, np.stack([one.curvature for one in model.fields], axis=-4), 3)
-    return np.asarray(0.5 * (once + once.swapaxes(-1, -2)) - both)
+    # e_z . (rho_i x (rho_j x a)) = rho_iz (rho_j . a) - a_z (rho_i . rho_j)
+    along = turns[..., 2] @ (turns * arms).sum(axis=-1).swapaxes(-1, -2)
+    vertical = products(turns * arms[..., 2:], turns, 2)
+
+    # The moment that the branch bears at rest, e_z x hung, works on half of rho x d rho.
+    level = np.zeros_like(hung[..., 0])
+    borne = weight * np.stack([hung[..., 1], -hung[..., 0], level], axis=-1)
+    about = np.stack([cross(borne, field.slope) for field in model.fields], axis=-4)
+    curvatures = np.stack([field.curvature for field in model.fields], axis=-4)
+    along += products(about, curvatures, 3)
+    return np.asarray(0.5 * (along + along.swapaxes(-1, -2)) - vertical)
+
+
+def _hanging(bodies: Floats, places: Floats) -> tuple[Floats, Floats]:
+    """Mass of each child's subtree, (c,), and its first moment about its base, (c, 3)."""
+    masses = bodies[:, 0, 0]
+    about_root = np.stack([bodies[:, 5, 1], bodies[:, 3, 2], bodies[:, 4, 0]], axis=-1)
+    return masses, about_root - masses[:, None] * places
+
+
+def _mass_beyond(model: BranchModel, masses: Floats, hanging: Floats) -> tuple[Floats, Floats]:
+    """Mass beyond each point, (p, 5), and its first moment about that point, (p, 5, 3)."""
+    beam = model.beam
+    before, nodes, _ = beam.from_base(model.mass)
+    beyond = nodes[..., -1:, None] - before
+    if len(masses):
+        beyond = beyond + beam.child_lever[1] @ masses
+    arm, arm_nodes, _ = beam.from_base(beyond[..., None] * beam.tangent[..., None, :])
+    hung = arm_nodes[..., -1:, None, :] - arm
+    if len(masses):
+        hung += beam.child_lever[1] @ hanging
+    return beyond, hung

@@ -1,8 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays of the modes of a tree, by which they are stepped and placed."""
+"""Coordinates of a tree, and the arrays by which they are stepped and placed."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,13 +14,45 @@ from tree_sway.core.setup.modes import Modes
 from tree_sway.core.setup.tree_motion import centre_motion
 
 
+@dataclass(frozen=True)
+class Coordinates:
+    """
+    Coordinates of a tree that a table loads.
+
+    Parameters
+    ----------
+    shapes
+        Key rotations per unit of each coordinate, (N, m).
+    stiffness, damping
+        Stiffness in [1/s^2] and damping by the wood in [1/s], (m,).
+    inertia_slopes
+        Change of the inertia of the leading coordinates, (q, q, q), as `inertia_slopes`.
+    participation
+        Mean square motion of the load centre of each branch per unit of each, (b, m).
+    area
+        Drag area of each branch in [m^2], (b,).
+
+    """
+
+    shapes: Floats
+    stiffness: Floats
+    damping: Floats
+    inertia_slopes: Floats
+    participation: Floats
+    area: Floats
+
+    @property
+    def mean_square_motion(self) -> Floats:
+        """Mean square motion of the loaded pieces, per unit of each coordinate, (m,)."""
+        total = max(float(self.area.sum()), 1e-300)
+        return np.asarray(2.0 * self.area @ self.participation / total)
+
+
 def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[str, Floats]:
-    """Find the arrays of a `ModalBank`, which can be stored."""
+    """Find what is known of coordinates beside their shapes and frequencies."""
     # One mode after the other, so that loops over coordinates are vectorised.
     shapes = np.ascontiguousarray(modes.shapes.T)
     return {
-        'circular': modes.circular,
-        'shapes': shapes,
         'diagonal': np.asarray(reduction.stiffness.diagonal()),
         'weight': np.einsum('im,im->m', shapes.T, reduction.gravity @ shapes.T),
         'momentum': reduction.mass @ modes.shapes,

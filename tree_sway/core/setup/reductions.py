@@ -21,8 +21,9 @@ from tree_sway.core.beams.cutting import cut_tree, CutTree, pieces_by_turn, whol
 from tree_sway.core.checks import one_of_each
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.drag_law import crown_drag, DragLaw, pressure
+from tree_sway.core.model.fill_records import Places
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.fill_records import branch_records, Places, places_of, segment_records
+from tree_sway.core.setup.branch_records import branch_records, places_of
 from tree_sway.core.setup.matrices import reduce_tree, Reduction
 from tree_sway.core.setup.modes import leading_modes, Modes, natural_modes, solvable
 from tree_sway.core.setup.one_thread import one_thread
@@ -78,7 +79,6 @@ class ReducedTree:
     models: list[BranchModel]
     reduction: Reduction
     branches: Records
-    segments: Records
     places: Places
     mass: Floats
 
@@ -103,8 +103,8 @@ class TreeReductions:
         Law of the whole tree; equivalent area of bare wood of the leaves of each branch in [m^2],
         (b,).
         """
-        self.circular = np.zeros(0)
-        """Lowest known natural circular frequencies in [rad/s]."""
+        self.frequencies = np.zeros(0)
+        """Lowest known natural frequencies in [Hz]."""
         self._slowest: Modes | None = None
 
     @property
@@ -121,14 +121,14 @@ class TreeReductions:
             with solvable(self.tree):
                 reduced = self.with_subtrees
                 self._slowest = natural_modes(reduced.tree, reduced.reduction, count)
-            self.circular = self._slowest.circular
+            self.frequencies = self._slowest.frequencies
         return self._slowest.slowest(wanted)
 
     def natural_frequencies(self, count: int) -> Floats:
         """Lowest natural frequencies in [Hz], (count,) or fewer."""
-        if count > len(self.circular):
+        if count > len(self.frequencies):
             self.natural_modes(min(count, self.with_subtrees.reduction.n_coordinates))
-        return np.asarray(self.circular[:count] / (2.0 * np.pi))
+        return self.frequencies[:count]
 
     def modes(self, model: int | str) -> Modes:
         """Return all modes, or the leading ones in winds."""
@@ -249,10 +249,7 @@ class TreeReductions:
         mass = np.concatenate([
             model.beam.over_segments(model.mass) * model.beam.segment_length for model in models
         ])  # fmt: skip
-        segments = segment_records(places)
-        return ReducedTree(
-            tree, cut.branch, cut.row, models, reduction, records, segments, places, mass
-        )
+        return ReducedTree(tree, cut.branch, cut.row, models, reduction, records, places, mass)
 
 
 def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:

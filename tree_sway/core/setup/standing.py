@@ -20,8 +20,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tree_sway.cache.model_cache import SET_UPS, SetUpFiles
 from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.setup.modes import buckling_modes, solvable
@@ -83,7 +83,7 @@ class Thickening:
 
 
 def standing_tree(
-    tree: Tree, species: Species, cache: SetUpFiles | None = SET_UPS
+    tree: Tree, species: Species, cache: ModelCache | None = PREPARED
 ) -> tuple[Tree, Thickening | None]:
     """
     Thicken the limbs of a tree that cannot carry themselves.
@@ -95,7 +95,7 @@ def standing_tree(
     species
         Its wood and its leaves.
     cache
-        Where the result is written and found again, on disk if left out; nowhere if None.
+        Where the result is written and found again; nowhere if None.
 
     Returns
     -------

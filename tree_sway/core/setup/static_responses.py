@@ -18,9 +18,9 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.kernel import entry_of, WHY_PLAIN
+from tree_sway.core.model.fill_records import load_records
 from tree_sway.core.model.records import WORK
 from tree_sway.core.setup.branch_loads import wind_moments
-from tree_sway.core.setup.fill_records import load_records
 from tree_sway.core.setup.load_derivatives import LoadSlopes
 from tree_sway.core.setup.numpy_branch_loads import into_slots, NumpyPasses
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
@@ -61,14 +61,19 @@ class WindMoments:
         self._in_numpy(x, v, wind, moments)
         return moments
 
+    def forces(self, x: Floats, v: Floats, wind: Floats) -> Floats:
+        """Find the forces on the branches, (b, 3), by a wind as in a call, in the tree's frame."""
+        self(x, v, wind)
+        return np.asarray(self._records[1]['force'])
+
     def _in_numpy(self, x: Floats, v: Floats, wind: Floats, moments: Floats) -> None:
         """Write the moments, and in the records what `LoadSlopes` reads, as the kernel does."""
         passes, n = self._passes, len(self.branches)
         angles, rates = passes.per_branch(x), passes.per_branch(v)
         bases = passes.outward(angles, rates)
         force = passes.wind_forces(bases, angles, rates, wind, 1.0, np.zeros(n), np.zeros((n, 3)))
-        passes.bent_loads(bases, angles, force, moments)
         _, work, loads = self._records
+        work['force'] = passes.bent_loads(bases, angles, force, moments)
         for name in ('orientation', 'rotation', 'displacement', 'arm'):
             work[name] = getattr(bases, name)
         work['wrench'] = passes.wrench

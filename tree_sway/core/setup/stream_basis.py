@@ -73,8 +73,7 @@ def stream_arrays(
     Returns
     -------
     dict
-        ``stream_shapes`` R, (m, k); ``stream_projection`` P, (k, m); ``stream_scale``, the value
-        at full scale of each, (k,); ``stream_error``, the largest error of a tip in [m], (1,).
+        Arrays of a `SwayModel` of the group stream: R, (m, k), P, (k, m), and the rest.
 
     """
     moved = _moved(branches, shapes)
@@ -86,11 +85,17 @@ def stream_arrays(
     scale = MARGIN * np.maximum(reach, _LEAST_SCALE * _size(branches))
     poses = _gusty_poses(found[REACH])
     missed = poses - basis @ rounded((projection @ poses).T, scale).T
+    error = _largest_error(branches, shapes @ missed)
+    return arrays_of_stream(StateBasis(basis, projection, scale, error))
+
+
+def arrays_of_stream(basis: StateBasis) -> dict[str, Floats]:
+    """Return a basis of coordinates as the arrays of a `SwayModel`."""
     return {
-        'stream_shapes': basis,
-        'stream_projection': projection,
-        'stream_scale': scale,
-        'stream_error': _largest_error(branches, shapes @ missed),
+        'stream_shapes': basis.matrix,
+        'stream_projection': basis.projection,
+        'stream_scale': basis.scale,
+        'stream_error': np.array([basis.error]),
     }
 
 
@@ -118,7 +123,7 @@ def basis_of_responses(branches: Records, responses: Floats, greatest: Floats) -
     reach = np.abs(projection @ greatest).max(axis=1, initial=0.0)
     scale = MARGIN * np.maximum(reach, _LEAST_SCALE * _size(branches))
     missed = greatest - basis @ rounded((projection @ greatest).T, scale).T
-    return StateBasis(basis, projection, scale, float(_largest_error(branches, missed)[0]))
+    return StateBasis(basis, projection, scale, _largest_error(branches, missed))
 
 
 def principal_components(inner: Floats, motions: Floats) -> tuple[Floats, Floats]:
@@ -199,7 +204,7 @@ def _gusty_poses(response: Leaning) -> Floats:
     return np.asarray((response.poses + np.sqrt(2.0) * turned).reshape(-1, m).T)
 
 
-def _largest_error(branches: Records, missed: Floats) -> Floats:
-    """Find the largest motion of a tip by rotations (N, p) that are left out, in [m], (1,)."""
+def _largest_error(branches: Records, missed: Floats) -> float:
+    """Find the largest motion of a tip by rotations (N, p) that are left out, in [m]."""
     moved = tip_motion(branches, missed)
-    return np.sqrt(np.square(moved).sum(axis=1).max(initial=0.0, keepdims=True)).ravel()
+    return float(np.sqrt(np.square(moved).sum(axis=1).max(initial=0.0)))

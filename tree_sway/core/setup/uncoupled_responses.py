@@ -8,9 +8,13 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
 from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.state_basis import StateBasis
+from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.numpy_rotation import two_axis_moment, within_guard
 from tree_sway.core.setup.gust_responses import drag_slopes
 from tree_sway.core.setup.numpy_branch_loads import Bases, NumpyPasses
+from tree_sway.core.setup.one_thread import one_thread
+from tree_sway.core.setup.stream_basis import basis_of_responses
 
 _SPEEDS = (3.0, 9.0, 20.0, 36.0)
 _AZIMUTHS = np.arange(16) * np.pi / 8.0
@@ -24,6 +28,14 @@ _COUNT, _BEYOND = 10, 1.5
 
 _STEADY = 4.0
 """Weight of steady over gust responses, root mean square, as in `stream_basis`."""
+
+
+@one_thread()
+def basis_of_isolated(model: SwayModel, branches: Records) -> StateBasis:
+    """Find the basis in which the motion of isolated branches is streamed."""
+    oscillators = model.inertia, model.own_damping, model.stiffness
+    responses = uncoupled_responses(branches, *oscillators, model.drag_law)
+    return basis_of_responses(branches, *responses)
 
 
 def uncoupled_responses(

@@ -62,27 +62,19 @@ def tree_from_segments(
         that does not exist, a cycle, more than one root, a branch that is not a chain.
 
     """
-    starts, ends, diameters = (
-        _numbers(name, each)
-        for name, each in (('start', start), ('end', end), ('diameter', diameter))
-    )
+    starts, ends = _numbers('start', start), _numbers('end', end)
+    diameters = _numbers('diameter', diameter)
     if diameters.ndim == 1:
         diameters = np.stack([diameters, diameters], axis=1)
     n = len(starts)
     called = labels if labels is not None else [f'segment {index}' for index in range(n)]
     _check_geometry(starts, ends, diameters, called)
-    given = None if parent is None else _integers(parent, n, 'parent')
-    parents = _parents_by_nodes(starts, ends) if given is None else given
+    if parent is None:
+        parents = _parents_by_nodes(starts, ends)
+    else:
+        parents = _integers(parent, n, 'parent')
     depth_order = checked_order(parents, called)
-    for second in np.flatnonzero(parents == -1)[1:2]:
-        first = int(np.argmax(parents == -1))
-        raise TreeError(
-            f'{np.count_nonzero(parents == -1)} roots: a forest of trees that are not connected, '
-            'or orphans',
-            where=called[second],
-            cure=f'give it a parent, as only {called[first]} may be the root, or make '
-            'each tree its own',
-        )
+    _refuse_further_roots(parents, called)
     if branch is None:
         continuations = _continuations(starts, ends, diameters, parents, depth_order)
         keys = chain_starts(parents, continuations)
@@ -90,29 +82,59 @@ def tree_from_segments(
         keys = _integers(branch, n, 'branch')
     chains = _chains(keys, parents, depth_order, called)
     ordered = _depth_first(chains, parents)
-    if branch_names is None:
-        names = ['stem', *(f'b{number}' for number in range(1, len(chains)))]
-    elif len(branch_names) != len(chains):
-        raise TreeError(f'{len(branch_names)} branch names for {len(chains)} branches')
-    else:
-        names = [branch_names[number] for number in ordered]
-
-    order = np.concatenate([chains[number] for number in ordered])
-    position = np.empty(n, dtype=np.int64)
-    position[order] = np.arange(n)
-    segment_parent = np.where(parents[order] < 0, -1, position[parents[order]])
-    counts = [len(chains[number]) for number in ordered]
-    branch_first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-    owner = np.repeat(np.arange(len(ordered)), counts)
-    base_parent = segment_parent[branch_first[:-1]]
-    branch_parent = np.where(base_parent < 0, -1, owner[base_parent]).astype(np.int64)
+    names = _names(branch_names, ordered)
+    chains = [chains[number] for number in ordered]
+    order = np.concatenate(chains).astype(np.int64)
+    segment_parent = _renumbered(parents, order)
+    branch_first = np.concatenate([[0], np.cumsum([len(chain) for chain in chains])])
+    branch_parent = _branch_parent(segment_parent, branch_first)
     return Tree(
-        start=starts[order], end=ends[order], base_diameter=diameters[order, 0],
-        tip_diameter=diameters[order, 1], segment_parent=segment_parent.astype(np.int64),
-        branch_first=branch_first, branch_parent=branch_parent,
-        subtree_end=_subtree_end(branch_parent), source_index=order.astype(np.int64),
-        branch_names=tuple(names), name=name, species=species,
-    )  # fmt: skip
+        start=starts[order],
+        end=ends[order],
+        base_diameter=diameters[order, 0],
+        tip_diameter=diameters[order, 1],
+        segment_parent=segment_parent,
+        branch_first=branch_first.astype(np.int64),
+        branch_parent=branch_parent,
+        subtree_end=_subtree_end(branch_parent),
+        source_index=order,
+        branch_names=names,
+        name=name,
+        species=species,
+    )
+
+
+def _refuse_further_roots(parents: Ints, labels: Sequence[str]) -> None:
+    roots = np.flatnonzero(parents == -1)
+    if len(roots) > 1:
+        raise TreeError(
+            f'{len(roots)} roots: a forest of trees that are not connected, or orphans',
+            where=labels[roots[1]],
+            cure=f'give it a parent, as only {labels[roots[0]]} may be the root, or make '
+            'each tree its own',
+        )
+
+
+def _names(given: Sequence[str] | None, ordered: Sequence[int]) -> tuple[str, ...]:
+    """Return the names of the branches, whose numbers by key are in depth-first order."""
+    if given is None:
+        return ('stem', *(f'b{number}' for number in range(1, len(ordered))))
+    if len(given) != len(ordered):
+        raise TreeError(f'{len(given)} branch names for {len(ordered)} branches')
+    return tuple(given[number] for number in ordered)
+
+
+def _renumbered(parents: Ints, order: Ints) -> Ints:
+    """Return the parents of segments in a new order, by their new numbers."""
+    position = np.empty(len(order), dtype=np.int64)
+    position[order] = np.arange(len(order))
+    return np.where(parents[order] < 0, -1, position[parents[order]]).astype(np.int64)
+
+
+def _branch_parent(segment_parent: Ints, branch_first: Ints) -> Ints:
+    branch_of_segment = np.repeat(np.arange(len(branch_first) - 1), np.diff(branch_first))
+    on = segment_parent[branch_first[:-1]]
+    return np.where(on < 0, -1, branch_of_segment[on]).astype(np.int64)
 
 
 def _numbers(what: str, values: ArrayLike) -> Floats:
@@ -145,7 +167,7 @@ def _check_geometry(
         raise TreeError(what, where=labels[index], cure='remove the segment or move its end')
     for index in np.flatnonzero((diameters <= 0.0).any(axis=1))[:1]:
         what = f'diameter {diameters[index].tolist()} m is not positive'
-        cure = 'give a diameter above 0; a pointed tip may be .0001'
+        cure = 'give a diameter above 0; a pointed tip may have 0.0001 m'
         raise TreeError(what, where=labels[index], cure=cure)
 
 
@@ -172,7 +194,7 @@ def _parents_by_nodes(starts: Floats, ends: Floats) -> Ints:
     from scipy.spatial import cKDTree  # it takes long to load, and most files name parents
 
     extent = float(np.ptp(np.vstack([starts, ends]), axis=0).max())
-    # Two are searched, as the end nearest to the start of a very short root is its own.
+    # Two neighbours, since the end nearest to the start of a very short root is its own.
     distance, index = cKDTree(ends).query(starts, k=2, distance_upper_bound=1e-4 * extent)
     distance[index == np.arange(len(starts))[:, None]] = np.inf
     nearest = np.argmin(distance, axis=1)[:, None]

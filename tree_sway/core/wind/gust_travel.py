@@ -99,6 +99,9 @@ class GustHistory:
         """Odd while the history is written."""
         self._mean = np.zeros(3)
         self._wanted = np.zeros(len(points))
+        self._first = 0.0
+        """Delay from the origin to the place that the mean wind reaches first, at most 0 [s]."""
+        self._origin = np.array(origin)[:2]
         self.delay = np.zeros(len(points))
         """Delay of the wind at each place in [s], (t,)."""
         self._winds = np.zeros((len(points), 3))
@@ -124,11 +127,10 @@ class GustHistory:
         remember(self._run, self._at, self._finest, x, y, z, dt)
         follow_mean(self._mean, x, y, dt, self._averaging)
         east, north, _ = self._mean.tolist()
-        speed = max(math.hypot(east, north), SLOWEST_GUST)
-        along = self._along[:, 0] * east + self._along[:, 1] * north
-        self._wanted = along / (self._ratio * speed * speed)
+        self._wanted = _delays(self._along, east, north, self._ratio)
         if self._from_first:
-            self._wanted -= self._wanted.min()
+            self._first = float(self._wanted.min())
+            self._wanted -= self._first
         past_winds(
             self._run, self._at, self._wanted, self.delay, self._memory, x, y, z, dt, self._winds
         )
@@ -139,6 +141,24 @@ class GustHistory:
         """Time of the history at the end of the last step in [s]."""
         return float(self._run[self._at[0], 0])
 
+    def wind_at(self, x: float, y: float) -> Floats:
+        """
+        Wind at any place [m] at the end of the last step in [m/s], (3,); from any thread.
+
+        It is the mean over the last `SPACING`, without the slow change of delays.
+        """
+        at, run, mean, _, first = self._copied()
+        if at[1] < 2:
+            return np.zeros(3)
+        east, north, _ = mean.tolist()
+        along = np.array([[x, y]]) - self._origin
+        delay = float(_delays(along, east, north, self._ratio)[0]) - first
+        oldest = float(run[(at[0] - at[1] + 1) % len(run), 0])
+        now = float(run[at[0], 0]) - min(max(delay, 0.0), self._memory)
+        span = min(SPACING, float(run[at[0], 0]) - oldest)
+        begin, end = (run_until(run, at, time) for time in (now - span, now))
+        return (np.array(end) - np.array(begin)) / span
+
     def recent(self, until: float) -> dict[str, list[float]]:
         """
         Return the state for a copy to continue from, a step or two ago; from any thread.
@@ -146,12 +166,7 @@ class GustHistory:
         ``mean`` is the mean wind with its span, ``delay`` that of each place, ``wind`` the means
         over each `SPACING` of the last minute, x, y, z of one after the other.
         """
-        while True:
-            before = self._n_changes
-            at, run = self._at.copy(), self._run.copy()
-            mean, delay = self._mean.copy(), self.delay.copy()
-            if self._n_changes == before and before % 2 == 0:
-                break
+        at, run, mean, delay, _ = self._copied()
         rows = run[np.arange(at[0] - max(at[1], 1) + 1, at[0] + 1) % len(run)]
         count = min(self._memory, until - float(rows[0, 0])) // SPACING
         times = until + SPACING * np.arange(-count, 1.0)
@@ -159,6 +174,15 @@ class GustHistory:
         wind = np.diff(runs).T.ravel() / SPACING
         found = {'mean': mean, 'delay': delay, 'wind': wind}
         return {name: each.round(4).tolist() for name, each in found.items()}
+
+    def _copied(self) -> tuple[NDArray[np.int64], Floats, Floats, Floats, float]:
+        """Copy the history between two steps: its ends, runs, mean wind, delays, first delay."""
+        while True:
+            before = self._n_changes
+            at, run = self._at.copy(), self._run.copy()
+            mean, delay, first = self._mean.copy(), self.delay.copy(), self._first
+            if self._n_changes == before and before % 2 == 0:
+                return at, run, mean, delay, first
 
     def go_on(self, mean: ArrayLike, delay: ArrayLike, wind: ArrayLike) -> None:
         """Continue from the `recent` of a history of the same places."""
@@ -180,6 +204,12 @@ class GustHistory:
         for array in (self._at, self._mean, self._wanted, self.delay, self._winds):
             array[:] = 0
         self._n_changes += 1
+
+
+def _delays(along: Floats, east: float, north: float, ratio: float) -> Floats:
+    """Delays of places [m] from the origin, (t, 2), by the mean wind [m/s], in [s], (t,)."""
+    speed = max(math.hypot(east, north), SLOWEST_GUST)
+    return np.asarray((along[:, 0] * east + along[:, 1] * north) / (ratio * speed * speed))
 
 
 @kernel

@@ -95,7 +95,7 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     vertex by half the size of the tree, and the vertices of a ring of wood move together. An
     animation shows a breeze.
     """
-    tree, basis = simulator.tree, simulator.bank.basis
+    tree, basis = simulator.tree, simulator.basis
     storm = basis.scale / MARGIN
     document, rest = GltfDocument(_GENERATOR), tree.rest_poses
     meshes = _meshes(tree, leaves)

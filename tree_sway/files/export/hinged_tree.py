@@ -22,7 +22,9 @@ from scipy.sparse.linalg import eigsh, LinearOperator, splu
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.model.drag_law import AIR_DENSITY, pressure, SHARED_AT
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.tree import Tree
 
 _MARGIN, _FASTEST_TO = 0.95, 1e-3
@@ -47,6 +49,9 @@ class HingedTree:
         Inertia about the centre, along the segment and across it [kg m^2], (n, 2).
     stiffness
         Stiffness of each of the two hinges [N m/rad], (n,).
+    drag_area
+        Drag coefficient times area of the segment with its leaves, in wind of `SHARED_AT` across
+        it [m^2], (n,).
     damping_time
         Damping of the hinges over their stiffness [s]: the first mode has the damping ratio of the
         simulator, faster ones more.
@@ -61,6 +66,7 @@ class HingedTree:
     centre: Floats
     inertia: Floats
     stiffness: Floats
+    drag_area: Floats
     damping_time: float
     largest_step: float
 
@@ -90,8 +96,7 @@ def poses_on_parents(tree: Tree, poses: Floats) -> Floats:
 def hinged_tree(simulator: SwaySimulator) -> HingedTree:
     """Divide the tree of a simulator into bodies on hinges."""
     tree, settings = simulator.tree, simulator.settings
-    leaves = np.zeros(tree.n_branches) if settings.leaf_mass is None else settings.leaf_mass
-    leaf_line = (leaves / tree.branch_length)[tree.branch_of_segment]
+    leaf_line = _spread(tree, settings.leaf_mass)
     mass, centre, inertia = _bodies(tree, simulator.species.density, leaf_line)
     compliance = _compliance(tree, simulator.species.modulus)
     compliance[0] += 1.0 / (settings.root_stiffness or simulator.species.root_stiffness)
@@ -110,9 +115,25 @@ def hinged_tree(simulator: SwaySimulator) -> HingedTree:
     limit = damping_time + math.hypot(damping_time, 2.0 / math.sqrt(factor * fastest))
     return HingedTree(
         names=plain_names(tree), poses=poses_on_parents(tree, tree.rest_poses), mass=mass,
-        centre=centre, inertia=inertia, stiffness=factor / compliance, damping_time=damping_time,
+        centre=centre, inertia=inertia, stiffness=factor / compliance,
+        drag_area=_drag_area(simulator), damping_time=damping_time,
         largest_step=_MARGIN * limit,
     )  # fmt: skip
+
+
+def _spread(tree: Tree, leaves: Floats | None) -> Floats:
+    """Leaves of the branches, (b,), per length of each segment, (n,)."""
+    if leaves is None:
+        return np.zeros(tree.n_segments)
+    return np.asarray((leaves / tree.branch_length)[tree.branch_of_segment])
+
+
+def _drag_area(simulator: SwaySimulator) -> Floats:
+    tree = simulator.tree
+    diameter = 0.5 * (tree.base_diameter + tree.tip_diameter)
+    reductions = TreeReductions(tree, simulator.species, simulator.settings)
+    area = (diameter + _spread(tree, reductions.leaf_load_area)) * tree.length
+    return 2.0 / AIR_DENSITY * pressure(SHARED_AT, *simulator.drag_law) * area
 
 
 def _eigenvalue(matrix: sparse.csc_matrix, **options: Any) -> float:

@@ -4,7 +4,12 @@
 A tree on hinges as MJCF, which MuJoCo reads, and as SDF, which Gazebo and Drake read.
 
 The rest shape is that of the tree under its own weight, so gravity is taken off its bodies.
-Segments touch other things, and not each other in MuJoCo.
+Segments touch other things, and not each other in MuJoCo. There the wind of the model's options
+moves the tree: each segment is an ellipsoid in air with the drag of its wood and leaves.
+
+MuJoCo's drag is ``rho C A |v| v`` without 1/2, along the air, and its area A is nearly the whole
+one in oblique winds, where ours is ``|v_n| v_n`` of the air across the segment. The coefficient
+gives both the same drag in the mean of all horizontal winds.
 """
 
 from __future__ import annotations
@@ -14,13 +19,17 @@ import re
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.model.drag_law import AIR_DENSITY
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.tree import Tree
 from tree_sway.files.export.hinged_tree import hinged_tree, HingedTree
 
 _USUAL_STEP = 0.002
+_BEARINGS = 12
+"""Winds from half the horizon, the other half being alike, that drags are the mean of."""
 _NOT_IN_XML = re.compile('[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]')
 
 _BODY = """\
@@ -28,7 +37,7 @@ _BODY = """\
 <inertial pos="{centre} 0 0" mass="{mass}" diaginertia="{turning} {across} {across}"/>
 <joint name="{name}_y" axis="0 1 0" stiffness="{stiffness}" damping="{damping}"/>
 <joint name="{name}_z" axis="0 0 1" stiffness="{stiffness}" damping="{damping}"/>
-<geom fromto="0 0 0 {length} 0 0" size="{radius}"/>"""
+<geom fromto="0 0 0 {length} 0 0" size="{radius}" fluidcoef="{drag} 0 0 0 0"/>"""
 
 _SHAPE = """\
 <{kind} name="{kind}"><pose>{middle} 0 0 0 1.5707963 0</pose>
@@ -64,8 +73,10 @@ def mjcf_of_tree(simulator: SwaySimulator) -> str:
             f'<mujoco model={_quoted(tree.name)}>',
             _comment(simulator, hinged),
             '<compiler angle="radian"/>',
-            f'<option timestep="{min(_USUAL_STEP, hinged.largest_step):g}" integrator="Euler"/>',
-            '<default><geom type="capsule" contype="0" rgba="0.4 0.3 0.2 1"/></default>',
+            f'<option timestep="{min(_USUAL_STEP, hinged.largest_step):g}" integrator="Euler" '
+            f'density="{AIR_DENSITY:g}" wind="0 0 0"/>',
+            '<default><geom type="capsule" contype="0" rgba="0.4 0.3 0.2 1" '
+            'fluidshape="ellipsoid"/></default>',
             '<worldbody>',
             *inside[-1],
             '</worldbody>\n</mujoco>\n',
@@ -103,13 +114,14 @@ def _comment(simulator: SwaySimulator, hinged: HingedTree) -> str:
 
 def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
     """Yield the values for the templates, of each segment."""
+    radius = 0.25 * (tree.base_diameter + tree.tip_diameter)
     columns = {
         'place': hinged.poses[:, :3], 'xyzw': hinged.poses[:, 3:],
         'wxyz': hinged.poses[:, [6, 3, 4, 5]], 'centre': hinged.centre, 'mass': hinged.mass,
         'turning': hinged.inertia[:, 0], 'across': hinged.inertia[:, 1],
         'stiffness': hinged.stiffness, 'damping': hinged.damping_time * hinged.stiffness,
         'length': tree.length, 'middle': 0.5 * tree.length,
-        'radius': 0.25 * (tree.base_diameter + tree.tip_diameter),
+        'radius': radius, 'drag': _drag_coefficients(tree, hinged.drag_area, radius),
     }  # fmt: skip
     for i, parent in enumerate(tree.segment_parent.tolist()):
         carrier = hinged.names[parent] if parent >= 0 else ''
@@ -119,6 +131,22 @@ def _values(tree: Tree, hinged: HingedTree) -> Iterator[dict[str, str]]:
             'parent': carrier or 'world',
             **{name: _text(column[i]) for name, column in columns.items()},
         }
+
+
+def _drag_coefficients(tree: Tree, drag_area: Floats, radius: Floats) -> Floats:
+    """Coefficients of MuJoCo's drag of ellipsoids, (n,), for drag areas across [m^2], (n,)."""
+    along = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()[:, :, 0]
+    bearing = np.linspace(0.0, np.pi, _BEARINGS, endpoint=False)
+    cosine = along[:, :2] @ np.stack([np.cos(bearing), np.sin(bearing)])
+    sine_square = np.maximum(1.0 - cosine**2, 0.0)
+    side, end = (
+        (np.pi * radius * (0.5 * tree.length + radius))[:, None],
+        np.pi * radius[:, None] ** 2,
+    )
+    numerator = side**4 * sine_square + end**4 * cosine**2
+    projected = np.sqrt(numerator / (side**2 * sine_square + end**2 * cosine**2))
+    ours = 0.5 * drag_area * np.mean(sine_square**1.5, axis=1)
+    return np.asarray(ours / np.mean(projected, axis=1))
 
 
 def _text(values: Floats) -> str:

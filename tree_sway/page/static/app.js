@@ -9,6 +9,7 @@ import { readLink, recordClip, savePicture, saveTree, viewLink } from "./keepsak
 import { keptScene, OwnLine } from "./own_line.js";
 import { element, made, Panel } from "./panel.js";
 import { distance } from "./quaternions.js";
+import { Risk } from "./risk.js";
 import { QUANTITIES, Trace, unitOf } from "./trace.js";
 import { language, setLanguage, windFrom, windSource, word } from "./words.js";
 
@@ -79,6 +80,7 @@ const stream = new TreeStream(address.href, {
     document.title = `${name} – tree sway`;
     showButtons();
     showPanel();
+    risk.show();
     pick(isFirst && settings.branch ? Number(settings.branch) : scene.picked);
     showState();
   },
@@ -94,6 +96,7 @@ const stream = new TreeStream(address.href, {
       element("panel").hidden = controls.length === 0;
       element("pull").hidden = hello.can_pull !== true;
       viewersToken = hello.viewers_token ?? "";
+      risk.take(hello.critical_winds);
     }
     if (refused || unreadable) toast(unreadable ?? refused.reason);
     if (values) {
@@ -106,6 +109,7 @@ const stream = new TreeStream(address.href, {
 }, { kept, byWind: query.has("solve") });
 
 const { connection, playout } = stream;
+const risk = new Risk(scene);
 const hands = /** @type {Hands} */ ({ drag: null, sound: null, headset: null });
 const panel = new Panel(element("controls"), (name, value) => stream.set(name, value));
 const treeName = () => connection.description?.name ?? "tree";
@@ -263,6 +267,7 @@ function speak(chosen) {
   /** @type {HTMLSelectElement} */ (element("language")).value = language();
   element("keys-list").replaceChildren(...word("keys").split("|").map((text) => made("li", {}, text)));
   showPanel();
+  risk.show();
   element("error").parentElement?.setAttribute("title", word("error_of_what"));
   showButtons();
   pick(scene.picked);
@@ -363,7 +368,7 @@ requestAnimationFrame(draw);
 /** For tests and for the curious at the console. */
 Object.assign(window, {
   treeSway: {
-    scene, stream, connection, playout, traces, hands,
+    scene, stream, connection, playout, traces, hands, risk,
     get fps() { return fps; },
     get state() { return stateNow()[0]; },
     get status() { return status; },

@@ -200,8 +200,9 @@ type Shape = ReturnType<typeof import("./drawing/mesh.js").shapeOf>;
 
 /** Trees of a kind that are drawn on one level. */
 interface DrawnLevel {
-  /** Rows of their first segments. */
+  /** Rows of their first segments, and their numbers among all trees. */
   starts: number[];
+  numbers: number[];
   /** Parts, and what their programs are given; none of a picture. */
   bark?: Drawable;
   skin?: Record<string, any>;

@@ -19,7 +19,7 @@ from tree_sway.core.kernel import kernel
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.oscillators.propagator import propagator
 from tree_sway.core.oscillators.two_axis import step_branch
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway_lab.battery.row import fails, holds, Row
 from tree_sway_lab.methods.branch_bank import guards, single_precision
 from tree_sway_lab.methods.minimal import rk4, semi_implicit_euler, verlet
@@ -172,7 +172,7 @@ def attack_trees(model: str, n: int, seed: int = 0) -> tuple[int, float]:
     for run in range(n):
         if run % RUNS_A_TREE == 0:
             settings = settings_called(model, Settings(damping_ratio=10 ** rng.uniform(-3, 0)))
-            simulator = SwaySimulator(crooked_tree(int(rng.integers(30))), WOOD, settings)
+            simulator = make_simulator(crooked_tree(int(rng.integers(30))), WOOD, settings)
         simulator.reset()
         direction = rng.normal(size=3)
         direction *= rng.uniform(1, 150) / np.linalg.norm(direction)

@@ -12,7 +12,8 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator, REVIEW
 from tree_sway.core.fidelity.estimate import dialled
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.tree import tips_of_poses
 from tree_sway.core.wind.climate import WindClimate
 from tree_sway.files.wind.wind_file import read_wind
@@ -102,8 +103,8 @@ def judged(case: tuple[str, Path | None]) -> list[Judged]:
             f'record x{scale:g}': from_record(blown.time, blown.velocity, SECONDS, scale)
             for scale in (3.0,)
         }
-    auto = AdaptiveSimulator(tree, WOOD, SETTINGS)
-    shown = SwaySimulator(tree, WOOD, SETTINGS)
+    auto = AdaptiveSimulator(prepare(tree, WOOD, SETTINGS))
+    shown = make_simulator(tree, WOOD, SETTINGS)
     oscillators, hidden = dialled(shown.bank), np.zeros(shown.bank.oscillators.shapes.shape[1])
     found = []
     for name, wind in winds.items():
@@ -124,7 +125,7 @@ def live(case: tuple[str, float]) -> Floats:
     tree = kind_called(kind)
     wind = np.vstack([turbulent(mean, _SPELL, 1 + k) for k, mean in enumerate(_SPELLS)])
     truth = true_tips(tree, wind, QUICK)
-    auto = AdaptiveSimulator(tree, WOOD, SETTINGS, tolerance=tolerance)
+    auto = AdaptiveSimulator(prepare(tree, WOOD, SETTINGS), tolerance=tolerance)
     squares = np.empty((2, len(wind)))
     poses = np.empty((tree.n_segments, 7))
     for frame, blowing in enumerate(wind):

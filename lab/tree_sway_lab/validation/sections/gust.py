@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.prepare import prepare
 from tree_sway_lab.kinds.kinds import kind_called
 from tree_sway_lab.validation.section import Check, Effort, markdown_table, Section
 from tree_sway_lab.validation.sections.models import SEEDS
@@ -84,8 +85,8 @@ def _met(case: tuple[str, tuple[float, float]]) -> _Met:
     """Meet one gust."""
     name, (before, after) = case
     tree = kind_called(name)
-    shown = AdaptiveSimulator(tree, WOOD, SETTINGS, tolerance=_TOLERANCE)
-    full = SwaySimulator(tree, WOOD, SETTINGS, model='full')
+    shown = AdaptiveSimulator(prepare(tree, WOOD, SETTINGS), tolerance=_TOLERANCE)
+    full = make_simulator(tree, WOOD, SETTINGS, model='full')
     places = np.empty((2, 2, tree.n_segments, 3))
     found, farthest = _Met(0.0, 0.0, 0.0, 0.0), 0.0
     for frame in range(round((_BEFORE + _AFTER) / FRAME)):

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.model.drag_law import AIR_DENSITY
-from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
 from tree_sway_lab.example_trees import tapered_stem
 from tree_sway_lab.validation.section import Check, Effort, Section
@@ -45,7 +45,7 @@ def closed_form() -> float:
 def growth_of(model: str) -> float:
     """Measure it on one branch that swings by 0.1 rad at first."""
     tree, wood = tapered_stem(_LENGTH, np.full(9, _WIDTH)), species_named('broadleaf')
-    sim = SwaySimulator(
+    sim = make_simulator(
         tree, wood, model=model, gravity=0.0, damping_ratio=0.0, in_leaf=False, enrich='none'
     )
     x, v = sim.motion()

@@ -13,6 +13,8 @@ from tree_sway.core.fidelity.adaptive import AdaptiveSimulator
 from tree_sway.core.growth.builtin import BUILTIN_TREES
 from tree_sway.core.model.settings import USUAL
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.climate import WindClimate
@@ -107,7 +109,7 @@ def departure(source: str) -> Departure:
     """Measure a built-in tree or a file."""
     opened = open_tree(source)
     tree, species = opened.tree, opened.species
-    tabled = AdaptiveSimulator(tree, species, tolerance=0.0)
+    tabled = AdaptiveSimulator(prepare(tree, species), tolerance=0.0)
     full = _reference(tree, species)
     errors, over, outside = [], [], []
     for speed in SPEEDS:
@@ -131,7 +133,7 @@ def limb_by_limb(source: str) -> list[float]:
     else:
         tree, species = kind_called(source), WOOD
     table, full = (
-        SwaySimulator(tree, species, model=each, crown_coherence=USUAL_COHERENCE)
+        make_simulator(tree, species, model=each, crown_coherence=USUAL_COHERENCE)
         for each in (USUAL, 'full')
     )
     return [against(table, full, turbulent(speed, 20.0, 3)) for speed in SPEEDS]
@@ -140,6 +142,6 @@ def limb_by_limb(source: str) -> list[float]:
 def _reference(tree: Tree, species: Species) -> SwaySimulator:
     """Make the model that the default is compared with."""
     try:
-        return SwaySimulator(tree, species, model='full')
+        return make_simulator(tree, species, model='full')
     except ParameterError:
-        return SwaySimulator(tree, species, model=MANY)
+        return make_simulator(tree, species, model=MANY)

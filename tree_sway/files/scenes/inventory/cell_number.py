@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 from tree_sway.files.column_names import unit_factor
@@ -11,6 +12,10 @@ from tree_sway.files.text_file import finite
 
 _NUMBER = re.compile(r'(?<![\w.])\d+(?:[.,]\d+)?')
 _UNIT = re.compile(r"[\d\s]([a-zA-Z]+\.?|'|\")\s*$")
+_SEVERAL = re.compile(r'\d\D{0,4}?(?:[+;&]|,\s)\s*\d')
+_CLASS = re.compile(r'^\s*[a-z]\.\s+(?=\d)')
+"""Letter of a class before its range, as in ``c. 9 tot 12 m.``."""
+_SPLIT = re.compile(r'[+;&]|,\s')
 _WORDS = ('tot', 'to', 'bis', 'à', 'a', 'und', 'ca', 'bzw')
 
 
@@ -23,6 +28,9 @@ def cell_number(text: str) -> tuple[float, str] | None:
     plain = finite(text)
     if plain is not None:
         return plain, ''
+    if _SEVERAL.search(text):
+        return None
+    text = _CLASS.sub('', text)
     numbers = [float(each.replace(',', '.')) for each in _NUMBER.findall(text)]
     if not 1 <= len(numbers) <= 2 or (text.strip()[:1] in '-−' and len(numbers) == 1):
         return None
@@ -32,3 +40,19 @@ def cell_number(text: str) -> tuple[float, str] | None:
     if any(word not in _WORDS and unit_factor('length', word) is None for word in words):
         return None
     return sum(numbers) / len(numbers), unit
+
+
+def stems_number(text: str) -> tuple[float, str] | None:
+    """
+    Return the number of a cell of one stem or several, as `cell_number`.
+
+    Stems such as ``320, 280`` or ``30+25`` are one of the sum of their sections.
+    """
+    if not _SEVERAL.search(text):
+        return cell_number(text)
+    found = [cell_number(part) for part in _SPLIT.split(text)]
+    stems = [each for each in found if each is not None]
+    if len(stems) != len(found):
+        return None
+    unit = next((unit for _, unit in stems if unit), '')
+    return math.sqrt(sum(value**2 for value, _ in stems)), unit

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.files.column_names import rank_of
-from tree_sway.files.scenes.inventory.cell_number import cell_number
+from tree_sway.files.scenes.inventory.cell_number import cell_number, stems_number
 from tree_sway.files.table_file import Column, TextTable
 
 
@@ -77,12 +77,16 @@ class InventoryColumns:
         self.used.add(index)
         return self.table.cells(index, range(self.n_rows))
 
-    def numbers(self, index: int) -> tuple[Floats, str]:
-        """Numbers of a column, NaN where a cell has none, and the unit within cells, if any."""
+    def numbers(self, index: int, *, stems: bool = False) -> tuple[Floats, str]:
+        """
+        Numbers of a column, NaN where a cell has none, and the unit within cells, if any.
+
+        A cell may have several ``stems``, which count as one of their whole section.
+        """
         values, units = np.full(self.n_rows, np.nan), Counter[str]()
         n_ranges = 0
         for row, text in enumerate(self.texts(index)):
-            found = cell_number(text)
+            found = stems_number(text) if stems else cell_number(text)
             if found is None:
                 continue
             values[row], unit = found

@@ -25,6 +25,8 @@ THICKEST = 12.0
 """Diameter at breast height that no tree exceeds [m]; the thickest known is 11.6 m."""
 _SLENDER = (12.0, 130.0)
 """Usual heights over diameters of trees, for the choice of a unit."""
+_MIDDLING = 45.0
+"""Usual height over diameter of a tree of a city."""
 _INCH, _FOOT, _CM, _MM = 0.0254, 0.3048, 0.01, 0.001
 _SAID = {1.0: 'm', _CM: 'cm', _MM: 'mm', _INCH: 'inches', _FOOT: 'feet'}
 
@@ -36,7 +38,7 @@ def diameters_of(columns: InventoryColumns, is_in_states: bool) -> Floats | None
         index = columns.index_of(quantity)
         if index is None:
             continue
-        values, in_cells = columns.numbers(index)
+        values, in_cells = columns.numbers(index, stems=True)
         unit = columns.table.unit_of(index, quantity) or in_cells
         factor = unit_factor('length', unit) if unit else None
         if factor is None:
@@ -53,13 +55,15 @@ def _stem_unit(values: Floats, columns: InventoryColumns, is_in_states: bool) ->
     """Choose the unit of diameters that have none, and say why if it is inches."""
     positive = values[values > 0.0]
     middle = float(np.median(positive)) if len(positive) else 30.0
-    if middle <= 3.0:
+    # Metres have fractions; a stem of 3 in whole numbers is a young tree's in inches or cm.
+    has_fractions = bool((positive != np.round(positive)).any())
+    if has_fractions and float(np.quantile(positive, 0.9)) <= 3.0:
         return 1.0, ''
     if middle > 250.0:
         return _MM, ''
     if is_in_states:
         return _INCH, ', as the trees stand in the United States'
-    index = columns.index_of('height')
+    index = _height_column(columns)
     if index is None:
         return _CM, ''
     height, in_cells = columns.numbers(index)
@@ -78,9 +82,18 @@ def _slenderness(height: Floats, diameter: Floats) -> float:
     return float(np.median(height[known] / diameter[known])) if known.any() else 0.0
 
 
-def heights_of(columns: InventoryColumns, diameter: Floats | None) -> Floats | None:
+def _height_column(columns: InventoryColumns) -> int | None:
+    """Column of heights whose name comes first, of those that have a number."""
+    found = columns.find_all('height')
+    filled = (index for index in found if np.isfinite(columns.numbers(index)[0]).any())
+    return next(filled, found[0] if found else None)
+
+
+def heights_of(
+    columns: InventoryColumns, diameter: Floats | None, is_in_states: bool = False
+) -> Floats | None:
     """Heights [m], NaN without one; None if no column has them."""
-    index = columns.index_of('height')
+    index = _height_column(columns)
     if index is None:
         return None
     values, in_cells = columns.numbers(index)
@@ -90,7 +103,9 @@ def heights_of(columns: InventoryColumns, diameter: Floats | None) -> Floats | N
     if factor is None:
         factor = 1.0
         ratio = 0.0 if diameter is None else _slenderness(values, diameter)
-        if ratio > _SLENDER[1] and _SLENDER[0] < ratio * _FOOT < _SLENDER[1]:
+        # In the United States a city's heights are in feet or in metres.
+        most = _MIDDLING / math.sqrt(_FOOT) if is_in_states else _SLENDER[1]
+        if ratio > most and _SLENDER[0] < ratio * _FOOT < _SLENDER[1]:
             factor = _FOOT
             columns.note(f'{name} is taken as feet, by height over diameter')
     height = values * factor

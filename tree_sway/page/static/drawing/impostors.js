@@ -7,7 +7,7 @@ import { canvasTexture, discard, drawable, drawPart, ELEVATIONS, ROUND, use } fr
 
 const TILE = 128;
 /** Numbers of each corner of a picture. */
-const PER_CORNER = 9;
+const PER_CORNER = 13;
 
 export class Impostor {
   /** @param {GL} gl @param {Program} used @param {Shape} shape @param {number} most
@@ -58,10 +58,11 @@ export class Impostor {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
-  /** Draw a tree, too. @param {number[]} place @param {number} row of its top @param {number} number */
-  add(place, row, number) {
+  /** Draw a tree, too. @param {number[]} place @param {number} row of its top @param {number} number
+   * @param {number[]} paint its colour, and the share of it */
+  add(place, row, number, paint) {
     const tint = 0.86 + 0.28 * ((number * 0.618034) % 1);
-    const corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]].flatMap((at) => [...at, ...place, row, tint]);
+    const corners = [[-1, -1], [1, -1], [-1, 1], [1, 1]].flatMap((at) => [...at, ...place, row, tint, ...paint]);
     this._values.set(corners, 4 * PER_CORNER * this.count++);
   }
 

@@ -38,6 +38,8 @@ const CALM = 4;
 const PAINTED = 260;
 /** Rows that no branch has. */
 const NONE = [-2, -2];
+/** Of a tree in its own colours. */
+const UNPAINTED = [0, 0, 0, 0];
 
 export class Scene {
   /** @param {HTMLCanvasElement} canvas @param {boolean} [isFine] nothing is left out, however slow that is */
@@ -55,6 +57,8 @@ export class Scene {
     this.hasPerson = true;
     /** Whether leaves flutter; not where people ask for less motion. */
     this.flutters = true;
+    /** Colour of each tree and its share, by its number. @type {number[][]} */
+    this._paints = [];
     /** Branch of the watched tree that is shown in another colour; none if -1. */
     this.picked = -1;
     /** @type {Vector} */
@@ -151,6 +155,13 @@ export class Scene {
     this._place();
   }
 
+  /** Paint whole trees. @param {number[][]} paints colour of each tree, and its share; none leaves all as they are */
+  paint(paints) {
+    this._paints = paints;
+    this._chosenFor = "";
+    this._frame = 0;
+  }
+
   /** The tree that is followed, the highest: its number, where it is, and its kind, once there is one. */
   get watched() {
     const { trees, watched: number } = this.detail;
@@ -232,8 +243,8 @@ export class Scene {
     if (wanted === this._chosenFor) return;
     this._chosenFor = wanted;
     detail.choose(camera.matrix, high, this._budget);
-    for (const { starts, impostor } of this._levels) {
-      starts.length = 0;
+    for (const { starts, numbers, impostor } of this._levels) {
+      starts.length = numbers.length = 0;
       if (impostor) impostor.count = 0;
     }
     // Near trees first: what they hide costs less then.
@@ -242,7 +253,8 @@ export class Scene {
       const { kind, place } = detail.trees[t];
       const level = (this._kinds[kind].drawn[detail.level[t]] ??= this._drawnLevel(kind, detail.level[t]));
       level.starts.push(detail.start[t]);
-      level.impostor?.add(place, detail.start[t], t);
+      level.numbers.push(t);
+      level.impostor?.add(place, detail.start[t], t, this._paints[t] ?? UNPAINTED);
     }
     for (const { impostor } of this._levels) impostor?.upload();
     if (STRIDE * detail.segments > this._texels.length) this._texels = texelsOf(1.25 * detail.segments);
@@ -253,7 +265,7 @@ export class Scene {
   _drawnLevel(number, level) {
     const { gl, _programs: programs, _pictures: pictures, detail: { levels: { [number]: levels } } } = this;
     const shape = this._kinds[number];
-    if (level === 0) return { starts: [], impostor: this._bake(number) };
+    if (level === 0) return { starts: [], numbers: [], impostor: this._bake(number) };
     const { species } = shape.kind;
     const { bark: barkColor, twig: twigColor, pattern } = lookOf(species);
     const branches = shape.placer.order.slice(0, levels[level].branches);
@@ -264,7 +276,7 @@ export class Scene {
       pictures.set(name, pictureTexture(gl, leafPicture(species, across, this.isAutumn), this.isSlow));
     }
     return {
-      starts: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
+      starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
       skin: { barkColor, twigColor, ...patterns[pattern] }, foliage: { leaves: [2, pictures.get(name)] },
     };
   }
@@ -276,7 +288,7 @@ export class Scene {
     const shape = this._kinds[number];
     const most = trees.filter(({ kind }) => kind === number).length;
     const finest = Math.max(1, levels.findIndex(({ pixels }) => pixels >= PAINTED));
-    const level = { ...(shape.drawn[finest] ??= this._drawnLevel(number, finest)), starts: [0] };
+    const level = { ...(shape.drawn[finest] ??= this._drawnLevel(number, finest)), starts: [0], numbers: [-1] };
     const impostor = new Impostor(gl, this._programs.impostor, shape, most, this.isSlow);
     const { segments, branches } = levels[finest];
     const texels = texelsOf(segments);
@@ -413,22 +425,23 @@ export class Scene {
     const { gl, _programs: { bark, leaf } } = this;
     this._begin(bark, isShadow, own);
     gl.enable(gl.CULL_FACE);
-    for (const level of levels) this._drawEach(level.bark, bark, level.starts, level.skin, 1);
+    for (const level of levels) this._drawEach(level.bark, bark, level, level.skin, 1);
     gl.disable(gl.CULL_FACE);
     if (!this.leavesShown) return;
     this._begin(leaf, isShadow, own);
-    for (const level of levels) this._drawEach(level.leaf, leaf, level.starts, level.foliage, density);
+    for (const level of levels) this._drawEach(level.leaf, leaf, level, level.foliage, density);
   }
 
   /** A part of each tree of a level. @param {Drawable | undefined} part @param {Program} used
-   * @param {number[]} starts @param {Record<string, any>} values @param {number} share of its triangles */
-  _drawEach(part, used, starts, values = {}, share) {
+   * @param {DrawnLevel} level @param {Record<string, any>} values @param {number} share of its triangles */
+  _drawEach(part, used, { starts, numbers }, values = {}, share) {
     if (!part) return;
     use(this.gl, used, values);
-    for (const start of starts) {
+    starts.forEach((start, i) => {
       used.uniforms.start(start);
+      used.uniforms.paint(this._paints[numbers[i]] ?? UNPAINTED);
       drawPart(this.gl, part, share);
-    }
+    });
   }
 
   /** The pot, somebody beside the tree, and the arrow of the wind. @param {boolean} isShadow */

@@ -108,6 +108,7 @@ uniform float ridge; // how steep furrows are
 uniform float spot; // share without dark spots
 uniform float depth; // of the shade
 uniform float rough;
+uniform vec4 paint; // colour of the whole tree, and its share
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
@@ -119,6 +120,7 @@ void main() {
     deep += shown * (depth * (raised - 0.6) + rough * (tiled(at * vec2(32.0, 16.0), vec2(32.0, 16.0)) - 0.5));
   }
   vec3 base = mix(twigColor, barkColor * mix(1.0, deep, 0.9), tone.x);
+  base = mix(base, paint.rgb, paint.a);
   float open = 0.3 + 0.7 * tone.y;
   vec3 lit = open * (sky * (0.72 + 0.28 * n.z) + sun * tone.y * max(dot(n, light), 0.0));
   base = mix(base * lit, vec3(1.0, 0.45, 0.1), 0.75 * mark);
@@ -168,6 +170,7 @@ void main() {
 in vec2 at;
 in vec4 lit;
 uniform sampler2D leaves;
+uniform vec4 paint;
 void main() {
   vec4 leaf = texture(leaves, at);
   // Further away leaves are mixed with what is between them: less of one will do, so that no crown thins out.
@@ -175,7 +178,8 @@ void main() {
   // The triangle of a card is larger than its picture.
   vec2 beyond = abs(at - 0.5);
   if (leaf.a * (1.0 + 0.07 * mixed) < 0.5 || max(beyond.x, beyond.y) > 0.5) discard;
-  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, leaf.rgb / leaf.a * lit.rgb, lit.a), 1.0);
+  vec3 base = mix(leaf.rgb / leaf.a, paint.rgb, paint.a);
+  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, base * lit.rgb, lit.a), 1.0);
 }
 
 #part impostor.vertex seen
@@ -186,8 +190,10 @@ uniform vec3 restTip;
 in vec2 corner;
 in vec4 stand; // x, y, z, yaw
 in vec3 tree; // scale, row of the top, tint
+in vec4 paint;
 out vec2 at;
 out vec4 lit;
+out vec4 painted;
 void main() {
   float scale = tree.x;
   vec3 middle = stand.xyz + vec3(0.0, 0.0, box.y * scale);
@@ -211,6 +217,7 @@ void main() {
   float shade = mix(box.w, 1.0, min(1.0, 1.25 * h)) * tree.z;
   lit.rgb = shade * (sky * (0.75 + 0.25 * n.z) + sun * max(0.0, 0.2 + 0.8 * dot(n, light)));
   lit.a = clearness(p);
+  painted = paint;
   at = (vec2(mod(view, float(ROUND)), high) + 0.5 + 0.5 * corner) / vec2(float(ROUND), 2.0);
   gl_Position = seen(p);
 }
@@ -218,11 +225,14 @@ void main() {
 #part impostor.fragment lit
 in vec2 at;
 in vec4 lit;
+in vec4 painted;
 uniform sampler2D picture;
 void main() {
   vec4 seen = texture(picture, at);
   if (seen.a < 0.35) discard;
-  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, seen.rgb * lit.rgb, lit.a), 1.0);
+  // The picture keeps its light and shade.
+  vec3 base = mix(seen.rgb, painted.rgb * min(1.0, 2.2 * max(seen.r, seen.g)), painted.a);
+  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, base * lit.rgb, lit.a), 1.0);
 }
 
 #part solid.vertex seen

@@ -10,9 +10,9 @@ from scipy.sparse.linalg import spsolve
 
 from tree_sway.core.beams.branch_model import TreeBeams
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.run.assembly import assembled
+from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup.matrices import reduce_tree
-from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import species_named
 
 WOOD = species_named('broadleaf')
@@ -22,7 +22,7 @@ DT = 1 / 120
 
 def modal(tree, **changes):
     chosen = {'model': 'full', 'gravity': 0.0, 'enrich': 'none'} | changes
-    bank = assembled(TreeReductions(tree, WOOD, Settings(**chosen))).oscillators
+    bank = bank_of(prepare(tree, WOOD, Settings(**chosen))).oscillators
     bank.set_step(DT)
     return bank
 

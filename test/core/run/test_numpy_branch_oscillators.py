@@ -14,7 +14,8 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.run.simulator import LOAD_CLAMPED, SwaySimulator
+from tree_sway.core.run.simulator import LOAD_CLAMPED
+from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.static_responses import WindMoments
 from tree_sway.core.tree.building import tree_from_segments
 
@@ -38,17 +39,15 @@ def tree():
 
 def pair(tree, model, **changes):
     """Make a simulator on compiled kernels, and one in numpy."""
-    sim = SwaySimulator(tree, model=model, gravity=0.0, **changes)
-    return sim, SwaySimulator(tree, settings=sim.settings, plain=True)
+    sim = make_simulator(tree, model=model, gravity=0.0, **changes)
+    return sim, make_simulator(tree, settings=sim.settings, plain=True)
 
 
 @pytest.mark.parametrize(
     ('name', 'model'),
     [
         ('wild', 'branch'),
-        pytest.param('wild', 'full', marks=pytest.mark.long),
         pytest.param('bench', 'branch', marks=pytest.mark.long),
-        ('bench', 'full'),
     ],
 )
 def test_two_hundred_random_steps_agree(tree, name, model):
@@ -89,7 +88,7 @@ def test_they_agree_where_loads_are_held(tree):
 
 @pytest.mark.parametrize('enrich', ['none', 'carriers', 'all'])
 def test_placing_agrees_for_every_kind_of_coordinate(tree, enrich):
-    sim, twin = pair(tree, 'full', enrich=enrich)
+    sim, twin = pair(tree, 12, enrich=enrich)
     for k in range(20):
         sim.step([9.0, 4.0 * np.sin(k), 1.0], 1 / 30)
         placed = twin.place_rotations(sim.rotations())
@@ -97,7 +96,7 @@ def test_placing_agrees_for_every_kind_of_coordinate(tree, enrich):
     assert np.abs(sim.tip_displacement).max() > 1e-3
 
 
-@pytest.mark.parametrize('model', ['branch', 'full'])
+@pytest.mark.parametrize('model', ['branch'])
 def test_a_state_of_one_is_taken_by_the_other(tree, model):
     sim, twin = pair(tree, model)
     for k in range(30):
@@ -110,7 +109,7 @@ def test_a_state_of_one_is_taken_by_the_other(tree, model):
 
 @pytest.mark.compiled
 def test_moments_of_even_winds_are_those_that_a_tree_at_rest_bears():
-    load = WindMoments(SwaySimulator(bench_tree(), model=12).bank.branches)
+    load = WindMoments(make_simulator(bench_tree(), model=12).bank.branches)
     moments, still = load.at_rest(np.eye(3), np.eye(load.n)), np.zeros(load.n)
     for wind, moment in zip(np.eye(3), moments, strict=True):
         assert moment == pytest.approx(load(still, still, wind), rel=1e-9, abs=1e-12)

@@ -1,0 +1,92 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway simulate --motion``: the motion follows a recording of a sensor on the tree."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from tree_sway.commands.cli import main
+from tree_sway.core.arrays import Floats
+from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.core.observe.sensor_place import place_on
+from tree_sway.core.observe.simulated_sensor import SimulatedSensor
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.tree.species import species_named
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+
+DT = 1.0 / 60.0
+
+
+def recorded(folder: Path) -> Floats:
+    """Write a wind and the motion of a softer tree in it; return its displacements, (n, 3)."""
+    tree, species = builtin_tree('goldcrest'), species_named('goldcrest')
+    softer = replace(species, modulus=0.8 * species.modulus)
+    sim = make_simulator(tree, softer, model=40, crown_coherence=0.3)
+    rng = np.random.default_rng(3)
+    wind = simulate_turbulence(4.0, rate=60.0, duration=45.0, rng=rng)
+    segment = place_on(tree, f'{tree.branch_names[0]}:0.6').segment
+    tips, poses = np.empty((len(wind), 3)), np.empty((len(wind), 7))
+    for k, each in enumerate(wind):
+        sim.step(each, DT)
+        tips[k] = sim.tip_displacement
+        poses[k] = sim.place()[segment]
+    sensor = SimulatedSensor(Rotation.from_euler('xyz', [1.0, 2.0, 3.0]), rate=100.0)
+    motion = sensor.measured(poses, DT, rng)
+    sensed = [motion.time, *motion.acceleration.T, *motion.rate.T]
+    for name, head, columns in (
+        ('wind', 'time,u,v,w', [DT * np.arange(len(wind)), *wind.T]),
+        ('motion', 'time,ax,ay,az,gx,gy,gz', sensed),
+    ):
+        rows = '\n'.join(','.join(f'{x:.9g}' for x in row) for row in zip(*columns, strict=True))
+        (folder / f'{name}.csv').write_text(f'{head}\n{rows}\n', encoding='utf-8')
+    return tips
+
+
+def tips_of(path: Path) -> Floats:
+    with path.open(encoding='utf-8') as file:
+        rows = list(csv.reader(file))
+    columns = [i for i, name in enumerate(rows[0]) if 'tip' in name]
+    return np.array([[float(row[i]) for i in columns] for row in rows[1:]])
+
+
+def test_the_motion_follows_the_recording(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    true = recorded(tmp_path)
+    at = f'{builtin_tree("goldcrest").branch_names[0]}:0.6'
+    common = ['simulate', 'goldcrest', '--wind', 'wind.csv']
+    assert main([*common, '-o', 'alone.csv']) == 0
+    assert main([*common, '--motion', 'motion.csv', '--at', at, '-o', 'twin.csv']) == 0
+    assert 'samples followed, 0 refused' in capsys.readouterr().err
+    after = slice(30 * 60, 44 * 60)
+    errors = []
+    for name in ('alone', 'twin'):
+        wrong = tips_of(tmp_path / f'{name}.csv')[after] - true[after]
+        errors.append(float(np.std(wrong, axis=0).max()))
+    assert errors[1] < 0.5 * errors[0]
+
+
+@pytest.mark.parametrize(
+    ('extra', 'what'),
+    [
+        (['--motion', 'motion.csv'], '1 --motion and 0 --at'),
+        (['--motion', 'motion.csv', '--at', '99'], 'the stem has no height'),
+        (['--motion', 'missing.csv', '--at', '0.3'], 'missing.csv'),
+    ],
+)
+def test_mistakes_are_told_with_the_cure(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
+    extra: list[str], what: str,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'motion.csv').write_text('time,ax,ay,az\n0,0,0,9.8\n', encoding='utf-8')
+    assert main(['simulate', 'goldcrest', *extra, '-o', 'x.csv']) == 2
+    assert what in capsys.readouterr().err

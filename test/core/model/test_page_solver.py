@@ -1,0 +1,60 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The page of the prepared model suffices: a solver written from it gives the library's poses."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+import re
+
+import numpy as np
+import pytest
+
+from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.core.model.sway_model import MEANINGS
+from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.files.models.model_file import read_model, write_model
+
+HERE = Path(__file__).parent
+PAGE = (HERE.parents[2] / 'doc' / 'sway_model.md').read_text(encoding='utf-8')
+DT = 1 / 60
+
+
+def page_solver(path):
+    spec = importlib.util.spec_from_file_location('page_solver', HERE / 'page_solver.py')
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.PageSolver(path, DT)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(('name', 'speed'), [('fork', 9.0), ('fork', 30.0), ('benjamina', 14.0)])
+def test_a_solver_of_the_page_gives_the_poses_of_the_library(fork, tmp_path, name, speed):
+    tree = fork() if name == 'fork' else builtin_tree(name)
+    path = tmp_path / 'tree.npz'
+    write_model(path, prepare(tree, model=20))
+    solver, simulator = page_solver(path), SwaySimulator(read_model(path))
+    rng = np.random.default_rng(11)
+    winds = simulate_turbulence(speed, rate=60.0, duration=2.0, rng=rng)
+    winds[60:70] = [0.5, 1.0, 7.0]  # steep
+    for wind in winds:
+        solver.step(wind)
+        simulator.step(wind, DT)
+    moved = np.abs(simulator.place() - tree.rest_poses)[:, :3].max()
+    assert moved > 0.01 * tree.height
+    apart = np.abs(solver.poses() - simulator.place())[:, :3].max()
+    assert apart < 1e-5 * tree.height
+
+
+def test_the_solver_uses_nothing_of_the_library():
+    source = (HERE / 'page_solver.py').read_text(encoding='utf-8')
+    assert not re.search(r'^\s*(import|from) tree_sway', source, re.MULTILINE)
+
+
+def test_every_array_is_on_the_page():
+    for name, meaning in MEANINGS.items():
+        assert f'| `{name}` |' in PAGE
+        assert meaning.text in PAGE

@@ -1,0 +1,119 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Mounting, units and gravity of a sensor, found from what it measures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from tree_sway.core.observe.alignment import align, GRAVITY, matrix_of, turn_onto
+
+N = 3000
+
+
+def motions(seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the motion of a model at a place, with gravity felt and without, (n, 9)."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(N) / 60.0
+    phases = rng.uniform(0.0, 6.0, size=(4, 2))
+    tilt = 0.02 * np.sin(2.0 * np.pi * 0.5 * time[:, None] + phases[0])
+    tilt += 0.01 * np.sin(2.0 * np.pi * 0.83 * time[:, None] + phases[1])
+    with_gravity = np.zeros((N, 9))
+    rate = np.gradient(tilt, 1.0 / 60.0, axis=0)
+    with_gravity[:, 3:5] = rate
+    moved = 4.0 * np.gradient(rate, 1.0 / 60.0, axis=0)
+    without = with_gravity.copy()
+    without[:, 0], without[:, 1] = moved[:, 1], -moved[:, 0]
+    with_gravity[:, :3] = without[:, :3]
+    with_gravity[:, 0] -= GRAVITY * tilt[:, 1]
+    with_gravity[:, 1] += GRAVITY * tilt[:, 0]
+    with_gravity[:, 6:8] = without[:, 6:8] = tilt
+    return with_gravity, without
+
+
+def sensed(mount: Rotation, *, gravity: bool = True, noise: float = 0.02) -> np.ndarray:
+    """Return what a sensor measures there, whose frame is turned to the tree's by a mount."""
+    with_gravity, without = motions(1)
+    values = (with_gravity if gravity else without).copy()
+    values[:, 2] += GRAVITY if gravity else 0.0
+    rng = np.random.default_rng(2)
+    values[:, :3] = mount.inv().apply(values[:, :3]) + noise * rng.normal(size=(N, 3))
+    values[:, 3:6] = mount.inv().apply(values[:, 3:6]) + 0.1 * noise * rng.normal(size=(N, 3))
+    values[:, 6:] = np.nan
+    return values
+
+
+MOUNTS = [
+    Rotation.identity(),
+    Rotation.from_euler('x', 180.0, degrees=True),  # upside down
+    Rotation.from_euler('xyz', [70.0, -40.0, 130.0], degrees=True),
+]
+
+
+@pytest.mark.parametrize('mount', MOUNTS)
+@pytest.mark.parametrize('gravity', [True, False])
+def test_a_mount_is_found_with_and_without_gravity(mount: Rotation, gravity: bool) -> None:
+    found = align(sensed(mount, gravity=gravity), *motions(1))
+    assert not found.problem
+    assert found.has_gravity is gravity
+    error = Rotation.from_matrix(found.turn) * mount.inv()
+    assert np.degrees(error.magnitude()) < 1.5
+    assert found.likeness > 0.9
+
+
+def test_noise_is_measured() -> None:
+    found = align(sensed(MOUNTS[2], noise=0.05), *motions(1))
+    assert found.noise[0] == pytest.approx(0.05, rel=0.1)
+    assert found.noise[1] == pytest.approx(0.005, rel=0.1)
+
+
+def test_units_of_g_and_degrees_are_recognised() -> None:
+    values = sensed(MOUNTS[2])
+    values[:, :3] /= GRAVITY
+    values[:, 3:6] *= 180.0 / np.pi
+    found = align(values, *motions(1))
+    assert not found.problem
+    np.testing.assert_allclose(found.scale, [GRAVITY, np.pi / 180.0])
+    assert found.notes == ('acceleration in g', 'angular rate in degrees per second')
+
+
+def test_an_unknown_unit_is_refused_with_what_to_do() -> None:
+    values = sensed(MOUNTS[0])
+    values[:, :3] *= 100.0
+    assert 'neither gravity in m/s^2 nor in g' in align(values, *motions(1)).problem
+
+
+def test_a_sensor_that_moves_much_more_is_refused() -> None:
+    values = sensed(MOUNTS[0], gravity=False)
+    values[:, :6] *= 8.0
+    assert 'times as much as the tree' in align(values, *motions(1)).problem
+
+
+def test_a_sensor_of_other_motion_is_refused() -> None:
+    rng = np.random.default_rng(3)
+    values = sensed(MOUNTS[0])
+    with_gravity, _ = motions(1)
+    values[:, :6] = with_gravity[:, :6].std(axis=0) * rng.normal(size=(N, 6))
+    values[:, 2] += GRAVITY
+    assert 'resembles that of the tree' in align(values, *motions(1)).problem
+
+
+def test_an_orientation_gives_the_mount_itself() -> None:
+    reference = MOUNTS[2].as_quat()
+    values = np.full((N, 9), np.nan)
+    with_gravity, without = motions(1)
+    values[:, 6:] = with_gravity[:, 6:]
+    found = align(values, with_gravity, without, reference)
+    np.testing.assert_allclose(found.turn, MOUNTS[2].as_matrix(), atol=1e-12)
+    np.testing.assert_allclose(matrix_of(reference), found.turn)
+
+
+def test_the_smallest_turn_leads_from_one_direction_to_the_other() -> None:
+    rng = np.random.default_rng(4)
+    for a, b in [*rng.normal(size=(20, 2, 3)), np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -2.0]])]:
+        turn = turn_onto(a, b)
+        np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-9)
+        moved = turn @ a / np.linalg.norm(a)
+        np.testing.assert_allclose(moved, b / np.linalg.norm(b), atol=1e-6)

@@ -1,0 +1,103 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Samples of sensors as they come: refused with a count, or read at any time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tree_sway.core.observe.motion_sensor import MotionSensor
+from tree_sway.core.observe.sensor_place import SensorPlace
+
+PLACE = SensorPlace(0, 0.5)
+UP = (0.0, 0.0, 9.81)
+
+
+def sensor() -> MotionSensor:
+    return MotionSensor('phone', PLACE)
+
+
+def test_samples_are_joined_by_lines() -> None:
+    phone = sensor()
+    for k in range(5):
+        assert phone.offer(0.04 * k, acceleration=(k, 0.0, 9.81))
+    found = phone.at(0.05, 1.0 / 60.0)
+    assert found is not None
+    np.testing.assert_allclose(found[:3], [1.25, 0.0, 9.81])
+    assert np.isnan(found[3:]).all()
+
+
+def test_samples_within_a_step_are_averaged() -> None:
+    phone = sensor()
+    for k in range(100):
+        phone.offer(0.005 * k, rate=(k, 0.0, 0.0))
+    found = phone.at(0.1, 0.02)
+    assert found is not None
+    assert found[3] == pytest.approx(20.5)
+
+
+def test_nothing_is_read_across_a_gap() -> None:
+    phone = sensor()
+    for time in (0.0, 0.01, 0.02, 2.0, 2.01):
+        phone.offer(time, acceleration=UP)
+    assert phone.at(1.0, 1.0 / 60.0) is None
+    assert phone.at(3.0, 1.0 / 60.0) is None
+
+
+@pytest.mark.parametrize(
+    ('reason', 'acceleration'),
+    [
+        ('not_finite', (math.nan, 0.0, 0.0)),
+        ('not_finite', (math.inf, 0.0, 0.0)),
+        ('not_finite', 'up'),
+        ('not_finite', (1.0, 2.0)),
+        ('not_finite', None),
+        ('too_large', (1e4, 0.0, 0.0)),
+    ],
+)
+def test_bad_samples_are_refused_and_counted(reason: str, acceleration: object) -> None:
+    phone = sensor()
+    phone.offer(0.0, acceleration=UP)
+    assert not phone.offer(0.1, acceleration=acceleration)  # type: ignore[arg-type]
+    assert getattr(phone.counts, reason) == phone.counts.refused == 1
+    assert phone.offer(0.2, acceleration=UP)
+
+
+def test_a_sensor_at_its_limit_is_refused_until_it_moves_again() -> None:
+    phone = sensor()
+    for k in range(10):
+        phone.offer(0.01 * k, acceleration=(19.6, 0.01 * k, 9.81))
+    assert phone.counts.saturated == 7
+    assert phone.offer(0.2, acceleration=(3.0, 0.0, 9.81))
+
+
+def test_a_sensor_at_rest_is_not_at_its_limit() -> None:
+    phone = sensor()
+    assert all(phone.offer(0.01 * k, acceleration=UP) for k in range(10))
+
+
+def test_a_sample_of_the_past_is_refused_and_a_new_clock_accepted() -> None:
+    phone = sensor()
+    for k in range(10):
+        phone.offer(100.0 + 0.01 * k, acceleration=UP)
+    assert not phone.offer(100.05, acceleration=UP)
+    assert phone.counts.out_of_order == 1
+    for k in range(10):
+        phone.offer(3.0 + 0.01 * k, acceleration=UP)
+    assert phone.counts.restarted == 1
+    assert phone.newest == pytest.approx(3.09)
+
+
+def test_orientations_are_rotations_from_the_first_one() -> None:
+    phone = sensor()
+    turn = 0.02
+    phone.offer(0.0, orientation=(0.0, 0.0, math.sin(0.5), math.cos(0.5)))
+    for k in range(1, 4):
+        half = 0.5 + 0.5 * turn
+        phone.offer(0.01 * k, orientation=(0.0, 0.0, -math.sin(half), -math.cos(half)))
+    found = phone.at(0.02, 1e-3)
+    assert found is not None
+    np.testing.assert_allclose(found[6:], [0.0, 0.0, turn], atol=1e-12)

@@ -1,0 +1,226 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A tree with a sensor follows the real one; bad sensors do not move it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.growth.grow import grow
+from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.core.observe.observer import LATE_STEPS
+from tree_sway.core.observe.sensor_place import place_on
+from tree_sway.core.observe.simulated_sensor import SensedMotion, SimulatedSensor
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.tree.segment_frame import ends_of_poses
+from tree_sway.core.tree.species import species_named
+from tree_sway.core.tree.tree import tips_of_poses
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.errors import ParameterError
+
+DT, SECONDS = 1.0 / 60.0, 70
+TREE, SPECIES = grow('spruce', 5.0, rng=np.random.default_rng(8)), species_named('spruce')
+AT = f'{TREE.branch_names[0]}:0.6'
+SCORED = slice(40 * 60, None)
+"""The mounting is found from the first 20 s and then better."""
+
+
+class Truth(NamedTuple):
+    """Wind (n, 3), tips (n, b, 3), and poses of the place of the sensor, (n, 7)."""
+
+    wind: Floats
+    tips: Floats
+    poses: Floats
+
+
+@cache
+def truth() -> Truth:
+    """Sway a tree of softer wood and more damping, in gusts that reach it limb by limb."""
+    softer = replace(SPECIES, modulus=0.85 * SPECIES.modulus)
+    sim = make_simulator(
+        TREE, softer, in_leaf=False, damping_ratio=0.06, crown_coherence=0.3, model=90
+    )
+    rng = np.random.default_rng(17)
+    wind = simulate_turbulence(6.0, rate=60.0, duration=SECONDS, rng=rng)
+    place = place_on(TREE, AT)
+    away = place.along * TREE.length[place.segment]
+    poses, tips = np.empty((len(wind), 7)), np.empty((len(wind), TREE.n_branches, 3))
+    block = np.empty((TREE.n_segments, 7))
+    for k, each in enumerate(wind):
+        sim.step(each, DT)
+        sim.place(block)
+        poses[k] = block[place.segment]
+        poses[k, :3] = ends_of_poses(block[place.segment : place.segment + 1], [away])[1][0]
+        tips[k] = tips_of_poses(TREE, block)
+    return Truth(wind, tips, poses)
+
+
+@cache
+def measured(gravity: bool = True) -> SensedMotion:
+    mount = Rotation.from_euler('xyz', [160.0, 20.0, -70.0], degrees=True)
+    rng = np.random.default_rng(18)
+    sensor = SimulatedSensor(mount, has_gravity=gravity)
+    return sensor.measured(truth().poses, DT, rng)
+
+
+class Replay(NamedTuple):
+    """A tree after a record, its tips, and its late, smoothed tips, (n, b, 3)."""
+
+    twin: ObservedTree
+    tips: Floats
+    late: Floats
+
+
+def replayed(motion: SensedMotion | None, *, learns: bool = False) -> Replay:
+    twin = ObservedTree(
+        TREE, SPECIES, in_leaf=False, at={'phone': AT}, is_smoothed=True, learns=learns
+    )
+    wind, block = truth().wind, np.empty((TREE.n_segments, 7))
+    tips, late = np.empty((2, len(wind), TREE.n_branches, 3))
+    first = 0
+    for k, each in enumerate(wind):
+        while motion is not None and first < len(motion.time):
+            if motion.time[first] > (k + 1) * DT + 1e-9:
+                break
+            twin.offer(
+                'phone', motion.time[first], acceleration=motion.acceleration[first],
+                rate=motion.rate[first],
+            )  # fmt: skip
+            first += 1
+        twin.step(each, DT)
+        tips[k] = tips_of_poses(TREE, twin.place(block))
+        late[k] = tips_of_poses(TREE, twin.place_rotations(twin.smoothed, block))
+    return Replay(twin, tips, late)
+
+
+def dynamic_error(tips: Floats, late: int = 0) -> float:
+    """Return the error of the motion about its mean, over the true motion."""
+    rows = SCORED.start
+    true = truth().tips[rows - late : len(tips) - late]
+    motion, wrong = true - true.mean(axis=0), tips[rows:] - true
+    wrong = wrong - wrong.mean(axis=0)
+    return float(np.sqrt(np.square(wrong).sum() / np.square(motion).sum()))
+
+
+@cache
+def good() -> Replay:
+    return replayed(measured())
+
+
+@cache
+def alone() -> Replay:
+    return replayed(None)
+
+
+def test_a_sensor_takes_most_of_the_error_away() -> None:
+    twin, tips, late = good()
+    error, without = dynamic_error(tips), dynamic_error(alone().tips)
+    smoothed = dynamic_error(late, LATE_STEPS + twin.observer.late)
+    assert error < 0.6 * without
+    assert smoothed < error
+    assert not twin.problems
+    counts = twin.sensors['phone'].counts
+    assert counts.accepted == len(truth().wind)
+    assert counts.refused == counts.disagreed == counts.clamped == 0
+
+
+def test_the_smoothed_motion_is_as_smooth_as_the_true_one() -> None:
+    _twin, tips, late = good()
+    true = np.square(np.diff(truth().tips[SCORED], 2, axis=0)).sum()
+    rough = [np.square(np.diff(each[SCORED], 2, axis=0)).sum() / true for each in (tips, late)]
+    assert np.sqrt(rough[1]) < 1.5
+    assert np.sqrt(rough[0]) < 4.0
+
+
+def test_a_sensor_without_gravity_and_upside_down_does_as_well() -> None:
+    twin, tips, _ = replayed(measured(gravity=False))
+    assert not twin.problems
+    assert dynamic_error(tips) < 0.75 * dynamic_error(alone().tips)
+
+
+def test_without_samples_it_moves_in_the_wind_alone() -> None:
+    twin, tips, _ = alone()
+    assert twin.problems == ['phone: no sample yet']
+    assert np.isfinite(tips).all()
+
+
+def test_a_silent_sensor_is_counted_and_its_correction_fades() -> None:
+    motion = measured()
+    kept = motion.time < 50.0
+    short = SensedMotion(*(each[kept] for each in motion))
+    twin, tips, _ = replayed(short)
+    assert twin.sensors['phone'].counts.silent == 1
+    assert 'silent' in twin.problems[0]
+    after = slice(round(54.0 / DT), None)
+    np.testing.assert_allclose(tips[after], alone().tips[after], atol=1e-3)
+
+
+def test_a_sensor_that_comes_loose_is_refused() -> None:
+    motion = measured()
+    turned = motion.acceleration.copy()
+    loose = motion.time > 50.0
+    turned[loose] = turned[loose][:, [1, 2, 0]]
+    twin, tips, _ = replayed(motion._replace(acceleration=turned))
+    assert twin.sensors['phone'].counts.disagreed >= 1
+    assert twin.problems
+    after = slice(round(56.0 / DT), None)
+    np.testing.assert_allclose(tips[after], alone().tips[after], atol=5e-3)
+
+
+@pytest.mark.parametrize('size', [30.0, 300.0])
+def test_a_hostile_sensor_does_not_move_the_tree_beyond_its_storms(size: float) -> None:
+    motion = measured()
+    rng, shaken = np.random.default_rng(19), motion.acceleration.copy()
+    hostile = motion.time > 45.0
+    shaken[hostile] += size * np.sign(rng.normal(size=(int(hostile.sum()), 3)))
+    sway = size * np.sin(2.0 * np.pi * motion.time[hostile])
+    shaken[hostile, 0] += sway
+    twin, tips, _ = replayed(motion._replace(acceleration=shaken))
+    storm = make_simulator(TREE, SPECIES, in_leaf=False)
+    for _ in range(600):
+        storm.step((36.0, 0.0, 0.0), DT)
+    rest = TREE.end[TREE.branch_first[1:] - 1]
+    farthest = np.linalg.norm(tips_of_poses(TREE, storm.place()) - rest, axis=1).max()
+    assert np.linalg.norm(tips - rest, axis=2).max() < 2.0 * farthest
+    assert twin.sensors['phone'].counts.disagreed + twin.sensors['phone'].counts.too_large > 0
+
+
+def test_it_learns_stiffness_and_damping() -> None:
+    twin, tips, _ = replayed(measured(), learns=True)
+    fit = twin.observer.fit
+    assert fit is not None
+    assert fit.stiffness == pytest.approx(0.85, abs=0.1)
+    assert dynamic_error(tips) < 0.6 * dynamic_error(alone().tips)
+
+
+def test_a_state_carries_the_correction() -> None:
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
+    for each in truth().wind[:30]:
+        twin.step(each, DT)
+    state = twin.state()
+    twin.step((9.0, 0.0, 0.0), DT)
+    after = twin.rotations().copy()
+    twin.set_state(state)
+    twin.step((9.0, 0.0, 0.0), DT)
+    np.testing.assert_array_equal(twin.rotations(), after)
+
+
+def test_a_bad_wind_is_refused_and_counted() -> None:
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
+    assert twin.step((np.nan, 0.0, 0.0), DT)
+    assert twin.counts.refused == 1
+    twin.reset()
+    assert not twin.rotations().any()
+
+
+def test_models_without_coordinates_are_refused() -> None:
+    with pytest.raises(ParameterError, match='motion sensors on model') as caught:
+        ObservedTree(TREE, SPECIES, model='branch', at={'phone': AT})
+    assert caught.value.cure

@@ -1,0 +1,141 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Prepared models as files: whole, refused where damaged, opened wherever a tree is."""
+
+from __future__ import annotations
+
+import json
+import math
+import zipfile
+
+import numpy as np
+import pytest
+
+from tree_sway.commands.cli import main
+from tree_sway.core.model.model_cache import PREPARED, PreparedModels
+from tree_sway.core.model.tree_state import digest_of
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup import prepare as prepare_module
+from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.tree.species import species_named
+from tree_sway.errors import FormatError
+from tree_sway.files.models import model_file
+from tree_sway.files.models.model_file import read_model, VERSION, write_model
+from tree_sway.files.trees.source import open_scene, open_tree
+
+
+@pytest.fixture
+def file(fork, tmp_path):
+    path = tmp_path / 'fork.npz'
+    write_model(path, prepare(fork(), species_named('oak'), in_leaf=True, root_stiffness=math.inf))
+    return path
+
+
+def rewritten(path, **changes):
+    """Change arrays of a file; None takes one out."""
+    with np.load(path) as file:
+        arrays = dict(file) | changes
+    np.savez(path, **{name: each for name, each in arrays.items() if each is not None})
+
+
+def with_about(path, **changes):
+    with np.load(path) as file:
+        about = json.loads(str(file['about']))
+    rewritten(path, about=np.array(json.dumps(about | changes)))
+
+
+def test_a_file_reads_back_bit_for_bit(fork, file):
+    before = prepare(fork(), species_named('oak'), in_leaf=True, root_stiffness=math.inf)
+    model = read_model(file)
+    assert model.digest() == before.digest()
+    assert digest_of(model.tree, model.species, model.settings) == digest_of(
+        before.tree, before.species, before.settings
+    )
+    assert model.tree.branch_names == before.tree.branch_names
+    assert model.tree.name == before.tree.name
+
+
+@pytest.mark.parametrize('model', [0, 'branch', 'full'])
+def test_every_model_can_be_written(fork, tmp_path, model):
+    before = prepare(fork(), model=model, crown_coherence=0.4)
+    write_model(tmp_path / 'a.npz', before)
+    assert read_model(tmp_path / 'a.npz').digest() == before.digest()
+
+
+def test_an_opened_file_is_not_set_up_again(file, monkeypatch):
+    monkeypatch.setattr(PREPARED, 'behind', None)
+    monkeypatch.setattr(PREPARED, '_given', {})
+    opened = open_scene(file)
+    assert 'prepared on model 60, in leaf' in opened.notes[0]
+    monkeypatch.setattr(prepare_module, '_coupled_tree', lambda *_: pytest.fail('set up'))
+    simulator = opened.simulator(in_leaf=True, root_stiffness=math.inf)
+    simulator.step((6.0, 0.0, 0.0), 1 / 60)
+    assert simulator.species.key == 'oak'
+
+
+def test_another_species_is_set_up_anew(file):
+    spruce = open_tree(file, species='spruce')
+    simulator = make_simulator(spruce, model=4)
+    assert simulator.species.key == 'spruce'
+    assert simulator.prepared.n_coordinates == 4
+
+
+@pytest.mark.parametrize(
+    ('damage', 'named'),
+    [
+        (lambda path: path.write_bytes(path.read_bytes()[:900]), 'zip'),
+        (lambda path: path.write_text('hello'), 'zip'),
+        (lambda path: rewritten(path, about=None), 'no JSON'),
+        (lambda path: rewritten(path, about=np.ones(2)), 'no text about it'),
+        (lambda path: with_about(path, format='glTF'), 'another format'),
+        (lambda path: with_about(path, version=VERSION + 1), f'version {VERSION + 1}'),
+        (lambda path: with_about(path, species={'key': 3}), 'tree or settings'),
+        (lambda path: with_about(path, settings={'gravity': -1.0}), 'gravity'),
+        (lambda path: with_about(path, branch_names=['stem']), 'branch names'),
+        (lambda path: with_about(path, digest='0' * 16), 'not those that were written'),
+        (lambda path: rewritten(path, stiffness=None), "'stiffness': missing"),
+        (lambda path: rewritten(path, tree_start=None), 'tree_start'),
+        (lambda path: rewritten(path, tree_branch_first=np.array([0, 3])), 'without segments'),
+        (lambda path: rewritten(path, stiffness=np.ones(25)), 'not those that were written'),
+        (lambda path: rewritten(path, extra=np.array([{}], dtype=object)), 'no prepared model'),
+    ],
+)  # fmt: skip
+def test_a_damaged_file_is_refused(file, damage, named):
+    damage(file)
+    with pytest.raises(FormatError, match=named):
+        read_model(file)
+
+
+def test_a_file_that_would_fill_the_memory_is_refused(tmp_path, monkeypatch, little_effort):
+    monkeypatch.setattr(model_file, 'LARGEST', 1 << 26)
+    path = tmp_path / 'bomb.npz'
+    header = {'descr': '<f8', 'fortran_order': False, 'shape': (1 << 24,)}
+    with zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        with archive.open('zeros.npy', 'w') as entry:
+            np.lib.format.write_array_header_1_0(entry, header)
+            for _ in range(128):
+                entry.write(bytes(1 << 20))
+    with pytest.raises(FormatError, match='128 MiB of arrays'):
+        read_model(path)
+
+
+def test_convert_writes_a_model_that_commands_open(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(['convert', 'benjamina', '-o', 'b.npz', '--model', '12']) == 0
+    for name, more in (('b.npz', ['--model', '12']), ('benjamina', ['--model', '12'])):
+        out = f'{name}.csv'
+        assert main(['simulate', name, '--seconds', '0.5', '-o', out, *more]) == 0
+    assert (tmp_path / 'b.npz.csv').read_text() == (tmp_path / 'benjamina.csv').read_text()
+    capsys.readouterr()
+    assert main(['info', 'b.npz']) == 0
+    said = capsys.readouterr()
+    assert 'prepared on model 12' in said.out
+    assert 'benjamina' in said.out
+
+
+def test_the_newest_models_of_files_are_kept(fork):
+    models, arrays = PreparedModels(), prepare(fork(), model=4).arrays()
+    for number in range(40):
+        models.add(str(number), arrays)
+    assert models.read('0') is None
+    assert models.read('39') is arrays

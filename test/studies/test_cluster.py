@@ -1,0 +1,245 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Studies on a Dask cluster that was started apart: the same table, whatever is lost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+import os
+from pathlib import Path
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from tree_sway.commands import cli
+from tree_sway.errors import ParameterError, TransportError
+from tree_sway.studies import cluster
+from tree_sway.studies.cluster import own_version, refuse_wrong_address, run_all
+from tree_sway.studies.plan import Case
+from tree_sway.studies.runner import compute_batch, files_of, result_path, run_study
+
+pytest.importorskip('distributed', reason='needs dask.distributed')
+pytestmark = pytest.mark.skipif(os.name != 'posix', reason='ends processes by signals')
+
+SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
+DEADLINE = 120.0
+
+
+def cases(folder: Path, seeds: int = 6) -> list[Case]:
+    """Cases of a tree in a file that this process alone has, in gusts and in a record."""
+    tree, wind = folder / 'own' / 'tree.yaml', folder / 'own' / 'wind.csv'
+    tree.parent.mkdir(exist_ok=True)
+    tree.write_bytes(SEEDLING.read_bytes())
+    wind.write_text('time,u,v\n' + '\n'.join(f'{0.1 * k},{4 + k % 3},0' for k in range(20)))
+    given = {'settings': {'model': 'branch'}, 'seconds': 1.0}
+    winds = [{'speed': 4.0, 'intensity': 0.2, 'seed': k} for k in range(seeds - 1)]
+    winds.append({'file': str(wind), 'scale': 1.0})
+    return [Case({'file': str(tree)}, each, **given) for each in winds]
+
+
+class Apart:
+    """A scheduler and workers as processes of their own, each in a folder of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self._stack = ExitStack()
+        self._folder = folder
+        with socket.socket() as free:
+            free.bind(('127.0.0.1', 0))
+            port = free.getsockname()[1]
+        self.address = f'tcp://127.0.0.1:{port}'
+        self.workers: list[subprocess.Popen[bytes]] = []
+        words = ('--host', '127.0.0.1', '--port', str(port), '--no-dashboard')
+        self._start('scheduler', 'dask_scheduler', *words)
+
+    def start_worker(self) -> subprocess.Popen[bytes]:
+        number = len(self.workers)
+        words = (self.address, '--nthreads', '1', '--no-nanny', '--no-dashboard')
+        self.workers.append(self._start(f'worker{number}', 'dask_worker', *words))
+        return self.workers[-1]
+
+    def _start(self, name: str, module: str, *words: str) -> subprocess.Popen[bytes]:
+        place = self._folder / name
+        place.mkdir()
+        command = [sys.executable, '-m', f'distributed.cli.{module}', *words]
+        quiet = subprocess.DEVNULL
+        process = subprocess.Popen(command, cwd=place, stdout=quiet, stderr=quiet)
+        self._stack.callback(process.wait, 20.0)
+        self._stack.callback(process.kill)
+        return process
+
+    def close(self) -> None:
+        self._stack.close()
+
+
+@pytest.fixture(scope='module')
+def apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Apart]:
+    started = Apart(tmp_path_factory.mktemp('apart'))
+    started.start_worker()
+    started.start_worker()
+    yield started
+    started.close()
+
+
+def alone(asked: list[Case]) -> list[object]:
+    """Rows computed in this process, one after the other."""
+    return [row for _, row in compute_batch(asked, files_of(asked, {}))]
+
+
+def test_workers_elsewhere_give_the_same_rows_bit_for_bit(apart: Apart, tmp_path: Path) -> None:
+    asked = cases(tmp_path)
+    files_of_asked = files_of(asked, {})
+    assert len(files_of_asked) == 2
+    rows = run_study(asked, tmp_path / 'cases', scheduler=apart.address)
+    assert rows == alone(asked)
+
+
+def test_a_killed_worker_loses_nothing(apart: Apart, tmp_path: Path, monkeypatch) -> None:
+    asked = cases(tmp_path, 8)
+    doomed = apart.start_worker()
+    began = threading.Event()
+
+    def kill_in_the_middle(found: list[Case], _: str) -> Iterator[Case]:
+        for done, case in enumerate(found):
+            if done == 2:
+                doomed.send_signal(signal.SIGKILL)
+                doomed.wait(20.0)
+                began.set()
+            yield case
+
+    monkeypatch.setattr('tree_sway.studies.runner.bar', kill_in_the_middle)
+    rows = run_study(asked, tmp_path / 'cases', workers=1, scheduler=apart.address)
+    assert began.is_set()
+    assert rows == alone(asked)
+
+
+def test_the_command_computes_there_and_again_only_what_is_missing(
+    apart: Apart, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study, table = tmp_path / 'study.yaml', tmp_path / 'study.csv'
+    study.write_text(
+        f'trees: [{SEEDLING}]\nwinds: [{{speed: 4, seeds: 3}}]\nsettings: {{model: branch}}\n'
+        'seconds: 1\n'
+    )
+    words = ['study', str(study), '-o', str(table), '--scheduler', apart.address]
+    assert cli.main(words) == 0
+    assert f'3 of 3 cases to compute by {apart.address}' in capsys.readouterr().err
+    first = table.read_bytes()
+    assert cli.main(words) == 0
+    assert '0 of 3' in capsys.readouterr().err
+    assert table.read_bytes() == first
+
+
+def test_a_case_that_cannot_be_leaves_the_others(apart: Apart, tmp_path: Path) -> None:
+    asked = cases(tmp_path, 3)
+    wrong = Case({'file': str(tmp_path / 'nowhere.yaml')}, asked[0].wind, seconds=1.0)
+    with pytest.raises(Exception, match=r'no such file|no tree'):
+        run_study([wrong, *asked], tmp_path / 'cases', scheduler=apart.address)
+    assert all(result_path(tmp_path / 'cases', case).is_file() for case in asked)
+
+
+def test_other_versions_are_refused_by_a_sentence(
+    apart: Apart, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = {**own_version(), 'tree_sway_ros': '9.9'}
+
+    def differs() -> dict[str, str]:
+        return other
+
+    run = cluster._refuse_other_versions
+    monkeypatch.setattr(cluster, 'own_version', differs)
+
+    class Client:
+        def run(self, _: object) -> dict[str, dict[str, str]]:
+            return {'tcp://there:1': {**other, 'tree_sway_ros': '0.1.0'}}
+
+    with pytest.raises(TransportError, match=r'there:1 has tree_sway_ros 0\.1\.0 inst.* 9\.9'):
+        run(Client(), 'tcp://there:2')
+
+
+@pytest.mark.parametrize('address', ['host:8786', 'tcp://host', 'http://host:1', 'tcp://host:0'])
+def test_a_wrong_address_is_refused_at_once(address: str) -> None:
+    with pytest.raises(ParameterError, match='write tcp://host:8786'):
+        refuse_wrong_address(address)
+
+
+def test_no_scheduler_and_no_workers_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster, '_PATIENCE', 3.0)
+    with socket.socket() as nobody:
+        nobody.bind(('127.0.0.1', 0))
+        address = f'tcp://127.0.0.1:{nobody.getsockname()[1]}'
+    with pytest.raises(TransportError, match=rf'{re.escape(address)}: no scheduler answers'):
+        run_study(cases(tmp_path, 2), tmp_path / 'cases', scheduler=address)
+    empty = Apart(tmp_path)
+    try:
+        monkeypatch.setattr(cluster, '_PATIENCE', 10.0)
+        with pytest.raises(TransportError, match='a scheduler without workers; start some'):
+            run_study(cases(tmp_path, 2), tmp_path / 'cases', scheduler=empty.address)
+    finally:
+        empty.close()
+
+
+def test_results_come_as_they_are_done(apart: Apart) -> None:
+    with cluster.cluster(1, apart.address) as (distributed, client):
+        work = [(f'piece {k}', (k,)) for k in range(5)]
+        assert sorted(run_all(distributed, client, abs, work)) == [0, 1, 2, 3, 4]
+
+
+STUDY = """
+import sys
+from tree_sway.commands.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def test_ctrl_c_ends_at_once_and_frees_the_workers(apart: Apart, tmp_path: Path) -> None:
+    import distributed
+
+    study = tmp_path / 'study.yaml'
+    study.write_text('trees: [benjamina]\nwinds: [{speed: 4, seeds: 40}]\nseconds: 10\n')
+    words = ['study', str(study), '-o', str(tmp_path / 'o.csv'), '--scheduler', apart.address]
+    command = [sys.executable, '-c', STUDY, *words]
+    with (
+        subprocess.Popen(command, start_new_session=True, stderr=subprocess.PIPE) as process,
+        distributed.Client(apart.address, set_as_default=False) as watching,
+    ):
+        until(lambda: any(watching.processing().values()))
+        began = time.monotonic()
+        os.killpg(process.pid, signal.SIGINT)
+        said = process.communicate(timeout=DEADLINE)[1]
+        assert process.returncode == 130, said
+        assert time.monotonic() - began < 15.0
+        assert b'Traceback' not in said
+        until(lambda: not any(watching.processing().values()))
+
+
+def swallow_once(waited: threading.Event) -> None:
+    """Drop the first interrupt, as a finalizer does, and wait for what never happens."""
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+    waited.wait(DEADLINE)
+
+
+def test_ctrl_c_that_a_finalizer_swallows_is_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, '_REPEAT', 0.1)
+    handler = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt), cluster.repeated_interrupt():
+        swallow_once(threading.Event())
+    assert signal.getsignal(signal.SIGINT) is handler
+    until(lambda: not any(isinstance(each, threading.Timer) for each in threading.enumerate()))
+
+
+def until(is_so) -> None:
+    """Wait for a condition, with a deadline."""
+    end = time.monotonic() + DEADLINE
+    while not is_so():
+        assert time.monotonic() < end, 'it did not come to that'
+        time.sleep(0.05)

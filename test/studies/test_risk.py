@@ -1,0 +1,214 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Critical winds: closed forms, monotony, and the table as it is written."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tree_sway.commands import cli
+from tree_sway.core.strength.critical_wind import largest_expected, ShareCurve
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.files.scenes.inventory.inventory_file import inventory_table
+from tree_sway.files.scenes.inventory.read_inventory import Inventory, inventory_of
+from tree_sway.studies import risk_command
+from tree_sway.studies.risk import risk_work, Row, rows_of_kind
+from tree_sway.studies.risk_kind import compute_kind, KindResult, RiskKind, SeasonCurves
+
+pytest.importorskip('distributed', reason='needs dask.distributed')
+
+
+def test_a_power_law_is_found_again() -> None:
+    speed = np.array([8.0, 16.0, 30.0])
+    curve = ShareCurve(speed, (speed / 20.0) ** 1.6)
+    for share in (0.05, 0.4, 1.0, 3.0):
+        assert curve.speed_of(share) == pytest.approx(20.0 * share ** (1.0 / 1.6))
+
+
+def test_the_largest_of_ten_minutes_is_expected_from_two() -> None:
+    rng = np.random.default_rng(3)
+    found, expected = [], []
+    for _ in range(40):
+        wind = simulate_turbulence(10.0, rate=10.0, duration=600.0, rng=rng)[:, 0]
+        found.append(wind.max())
+        expected.append(largest_expected(wind[:1200], 10.0))
+    assert np.mean(expected) == pytest.approx(np.mean(found), rel=0.05)
+
+
+def inventory(folder: Path, text: str) -> Inventory:
+    path = folder / 'trees.csv'
+    path.write_text(text)
+    return inventory_of(inventory_table(path, text), needs_place=False)
+
+
+def power_result(kind: RiskKind) -> KindResult:
+    """Curves of a kind whose wood breaks at 20 m/s in leaf and whose roots fail at 25 m/s."""
+    speed = np.array([10.0, 30.0])
+    seasons = [
+        SeasonCurves(
+            in_leaf,
+            ShareCurve(speed, (speed / (20.0 * more)) ** 2),
+            ShareCurve(speed, (speed / (25.0 * more)) ** 2),
+        )
+        for in_leaf, more in ((True, 1.0), (False, 1.5))
+    ]
+    return KindResult(kind, tuple(seasons), kind.slenderness or 40.0)
+
+
+def test_a_tree_is_scaled_from_its_kind_by_its_stem_and_its_height(tmp_path: Path) -> None:
+    trees = inventory(tmp_path, 'species,height,dbh [m]\noak,20,0.5\noak,20,0.55\noak,21,\n')
+    kind = RiskKind('oak', 20.0, 40.0)
+    work = risk_work(trees)
+    rows = {
+        row['line']: row
+        for each in [type(work)(trees, {kind: [0, 1, 2]})]
+        for row in rows_of_kind(each, power_result(kind))
+    }
+    assert rows[2]['critical_wind_10m [m/s]'] == 20.0
+    assert rows[2]['limited_by'] == 'wood, in leaf'
+    assert rows[2]['roots_in_leaf [m/s]'] == 25.0
+    assert rows[2]['wood_bare [m/s]'] == 30.0
+    assert rows[2]['critical_wind_10m [km/h]'] == 72.0
+    top = math.log(20.0 / 0.03) / math.log(10.0 / 0.03)
+    assert rows[2]['critical_wind_top [m/s]'] == pytest.approx(20.0 * top, abs=0.01)
+    # Load d^2 in leaf and d bare, by U^2; section modulus d^3, mass of the stem d^2.
+    assert rows[3]['wood_in_leaf [m/s]'] == pytest.approx(20.0 * 1.1**0.5, abs=0.01)
+    assert rows[3]['roots_in_leaf [m/s]'] == 25.0
+    assert rows[3]['wood_bare [m/s]'] == pytest.approx(30.0 * 1.1, abs=0.01)
+    assert rows[3]['roots_bare [m/s]'] == pytest.approx(37.5 * 1.1**0.5, abs=0.01)
+    # The crown of a higher tree is in faster wind.
+    higher = math.log(0.75 * 20.0 / 0.03) / math.log(0.75 * 21.0 / 0.03)
+    assert rows[4]['wood_in_leaf [m/s]'] == pytest.approx(20.0 * higher, abs=0.01)
+    assert 'stem by height' in rows[4]['assumed']
+    low, high = rows[2]['low_80 [m/s]'], rows[2]['high_80 [m/s]']
+    assert low == pytest.approx(20.0 * math.sqrt(0.85 * (1 - 1.2816 * 0.16)), abs=0.01)
+    assert high == pytest.approx(20.0 * math.sqrt(1 + 1.2816 * 0.16), abs=0.01)
+
+
+def test_kinds_are_few_in_a_large_inventory(tmp_path: Path) -> None:
+    rng = np.random.default_rng(5)
+    species = ('oak', 'lime', 'plane', 'maple', 'ash', 'birch', 'spruce', 'pear', 'ginkgo')
+    lines = ['species,height,dbh']
+    for _ in range(20_000):
+        height = rng.uniform(4.0, 30.0)
+        lines.append(f'{rng.choice(species)},{height:.1f},{height * rng.uniform(1.2, 4.0):.0f}')
+    work = risk_work(inventory(tmp_path, '\n'.join(lines)))
+    assert len(work.kinds) <= 96
+    assert sorted(row for rows in work.kinds.values() for row in rows) == list(range(20_000))
+
+
+@pytest.mark.long
+def test_a_thicker_stem_uses_less_and_leaves_cost() -> None:
+    slender, thick = (compute_kind(RiskKind('oak', 12.0, ratio)) for ratio in (60.0, 40.0))
+    for one, other in zip(slender.seasons, thick.seasons, strict=True):
+        assert one.wood.share[0] > other.wood.share[0]
+        assert one.roots.share[0] > other.roots.share[0]
+    in_leaf, bare = thick.seasons
+    assert in_leaf.wood.speed_of(1.0) < bare.wood.speed_of(1.0)
+    again = compute_kind(RiskKind('oak', 12.0, 60.0)).seasons[0].wood
+    np.testing.assert_array_equal(again.share, slender.seasons[0].wood.share)
+
+
+def test_an_impossible_kind_has_a_reason_in_place_of_winds(tmp_path: Path) -> None:
+    result = compute_kind(RiskKind('benjamina', 20.0, 0.0))
+    assert 'out of range for the habit' in result.error
+    trees = inventory(tmp_path, 'species,height\nbenjamina,20\n')
+    (row,) = rows_of_kind(type(risk_work(trees))(trees, {result.kind: [0]}), result)
+    assert row['critical_wind_10m [m/s]'] is None
+    assert 'not computed: ' in row['assumed']
+
+
+INVENTORY = 'x,y,species,height,dbh\n0,0,oak,12,30\n5,0,Hainbuche,,20\n9,0,spruce,15,22\n'
+
+
+def written(path: Path) -> list[Row]:
+    with path.open() as file:
+        return list(csv.DictReader(file))
+
+
+def by_power_laws(work, *, workers, scheduler):
+    """Yield rows as `risk_rows` does, the last kind first."""
+    for kind in reversed(work.kinds):
+        rows = rows_of_kind(work, power_result(kind))
+        yield len(rows), rows
+
+
+@pytest.mark.parametrize('is_real', [False, pytest.param(True, marks=pytest.mark.long)])
+def test_the_command_writes_a_row_per_tree_in_the_order_of_the_inventory(
+    is_real: bool,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    if not is_real:
+        monkeypatch.setattr(risk_command, 'risk_rows', by_power_laws)
+    source, table = tmp_path / 'trees.csv', tmp_path / 'risk.csv'
+    source.write_text(INVENTORY)
+    words = ['risk', str(source), '-o', str(table), '--workers', '2']
+    assert cli.main(words) == 0
+    said = capsys.readouterr()
+    assert 'is no verdict' in said.err
+    assert 'safe' not in (said.out + said.err + table.read_text()).lower()
+    rows = written(table)
+    assert [row['species'] for row in rows] == ['oak', 'hornbeam', 'spruce']
+    for row in rows:
+        low, middle, high = (
+            float(row[name])
+            for name in ('low_80 [m/s]', 'critical_wind_10m [m/s]', 'high_80 [m/s]')
+        )
+        assert 3.0 < low < middle < high <= 80.0
+        parts = [
+            float(row[f'{part}_{season} [m/s]'])
+            for part in ('wood', 'roots')
+            for season in ('in_leaf', 'bare')
+            if row[f'{part}_{season} [m/s]']
+        ]
+        assert middle == min(parts)
+    assert rows[1]['assumed'].startswith('height by stem')
+    assert (rows[2]['wood_bare [m/s]'] == '') == is_real
+    first = table.read_bytes()
+    assert cli.main(words) == 2
+    assert 'exists' in capsys.readouterr().err
+    assert cli.main([*words, '--force']) == 0
+    assert table.read_bytes() == first
+
+
+def test_an_interrupted_table_can_be_read(tmp_path: Path, monkeypatch) -> None:
+    source, table = tmp_path / 'trees.csv', tmp_path / 'risk.csv'
+    source.write_text(INVENTORY)
+
+    def two_kinds_only(work, *, workers, scheduler):
+        for number, kind in enumerate(work.kinds):
+            if number == 2:
+                raise KeyboardInterrupt
+            rows = rows_of_kind(work, power_result(kind))
+            yield len(rows), rows
+
+    monkeypatch.setattr(risk_command, 'risk_rows', two_kinds_only)
+    assert cli.main(['risk', str(source), '-o', str(table)]) == 130
+    rows = written(table)
+    assert len(rows) == 2
+    assert all(float(row['critical_wind_10m [m/s]']) > 0.0 for row in rows)
+    assert not list(tmp_path.glob('risk.csv.*'))
+
+
+@pytest.mark.parametrize(
+    ('words', 'said'),
+    [
+        (['-o', 'risk.txt'], 'end it with .csv'),
+        (['--workers', '0'], '--workers'),
+        (['--scheduler', 'nowhere'], 'write tcp://host:8786'),
+    ],
+)
+def test_what_the_user_can_mend(
+    words: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = tmp_path / 'trees.csv'
+    source.write_text(INVENTORY)
+    assert cli.main(['risk', str(source), *words]) == 2
+    assert said in capsys.readouterr().err

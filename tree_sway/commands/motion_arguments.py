@@ -1,0 +1,70 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments for records of motion sensors on the real tree."""
+
+from __future__ import annotations
+
+import argparse
+
+from tree_sway.core.observe.sensor_place import place_on
+from tree_sway.core.scene.simulate import PlacedMotion
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import inside, ParameterError
+from tree_sway.files.motion.motion_file import read_motion
+
+
+def add_motion_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add ``--motion``, ``--at`` and ``--motion-starts``."""
+    add = parser.add_argument
+    add(
+        '--motion', action='append', default=[], metavar='FILE',
+        help='recording of a motion sensor on the real tree: CSV, or a bag with '
+        'sensor_msgs/Imu; repeatable',
+    )  # fmt: skip
+    add(
+        '--at', action='append', default=[], metavar='PLACE',
+        help='where that sensor sits: a height on the stem [m], as 3.2, or BRANCH:SHARE, as '
+        'b12:0.5; once for each --motion',
+    )  # fmt: skip
+    add(
+        '--motion-starts', type=float, default=0.0, metavar='S',
+        help='time [s] by which recordings of motion begin after that of the wind, added to '
+        'their times (%(default)s)',
+    )  # fmt: skip
+
+
+def placed_motion(
+    arguments: argparse.Namespace, tree: Tree, epoch: float | None
+) -> list[PlacedMotion]:
+    """
+    Read the recordings of motion sensors.
+
+    Parameters
+    ----------
+    arguments
+        Arguments of `add_motion_arguments`.
+    tree
+        The tree that they are on.
+    epoch
+        Time of the first sample of the wind in seconds after 1970; None without dates.
+
+    """
+    if len(arguments.motion) != len(arguments.at):
+        what = f'{len(arguments.motion)} --motion and {len(arguments.at)} --at'
+        raise ParameterError(what, cure='give the place of each sensor: --motion FILE --at 3.2')
+    found = []
+    for number, (path, at) in enumerate(zip(arguments.motion, arguments.at, strict=True), 1):
+        with inside('--at'):
+            place_on(tree, at)
+        record = read_motion(path)
+        found.append(
+            PlacedMotion(
+                f'sensor {number} at {at}',
+                at,
+                record.times_after(epoch, arguments.motion_starts),
+                record.acceleration,
+                record.rate,
+                record.orientation,
+            )
+        )
+    return found

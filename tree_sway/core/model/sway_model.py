@@ -1,0 +1,489 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The prepared model of a tree: all that set-up finds, as named arrays.
+
+Set-up makes it once; a simulator needs nothing else. It is what the cache stores, what an ``.npz``
+file of a tree has, and where the description for receivers and the table for JavaScript come from,
+under the same names. ``doc/sway_model.md`` documents every array and the law of a step.
+
+Sizes: n segments, b branches (a branch that rotates far is cut into several), N key rotations of
+all branches, k the largest number of them in one branch, m coordinates, q leading coordinates,
+s streamed coordinates, A azimuths and L levels of the table, h harmonics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, MISSING
+from functools import cached_property
+import hashlib
+from typing import Annotated, Any, get_args, get_type_hints, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats, Ints, Singles
+from tree_sway.core.beams.shape_functions import ROOMS
+from tree_sway.core.model.drag_law import DragLaw
+from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.model.spherical_harmonics import N_HARMONICS
+from tree_sway.core.model.state_basis import StateBasis
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree.wood import Species
+from tree_sway.errors import FormatError
+
+PLACING, LOADS, COORDINATES, STREAM, TABLE, ISOLATED, LIMBS, LIMB_LOADS = (
+    'placing', 'loads of branches', 'coordinates', 'stream', 'table', 'isolated branches', 'limbs',
+    'loads of limbs',
+)  # fmt: skip
+"""Groups of arrays."""
+
+_NONE: Any = np.zeros(0)
+
+
+def _absent() -> Any:
+    """Return the default of an array that not every model has."""
+    return _NONE
+
+
+class Meaning(NamedTuple):
+    """Group, shape, unit and meaning of an array; shapes are of numbers and names of sizes."""
+
+    group: str
+    shape: tuple[int | str, ...]
+    unit: str
+    text: str
+
+
+@dataclass(frozen=True, eq=False)
+class SwayModel:
+    """
+    Prepared model of a tree.
+
+    Arrays of a group that the law does not need are empty. `MEANINGS` has the shape, the unit and
+    the meaning of every array.
+
+    Parameters
+    ----------
+    tree, species, settings
+        What it was made of; the settings have the leaves that the tree bears.
+    drag_law
+        Drag of the whole tree.
+    damping_ratio
+        Damping ratio of the wood in [-].
+    mass
+        Mass of wood and leaves in [kg].
+    most_pressure
+        Largest dynamic pressure of the table in [kg/m/s^2].
+    most_energy
+        Twice the largest strain and kinetic energy that wind gives, [J].
+
+    """
+
+    tree: Tree
+    species: Species
+    settings: Settings
+    drag_law: DragLaw
+    damping_ratio: float
+    mass: float
+
+    branch_first: Annotated[Ints, Meaning(
+        PLACING, ('b + 1',), '', 'first segment of each branch, and n at the end',
+    )]  # fmt: skip
+    branch_parent: Annotated[Ints, Meaning(
+        PLACING, ('b',), '', 'parent branch, -1 for the stem; parents come first',
+    )]  # fmt: skip
+    branch_base_segment: Annotated[Ints, Meaning(
+        PLACING, ('b',), '', 'segment of the parent at its base, -1 for the stem',
+    )]  # fmt: skip
+    branch_coordinate: Annotated[Ints, Meaning(
+        PLACING, ('b',), '', 'its first key rotation',
+    )]  # fmt: skip
+    branch_keys: Annotated[Ints, Meaning(
+        PLACING, ('b',), '', 'number of its key rotations, 2 or more',
+    )]  # fmt: skip
+    branch_frame: Annotated[Floats, Meaning(
+        PLACING, ('b', 3, 3), '', 'chord and the two axes e1, e2 across it at rest, as rows; the '
+        'first key rotation turns the chord about e2, the second about -e1',
+    )]  # fmt: skip
+    branch_skew: Annotated[Floats, Meaning(
+        PLACING, ('b', 2), '', 'third cumulant over 6 of the slope, and of the slope under a load '
+        'at the tip',
+    )]  # fmt: skip
+    branch_offset: Annotated[Floats, Meaning(
+        PLACING, ('b', 3), 'm', 'base from the start of the base segment, in the frame of that '
+        'segment; 0 for the stem',
+    )]  # fmt: skip
+    branch_twist: Annotated[Floats, Meaning(
+        PLACING, ('b', 'k', 6), 'm, rad', 'displacement and rotation of the base per unit of each '
+        'key rotation of the parent, about the root node',
+    )]  # fmt: skip
+    segment_slope: Annotated[Floats, Meaning(
+        PLACING, ('n',), 'rad/rad', 'rotation of each segment per unit of key rotation',
+    )]  # fmt: skip
+    segment_tip_slope: Annotated[Floats, Meaning(
+        PLACING, ('n',), 'rad/rad', 'the same under a load at the tip',
+    )]  # fmt: skip
+    segment_chord: Annotated[Floats, Meaning(
+        PLACING, ('n', 3), 'm', 'from its start to the start of the next one of its branch, or '
+        'to its end, at rest',
+    )]  # fmt: skip
+    segment_rest: Annotated[Floats, Meaning(
+        PLACING, ('n', 4), '', 'orientation at rest as a quaternion w x y z',
+    )]  # fmt: skip
+    segment_turn: Annotated[Floats, Meaning(
+        PLACING, ('n', 'k', 3), 'rad/rad', 'rotation vector of each segment per unit of each key '
+        'rotation of its branch',
+    )]  # fmt: skip
+
+    branch_area: Annotated[Floats, Meaning(
+        LOADS, ('b',), 'm^2', 'drag area',
+    )]  # fmt: skip
+    branch_speed: Annotated[Floats, Meaning(
+        LOADS, ('b',), '', 'wind speed at the branch over that at the anemometer',
+    )]  # fmt: skip
+    branch_spread: Annotated[Floats, Meaning(
+        LOADS, ('b',), 'm^2', 'variance of the displacement of its pieces about that of the load '
+        'centre, per squared unit of the first key rotations',
+    )]  # fmt: skip
+    branch_lever: Annotated[Floats, Meaning(
+        LOADS, ('b',), 'm', 'lever of its own load about its base',
+    )]  # fmt: skip
+    branch_projector: Annotated[Floats, Meaning(
+        LOADS, ('b', 6), '', 'mean of 1 - t t^T over its pieces, t along a piece: xx yy zz xy xz '
+        'yz',
+    )]  # fmt: skip
+    branch_centre: Annotated[Floats, Meaning(
+        LOADS, ('b', 3), 'm', 'centre of the load from the root node',
+    )]  # fmt: skip
+    branch_coupling: Annotated[Floats, Meaning(
+        LOADS, ('b', 3, 3), 'm', 'moment about the root node per force',
+    )]  # fmt: skip
+    branch_load_mode: Annotated[Floats, Meaning(
+        LOADS, ('b', 'k', 3), 'm/rad', 'displacement that the mean force does work on, per unit '
+        'of each of its key rotations',
+    )]  # fmt: skip
+    branch_damping_mode: Annotated[Floats, Meaning(
+        LOADS, ('b', 'k', 3), 'm/rad', 'displacement whose velocity the drag damps',
+    )]  # fmt: skip
+    branch_load_rotation: Annotated[Floats, Meaning(
+        LOADS, ('b', 'k', 3), 'rad/rad', 'rotation of its loaded pieces',
+    )]  # fmt: skip
+    branch_tip_mode: Annotated[Floats, Meaning(
+        LOADS, ('b', 'k', 3), 'm/rad', 'displacement of its tip',
+    )]  # fmt: skip
+
+    stiffness: Annotated[Floats, Meaning(
+        COORDINATES, ('m',), '1/s^2', 'squared circular frequency; of isolated branches their '
+        'stiffness in N m/rad',
+    )]  # fmt: skip
+    own_damping: Annotated[Floats, Meaning(
+        COORDINATES, ('m',), '1/s', 'damping by the wood; of isolated branches in N m s/rad',
+    )]  # fmt: skip
+    weight: Annotated[Floats, Meaning(
+        COORDINATES, ('m',), '1/s^2', 'part of the stiffness by gravity, negative where the '
+        'weight softens',
+    )]  # fmt: skip
+    natural_frequencies: Annotated[Floats, Meaning(
+        COORDINATES, ('frequencies',), 'Hz', 'lowest natural frequencies of the tree without air',
+    )]  # fmt: skip
+
+    shapes: Annotated[Floats, Meaning(
+        COORDINATES, ('N', 'm'), 'rad', 'key rotations per unit of each coordinate',
+    )] = field(default_factory=_absent)  # fmt: skip
+    projection: Annotated[Floats, Meaning(
+        COORDINATES, ('m', 'N'), '1/rad', 'coordinates of key rotations: shapes^T mass',
+    )] = field(default_factory=_absent)  # fmt: skip
+    relative_damping: Annotated[Floats, Meaning(
+        COORDINATES, ('m',), '', 'damping ratio of each coordinate over that of the tree',
+    )] = field(default_factory=_absent)  # fmt: skip
+    participation: Annotated[Floats, Meaning(
+        COORDINATES, ('b', 'm'), 'm^2', 'mean square displacement of each load centre per unit '
+        'of each coordinate',
+    )] = field(default_factory=_absent)  # fmt: skip
+    key_limit: Annotated[Floats, Meaning(
+        COORDINATES, ('N',), 'N m', 'largest moment of a push on each key rotation',
+    )] = field(default_factory=_absent)  # fmt: skip
+    branch_compliance: Annotated[Floats, Meaning(
+        COORDINATES, ('N', 'keys of a branch'), 'rad/(N m)', 'compliance of each isolated '
+        'branch, the rows of its block',
+    )] = field(default_factory=_absent)  # fmt: skip
+    shape_compliance: Annotated[Floats, Meaning(
+        COORDINATES, ('m', 'm'), '1/(N m)', 'part of it that the coordinates have',
+    )] = field(default_factory=_absent)  # fmt: skip
+    inertia_slopes: Annotated[Floats, Meaning(
+        COORDINATES, ('q', 'q', 'q'), '', 'change of the inertia of the leading coordinates per '
+        'unit of the last axis',
+    )] = field(default_factory=_absent)  # fmt: skip
+
+    stream_shapes: Annotated[Floats, Meaning(
+        STREAM, ('m', 's'), '', 'coordinates per unit of each streamed coordinate, a length',
+    )] = field(default_factory=_absent)  # fmt: skip
+    stream_projection: Annotated[Floats, Meaning(
+        STREAM, ('s', 'm'), '', 'streamed coordinates of coordinates',
+    )] = field(default_factory=_absent)  # fmt: skip
+    stream_scale: Annotated[Floats, Meaning(
+        STREAM, ('s',), 'm', 'value of each streamed coordinate at the full scale of an int16',
+    )] = field(default_factory=_absent)  # fmt: skip
+    stream_error: Annotated[Floats, Meaning(
+        STREAM, (1,), 'm', 'largest error of the tip of a branch, in int16, in a wind of 13 m/s '
+        'and its gusts',
+    )] = field(default_factory=_absent)  # fmt: skip
+
+    most_pressure: float = 0.0
+    most_energy: float = 0.0
+    limit: Annotated[Floats, Meaning(
+        TABLE, ('m',), 'm^2', 'largest load of a steady wind on each coordinate, per dynamic '
+        'pressure',
+    )] = field(default_factory=_absent)  # fmt: skip
+    motion: Annotated[Floats, Meaning(
+        TABLE, ('m',), 'm^2', 'mean square velocity of the loaded pieces per squared rate of each '
+        'coordinate',
+    )] = field(default_factory=_absent)  # fmt: skip
+    harmonics: Annotated[Floats, Meaning(
+        TABLE, (N_HARMONICS, 'm'), 'm^2', 'load at rest, by spherical harmonics of the direction '
+        'of the wind',
+    )] = field(default_factory=_absent)  # fmt: skip
+    amount: Annotated[Floats, Meaning(
+        TABLE, (N_AZIMUTHS, 'm'), '', 'weights of the coordinates in the mean deflection',
+    )] = field(default_factory=_absent)  # fmt: skip
+    levels: Annotated[Floats, Meaning(
+        TABLE, (N_AZIMUTHS, N_LEVELS), '', 'mean deflection of the equilibria, ascending',
+    )] = field(default_factory=_absent)  # fmt: skip
+    equilibrium: Annotated[Floats, Meaning(
+        TABLE, (N_AZIMUTHS, N_LEVELS, 'm'), '', 'coordinates in steady winds',
+    )] = field(default_factory=_absent)  # fmt: skip
+    load: Annotated[Floats, Meaning(
+        TABLE, (N_AZIMUTHS, N_LEVELS, 'm'), 'm^2', 'load at the equilibria less that at rest',
+    )] = field(default_factory=_absent)  # fmt: skip
+    cross_damping: Annotated[Floats, Meaning(
+        TABLE, (N_AZIMUTHS, N_LEVELS, 'm'), 'm^2', 'sum of the absolute damping of each '
+        'coordinate by the rates of all others',
+    )] = field(default_factory=_absent)  # fmt: skip
+    turning: Annotated[Singles, Meaning(
+        TABLE, (N_AZIMUTHS, N_LEVELS, 'm', 'm'), 'm^2', 'derivative of the load, the second m, by '
+        'the coordinate that moves, the first m',
+    )] = field(default_factory=_absent)  # fmt: skip
+    damping: Annotated[Singles, Meaning(
+        TABLE, (N_AZIMUTHS, N_LEVELS, 'm', 'm'), 'm^2', 'the same by the rate of the coordinate, '
+        'per speed of the air',
+    )] = field(default_factory=_absent)  # fmt: skip
+    lean: Annotated[Singles, Meaning(
+        TABLE, (N_AZIMUTHS, 'm', 'm'), 'm^2', 'change of turning by the vertical part of the '
+        'direction of the wind',
+    )] = field(default_factory=_absent)  # fmt: skip
+    steep_turning: Annotated[Singles, Meaning(
+        TABLE, (2, 'm', 'm'), 'm^2', 'turning in winds straight down and straight up',
+    )] = field(default_factory=_absent)  # fmt: skip
+    steep_damping: Annotated[Singles, Meaning(
+        TABLE, (2, 'm', 'm'), 'm^2', 'damping in these winds',
+    )] = field(default_factory=_absent)  # fmt: skip
+
+    inertia: Annotated[Floats, Meaning(
+        ISOLATED, ('b',), 'kg m^2', 'inertia of each isolated branch (model branch)',
+    )] = field(default_factory=_absent)  # fmt: skip
+
+    limb_delay: Annotated[Ints, Meaning(
+        LIMBS, ('b',), '', 'number of the delay with which gusts reach each branch',
+    )] = field(default_factory=_absent)  # fmt: skip
+    limb_spread: Annotated[Floats, Meaning(
+        LIMBS, (1,), 'm', 'longest delay times the wind speed',
+    )] = field(default_factory=_absent)  # fmt: skip
+    limb_share: Annotated[Floats, Meaning(
+        LIMBS, ('delays',), '', 'share of these limbs in the load',
+    )] = field(default_factory=_absent)  # fmt: skip
+    limb_harmonics: Annotated[Floats, Meaning(
+        LIMB_LOADS, ('delays', N_HARMONICS, 'm'), 'm^2', 'their load at rest, by harmonics',
+    )] = field(default_factory=_absent)  # fmt: skip
+
+    def __repr__(self) -> str:
+        """Return tree, model and sizes on one line."""
+        return (
+            f'SwayModel of {self.tree.name}, model {self.settings.model}: '
+            f'{len(self.stiffness)} coordinates, {len(self.branch_parent)} branches, '
+            f'{self.tree.n_segments} segments'
+        )
+
+    @property
+    def n_keys(self) -> int:
+        """Number of key rotations, N."""
+        return int(self.branch_keys.sum())
+
+    @property
+    def n_coordinates(self) -> int:
+        """Number of coordinates, m."""
+        return len(self.stiffness)
+
+    @property
+    def has_table(self) -> bool:
+        """Whether a table has the wind load; else it is summed over the branches."""
+        return self.levels.size > 0
+
+    @property
+    def is_isolated(self) -> bool:
+        """Whether each branch is an oscillator of its own, as on the model ``branch``."""
+        return self.inertia.size > 0
+
+    @property
+    def has_limbs(self) -> bool:
+        """Whether gusts reach its limbs one after another."""
+        return self.limb_delay.size > 0
+
+    @cached_property
+    def basis(self) -> StateBasis:
+        """Return the basis in which the motion is streamed; isolated branches have none here."""
+        return StateBasis(
+            self.shapes @ self.stream_shapes,
+            self.stream_projection @ self.projection,
+            self.stream_scale,
+            float(self.stream_error[0]),
+        )
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the arrays by name, without absent ones; numbers are arrays without an axis."""
+        found = {name: np.asarray(getattr(self, name), dtype=np.float64) for name in NUMBERS}
+        present = {name: getattr(self, name) for name in MEANINGS}
+        return found | {name: each for name, each in present.items() if each is not _NONE}
+
+    def digest(self) -> str:
+        """Digest of all arrays and numbers, 16 hexadecimal digits."""
+        found = hashlib.sha256()
+        for name, array in self.arrays().items():
+            found.update(f'{name}{array.dtype.str}{array.shape}'.encode())
+            found.update(np.ascontiguousarray(array).tobytes())
+        return found.hexdigest()[:16]
+
+    def check(self) -> None:
+        """
+        Check every array: its type, its shape, that it is finite, and that indices exist.
+
+        Raises
+        ------
+        FormatError
+            The first array that does not fit, with what is expected.
+
+        """
+        sizes = self._sizes()
+        for name, meaning in MEANINGS.items():
+            array = getattr(self, name)
+            if array is _NONE and self._may_lack(meaning.group):
+                continue
+            shape = tuple(sizes.get(each, each) for each in meaning.shape)
+            if array.dtype != TYPES[name] or not _fits(array.shape, shape):
+                what = f'{array.dtype} of shape {array.shape}'
+                raise _misfit(name, what, f'{TYPES[name]} of shape {shape}')
+            if not np.isfinite(array).all():
+                raise _misfit(name, 'a number that is not finite', 'finite numbers')
+        self._check_indices()
+
+    def _may_lack(self, group: str) -> bool:
+        return not {
+            PLACING: True,
+            LOADS: True,
+            COORDINATES: not self.is_isolated,
+            STREAM: not self.is_isolated,
+            TABLE: self.has_table,
+            ISOLATED: self.is_isolated,
+            LIMBS: self.has_limbs,
+            LIMB_LOADS: self.has_limbs and self.has_table,
+        }[group]
+
+    def _sizes(self) -> dict[int | str, int]:
+        """Sizes that the names in shapes stand for."""
+        count, twists = len(self.branch_parent), self.branch_twist.shape
+        sizes: dict[int | str, int] = {'n': self.tree.n_segments, 'b': count, 'b + 1': count + 1}
+        sizes |= {'k': twists[1] if len(twists) > 1 else 0, 'N': self.n_keys}
+        sizes |= {'m': len(self.stiffness), 's': len(self.stream_scale)}
+        return sizes | {'q': len(self.inertia_slopes)}
+
+    def _check_indices(self) -> None:
+        """Refuse indices by which a kernel would read past the end of an array."""
+        n, count, keys = self.tree.n_segments, len(self.branch_parent), self.branch_keys
+        own, last = np.arange(count), np.clip(self.branch_parent, 0, count - 1)
+        first, end = self.branch_first[:-1], self.branch_first[1:]
+        seat = self.branch_base_segment
+        room = self.branch_twist.shape[1]
+        block = np.sort(self.branch_coordinate)
+        followed = np.append(block[1:], self.n_keys)
+        order = np.argsort(self.branch_coordinate)
+        for name, holds, wanted in (
+            ('branch_first', (end > first).all() and first[0] == 0, 'a rise from 0'),
+            ('branch_first', end[-1] == n, 'n at the end'),
+            ('branch_parent', self.branch_parent[0] == -1, '-1 for the stem'),
+            ('branch_parent', (self.branch_parent[1:] >= 0).all(), 'one stem'),
+            ('branch_parent', (self.branch_parent < own).all(), 'parents first'),
+            ('branch_base_segment', seat[0] == -1, '-1 for the stem'),
+            ('branch_base_segment',
+             ((seat >= first[last]) & (seat < end[last]))[1:].all(), 'segments of parents'),
+            ('branch_keys', ((keys >= 2) & (keys <= room)).all(), f'2 to {room}'),
+            ('branch_twist', room in ROOMS, f'one of {ROOMS} rows for each branch'),
+            ('branch_coordinate', block[0] == 0 and (followed - block == keys[order]).all(),
+             'one block of key rotations for each branch'),
+        ):  # fmt: skip
+            if not holds:
+                raise _misfit(name, 'an index that does not exist', wanted)
+
+    @classmethod
+    def of_arrays(
+        cls, arrays: Mapping[str, NDArray[Any]], tree: Tree, species: Species, settings: Settings
+    ) -> SwayModel:
+        """
+        Make a model of the arrays that `arrays` returns, and check it.
+
+        Raises
+        ------
+        FormatError
+            An array that is missing or unknown, or does not fit the others.
+
+        """
+        for name in sorted(arrays.keys() - {*MEANINGS, *NUMBERS}):
+            raise _misfit(name, 'an array that no model has', 'names of sway_model.md')
+        for name in (*NUMBERS, *_REQUIRED):
+            if name not in arrays:
+                raise _misfit(name, 'missing', 'an array of every model')
+        for name, size in NUMBERS.items():
+            if arrays[name].size != size or not np.isfinite(arrays[name]).all():
+                raise _misfit(name, f'of shape {arrays[name].shape}', f'{size} finite numbers')
+        given: dict[str, Any] = {**arrays, 'drag_law': DragLaw(*arrays['drag_law'].tolist())}
+        given |= {name: float(arrays[name]) for name in NUMBERS if name != 'drag_law'}
+        made = cls(tree=tree, species=species, settings=settings, **given)
+        made.check()
+        return made
+
+
+def _fits(shape: tuple[int, ...], wanted: tuple[int | str, ...]) -> bool:
+    """Whether a shape is as wanted; a name in it stands for any size."""
+    pairs = zip(shape, wanted, strict=False)
+    return len(shape) == len(wanted) and all(
+        isinstance(size, str) or size == own for own, size in pairs
+    )
+
+
+def _misfit(name: str, what: str, wanted: str) -> FormatError:
+    cure = 'convert the tree again by tree-sway convert'
+    return FormatError(f"array '{name}': {what}; expected: {wanted}", where='model', cure=cure)
+
+
+NUMBERS = {
+    'drag_law': 3, 'damping_ratio': 1, 'mass': 1, 'most_pressure': 1, 'most_energy': 1,
+}  # fmt: skip
+"""Numbers of a model, and how many there are of each."""
+
+MEANINGS: dict[str, Meaning] = {}
+"""Group, shape, unit and meaning of every array, by name."""
+
+TYPES: dict[str, type] = {}
+"""Type of the numbers of every array, by name."""
+
+for _name, _hint in get_type_hints(SwayModel, include_extras=True).items():
+    for _meaning in get_args(_hint)[1:]:
+        if isinstance(_meaning, Meaning):
+            MEANINGS[_name] = _meaning
+            TYPES[_name] = get_args(get_args(get_args(_hint)[0])[1])[0]
+
+_REQUIRED = [
+    each.name for each in fields(SwayModel)
+    if each.name in MEANINGS and each.default_factory is MISSING
+]  # fmt: skip

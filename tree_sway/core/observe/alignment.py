@@ -1,0 +1,259 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+How a sensor is mounted, found from gravity and from the sway itself.
+
+Gravity tells which way is up in the sensor's frame. The azimuth is that by which the sensor's
+motion resembles the motion of the model at its place most, in least squares (Wahba 1965, SIAM
+Review 7, 409). A sensor whose acceleration has no gravity is turned by the whole of that problem
+(Kabsch 1976, Acta Crystallographica A 32, 922-923). Units follow from the size of gravity, and of
+the motion in comparison with the model's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tree_sway.core.arrays import Floats
+
+GRAVITY = 9.80665
+"""Standard gravity in [m/s^2]."""
+
+LEAST_LIKENESS = 0.25
+"""Correlation of sensor and model below which a sensor is taken as not on this tree."""
+
+_MOST_RATIO = 5.0
+_GRAVITY_RANGE = (0.85, 1.15)
+_NO_GRAVITY = 0.4
+_PER_DEGREE = math.pi / 180.0
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """
+    What is known about a sensor.
+
+    Parameters
+    ----------
+    turn
+        Rotation from the sensor's frame to east, north, up, (3, 3).
+    scale
+        Factors of acceleration and rate to [m/s^2] and [rad/s], (2,).
+    has_gravity
+        Whether the acceleration has gravity in it.
+    likeness
+        Correlation of its motion with the model's in wind alone [-].
+    noise
+        Standard deviation of its noise: acceleration, rate, rotation, (3,).
+    problem
+        Why it cannot be used and what to do; empty if it can.
+    notes
+        What was recognised, one sentence each.
+
+    """
+
+    turn: Floats
+    scale: Floats
+    has_gravity: bool
+    likeness: float
+    noise: Floats
+    problem: str = ''
+    notes: tuple[str, ...] = field(default_factory=tuple)
+
+    def motion(self, values: Floats) -> Floats:
+        """
+        Turn a sample (..., 9) into the frame of the tree, (..., 9).
+
+        Gravity is taken off the acceleration; rotations are in that frame already.
+        """
+        out = values.copy()
+        out[..., :3] = self.scale[0] * values[..., :3] @ self.turn.T
+        out[..., 2] -= GRAVITY if self.has_gravity else 0.0
+        out[..., 3:6] = self.scale[1] * values[..., 3:6] @ self.turn.T
+        return out
+
+
+def align(
+    sensed: Floats,
+    with_gravity: Floats,
+    without: Floats,
+    reference: Floats | None = None,
+) -> Alignment:
+    """
+    Find the mounting of a sensor.
+
+    Parameters
+    ----------
+    sensed
+        Samples at equal steps: acceleration, rate and rotation, (n, 9), columns that the sensor
+        does not measure not a number.
+    with_gravity
+        Motion of the model there, of a sensor that feels gravity, (n, 9).
+    without
+        The same of one whose acceleration has no gravity.
+    reference
+        Orientation from which the rotations are counted, x y z w; None without.
+
+    """
+    notes = list[str]()
+    finite = np.isfinite(sensed).all(axis=0).reshape(3, 3)
+    measures: NDArray[np.bool_] = np.all(finite, axis=1)
+    scale = np.ones(2)
+    has_gravity, problem = True, ''
+    turn = np.eye(3)
+    if measures[0]:
+        scale[0], has_gravity, problem = _gravity_of(sensed[:, :3], notes)
+    model = (with_gravity if has_gravity else without).copy()
+    if measures[1]:
+        scale[1] = _rate_unit(sensed[:, 3:6], model[:, 3:6], notes)
+    scaled = sensed.copy()
+    scaled[:, :3] *= scale[0]
+    scaled[:, 3:6] *= scale[1]
+    if measures[2] and reference is not None:
+        turn = matrix_of(reference)
+    elif measures[0] and has_gravity:
+        felt = model[:, :3].mean(axis=0) + np.array([0.0, 0.0, GRAVITY])
+        turn = turn_onto(scaled[:, :3].mean(axis=0), felt)
+        turn = _azimuth(scaled, model, turn, measures) @ turn
+    elif measures[:2].any():
+        turn = _whole_turn(scaled, model, measures)
+    found = Alignment(turn, scale, has_gravity, 0.0, np.zeros(3))
+    moved = found.motion(sensed)
+    likeness, ratio = _likeness(moved, model, measures)
+    if not problem and measures[0] and not has_gravity and ratio < 1.0 / 3.0:
+        notes.append('acceleration in g, without gravity')
+        scale[0] = GRAVITY
+        moved = found.motion(sensed)
+        likeness, ratio = _likeness(moved, model, measures)
+    if not problem and not 1.0 / _MOST_RATIO < ratio < _MOST_RATIO:
+        problem = (
+            f'it moves {ratio:.2g} times as much as the tree does there in this wind: check that '
+            'it is on this tree, at this place, in m/s^2 and rad/s'
+        )
+    if not problem and likeness < LEAST_LIKENESS:
+        problem = (
+            f'its motion resembles that of the tree by {likeness:.2f} only: check place, clock '
+            'and wind, or wait for more wind'
+        )
+    noise = noise_of(moved)
+    return Alignment(turn, scale, has_gravity, likeness, noise, problem, tuple(notes))
+
+
+def _gravity_of(acceleration: Floats, notes: list[str]) -> tuple[float, bool, str]:
+    """Factor to [m/s^2], whether gravity is in it, and what is wrong."""
+    steady = float(np.linalg.norm(acceleration.mean(axis=0)))
+    low, high = _GRAVITY_RANGE
+    if low < steady / GRAVITY < high:
+        return 1.0, True, ''
+    if low < steady < high:
+        notes.append('acceleration in g')
+        return GRAVITY, True, ''
+    if steady < _NO_GRAVITY:
+        notes.append('acceleration without gravity')
+        return 1.0, False, ''
+    return (
+        1.0,
+        True,
+        (
+            f'a mean acceleration of {steady:.3g} is neither gravity in m/s^2 nor in g, nor '
+            'without it: check the unit, and that the sensor was fixed all the time'
+        ),
+    )
+
+
+def _rate_unit(rate: Floats, model: Floats, notes: list[str]) -> float:
+    """Factor to [rad/s]: rates in degrees are 57 times those of the model."""
+    sizes = [float(np.sqrt(np.square(each - each.mean(axis=0)).sum())) for each in (rate, model)]
+    ratio = sizes[0] / max(sizes[1], 1e-12)
+    if ratio > math.sqrt(1.0 / _PER_DEGREE):  # halfway between both units
+        notes.append('angular rate in degrees per second')
+        return _PER_DEGREE
+    return 1.0
+
+
+def _azimuth(sensed: Floats, model: Floats, turn: Floats, measures: NDArray[np.bool_]) -> Floats:
+    """Rotation about the vertical that makes upright motion resemble the model's, (3, 3)."""
+    across = along = 0.0
+    for quantity in np.flatnonzero(measures[:2]).tolist():
+        rows = slice(3 * quantity, 3 * quantity + 3)
+        upright = _centred(sensed[:, rows] @ turn.T)
+        wanted = _centred(model[:, rows])
+        size = max(float(np.square(wanted).sum()), 1e-300)
+        along += float((upright[:, :2] * wanted[:, :2]).sum()) / size
+        turned = upright[:, 0] * wanted[:, 1] - upright[:, 1] * wanted[:, 0]
+        across += float(turned.sum()) / size
+    angle = math.atan2(across, along)
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _whole_turn(sensed: Floats, model: Floats, measures: NDArray[np.bool_]) -> Floats:
+    """Rotation that makes motion resemble the model's, without gravity, (3, 3)."""
+    pairs = np.zeros((3, 3))
+    for quantity in np.flatnonzero(measures[:2]).tolist():
+        rows = slice(3 * quantity, 3 * quantity + 3)
+        wanted = _centred(model[:, rows])
+        size = max(float(np.square(wanted).sum()), 1e-300)
+        pairs += wanted.T @ _centred(sensed[:, rows]) / size
+    left, _, right = np.linalg.svd(pairs)
+    right[2] *= np.linalg.det(left) * np.linalg.det(right)
+    return np.asarray(left @ right)
+
+
+def _likeness(moved: Floats, model: Floats, measures: NDArray[np.bool_]) -> tuple[float, float]:
+    """Correlation with the model, and the size of the motion over the model's."""
+    product = own = other = 0.0
+    for quantity in np.flatnonzero(measures).tolist():
+        rows = slice(3 * quantity, 3 * quantity + 3)
+        mine, wanted = _centred(moved[:, rows]), _centred(model[:, rows])
+        size = max(float(np.square(wanted).sum()), 1e-300)
+        product += float((mine * wanted).sum()) / size
+        own += float(np.square(mine).sum()) / size
+        other += 1.0
+    return product / max(math.sqrt(own * other), 1e-300), math.sqrt(own / max(other, 1.0))
+
+
+def _centred(rows: Floats) -> Floats:
+    return np.asarray(rows - rows.mean(axis=0))
+
+
+def noise_of(moved: Floats) -> Floats:
+    """
+    Estimate the deviation of the noise of each quantity, (3,), from motion at equal steps, (n, 9).
+
+    The third difference of white noise has 20 times its variance, and hardly any sway.
+    """
+    found = np.zeros(3)
+    for quantity in range(3):
+        rows = moved[:, 3 * quantity : 3 * quantity + 3]
+        if np.isfinite(rows).all() and len(rows) > 3:
+            found[quantity] = math.sqrt(float(np.square(np.diff(rows, 3, axis=0)).mean()) / 20.0)
+    return found
+
+
+def turn_onto(start: Floats, end: Floats) -> Floats:
+    """Smallest rotation of a direction (3,) onto another, as a matrix (3, 3)."""
+    a = start / max(float(np.linalg.norm(start)), 1e-300)
+    b = end / max(float(np.linalg.norm(end)), 1e-300)
+    cosine = float(a @ b)
+    if cosine < -1.0 + 1e-9:
+        aside = np.cross(a, np.eye(3)[int(np.argmin(np.abs(a)))])
+        aside /= np.linalg.norm(aside)
+        return np.asarray(2.0 * np.outer(aside, aside) - np.eye(3))
+    v = np.cross(a, b)
+    skew = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+    return np.asarray(np.eye(3) + skew + skew @ skew / (1.0 + cosine))
+
+
+def matrix_of(quaternion: Floats) -> Floats:
+    """Rotation matrix (3, 3) of a unit quaternion x y z w."""
+    x, y, z, w = quaternion.tolist()
+    return np.array([
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ])  # fmt: skip

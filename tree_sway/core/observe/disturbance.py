@@ -1,0 +1,145 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+What the wind at one place does not tell about the forces on a tree.
+
+An anemometer measures one place, and limbs apart from each other meet gusts of their own. Two
+places r apart share gusts of a frequency f by the coherence ``exp(-C f r / U)``, C near 8
+(Davenport, 1961, Quarterly Journal of the Royal Meteorological Society 87, 194-211). The wind of
+each limb therefore has an unknown part, correlated among limbs by that law at the first frequency
+of the tree. A further part covers the wood: a stiffness that is off by a share is a force of that
+share of the elastic force.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.setup.tree_motion import base_motion, own_motion
+from tree_sway.core.wind.crown_wind import DECAY
+
+if TYPE_CHECKING:
+    from tree_sway.core.run.simulator import SwaySimulator
+
+TIME_CONSTANT = 0.6
+"""Time in [s] after which an unknown force has decayed to 1/e."""
+
+_GUST = 0.15
+"""Standard deviation of the unknown wind of a limb over the mean wind [-]."""
+
+_SHARED = 0.1
+"""Variance of an unknown wind of the whole crown over that of a limb [-]."""
+
+WOOD = 0.2
+"""Standard deviation of the stiffness of wood within a species, over its mean [-]."""
+
+_LIFT = 0.3
+"""Variance of the vertical unknown wind over that of the horizontal one [-]."""
+
+_SLOPE = 1.5
+"""
+Slope of the drag by the wind, mean over the two directions across the flow, over drag per speed:
+2 along the wind and 1 across it.
+"""
+
+_PROJECTOR = [0, 3, 4, 3, 1, 5, 4, 5, 2]
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """
+    Unknown forces on the first coordinates of a model in a mean wind.
+
+    ``covariance`` is of the modal forces, (m, m); ``air_damping`` the damping of each coordinate
+    by the mean wind in [1/s], (m,).
+    """
+
+    covariance: Floats
+    air_damping: Floats
+
+
+def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
+    """Find the unknown forces on a number of coordinates in a mean wind [m/s]."""
+    branches = simulator.joints
+    slope, moved = _branch_slopes(simulator, speed, count)
+    air_damping = np.einsum('bim,bim->m', slope, moved)
+
+    limb = _limbs(simulator)[simulator.tree.branch_of_segment[branches['first']]]
+    n_limbs = int(limb.max()) + 1
+    by_limb = np.zeros((n_limbs, *slope.shape[1:]))
+    np.add.at(by_limb, limb, slope)
+    load = np.bincount(limb, branches['area'], n_limbs)
+    middle = (
+        np.stack(
+            [np.bincount(limb, branches['area'] * x, n_limbs) for x in branches['centre'].T],
+            axis=1,
+        )
+        / np.maximum(load, 1e-12)[:, None]
+    )
+    apart = np.linalg.norm(middle[:, None] - middle, axis=2)
+    frequency = float(simulator.frequencies(1)[0])
+    shared = np.exp(-DECAY * frequency / max(speed, 1.0) * apart)
+    whole = by_limb.sum(axis=0)
+    covariance = np.zeros((count, count))
+    for axis, share in enumerate((1.0, 1.0, _LIFT)):
+        covariance += share * by_limb[:, axis].T @ shared @ by_limb[:, axis]
+        covariance += share * _SHARED * np.outer(whole[axis], whole[axis])
+    covariance *= (_GUST * speed) ** 2
+    gusts = np.square(_GUST * speed * whole).sum(axis=0)
+    _add_wood(covariance, gusts, simulator, air_damping)
+    return Disturbance(covariance, air_damping)
+
+
+def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:
+    """Slope of the modal forces by the wind of the whole crown in a mean wind [m/s], (3, m)."""
+    return np.asarray(_branch_slopes(simulator, speed, count)[0].sum(axis=0))
+
+
+def _branch_slopes(simulator: SwaySimulator, speed: float, count: int) -> tuple[Floats, Floats]:
+    """Slopes of modal forces by the wind of each branch, and the motion it damps, (b, 3, m)."""
+    branches = simulator.joints
+    shapes = np.ascontiguousarray(simulator.bank.oscillators.shapes[:, :count])
+    bases = base_motion(branches, shapes)
+    at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
+    pushed = at + own_motion(branches, 'load_mode', shapes)
+    projector = branches['projector'][:, _PROJECTOR].reshape(-1, 3, 3)
+    per_speed = pressure(speed, *simulator.drag_law) * speed
+    area = _SLOPE * per_speed * branches['speed'] * branches['area']
+    moved = at + own_motion(branches, 'damping_mode', shapes)
+    return area[:, None, None] * (projector @ pushed), moved
+
+
+def _limbs(simulator: SwaySimulator) -> Ints:
+    """Find the number of the limb of each branch of the tree, 0 for the stem, (b,)."""
+    parent = simulator.tree.branch_parent
+    on_stem = parent == 0
+    limb = np.where(on_stem, np.cumsum(on_stem), 0)
+    for branch, below in enumerate(parent.tolist()):
+        if below > 0:
+            limb[branch] = limb[below]
+    return limb
+
+
+def _add_wood(
+    covariance: Floats, gusts: Floats, simulator: SwaySimulator, air_damping: Floats
+) -> None:
+    """
+    Add the force by which a wrong stiffness drives each coordinate, in place.
+
+    The variance of a coordinate under a force of variance q that decays at a rate a is ``q (a + c)
+    / (c k (a^2 + a c + k))``, c and k its damping and stiffness per mass.
+    """
+    tunable = simulator.bank.oscillators.tunable
+    count = len(covariance)
+    stiffness = tunable.stiffness[:count] / tunable.inertia
+    damping = tunable.damping[:count] / tunable.inertia + air_damping
+    rate = 1.0 / TIME_CONSTANT
+    force = np.diag(covariance) + gusts
+    variance = force * (rate + damping)
+    variance /= damping * stiffness * (rate * rate + rate * damping + stiffness)
+    covariance[np.diag_indices(count)] += np.square(WOOD * stiffness) * variance

@@ -1,0 +1,313 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A simulator whose motion sensors on the real tree correct.
+
+It steps in the wind alone, adds the correction of its observer, and takes it off again before the
+next step. What places, streams or records the tree reads the corrected state.
+
+The wind of the steps is the one expected at the limbs, given that of the anemometer: a share of
+each gust reaches the whole crown at once, the rest limb after limb (`crown_wind`). The gusts of
+each limb are for the sensors to tell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import three_numbers, within
+from tree_sway.core.model.model_cache import ModelCache, PREPARED
+from tree_sway.core.model.settings import Settings, settings_with
+from tree_sway.core.observe.disturbance import crown_slope
+from tree_sway.core.observe.motion_sensor import MotionSensor
+from tree_sway.core.observe.observer import Observer
+from tree_sway.core.observe.sensor_place import place_on
+from tree_sway.core.observe.sensor_track import SensorTrack
+from tree_sway.core.observe.tree_fit import TreeFit
+from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
+from tree_sway.core.setup.prepare import delays_of, prepared
+from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.setup.tree_motion import tip_motion
+from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.crown_wind import CrownWind, USUAL_COHERENCE
+from tree_sway.core.wind.limits import is_wind
+from tree_sway.errors import ParameterError
+
+_STORM = 36.0
+"""Wind in [m/s] whose static deflection bounds the energy of the corrected motion."""
+
+_KNOWN_AHEAD = 0.5
+"""Time in [s] by which samples of records are known ahead of a step."""
+
+_QUANTILE = 1.2816
+"""Standard deviations within which 80 % of a normal distribution lie."""
+
+_DYNAMIC = 4.0
+"""Energy of the motion in a storm over that of the static deflection."""
+
+
+@dataclass
+class _Record:
+    """Times [s], (n,), rows of each quantity, and the next one to be offered."""
+
+    time: Floats
+    rows: dict[str, Floats]
+    next: int = 0
+
+
+class ObservedTree(SwaySimulator):
+    """
+    A tree that sways as the sensors on it do.
+
+    Parameters
+    ----------
+    tree, species, settings, cache, plain, **changes
+        Arguments of `make_simulator`. The model is a number of coordinates, or ``full``.
+    at
+        Place of each sensor by its name, as `place_on` takes it.
+    rate
+        Steps per second in [Hz].
+    is_smoothed
+        Whether the smoothed state is kept too (`smoothed`).
+    learns
+        Whether stiffness and damping follow the sensors.
+
+    Raises
+    ------
+    ParameterError
+        No such place, or a model without coordinates that can be corrected.
+
+    Examples
+    --------
+    >>> twin = ObservedTree(tree, at={'phone': 3.2})
+    >>> twin.offer('phone', time, acceleration=(0.1, -0.2, 9.8), rate=(0.0, 0.01, 0.0))
+    >>> twin.step(wind, 1 / 60)
+
+    """
+
+    def __init__(
+        self,
+        tree: Tree | GrownTree,
+        species: Species | None = None,
+        settings: Settings | None = None,
+        *,
+        at: Mapping[str, str | float],
+        rate: float = 60.0,
+        is_smoothed: bool = False,
+        learns: bool = True,
+        cache: ModelCache | None = PREPARED,
+        plain: bool = False,
+        **changes: Any,
+    ) -> None:
+        chosen = settings_with(settings, changes)
+        coherence = min(chosen.crown_coherence, USUAL_COHERENCE)
+        bare, wood = tree_and_species(tree, species)
+        whole = replace(chosen, crown_coherence=1.0)
+        reductions = TreeReductions(bare, wood, whole, plain=plain)
+        super().__init__(prepared(reductions, cache=cache), plain=plain)
+        if not hasattr(self.bank.oscillators, 'swing') or self.settings.model == 0:
+            raise ParameterError(
+                f"motion sensors on model '{self.model}'",
+                where='model',
+                cure='use a number of coordinates, such as 60',
+            )
+        self._places = {name: place_on(self.tree, where) for name, where in at.items()}
+        self._is_smoothed, self._rate = is_smoothed, 0.0
+        self.sensors: dict[str, MotionSensor] = {}
+        """Sensors by their names."""
+        self._records: dict[str, _Record] = {}
+        self.set_rate(rate)
+        delays = delays_of(self.tree, reductions.leaf_load_area)
+        self._share = delays.share
+        self._crown = CrownWind(delays.spread, coherence)
+        self._added = np.zeros((2, self.observer.count))
+        self._limit = self._storm_energy()
+        self.now = 0.0
+        """Time of the end of the last step in [s], on the clock of the sensors."""
+        self._given: float | None = None
+        self._known: TreeFit | None = None
+        self._tips: Floats | None = None
+        self.learns = learns
+        """Whether stiffness and damping follow the sensors."""
+
+    def set_rate(self, rate: float) -> None:
+        """
+        Set the steps per second in [Hz]; the sensors begin anew if it changes.
+
+        A `ParameterError` refuses a rate beyond 1 to 10,000 Hz.
+        """
+        if within('rate', rate, 1.0, 10_000.0, 'Hz') == self._rate:
+            return
+        self._rate = rate
+        frequency = float(self.frequencies(1)[0])
+        self.sensors = {name: MotionSensor(name, place) for name, place in self._places.items()}
+        tracks = [SensorTrack(each, frequency, 1.0 / rate) for each in self.sensors.values()]
+        self.observer = Observer(self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed)
+        """What the sensors tell."""
+
+    def _swing(self) -> tuple[Floats, ...]:
+        """Return views of displacement, rate and force of each coordinate, (m,)."""
+        oscillators: Any = self.bank.oscillators
+        return tuple(oscillators.swing)
+
+    def _storm_energy(self) -> float:
+        """Energy that no correction exceeds, per unit mass of the coordinates."""
+        n = self.observer.count
+        tunable = self.bank.oscillators.tunable
+        stiffness = np.array(tunable.stiffness[:n]) / tunable.inertia
+        load = _STORM * crown_slope(self, _STORM, n)
+        return _DYNAMIC * float((np.square(load).sum(axis=0) / stiffness).sum())
+
+    def offer(
+        self,
+        name: str,
+        time: float,
+        *,
+        acceleration: ArrayLike | None = None,
+        rate: ArrayLike | None = None,
+        orientation: ArrayLike | None = None,
+    ) -> bool:
+        """
+        Offer a sample of a sensor, as `MotionSensor.offer`; a `KeyError` for no such sensor.
+
+        The time is in [s] on the clock of the steps.
+        """
+        return self.sensors[name].offer(
+            time, acceleration=acceleration, rate=rate, orientation=orientation
+        )
+
+    def replay(
+        self,
+        name: str,
+        time: Floats,
+        *,
+        acceleration: Floats | None = None,
+        rate: Floats | None = None,
+        orientation: Floats | None = None,
+    ) -> None:
+        """
+        Offer a record of a sensor, sample by sample as the steps reach its times.
+
+        Times are in [s] after `reset`, (n,); the quantities, (n, 3) and (n, 4), are those of
+        `offer`.
+        """
+        order = np.argsort(time, kind='stable')
+        given = {'acceleration': acceleration, 'rate': rate, 'orientation': orientation}
+        rows = {key: each[order] for key, each in given.items() if each is not None}
+        self._records[name] = _Record(np.asarray(time, dtype=np.float64)[order], rows)
+
+    def _offer_records(self, until: float) -> None:
+        """Offer the samples of all records up to a time in [s]."""
+        for name, record in self._records.items():
+            while record.next < len(record.time) and record.time[record.next] <= until:
+                row = {key: each[record.next] for key, each in record.rows.items()}
+                self.offer(name, record.time[record.next], **row)
+                record.next += 1
+
+    def set_time(self, time: float) -> None:
+        """Set the time in [s] at which the next step ends; else it goes on by its length."""
+        self._given = time
+
+    def step(self, wind_mean: ArrayLike, dt: float) -> int:
+        """Advance one step as `SwaySimulator.step`, then correct the motion."""
+        x, y, z = three_numbers('wind', wind_mean)
+        eta, rate, _ = self._swing()
+        n = self.observer.count
+        eta[:n] -= self._added[0]
+        rate[:n] -= self._added[1]
+        if is_wind(x, y, z, self._max_wind):
+            apart = (self._share @ self._crown.push(x, y, z, dt)).tolist()
+            status = super().step((x + apart[0], y + apart[1], z + apart[2]), dt)
+        else:
+            status = super().step((x, y, z), dt)
+        if status & RESTARTED:
+            self._added[:] = 0.0
+            self.observer.reset()
+        self.now = self.now + dt if self._given is None else self._given
+        self._given = None
+        self._offer_records(self.now + _KNOWN_AHEAD)
+        swing = self._swing()
+        n_periods = max(round(dt * self._rate), 1)
+        correction = self.observer.step(self.now, math.hypot(x, y, z), swing, n_periods)
+        self._added = self._bounded(correction, swing)
+        swing[0][:n] += self._added[0]
+        swing[1][:n] += self._added[1]
+        if self.observer.fit is not self._known:
+            self._take_on(self.observer.fit)
+        return status
+
+    def _take_on(self, fit: TreeFit | None) -> None:
+        """Let the model glide to the stiffness and damping of the real tree."""
+        self._known = fit
+        if fit is None or not self.learns:
+            return
+        ratio = min(fit.damping * self.prepared.damping_ratio, 1.0)
+        with suppress(ParameterError):  # a tree that would buckle stays as it is
+            self.tune(stiffness_factor=fit.stiffness, damping_ratio=ratio)
+
+    def _bounded(self, correction: Floats, swing: tuple[Floats, ...]) -> Floats:
+        """Scale a correction so that the tree does not move beyond its own storms."""
+        n = self.observer.count
+        energy = self.observer.energy(swing[0][:n] + correction[0], swing[1][:n] + correction[1])
+        if energy <= self._limit:
+            return correction
+        own = self.observer.energy(swing[0][:n], swing[1][:n])
+        self.observer.limit(self._limit / max(energy, 1e-300))
+        # The wind alone may move it so far; sensors do not add to that.
+        return correction * (math.sqrt(self._limit / energy) if own < self._limit else 0.0)
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of the state, with the correction in it."""
+        return (*super().memory(), *self._crown.memory(), self._added)
+
+    def reset(self) -> None:
+        """Return to rest, with no wind; what is known about the sensors stays."""
+        super().reset()
+        self._crown.reset()
+        self._added[:] = 0.0
+        self.observer.reset()
+        self.now, self._given = 0.0, None
+        for record in self._records.values():
+            record.next = 0
+
+    def glide(self, dt: float) -> bool:
+        """Continue a transition of `tune`, and observe the changed tree."""
+        is_changed = super().glide(dt)
+        if is_changed:
+            self.observer.refresh()
+        return is_changed
+
+    @property
+    def smoothed(self) -> Floats:
+        """Key rotations in [rad] of `LATE_STEPS` ago by what was measured since, (N,)."""
+        return np.asarray(self.bank.oscillators.shapes @ self.observer.smoothed)
+
+    def band(self) -> Floats:
+        """
+        Half the width of the band that holds 80 % of the true motion of each tip [m], (b, 3).
+
+        It comes from the covariance of the correction, or of the unknown forces where no sensor is
+        in use, and from how large the innovations have been of late.
+        """
+        if self._tips is None:
+            shapes = np.ascontiguousarray(self.bank.oscillators.shapes)
+            last = np.searchsorted(self.joints['end'], self.tree.branch_first[1:])
+            motion = tip_motion(self.joints, shapes)[last]
+            self._tips = motion.reshape(-1, shapes.shape[1])
+        deviation = self.observer.tip_deviation(self._tips)
+        return np.asarray(_QUANTILE * deviation.reshape(-1, 3))
+
+    @property
+    def problems(self) -> list[str]:
+        """Sensors that are not in use: why, and what to do, one sentence each."""
+        return [each.problem for each in self.observer.tracks if each.problem]

@@ -1,0 +1,143 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Where a motion sensor sits on a tree, and how each coordinate of a model moves that place.
+
+A place is written as a height on the stem in [m] (``3.2``), as a branch and a share of its length
+(``b12:0.5``), or as a segment (``segment:431``).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, TYPE_CHECKING
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.tree.segment_frame import ends_of_poses
+from tree_sway.core.tree.tree import Tree
+from tree_sway.errors import nearest, ParameterError
+
+if TYPE_CHECKING:
+    from tree_sway.core.run.simulator import SwaySimulator
+
+_TURN = 1e-4
+"""Largest key rotation in [rad] of the difference quotients."""
+
+
+class SensorPlace(NamedTuple):
+    """A segment, and a share of its length from its root side."""
+
+    segment: int
+    along: float
+
+
+class PlaceMotion(NamedTuple):
+    """Displacement [m] and rotation [rad] of a place per unit of each coordinate, (3, m)."""
+
+    displacement: Floats
+    rotation: Floats
+
+
+def place_on(tree: Tree, where: str | float) -> SensorPlace:
+    """
+    Find a place on a tree.
+
+    Parameters
+    ----------
+    tree
+        The tree.
+    where
+        Height above the root node on the stem in [m], ``BRANCH:SHARE`` or ``segment:NUMBER``.
+
+    Raises
+    ------
+    ParameterError
+        A text of another form, an unknown branch or segment, or a height above the stem.
+
+    """
+    text = str(where).strip()
+    name, colon, number = text.rpartition(':')
+    try:
+        value = float(number)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        cure = "give a height on the stem in m, as '3.2', or a branch and a share, as 'b12:0.5'"
+        raise ParameterError(f"'{text[:40]}' is no place on a tree", where='at', cure=cure)
+    if not colon:
+        return _on_stem(tree, value)
+    if name == 'segment':
+        if not (value.is_integer() and 0 <= value < tree.n_segments):
+            cure = f'give segment:0 to segment:{tree.n_segments - 1}'
+            raise ParameterError(f"no segment '{number}'", where='at', cure=cure)
+        return SensorPlace(int(value), 0.5)
+    if name not in tree.branch_names:
+        cure = nearest(name, tree.branch_names) or f'such as {tree.branch_names[0]}:0.5'
+        raise ParameterError(f"no branch '{name}'", where='at', cure=cure)
+    if not 0.0 <= value <= 1.0:
+        cure = 'give a share of its length from 0 at its base to 1 at its tip'
+        raise ParameterError(f'{value:g} of a branch', where='at', cure=cure)
+    branch = tree.branch_names.index(name)
+    first, last = tree.branch_first[branch], tree.branch_first[branch + 1]
+    ends = np.cumsum(tree.length[first:last])
+    return _along(int(first), ends, value * float(ends[-1]))
+
+
+def _on_stem(tree: Tree, height: float) -> SensorPlace:
+    """Return the lowest place of the stem at a height above the root node in [m]."""
+    last = int(tree.branch_first[1])
+    tops = np.maximum.accumulate(tree.end[:last, 2]) - tree.start[0, 2]
+    if not 0.0 <= height <= tops[-1]:
+        cure = f'give 0 to {tops[-1]:.3g} m, or a branch and a share, as '
+        cure += f"'{tree.branch_names[-1]}:0.5'"
+        raise ParameterError(f'the stem has no height of {height:g} m', where='at', cure=cure)
+    return _along(0, np.maximum(tops, 1e-12 * np.arange(1, last + 1)), height)
+
+
+def _along(first: int, ends: Floats, at: float) -> SensorPlace:
+    """Return the place at a length, or height, of segments from a first one on."""
+    row = min(int(np.searchsorted(ends, at)), len(ends) - 1)
+    before = float(ends[row - 1]) if row else 0.0
+    share = (at - before) / max(float(ends[row]) - before, 1e-12)
+    return SensorPlace(first + row, min(max(share, 0.0), 1.0))
+
+
+def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
+    """
+    Differentiate the pose of a place by each coordinate of a simulator, at rest.
+
+    The rotation is a rotation vector in the frame of the tree, and so is the displacement.
+    """
+    shapes = simulator.bank.oscillators.shapes
+    poses = np.zeros((simulator.tree.n_segments, 7))
+    away = place.along * float(simulator.tree.length[place.segment])
+    displacement, rotation = np.zeros((2, 3, shapes.shape[1]))
+    for i in range(shapes.shape[1]):
+        amount = _TURN / max(float(np.abs(shapes[:, i]).max()), 1e-300)
+        pair = []
+        for sign in (1.0, -1.0):
+            simulator.place_rotations(np.ascontiguousarray(sign * amount * shapes[:, i]), poses)
+            pose = poses[place.segment : place.segment + 1]
+            pair.append((ends_of_poses(pose, [away])[1][0], pose[0, 3:].copy()))
+        (ahead, turned), (behind, turned_back) = pair
+        displacement[:, i] = (ahead - behind) / (2.0 * amount)
+        rotation[:, i] = turn_between(turned_back, turned) / (2.0 * amount)
+    return PlaceMotion(displacement, rotation)
+
+
+def turn_between(before: Floats, after: Floats) -> Floats:
+    """
+    Rotation vectors from quaternions to others, both (..., 4) as x y z w, in [rad], (..., 3).
+
+    They are in the frame in which both quaternions are given.
+    """
+    a, b = after[..., :3], before[..., :3]
+    wa, wb = after[..., 3:], before[..., 3:]
+    vector = wb * a - wa * b - np.cross(a, b)
+    scalar = wa * wb + (a * b).sum(axis=-1, keepdims=True)
+    vector = np.where(scalar < 0.0, -vector, vector)
+    sine = np.linalg.norm(vector, axis=-1, keepdims=True)
+    angle = 2.0 * np.arctan2(sine, np.abs(scalar))
+    return np.asarray(vector * np.where(sine > 1e-9, angle / np.maximum(sine, 1e-9), 2.0))

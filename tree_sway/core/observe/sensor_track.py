@@ -1,0 +1,211 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+One sensor over time: first its mounting is found, then it is in use while it agrees.
+
+Until a sensor has seen the tree sway for `LEARNING`, its samples are compared with the motion that
+the model has in the wind alone. From then on its mounting is found again after 1.4 times as long,
+and so on, from all motion of the last ten minutes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.observe.alignment import align, Alignment, GRAVITY
+from tree_sway.core.observe.motion_sensor import MotionSensor
+from tree_sway.core.observe.sensor_place import PlaceMotion
+from tree_sway.core.observe.tree_fit import SensorSpectrum
+
+LEARNING = 20.0
+"""Motion in [s] from which the mounting of a sensor is found first."""
+
+_LATER, _MEMORY = 1.4, 600.0
+_ABSENT_AFTER, _TRUSTED_AGAIN = 1.0, 5.0
+_AVERAGED = 2.0
+_DISAGREES, _AGREES = 16.0, 4.0
+_FLOOR = np.array([0.03, 0.004, 0.002])
+"""Least noise of acceleration [m/s^2], rate [rad/s] and rotation [rad]."""
+
+ROWS = 12
+"""Rows of a sensor: acceleration, its part by tilted gravity, rate and rotation, three of each."""
+
+
+def sensed_rows(motion: PlaceMotion, stiffness: Floats, damping: Floats) -> Floats:
+    """
+    Rows of a sensor by displacement, rate and force of coordinates of unit mass, (12, 3 m).
+
+    The specific force that a sensor turned by theta feels beyond gravity is ``a + g z x theta`` in
+    the frame of the tree.
+    """
+    still = np.zeros_like(motion.rotation)
+    tilted = GRAVITY * np.stack([-motion.rotation[1], motion.rotation[0], still[0]])
+    moved = motion.displacement
+    return np.concatenate([
+        np.hstack([-moved * stiffness, -moved * damping, moved]),
+        np.hstack([tilted, still, still]),
+        np.hstack([still, motion.rotation, still]),
+        np.hstack([motion.rotation, still, still]),
+    ])  # fmt: skip
+
+
+def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
+    """Join the rows (12, ...) of a sensor to acceleration, rate and rotation, (9, ...)."""
+    out = rows[3:].copy()
+    out[:3] = rows[:3] + (rows[3:6] if has_gravity else 0.0)
+    return out
+
+
+class SensorTrack:
+    """
+    A sensor, what is known about it, and whether it is in use.
+
+    Parameters
+    ----------
+    sensor
+        The sensor.
+    frequency
+        First frequency of the model in [Hz].
+    dt
+        Time step in [s].
+
+    """
+
+    def __init__(self, sensor: MotionSensor, frequency: float, dt: float) -> None:
+        self.sensor, self._dt = sensor, dt
+        self.alignment: Alignment | None = None
+        self.in_use = False
+        """Whether its motion corrects the tree."""
+        self.bias = np.zeros(9)
+        """Mean difference from the model, which no sensor can tell from its mounting, (9,)."""
+        self.excess = 1.0
+        """Squared innovations over those expected, a running mean [-]."""
+        self.spectrum = SensorSpectrum(frequency, dt)
+        self._sensed = np.zeros((round(_MEMORY / dt), 9))
+        self._computed = np.zeros((len(self._sensed), ROWS))
+        self._count = 0
+        self._next_fit = round(LEARNING / dt)
+        self._absent = self._agreed = 0.0
+        self._is_refused = False
+
+    @property
+    def uses(self) -> tuple[int, ...]:
+        """Quantities that correct the tree: 0 acceleration, 1 rate, 2 rotation."""
+        given = self.sensor.quantities
+        first = tuple(k for k, name in enumerate(('acceleration', 'rate')) if name in given)
+        return first if 'acceleration' in given or 'orientation' not in given else (*first, 2)
+
+    @property
+    def fitted(self) -> int:
+        """Quantity whose spectrum is compared with the model's: the rate where there is one."""
+        return 1 if 1 in self.uses else self.uses[0]
+
+    @property
+    def noise(self) -> Floats:
+        """Standard deviation of the noise at each step, (3,)."""
+        known = _FLOOR if self.alignment is None else np.maximum(self.alignment.noise, _FLOOR)
+        period = self.sensor.period
+        # Samples that are joined by lines have the same noise in several steps.
+        held = 1.0 if math.isnan(period) else max(1.0, period / self._dt)
+        return known * math.sqrt(held)
+
+    @property
+    def problem(self) -> str:
+        """Why it is not in use, and what to do; empty if it is."""
+        name = self.sensor.name
+        if self.in_use:
+            return ''
+        if self.sensor.counts.accepted == 0:
+            return f'{name}: no sample yet'
+        if self.alignment is None:
+            left = (self._next_fit - self._count) * self._dt
+            return f'{name}: its mounting is found within {left:.0f} s of sway'
+        if self.alignment.problem:
+            return f'{name}: {self.alignment.problem}'
+        if self._is_refused:
+            return f'{name}: it disagrees with the tree: check that it is still fixed'
+        return f'{name}: silent: check its battery and connection'
+
+    def read(self, time: float, computed: Floats) -> Floats | None:
+        """
+        Read the sensor at the time of a step, and learn from it.
+
+        Parameters
+        ----------
+        time
+            Time in [s].
+        computed
+            Rows of the model in the wind alone, (12,).
+
+        Returns
+        -------
+        Floats or None
+            Motion in the frame of the tree beyond the model's, (9,); None without a sample, or
+            before the mounting is known.
+
+        """
+        values = self.sensor.at(time, self._dt)
+        if values is None:
+            self._miss()
+            return None
+        self._absent = 0.0
+        self._learn(values, computed)
+        if self.alignment is None or self.alignment.problem:
+            return None
+        moved = self.alignment.motion(values)
+        model = as_felt(computed, has_gravity=self.alignment.has_gravity)
+        which = 3 * self.fitted
+        self.spectrum.add(moved[which : which + 3])
+        return np.asarray(moved - model - self.bias)
+
+    def _miss(self) -> None:
+        self._absent += self._dt
+        if self._absent > _ABSENT_AFTER:
+            if self.in_use:
+                self.sensor.counts.silent += 1
+            self.in_use = False
+            self.spectrum.skip()
+
+    def _learn(self, values: Floats, computed: Floats) -> None:
+        row = self._count % len(self._sensed)
+        self._sensed[row], self._computed[row] = values, computed
+        self._count += 1
+        if self._count == self._next_fit:
+            self._next_fit = math.ceil(_LATER * self._count)
+            self._align()
+
+    def _align(self) -> None:
+        n = min(self._count, len(self._sensed))
+        sensed, computed = self._sensed[:n], self._computed[:n].T
+        upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
+        found = align(sensed, upright, free, self.sensor.reference)
+        self.alignment = found
+        if found.problem:
+            self.in_use = False
+            return
+        model = as_felt(computed, has_gravity=found.has_gravity).T
+        self.bias = np.asarray((found.motion(sensed) - model).mean(axis=0))
+        self.in_use = not self._is_refused
+
+    def judge(self, innovation: Floats, deviation: Floats) -> None:
+        """
+        Judge a sensor by its innovations and their standard deviations, both (k,).
+
+        One whose innovations stay far beyond those expected is refused until they are not.
+        """
+        share = self._dt / _AVERAGED
+        squares = np.square(innovation / deviation).reshape(-1, 3)
+        size = float(squares.mean(axis=1).max())
+        self.excess += share * (min(size, 1e6) - self.excess)
+        if self.excess > _DISAGREES and not self._is_refused:
+            self._is_refused, self.in_use, self._agreed = True, False, 0.0
+            self.sensor.counts.disagreed += 1
+        elif self._is_refused:
+            self._agreed = self._agreed + self._dt if self.excess < _AGREES else 0.0
+            if self._agreed > _TRUSTED_AGAIN:
+                self._is_refused = False
+        if not self._is_refused and self.alignment is not None and not self.alignment.problem:
+            self.in_use = True

@@ -1,0 +1,198 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Steady-state Kalman filter of what a model's motion lacks, and its fixed-lag smoother.
+
+The state is the difference between the real and the computed motion: displacement eta and rate v
+of each coordinate, and a disturbance d of its force, a first-order process. Over a step it moves
+by the exact propagator of the coordinates::
+
+    eta' = c0 eta + c1 v + (c2 + c3) d,   v' = c4 eta + c5 v + (c6 + c7) d,   d' = phi d + w
+
+The covariance P of the prediction solves the discrete algebraic Riccati equation. It is found by
+the structure-preserving doubling algorithm (Chu, Fan, Lin & Wang 2004, International Journal of
+Control 77, 767-788), some ten products of matrices. The smoother adds to an estimate of l steps
+ago what each later innovation tells about it (Anderson & Moore 1979, *Optimal Filtering*, 7.3).
+
+Symbols: H measurements by the state, R their noise, S their predicted covariance, L gain.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.setup.one_thread import one_thread
+
+_MOST_DOUBLINGS, _ENOUGH = 60, 1e-10
+
+
+@dataclass(frozen=True)
+class SwayLaw:
+    """
+    How the difference moves over one step.
+
+    Parameters
+    ----------
+    step
+        Displacement, rate and disturbance after a step by those before, of each coordinate, (3, 3,
+        m).
+    driven
+        Covariance of what a step adds to the disturbances, (m, m).
+
+    """
+
+    step: Floats
+    driven: Floats
+
+    @property
+    def matrix(self) -> Floats:
+        """The step as a matrix on the state, (3 m, 3 m)."""
+        blocks = [[np.diag(self.step[i, j]) for j in range(3)] for i in range(3)]
+        return np.block(blocks)
+
+    def ahead(self, n_steps: int) -> Floats:
+        """Several steps at once, (3, 3, m)."""
+        by_mode = np.moveaxis(self.step, 2, 0)
+        return np.ascontiguousarray(np.moveaxis(np.linalg.matrix_power(by_mode, n_steps), 0, 2))
+
+
+def sway_law(
+    stiffness: Floats, damping: Floats, covariance: Floats, time_constant: float, dt: float
+) -> SwayLaw:
+    """
+    Return the law of coordinates of unit mass.
+
+    Parameters
+    ----------
+    stiffness, damping
+        Stiffness [1/s^2] and damping [1/s], of wood and air, (m,).
+    covariance
+        Covariance of the disturbances of the forces, (m, m).
+    time_constant
+        Time in [s] after which a disturbance has decayed to 1/e.
+    dt
+        Time step in [s].
+
+    """
+    c = propagator(np.ones(len(stiffness)), damping, stiffness, dt).T
+    decay = math.exp(-dt / time_constant)
+    still, kept = np.zeros_like(stiffness), np.full_like(stiffness, decay)
+    step = np.array([[c[0], c[1], c[2] + c[3]], [c[4], c[5], c[6] + c[7]], [still, still, kept]])
+    return SwayLaw(step, (1.0 - decay * decay) * covariance)
+
+
+@dataclass(frozen=True)
+class SteadyFilter:
+    """
+    Gains of a law with some measurements.
+
+    Parameters
+    ----------
+    law
+        The law.
+    sensed
+        Measurements by the state, H, (p, 3 m).
+    gain
+        Correction of the state by the innovations, L, (3 m, p).
+    deviation
+        Standard deviation of each innovation, (p,).
+    backward
+        Correction of the displacements of l steps ago by the innovations of each step since, the
+        oldest first, (m, l, p).
+    covariance
+        Covariance of the state after the correction, (3 m, 3 m).
+
+    """
+
+    law: SwayLaw
+    sensed: Floats
+    gain: Floats
+    deviation: Floats
+    backward: Floats
+    covariance: Floats
+
+
+@one_thread()
+def steady_filter(law: SwayLaw, sensed: Floats, noise: Floats, lag: int = 0) -> SteadyFilter:
+    """
+    Find the steady gains.
+
+    Parameters
+    ----------
+    law
+        How the state moves.
+    sensed
+        Measurements by the state, (p, 3 m).
+    noise
+        Standard deviation of the noise of each measurement, (p,).
+    lag
+        Number of steps by which the smoothed displacements are late.
+
+    """
+    step = law.matrix
+    m = law.step.shape[2]
+    driven = np.zeros_like(step)
+    driven[2 * m :, 2 * m :] = law.driven
+    predicted = predicted_covariance(step, sensed, driven, noise)
+    cross = predicted @ sensed.T
+    innovation = sensed @ cross + np.diag(np.square(noise))
+    gain = np.linalg.solve(innovation, cross.T).T
+    left = np.eye(3 * m) - gain @ sensed
+    corrected = left @ predicted
+    closed = step @ left
+    backward = np.zeros((m, lag, len(sensed)))
+    onward = predicted
+    for k in range(lag):
+        onward = onward @ closed.T
+        backward[:, k] = np.linalg.solve(innovation, (onward[:m] @ sensed.T).T).T
+    deviation = np.sqrt(np.diag(innovation))
+    return SteadyFilter(law, sensed, gain, deviation, backward, 0.5 * (corrected + corrected.T))
+
+
+def predicted_covariance(step: Floats, sensed: Floats, driven: Floats, noise: Floats) -> Floats:
+    """
+    Solve ``P = A P A' - A P H' (H P H' + R)^-1 H P A' + Q`` for P by doubling.
+
+    Parameters
+    ----------
+    step, sensed, driven
+        A (n, n), H (p, n) and Q (n, n).
+    noise
+        Roots of the diagonal of R, (p,).
+
+    """
+    onward = step.T.copy()
+    seen = sensed.T @ (sensed / np.square(noise)[:, None])
+    found = driven.copy()
+    one = np.eye(len(step))
+    for _ in range(_MOST_DOUBLINGS):
+        both = np.linalg.solve(one + seen @ found, np.hstack([onward, seen]))
+        next_onward, spread = both[:, : len(step)], both[:, len(step) :]
+        added = onward.T @ found @ next_onward
+        seen = seen + onward @ spread @ onward.T
+        seen = 0.5 * (seen + seen.T)
+        onward = onward @ next_onward
+        found = found + 0.5 * (added + added.T)
+        if np.abs(added).max() <= _ENOUGH * np.abs(found).max():
+            break
+    return found
+
+
+def stationary_covariance(law: SwayLaw) -> Floats:
+    """Covariance of the state without any measurement, (3 m, 3 m), by doubling."""
+    onward = law.matrix
+    m = law.step.shape[2]
+    found = np.zeros_like(onward)
+    found[2 * m :, 2 * m :] = law.driven
+    for _ in range(_MOST_DOUBLINGS):
+        added = onward @ found @ onward.T
+        found = found + added
+        onward = onward @ onward
+        if np.abs(added).max() <= _ENOUGH * np.abs(found).max():
+            break
+    return found

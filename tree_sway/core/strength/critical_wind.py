@@ -1,0 +1,71 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The mean wind at which a tree reaches its strength, from the shares that it uses in some winds.
+
+The largest load of ten minutes follows from mean and deviation of a shorter record (Davenport
+1964, Proceedings of the Institution of Civil Engineers 28, 187). The share of strength is taken as
+a power of the wind speed between two winds, near which the tree reaches it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.strength.strength_use import ROOT_BAND, ROOT_MOMENT
+
+PERIOD = 600.0
+"""Time over which the mean wind and the largest load are taken [s]."""
+WOOD_BAND_80 = (0.85 * (1.0 - 1.2816 * 0.16), 1.0 + 1.2816 * 0.16)
+"""Strength of a tree's wood over its species' mean [-] of eight trees of ten: specimens scatter
+by 16 % (Wood Handbook, 2010, table 5-6), and knots take up to 15 % (Gardiner et al. 2000)."""
+ROOT_BAND_OF_SOILS = (ROOT_BAND[0] / ROOT_MOMENT, ROOT_BAND[1] / ROOT_MOMENT)
+"""Strength of roots over its mean [-], by species and soil (Byrne 2005; Nicoll et al. 2006)."""
+_EULER = 0.5772
+_LEAST_POWER, _LARGEST_POWER = 0.8, 2.5
+
+
+def largest_expected(values: Floats, rate: float, seconds: float = PERIOD) -> float:
+    """
+    Return the largest value that is expected in a time, from a shorter record of a load.
+
+    Parameters
+    ----------
+    values
+        The load over time, (n,).
+    rate
+        Samples per second [Hz].
+    seconds
+        The time [s].
+
+    """
+    mean, deviation = float(values.mean()), float(values.std())
+    above = values > mean
+    crossings = int(np.count_nonzero(above[1:] & ~above[:-1]))
+    count = max(crossings / (len(values) / rate) * seconds, 2.0)
+    root = math.sqrt(2.0 * math.log(count))
+    return mean + (root + _EULER / root) * deviation
+
+
+@dataclass(frozen=True)
+class ShareCurve:
+    """Shares of strength used in the largest gust [-] by mean wind speeds [m/s], (n,), rising."""
+
+    speed: Floats
+    share: Floats
+
+    def speed_of(self, share: float) -> float:
+        """Return the wind at which a share is used, by a power law through the two nearest."""
+        log_speed, log_share = np.log(self.speed), np.log(np.maximum(self.share, 1e-9))
+        wanted = math.log(share)
+        # The pair of neighbours around the share, or the pair at the end that is nearer to it.
+        right = int(np.clip(np.searchsorted(log_share, wanted), 1, len(log_share) - 1))
+        step = log_speed[right] - log_speed[right - 1]
+        power = (log_share[right] - log_share[right - 1]) / step
+        power = min(max(float(power), _LEAST_POWER), _LARGEST_POWER)
+        near = right - int(abs(log_share[right - 1] - wanted) < abs(log_share[right] - wanted))
+        return math.exp(float(log_speed[near] + (wanted - log_share[near]) / power))

@@ -1,0 +1,37 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Read a record of a motion sensor from a table or a bag."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tree_sway.files.motion.imu_bag import read_imu_bag
+from tree_sway.files.motion.motion_record import MotionRecord
+from tree_sway.files.motion.motion_table import read_motion_table
+from tree_sway.files.text_file import path_of
+
+_BAGS = ('.db3', '.mcap')
+
+
+def read_motion(path: str | Path, topic: str | None = None) -> MotionRecord:
+    """
+    Read what a motion sensor on a tree measured.
+
+    Parameters
+    ----------
+    path
+        Table, or the folder or file of a bag with ``sensor_msgs/Imu``.
+    topic
+        Topic of a bag; None if there is one.
+
+    Raises
+    ------
+    FormatError
+        A file without time or motion.
+
+    """
+    file = path_of(path)
+    if file.is_dir() or file.suffix in _BAGS:
+        return read_imu_bag(file, topic)
+    return read_motion_table(file)

@@ -1,0 +1,64 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** Trees coloured by a storm: its mean wind at 10 m beside the band of the critical wind of each. */
+
+import { element, made } from "./panel.js";
+import { word } from "./words.js";
+
+/** Colours of a wind below the band, within it and above it, for any eye (Okabe & Ito 2008). */
+const COLORS = { below: [0, 0.45, 0.7], within: [0.9, 0.62, 0], above: [0.84, 0.25, 0] };
+const UNKNOWN = [0.6, 0.6, 0.6];
+const SHARE = 0.8;
+const KM_H = 3.6;
+
+/** Where a wind is to a band: `below`, `within` or `above` it. @param {number} wind [m/s]
+ * @param {[number, number]} band low and high end [m/s] @returns {keyof typeof COLORS} */
+export function placeIn(wind, [low, high]) {
+  if (wind < low) return "below";
+  return wind > high ? "above" : "within";
+}
+
+export class Risk {
+  /** @param {Scene} scene */
+  constructor(scene) {
+    this.scene = scene;
+    /** @type {Record<string, [number, number]>} bands by the names of trees [m/s] */
+    this.bands = {};
+    this.slider = /** @type {HTMLInputElement} */ (element("storm"));
+    this.slider.addEventListener("input", () => this.show());
+  }
+
+  /** Speed of the storm [m/s]. */
+  get storm() {
+    return Number(this.slider.value);
+  }
+
+  /** Take the bands of trees, or none. @param {Record<string, [number, number]> | null | undefined} bands */
+  take(bands) {
+    this.bands = bands ?? {};
+    this.show();
+  }
+
+  /** Paint the trees, and count them. */
+  show() {
+    const trees = this.scene.description?.trees ?? [];
+    const places = trees.map(({ name }) => this.bands[name] && placeIn(this.storm, this.bands[name]));
+    const isShown = places.some(Boolean);
+    element("risk").hidden = !isShown;
+    element("facts").hidden = isShown; // there is room for one of them
+    const painted = (/** @type {keyof typeof COLORS} */ place) => [...COLORS[place] ?? UNKNOWN, SHARE];
+    this.scene.paint(isShown ? places.map(painted) : []);
+    if (!isShown) return;
+    const speed = `${this.storm} m/s, ${Math.round(KM_H * this.storm)} km/h`;
+    element("storm-now").textContent = speed;
+    this.slider.setAttribute("aria-valuetext", speed);
+    const kinds = Object.entries({ ...COLORS, unknown: UNKNOWN });
+    const rows = kinds.map(([kind, color]) => {
+      const count = places.filter((place) => (place ?? "unknown") === kind).length;
+      const swatch = made("i", {});
+      swatch.style.background = `rgb(${color.map((each) => 255 * each).join(" ")})`;
+      return made("li", { hidden: kind === "unknown" && !count }, swatch, word(`risk_${kind}`, count));
+    });
+    element("risk-counts").replaceChildren(...rows);
+  }
+}

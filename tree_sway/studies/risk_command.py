@@ -1,0 +1,113 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""``tree-sway risk``: the wind at which each tree of an inventory reaches its strength."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+import csv
+import io
+from pathlib import Path
+import sys
+import time
+from typing import TextIO
+
+from tree_sway.commands.arguments import refuse_overwriting
+from tree_sway.commands.progress import bar
+from tree_sway.core.checks import within
+from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.scenes.inventory.inventory_file import inventory_table
+from tree_sway.files.scenes.inventory.read_inventory import inventory_of
+from tree_sway.files.text_file import path_of, read_head
+from tree_sway.files.whole_file import write_text_whole
+from tree_sway.studies.cluster import refuse_wrong_address
+from tree_sway.studies.command import add_scheduler_argument
+from tree_sway.studies.risk import risk_rows, risk_work, RiskWork, Row
+from tree_sway.studies.runner import cores
+
+_LEFT_OUT = (
+    'rot, wounds and forks, wet or shallow soil, neighbours and pruning are not included; '
+    'it is no verdict on a tree'
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument('inventory', metavar='INVENTORY', help='trees: species, height or dbh')
+    parser.add_argument(
+        '-o', '--output', default='risk.csv', metavar='FILE',
+        help='table, .csv, a row per tree; written as it is computed (%(default)s)',
+    )  # fmt: skip
+    parser.add_argument(
+        '--workers', type=int, metavar='N', help='processes; one per core if left out'
+    )
+    add_scheduler_argument(parser)
+    parser.add_argument(
+        '--seed', type=int, default=0, metavar='N', help='of grown trees and gusts (%(default)s)'
+    )
+    parser.add_argument('--force', action='store_true', help='write over a file that is there')
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compute a row per tree, write the table."""
+    if arguments.workers is not None:
+        within('--workers', arguments.workers, 1, 1024)
+    within('--seed', arguments.seed, 0, 2**31)
+    if arguments.scheduler is not None:
+        refuse_wrong_address(arguments.scheduler)
+    output = path_of(arguments.output)
+    if output.suffix.lower() != '.csv':
+        raise ParameterError(f"'{output}' is no table", where='--output', cure='end it with .csv')
+    if not arguments.force:
+        refuse_overwriting(output, '--output')
+    path = path_of(arguments.inventory)
+    inventory = inventory_of(inventory_table(path, read_head(path)), needs_place=False)
+    for note in inventory.notes:
+        print(f'note: {note}', file=sys.stderr)
+    work = risk_work(inventory, arguments.seed)
+    workers = arguments.workers or cores()
+    print(
+        f'{len(inventory.names)} trees of {len(work.kinds)} kinds; {_LEFT_OUT}',
+        file=sys.stderr, flush=True,
+    )  # fmt: skip
+    began = time.monotonic()
+    try:
+        with output.open('w', encoding='utf-8', newline='') as file:
+            rows = _written(file, work, workers, arguments.scheduler)
+    except OSError as error:
+        raise FormatError(f'cannot be written: {error.strerror}', where=str(output)) from None
+    _sort(output, rows)
+    n_failed = sum(row['critical_wind_10m [m/s]'] is None for row in rows)
+    failed = f', {n_failed} of them without a wind (column assumed)' if n_failed else ''
+    print(f'{output}: {len(rows)} trees{failed} in {time.monotonic() - began:.1f} s')
+    return 0
+
+
+def _written(file: TextIO, work: RiskWork, workers: int, scheduler: str | None) -> list[Row]:
+    """Write rows as their kinds are done, so that an interrupted table can be read."""
+    rows = list[Row]()
+    writer: csv.DictWriter[str] | None = None
+    results = _each_tree(work, workers, scheduler)
+    for _, row in zip(bar(range(len(work.inventory.names)), 'trees'), results, strict=True):
+        if writer is None:
+            writer = csv.DictWriter(file, list(row), lineterminator='\n')
+            writer.writeheader()
+        writer.writerow(row)
+        file.flush()
+        rows.append(row)
+    return rows
+
+
+def _each_tree(work: RiskWork, workers: int, scheduler: str | None) -> Iterator[Row]:
+    for _, rows in risk_rows(work, workers=workers, scheduler=scheduler):
+        yield from rows
+
+
+def _sort(output: Path, rows: list[Row]) -> None:
+    """Write the finished table anew in the order of the inventory."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator='\n')
+    writer.writeheader()
+    writer.writerows(sorted(rows, key=lambda row: row['line']))
+    write_text_whole(output, text.getvalue())

@@ -1,0 +1,146 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Strength that the tree of a kind uses by wind speed, in leaf and bare, in any process.
+
+A tree is grown by species, height and stem, set up, and blown by gusts of three mean winds: the
+first is usual, the others are near those at which its roots and its wood reach their strength. The
+wind rises with height as over grass (log law, 0.03 m), its mean is that at 10 m.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.growth.grow import grow, stem_range
+from tree_sway.core.growth.thickness import BREAST_HEIGHT
+from tree_sway.core.scene.simulate import Rig
+from tree_sway.core.setup.standing import standing_tree
+from tree_sway.core.strength.critical_wind import largest_expected, ShareCurve
+from tree_sway.core.tree.grown_tree import rooted
+from tree_sway.core.tree.species import species_named
+from tree_sway.core.tree.tree import Tree
+from tree_sway.core.wind.height_profile import WindProfile
+from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
+from tree_sway.errors import TreeSwayError
+from tree_sway.files.trees.imported_tree import TreeFile
+
+OPEN_GROUND = WindProfile('log')
+"""Wind by height over open ground; the anemometer is at 10 m."""
+_MODEL, _RATE, _SECONDS = 20, 30.0, 120.0
+_FIRST, _SLOWEST, _FASTEST = 15.0, 4.0, 60.0
+_USUAL_POWER = 1.5
+"""Power of the wind speed that the load of a crown grows by, between 1 and 2."""
+
+
+@dataclass(frozen=True)
+class RiskKind:
+    """Trees of one species and form: height [m], and height over diameter, 0 if unknown."""
+
+    species: str
+    height: float
+    slenderness: float
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class SeasonCurves:
+    """Shares of strength of wood and of roots by the mean wind at 10 m, in leaf or bare."""
+
+    in_leaf: bool
+    wood: ShareCurve
+    roots: ShareCurve
+
+
+@dataclass(frozen=True)
+class KindResult:
+    """
+    What a kind of trees uses, or why it cannot be computed.
+
+    ``slenderness`` is height over diameter at breast height of the grown tree, ``note`` what was
+    changed to grow it; ``error`` is empty if all went well.
+    """
+
+    kind: RiskKind
+    seasons: tuple[SeasonCurves, ...] = ()
+    slenderness: float = 0.0
+    note: str = ''
+    error: str = ''
+
+
+def compute_kind(kind: RiskKind) -> KindResult:
+    """Compute the curves of a kind; an impossible one has the error instead."""
+    try:
+        return _computed(kind)
+    except TreeSwayError as error:
+        return KindResult(kind, error=str(error))
+
+
+def _computed(kind: RiskKind) -> KindResult:
+    species, note, diameter = species_named(kind.species), '', None
+    if kind.slenderness:
+        low, high = stem_range(species, kind.height)
+        wanted = kind.height / kind.slenderness
+        diameter = min(max(wanted, low), high)
+        if not low <= wanted <= high:
+            note = f'a stem of {wanted:.3g} m would buckle: of {diameter:.3g} m, scaled'
+    rng = np.random.default_rng(kind.seed)
+    tree = grow(kind.species, kind.height, diameter, rng=rng)
+    tree, thickening = standing_tree(tree, species)
+    if thickening is not None:
+        limbs = 'grown limbs that could not carry themselves are thickened'
+        note = f'{note}; {limbs}' if note else limbs
+    whole = TreeFile(tree, rooted(tree, species), kind.species)
+    seasons = (True,) if species.leaves.is_evergreen else (True, False)
+    curves = tuple(_season(whole, kind.seed, in_leaf) for in_leaf in seasons)
+    return KindResult(kind, curves, kind.height / _diameter(tree), note)
+
+
+def _season(tree: TreeFile, seed: int, in_leaf: bool) -> SeasonCurves:
+    rig = Rig(tree, model=_MODEL, in_leaf=in_leaf, profile=OPEN_GROUND)
+    shares = {_FIRST: _shares(rig, _FIRST, seed)}
+    for part in (0, 1, 0):  # wood, roots, and wood again by a better guess
+        curve = _curve(shares, part)
+        if len(shares) == 1:
+            guess = _FIRST * float(max(curve.share[0], 1e-3)) ** (-1.0 / _USUAL_POWER)
+        else:
+            guess = curve.speed_of(1.0)
+        speed = float(np.clip(guess, _SLOWEST, _FASTEST))
+        if all(abs(speed / known - 1.0) > 0.05 for known in shares):
+            shares[speed] = _shares(rig, speed, seed)
+    if len(shares) == 1:
+        shares[2.0 * _FIRST] = _shares(rig, 2.0 * _FIRST, seed)
+    return SeasonCurves(in_leaf, _curve(shares, 0), _curve(shares, 1))
+
+
+def _shares(rig: Rig, speed: float, seed: int) -> tuple[float, float]:
+    """Shares of wood and roots in the largest gust that is expected of a mean wind at 10 m."""
+    rng = np.random.default_rng(seed + 1)
+    wind = simulate_turbulence(speed, rate=_RATE, duration=_SECONDS, rng=rng)
+    record = rig.run(wind, rate=_RATE)
+    along = record.base_moment @ _unit(record.base_moment.mean(axis=0))
+    largest = float(np.linalg.norm(record.base_moment, axis=1).max())
+    ratio = largest_expected(along, _RATE) / max(largest, 1e-9)
+    used = record.strength
+    return float(used.wood[0]) * ratio, float(used.roots[0]) * ratio
+
+
+def _unit(vector: Floats) -> Floats:
+    return vector / max(float(np.linalg.norm(vector)), 1e-12)
+
+
+def _curve(shares: dict[float, tuple[float, float]], part: int) -> ShareCurve:
+    speeds = sorted(shares)
+    return ShareCurve(np.array(speeds), np.array([shares[speed][part] for speed in speeds]))
+
+
+def _diameter(tree: Tree) -> float:
+    """Diameter of the stem where `grow` takes it: at breast height, or at the base if low [m]."""
+    stem = tree.segments_of(0)
+    if tree.height <= 2.0 * BREAST_HEIGHT:
+        return float(tree.base_diameter[0])
+    level = tree.start[stem, 2] - tree.start[0, 2]
+    return float(np.interp(BREAST_HEIGHT, np.maximum.accumulate(level), tree.base_diameter[stem]))
