@@ -44,6 +44,11 @@ ARGUMENTS = (
     ('playback_loop', '', 'Repeat the record; as configured if empty.'),
     ('sensor_address', '', 'The instrument of wind_source:=sensor, such as tcp://host:port.'),
     ('wind_topic', 'wind', 'Topic of the driver, for wind_source:=topic.'),
+    (
+        'imu',
+        '',
+        "Motion sensors on the real tree and their places: 'tree/imu@3.2', 'limb/imu@b12:0.5'.",
+    ),
     ('solver_rate', '', 'Steps of the solver per second [Hz]; as configured if empty.'),
     ('pose', '', "Place of the tree in its frame: '3 0 0 1.57' for x y z [m] and yaw [rad]."),
     ('frame_id', '', 'Frame of all published messages; as configured if empty.'),
@@ -165,6 +170,8 @@ def overrides_of(name, given):
     if name == 'solver':
         if given['tree']:
             overrides['tree'] = given['tree']
+        if given['imu']:
+            overrides['imu'] = given['imu']
         if given['solver_rate']:
             overrides['rate'] = float(given['solver_rate'])
         if given['pose']:

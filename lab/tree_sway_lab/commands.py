@@ -42,6 +42,11 @@ COMMANDS: dict[str, Command] = {
         'soak --hours 0.002 --every 1',
         'tree_sway_lab.soak.command',
     ),
+    'twin': Command(
+        'how far motion sensors bring the model to a tree that it does not know',
+        'twin straight --seconds 60 --sensors 1',
+        'tree_sway_lab.twin.command',
+    ),
     'validate': Command(
         'every check with its figure and its limit, as validation.md',
         'validate --kind limbs8 --wind 9 --quick',

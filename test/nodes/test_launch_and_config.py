@@ -19,6 +19,7 @@ ARGUMENTS = (
     'sensor_address',
     'wind_file',
     'reader_options',
+    'imu',
     'solver_rate',
     'playback_start',
     'playback_rate',

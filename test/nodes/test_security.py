@@ -76,6 +76,7 @@ def test_every_topic_may_be_said_by_somebody():
     }
     assert {topic.name for topic in TOPICS} - allowed == {
         'camera',
+        'imu',
         '~/push',
         '~/pull',
         '~/wind_at',

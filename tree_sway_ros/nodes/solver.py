@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.core.model.settings import Settings
+from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.run.tuning import LIVE
 from tree_sway.core.scene.demand import set_cost_scale, set_demand
 from tree_sway.core.scene.run import Run
@@ -30,6 +31,7 @@ from tree_sway.core.wind.intake import WindIntake
 from tree_sway.errors import ParameterError
 from tree_sway.files.trees.source import open_scene
 from tree_sway.stream.controls import ControlPanel, Refused
+from tree_sway_ros.nodes.imu_intake import ImuIntake, places_of
 from tree_sway_ros.nodes.state_publisher import StatePublisher
 from tree_sway_ros.process.node import TreeSwayNode
 from tree_sway_ros.process.topics import (
@@ -108,7 +110,12 @@ class SolverNode(TreeSwayNode):
             damping_ratio=self.values['damping_ratio'] or None,
             profile=WindProfile(self.values['profile'], self.values['anemometer_height']),
         )
-        self.simulator: Simulator = source.simulator(settings, **self.values('tolerance'))
+        places = places_of(self.values['imu'])
+        self.simulator: Simulator = (
+            source.observed(settings, places, self.values['rate'])
+            if places
+            else source.simulator(settings, **self.values('tolerance'))
+        )
         if self.values['stiffness_factor'] != 1.0:
             self.simulator.tune(**self.values('stiffness_factor'))
         self._camera: Any = None
@@ -123,6 +130,7 @@ class SolverNode(TreeSwayNode):
             intake=WindIntake.of_velocities(),
             make_wind=WindAverage,
             timer=time.perf_counter,
+            starting=self._starting,
         )
         set_cost_scale(self.simulator.simulators, self._run.warm_up())
         self._set_demand()
@@ -133,6 +141,9 @@ class SolverNode(TreeSwayNode):
         self._state = StatePublisher(self, self.simulator, _LEAF_CLUSTERS)
         self._topic = self.subscription(WIND_FILTERED, self._receive).topic_name
         self.subscription(CAMERA, self._see)
+        self._imu: ImuIntake | None = None
+        if isinstance(self.simulator, ObservedTree):
+            self._imu = ImuIntake(self, self._run, self.simulator)
         self._hands = ControlPanel(pull=self._pull)
         self.subscription(PUSH, self._take_push)
         self.subscription(PULL, self._take_pull)
@@ -141,6 +152,11 @@ class SolverNode(TreeSwayNode):
         self.create_service(Trigger, '~/reset', self._reset)
         self.create_service(SetBool, '~/pause', self._pause)
         self.report_with(source.tree.name, self._statuses)
+
+    def _starting(self, felt: float) -> None:
+        """Note the time [s] of the wind of the next step, at which sensors are read."""
+        if isinstance(self.simulator, ObservedTree):
+            self.simulator.set_time(felt)
 
     def _receive(self, message: Any, info: Mapping[str, Any]) -> None:
         self._sway_report.gaps.note(info)
@@ -309,4 +325,4 @@ class SolverNode(TreeSwayNode):
         for what, (count, why) in self._refused.items():
             level, text = (WARN, f'{count} refused: {why}') if count else (OK, 'none refused')
             statuses.append(Status(what, level, text, {'refused': count}))
-        return statuses
+        return statuses if self._imu is None else [*statuses, *self._imu.statuses()]

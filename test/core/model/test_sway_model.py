@@ -9,10 +9,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.sway_model import MEANINGS, SwayModel, TABLE
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.prepare import prepare
+from tree_sway.core.setup.prepare import prepare, prepared
+from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.tree.species import species_named
 from tree_sway.errors import FormatError
 
 MODELS = (12, 0, 'branch')
@@ -23,6 +26,19 @@ def models(fork):
     tree = fork()
     made = {model: prepare(tree, model=model) for model in MODELS}
     return made | {'limbs': prepare(tree, model=4, crown_coherence=0.3)}
+
+
+class Kept:
+    """A cache of one model."""
+
+    def __init__(self):
+        self.arrays = {}
+
+    def read(self, digest):
+        return self.arrays.get(digest)
+
+    def write(self, digest, arrays):
+        self.arrays[digest] = arrays
 
 
 def again(model, **changes):
@@ -127,3 +143,15 @@ def test_a_model_of_a_cut_tree_places_it_as_before(fork):
     assert (np.diff(model.branch_first) > 0).all()
     at_rest = make_simulator(fork(6), model=12).place()
     assert at_rest[:, :3] == pytest.approx(model.tree.start, abs=1e-12)
+
+
+@pytest.mark.parametrize('name', [12, 'branch'])
+def test_the_frequencies_of_the_tree_are_those_of_a_set_up_that_is_read(fork, name):
+    """The model of isolated branches stores theirs, which are not those of the tree."""
+    kept, found = Kept(), []
+    for _ in range(2):
+        reductions = TreeReductions(fork(), species_named('oak'), Settings(model=name))
+        prepared(reductions, cache=kept)
+        found.append(reductions.natural_frequencies(3))
+    assert kept.arrays
+    assert np.array_equal(*found)

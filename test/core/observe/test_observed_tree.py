@@ -224,3 +224,15 @@ def test_models_without_coordinates_are_refused() -> None:
     with pytest.raises(ParameterError, match='motion sensors on model') as caught:
         ObservedTree(TREE, SPECIES, model='branch', at={'phone': AT})
     assert caught.value.cure
+
+
+def test_without_a_sensor_the_band_is_that_of_the_unknown_gusts() -> None:
+    widths = []
+    for speed in (4.0, 8.0):
+        twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={})
+        for _ in range(60):
+            twin.step((speed, 0.0, 0.0), DT)
+        widths.append(float(twin.band()[0, 0]))
+    assert widths[0] > 0.0
+    # Gusts grow with the wind, and their force with it once more.
+    assert 2.5 < widths[1] / widths[0] < 5.0

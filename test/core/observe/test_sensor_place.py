@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.observe.sensor_place import place_motion, place_on, turn_between
+from tree_sway.core.observe.sensor_place import place_motion, place_on, tip_slopes, turn_between
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.errors import ParameterError
@@ -82,3 +82,12 @@ def test_turns_are_those_of_scipy() -> None:
     before, after = Rotation.random(50, rng=1), Rotation.random(50, rng=2)
     found = turn_between(before.as_quat(), after.as_quat())
     np.testing.assert_allclose(found, (after * before.inv()).as_rotvec(), atol=1e-9)
+
+
+def test_tips_move_as_places_at_their_ends_do() -> None:
+    sim = make_simulator(TREE, model=12)
+    slopes = tip_slopes(sim)
+    assert slopes.shape == (TREE.n_branches, 3, 12)
+    for branch in (0, 3, TREE.n_branches - 1):
+        at_tip = place_motion(sim, place_on(TREE, f'{TREE.branch_names[branch]}:1.0'))
+        np.testing.assert_allclose(slopes[branch], at_tip.displacement, atol=1e-6)

@@ -81,6 +81,8 @@ class MotionSensor:
         self.counts = SensorCounts()
         self.quantities: tuple[str, ...] = ()
         """Quantities of its first sample; others are ignored."""
+        self.stated_noise = (0.0, 0.0, 0.0)
+        """Noise that its maker states: acceleration, rate, rotation; 0 where it does not."""
         self.period = math.nan
         """Time between samples in [s], a running median; not a number before two samples."""
         self._samples: deque[tuple[float, Floats]] = deque(maxlen=_QUEUE)

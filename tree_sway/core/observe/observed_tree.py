@@ -29,13 +29,12 @@ from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
-from tree_sway.core.observe.sensor_place import place_on
+from tree_sway.core.observe.sensor_place import place_on, tip_slopes
 from tree_sway.core.observe.sensor_track import SensorTrack
 from tree_sway.core.observe.tree_fit import TreeFit
 from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
 from tree_sway.core.setup.prepare import delays_of, prepared
 from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.setup.tree_motion import tip_motion
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
@@ -154,6 +153,11 @@ class ObservedTree(SwaySimulator):
         tracks = [SensorTrack(each, frequency, 1.0 / rate) for each in self.sensors.values()]
         self.observer = Observer(self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed)
         """What the sensors tell."""
+
+    @property
+    def period(self) -> float:
+        """Time step in [s] of the sensors' gains."""
+        return 1.0 / self._rate
 
     def _swing(self) -> tuple[Floats, ...]:
         """Return views of displacement, rate and force of each coordinate, (m,)."""
@@ -300,10 +304,8 @@ class ObservedTree(SwaySimulator):
         in use, and from how large the innovations have been of late.
         """
         if self._tips is None:
-            shapes = np.ascontiguousarray(self.bank.oscillators.shapes)
-            last = np.searchsorted(self.joints['end'], self.tree.branch_first[1:])
-            motion = tip_motion(self.joints, shapes)[last]
-            self._tips = motion.reshape(-1, shapes.shape[1])
+            slopes = tip_slopes(self)
+            self._tips = slopes.reshape(-1, slopes.shape[2])
         deviation = self.observer.tip_deviation(self._tips)
         return np.asarray(_QUANTILE * deviation.reshape(-1, 3))
 

@@ -231,19 +231,26 @@ class Observer:
         self._used = used
         if not used:
             return
-        speed = max(self._mean_speed, _SLOWEST_WIND)
-        self._designed_for, n = speed, self.count
-        unknown = self._unknown = disturbance(self._simulator, speed, n)
-        damping = self._damped = self._damping[:n] + unknown.air_damping
-        law = sway_law(self._stiffness[:n], damping, unknown.covariance, TIME_CONSTANT, self._dt)
-        sensed, noise = self._measurements(damping)
+        law = self._present_law()
+        sensed, noise = self._measurements(self._damped)
         self._causal = self._renewed(self._causal, law, sensed, _CAUSAL * noise, 0)
         if self._is_smoothed:
             self._late_one = self._renewed(
                 self._late_one, law, sensed, _SMOOTH * noise, SMOOTHED_LAG
             )
-        self._open = stationary_covariance(law)
         self._ahead = [law.ahead(k) for k in range(_LATEST + 1)]
+
+    def _present_law(self) -> SwayLaw:
+        """Find the law of the unknown motion in the present wind, and its covariance."""
+        speed = max(self._mean_speed, _SLOWEST_WIND)
+        self._designed_for, n = speed, self.count
+        unknown = self._unknown = disturbance(self._simulator, speed, n)
+        self._damped = self._damping[:n] + unknown.air_damping
+        law = sway_law(
+            self._stiffness[:n], self._damped, unknown.covariance, TIME_CONSTANT, self._dt
+        )
+        self._open = stationary_covariance(law)
+        return law
 
     def _measurements(self, damping: Floats) -> tuple[Floats, Floats]:
         """Measurements of the sensors in use by the state, (p, 3 n), and their noise."""
@@ -398,11 +405,14 @@ class Observer:
 
         """
         n = self.count
-        known = self._open[:n, :n]
         if self._used and self._causal is not None:
             known = self._causal.gains.covariance[:n, :n]
+        else:
+            if self._is_outdated:
+                self._present_law()
+            known = self._open[:n, :n]
         first = tips[:, :n]
-        return np.sqrt(np.maximum(np.einsum('ki,ij,kj->k', first, known, first), 0.0))
+        return np.sqrt(np.maximum(((first @ known) * first).sum(axis=1), 0.0))
 
     def energy(self, eta: Floats, rate: Floats) -> float:
         """Twice the energy of displacements and rates of the first coordinates, (count,)."""

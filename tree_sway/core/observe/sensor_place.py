@@ -16,7 +16,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree.tree import tips_of_poses, Tree
 from tree_sway.errors import nearest, ParameterError
 
 if TYPE_CHECKING:
@@ -125,6 +125,21 @@ def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
         displacement[:, i] = (ahead - behind) / (2.0 * amount)
         rotation[:, i] = turn_between(turned_back, turned) / (2.0 * amount)
     return PlaceMotion(displacement, rotation)
+
+
+def tip_slopes(simulator: SwaySimulator) -> Floats:
+    """Differentiate the tips of branches by each coordinate, at rest, (b, 3, m)."""
+    shapes = simulator.bank.oscillators.shapes
+    tree = simulator.tree
+    poses = np.zeros((tree.n_segments, 7))
+    slopes = np.zeros((tree.n_branches, 3, shapes.shape[1]))
+    for i in range(shapes.shape[1]):
+        amount = _TURN / max(float(np.abs(shapes[:, i]).max()), 1e-300)
+        simulator.place_rotations(np.ascontiguousarray(amount * shapes[:, i]), poses)
+        ahead = tips_of_poses(tree, poses)
+        simulator.place_rotations(np.ascontiguousarray(-amount * shapes[:, i]), poses)
+        slopes[:, :, i] = (ahead - tips_of_poses(tree, poses)) / (2.0 * amount)
+    return slopes
 
 
 def turn_between(before: Floats, after: Floats) -> Floats:

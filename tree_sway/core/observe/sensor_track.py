@@ -29,6 +29,8 @@ _AVERAGED = 2.0
 _DISAGREES, _AGREES = 16.0, 4.0
 _FLOOR = np.array([0.03, 0.004, 0.002])
 """Least noise of acceleration [m/s^2], rate [rad/s] and rotation [rad]."""
+_CEILING = np.array([20.0, 10.0, 3.0])
+"""Largest noise that a sensor may state, in the same units: above, it tells nothing."""
 
 ROWS = 12
 """Rows of a sensor: acceleration, its part by tilted gravity, rate and rotation, three of each."""
@@ -107,6 +109,7 @@ class SensorTrack:
     def noise(self) -> Floats:
         """Standard deviation of the noise at each step, (3,)."""
         known = _FLOOR if self.alignment is None else np.maximum(self.alignment.noise, _FLOOR)
+        known = np.maximum(known, np.minimum(self.sensor.stated_noise, _CEILING))
         period = self.sensor.period
         # Samples that are joined by lines have the same noise in several steps.
         held = 1.0 if math.isnan(period) else max(1.0, period / self._dt)

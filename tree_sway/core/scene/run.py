@@ -68,6 +68,8 @@ class Run:
         Function that makes an empty `WindAverage`; called again whenever the clock was set back.
     stepped
         Function called after each step with its end [ns] and its mean wind [m/s], (3,).
+    starting
+        Function called before each step with the time [s] up to which its wind was measured.
     timer
         Clock in [s] to measure the cost of a step; None to never join steps.
 
@@ -81,6 +83,7 @@ class Run:
         intake: WindIntake | None = None,
         make_wind: Callable[[], WindAverage] = WindAverage,
         stepped: Callable[[int, Floats], object] = lambda end, wind: None,
+        starting: Callable[[float], object] = lambda felt: None,
         timer: Callable[[], float] | None = None,
     ) -> None:
         self.simulator, self.period = simulator, round(1e9 / rate)
@@ -99,6 +102,7 @@ class Run:
         self.newest: int | None = None
         """Time of the newest sample in [ns]; None before any."""
         self._make_wind, self._stepped, self._timer = make_wind, stepped, timer
+        self._starting = starting
         self._wind = make_wind()
         self._samples: deque[GoodWind] = deque(maxlen=_QUEUE)
         self._requests: deque[tuple[Callable[[], object], Refused]] = deque(maxlen=_QUEUE)
@@ -289,6 +293,7 @@ class Run:
             self._wind.add(self._seconds(time), velocity)
         wind = self._wind.mean(self._felt - dt, self._felt)
         if not self.is_paused:
+            self._starting(end * 1e-9 - delay - self._wind.lateness)
             self._solve(end, wind, dt)
 
     def _solve(self, end: int, wind: Floats, dt: float) -> None:

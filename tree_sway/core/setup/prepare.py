@@ -101,7 +101,8 @@ def prepared(
     if found is not None:
         with suppress(FormatError):  # of an older version, or damaged: it is made again
             stored = SwayModel.of_arrays(found, tree, species, settings)
-            reductions.frequencies = stored.natural_frequencies
+            if not stored.is_isolated:
+                reductions.frequencies = stored.natural_frequencies
             return stored
     with solvable(tree):
         is_isolated = settings.model == 'branch'

@@ -1,0 +1,93 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+``tree-sway lab twin``: how far sensors bring the model to a tree of other wood, damping and gusts.
+
+The true tree is made up: the model with all coordinates, its wood softer by a fifth, its damping
+higher by half, gusts that reach it limb by limb. Each row has one number of sensors: dynamic error
+of all tips and roughness, at once and smoothed, the correlation of the stem's tip, and the share
+of the time that the band of 80 % holds the tips. The part of the record in which mountings are
+found is not scored.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from tree_sway.commands.ending import Ending
+from tree_sway_lab.twin.trial import plain_score, Score, twin_score
+from tree_sway_lab.twin.true_tree import Circumstances, sensor_places, tree_called, true_motion
+
+_HEAD = (
+    'tree',
+    'sensors',
+    'error',
+    'rough',
+    'smoothed',
+    'rough',
+    'stem r',
+    'held',
+    'us/step',
+    'notes',
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add, default = parser.add_argument, Circumstances()
+    add(
+        'tree',
+        nargs='*',
+        default=['straight', 'spruce 8'],
+        help='kind of the laboratory, or species, height and seed, as "oak 9 4" (%(default)s)',
+    )
+    add('--in-leaf', action='store_true', help='in leaf; bare without it')
+    add('--sensors', type=int, nargs='+', default=[0, 1, 2, 4], help='numbers (%(default)s)')
+    add('--model', default='full', help='model of the true tree (%(default)s)')
+    add('--faulty', action='store_true', help='late, lossy, biased sensors of 25 Hz')
+    for name, what in (
+        ('wood', 'modulus of the true tree over the model'),
+        ('damping', 'damping ratio of the true tree over the model'),
+        ('coherence', 'share of a gust that reaches the whole crown at once'),
+        ('upwind', 'distance of the anemometer upwind [m]'),
+        ('speed', 'mean wind [m/s]'),
+        ('seconds', 'length of the record [s]'),
+    ):
+        add(f'--{name}', type=float, default=getattr(default, name), help=f'{what} (%(default)s)')
+    add('--seed', type=int, default=default.seed, help='of the wind (%(default)s)')
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Score every tree with every number of sensors."""
+    names = ('wood', 'damping', 'coherence', 'upwind', 'speed', 'seconds', 'seed')
+    around = Circumstances(**{name: getattr(arguments, name) for name in names})
+    print(','.join(_HEAD))
+    with Ending():
+        for name in arguments.tree:
+            _try(name, around, arguments)
+    return 0
+
+
+def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> None:
+    tree, species = tree_called(name)
+    in_leaf = arguments.in_leaf
+    places = sensor_places(tree, max(arguments.sensors))
+    model = int(arguments.model) if arguments.model.isdecimal() else arguments.model
+    true = true_motion(tree, species, places, around, in_leaf=in_leaf, model=model)
+    _print(name, 'default', plain_score(tree, species, true, in_leaf=in_leaf))
+    for count in arguments.sensors:
+        score = twin_score(
+            tree, species, true, places[:count], in_leaf=in_leaf, faulty=arguments.faulty
+        )
+        _print(name, str(count), score)
+
+
+def _print(name: str, sensors: str, score: Score) -> None:
+    figures = (
+        score.error, score.roughness, score.late_error, score.late_roughness, score.stem,
+        score.held,
+    )  # fmt: skip
+    row = [name, sensors, *(f'{each:.3f}' for each in figures), f'{score.cost:.0f}']
+    print(','.join([*row, '; '.join(score.notes)]))
+    sys.stdout.flush()

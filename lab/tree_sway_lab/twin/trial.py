@@ -1,0 +1,138 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A tree with sensors against the true one: error, roughness, and what its band holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+import time
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.core.observe.observer import LATE_STEPS
+from tree_sway.core.observe.simulated_sensor import SimulatedSensor
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import tips_of_poses, Tree
+from tree_sway_lab.twin.true_tree import DT, TrueMotion
+
+FAULTY = SimulatedSensor(rate=25.0, lateness=0.075, jitter=0.01, lost=0.05, bias=0.0087)
+"""A sensor of 25 Hz, 75 ms late with jitter, that loses 5 % and is biased by 0.5 deg/s."""
+
+_TRUSTED = 0.45
+"""Share of a record from which on it is scored: before, mountings are found."""
+
+
+@dataclass(frozen=True)
+class Score:
+    """
+    How far a tree is from the true one.
+
+    Parameters
+    ----------
+    error, late_error
+        Dynamic error of all tips over their dynamic motion [-], now and smoothed.
+    roughness, late_roughness
+        Second difference of the tips over that of the true ones [-].
+    stem
+        Correlation of the stem's tip with the true one, the smaller of both axes [-].
+    held
+        Share of the time that the band of 80 % holds the tips [-].
+    cost
+        Time of a step in [us], sensors and all.
+    notes
+        What the sensors say.
+
+    """
+
+    error: float
+    roughness: float
+    late_error: float
+    late_roughness: float
+    stem: float
+    held: float
+    cost: float
+    notes: tuple[str, ...] = ()
+
+
+def plain_score(tree: Tree, species: Species, true: TrueMotion, *, in_leaf: bool) -> Score:
+    """Score the simulator as it is without sensors."""
+    sim = make_simulator(tree, species, in_leaf=in_leaf)
+    block, tips = np.empty((tree.n_segments, 7)), np.empty_like(true.tips)
+    began = time.perf_counter()
+    for k, each in enumerate(true.wind):
+        sim.step(each, DT)
+        tips[k] = tips_of_poses(tree, sim.place(block))
+    cost = 1e6 * (time.perf_counter() - began) / len(tips)
+    error, roughness, stem = _compared(tips, true.tips, 0)
+    return Score(error, roughness, error, roughness, stem, np.nan, cost)
+
+
+def twin_score(
+    tree: Tree,
+    species: Species,
+    true: TrueMotion,
+    places: Sequence[str],
+    *,
+    in_leaf: bool,
+    seed: int = 7,
+    faulty: bool = False,
+) -> Score:
+    """Score a tree that sensors at some places correct."""
+    twin = ObservedTree(
+        tree, species, in_leaf=in_leaf, at={each: each for each in places}, is_smoothed=True
+    )
+    rng = np.random.default_rng(seed)
+    for name in places:
+        mount = Rotation.random(rng=rng)
+        sensor = replace(FAULTY if faulty else SimulatedSensor(), mount=mount)
+        motion = sensor.measured(true.poses[name], DT, rng)
+        twin.replay(name, motion.time, acceleration=motion.acceleration, rate=motion.rate)
+    block = np.empty((tree.n_segments, 7))
+    tips, smoothed, bands = (np.empty_like(true.tips) for _ in range(3))
+    spent = 0.0
+    for k, each in enumerate(true.wind):
+        began = time.perf_counter()
+        twin.step(each, DT)
+        spent += time.perf_counter() - began
+        tips[k] = tips_of_poses(tree, twin.place(block))
+        smoothed[k] = tips_of_poses(tree, twin.place_rotations(twin.smoothed, block))
+        bands[k] = twin.band()
+    error, roughness, stem = _compared(tips, true.tips, 0)
+    late = LATE_STEPS + twin.observer.late
+    late_error, late_roughness, _ = _compared(smoothed, true.tips, late)
+    notes = [*twin.problems]
+    if (fit := twin.observer.fit) is not None:
+        notes.append(f'stiffness {fit.stiffness:.3f}, damping {fit.damping:.2f}')
+    if not places:
+        late_error, late_roughness = error, roughness
+    return Score(
+        error, roughness, late_error, late_roughness, stem, _held(tips, true.tips, bands),
+        1e6 * spent / len(tips), tuple(notes),
+    )  # fmt: skip
+
+
+def _compared(tips: Floats, true: Floats, late: int) -> tuple[float, float, float]:
+    """Error, roughness and the stem's correlation of the later part of a record."""
+    first = round(_TRUSTED * len(tips))
+    found = tips[first:]
+    wanted = true[first - late : len(true) - late]
+    wrong = found - wanted
+    wrong = wrong - wrong.mean(axis=0)
+    motion = wanted - wanted.mean(axis=0)
+    error = float(np.sqrt(np.square(wrong).sum() / np.square(motion).sum()))
+    second = [np.square(np.diff(each, 2, axis=0)).sum() for each in (found, wanted)]
+    stem = min(float(np.corrcoef(found[:, 0, axis], wanted[:, 0, axis])[0, 1]) for axis in (0, 1))
+    return error, float(np.sqrt(second[0] / second[1])), stem
+
+
+def _held(tips: Floats, true: Floats, bands: Floats) -> float:
+    """Share of the time that bands hold the horizontal motion of the tips about its mean."""
+    first = round(_TRUSTED * len(tips))
+    wrong = (tips - true)[first:]
+    wrong = np.abs(wrong - wrong.mean(axis=0))
+    return float((wrong[..., :2] <= bands[first:, :, :2]).mean())

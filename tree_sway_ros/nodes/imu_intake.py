@@ -1,0 +1,97 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Motion sensors of the solver: topics and places by a parameter, samples to the twin."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.core.scene.run import Run
+from tree_sway.errors import ParameterError
+from tree_sway_ros.process.node import TreeSwayNode
+from tree_sway_ros.process.topics import IMU
+from tree_sway_ros.reports.diagnostics import OK, Status, WARN
+from tree_sway_ros.wire.imu_messages import ImuSample, motion_from_message
+
+_APART = 5_000_000_000
+"""Largest difference of a stamp from the node's clock in [ns]."""
+
+
+def places_of(text: str) -> dict[str, str]:
+    """
+    Return the place of each topic of a text ``TOPIC@PLACE, TOPIC@PLACE``.
+
+    A `ParameterError` refuses a text of another form, and a topic given twice.
+    """
+    found: dict[str, str] = {}
+    for part in filter(None, (each.strip() for each in text.split(','))):
+        topic, at, place = (each.strip() for each in part.partition('@'))
+        if not (topic and at and place) or topic in found:
+            what = f"'{part}' is no topic with a place of its own"
+            cure = "give TOPIC@PLACE, several with commas, as 'tree/imu@3.2, limb/imu@b12:0.5'"
+            raise ParameterError(what, where='imu', cure=cure)
+        found[topic] = place
+    return found
+
+
+class ImuIntake:
+    """
+    Subscriptions of the sensors of an observed tree.
+
+    Samples are handed to the thread of the steps, so that no callback waits for a step.
+    """
+
+    def __init__(self, node: TreeSwayNode, run: Run, twin: ObservedTree) -> None:
+        self._node, self._run, self._twin = node, run, twin
+        self._clocks_apart: dict[str, tuple[int, float]] = {}
+        for topic in twin.sensors:
+            node.subscription(replace(IMU, name=topic), self._callback_of(topic))
+
+    def _callback_of(self, topic: str) -> Any:
+        def receive(message: Any) -> None:
+            sample = motion_from_message(message)
+            now = int(self._node.get_clock().now().nanoseconds)
+            stamp = sample.stamp or now
+            limits = self._node.stamp_limits
+            if not -_APART - limits['lag'] <= stamp - now <= _APART + limits['lead']:
+                count, _ = self._clocks_apart.get(topic, (0, 0.0))
+                self._clocks_apart[topic] = count + 1, (stamp - now) * 1e-9
+                return
+            self._run.request(lambda: self._offer(topic, stamp, sample))
+
+        return receive
+
+    def _offer(self, topic: str, stamp: int, sample: ImuSample) -> None:
+        """Offer a sample, in the thread of the steps."""
+        sensor = self._twin.sensors[topic]
+        sensor.stated_noise = sample.noise
+        sensor.offer(
+            stamp * 1e-9,
+            acceleration=sample.acceleration,
+            rate=sample.rate,
+            orientation=sample.orientation,
+        )
+
+    def statuses(self) -> list[Status]:
+        """Report each sensor: in use or why not, and its counts."""
+        found = []
+        for track in self._twin.observer.tracks:
+            sensor, problem = track.sensor, track.problem
+            apart, by = self._clocks_apart.get(sensor.name, (0, 0.0))
+            values = {
+                'accepted': sensor.counts.accepted,
+                'refused': sensor.counts.refused,
+                'refused for their stamps': apart,
+                'silent': sensor.counts.silent,
+                'disagreed': sensor.counts.disagreed,
+                'late [s]': round(self._twin.observer.late * self._twin.period, 4),
+                'share of the motion beyond the wind': round(self._twin.observer.share, 3),
+            }
+            if apart and not sensor.counts.accepted:
+                problem = f'{apart} refused: stamps differ from this clock by {by:.1f} s: '
+                problem += 'synchronise the clocks (chrony, or that of micro-ROS)'
+            text = problem or 'the tree follows it'
+            found.append(Status(f'imu {sensor.name}', WARN if problem else OK, text, values))
+        return found

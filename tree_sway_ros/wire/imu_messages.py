@@ -1,0 +1,61 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Motion in a message ``sensor_msgs/Imu``, to numbers.
+
+Frames and units are those of REP-103 and REP-145: an acceleration with gravity and an angular rate
+in the sensor's frame, and its orientation to east, north, up. A quantity whose covariance begins
+with -1 is not measured; a covariance of zeros is unknown.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+_SECOND = 1_000_000_000
+
+
+class ImuSample(NamedTuple):
+    """
+    Stamp [ns], 0 where the message has none, and what was measured, None elsewhere.
+
+    ``noise`` are the standard deviations of acceleration, rate and orientation that the message
+    states, 0 where unknown.
+    """
+
+    stamp: int
+    acceleration: tuple[float, ...] | None
+    rate: tuple[float, ...] | None
+    orientation: tuple[float, ...] | None
+    noise: tuple[float, float, float]
+
+
+def motion_from_message(message: Any) -> ImuSample:
+    """Return the motion of a message."""
+    stamp = message.header.stamp
+    turn = message.orientation
+    parts = (
+        (message.linear_acceleration, message.linear_acceleration_covariance),
+        (message.angular_velocity, message.angular_velocity_covariance),
+    )
+    vectors = [
+        None if covariance[0] == -1.0 else (vector.x, vector.y, vector.z)
+        for vector, covariance in parts
+    ]
+    stated = message.orientation_covariance
+    quaternion = (turn.x, turn.y, turn.z, turn.w)
+    is_turned = stated[0] != -1.0 and any(quaternion)
+    return ImuSample(
+        stamp.sec * _SECOND + stamp.nanosec,
+        vectors[0],
+        vectors[1],
+        quaternion if is_turned else None,
+        (_deviation(parts[0][1]), _deviation(parts[1][1]), _deviation(stated)),
+    )
+
+
+def _deviation(covariance: Any) -> float:
+    """Root of the largest variance of a covariance of nine numbers; 0 for none that is known."""
+    largest = max(float(covariance[0]), float(covariance[4]), float(covariance[8]))
+    return math.sqrt(largest) if 0.0 < largest < math.inf else 0.0
