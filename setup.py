@@ -118,7 +118,16 @@ setup(
     license='Apache-2.0',
     packages=find_packages(str(ROOT), include=[PACKAGE, f'{PACKAGE}.*', LIBRARY, f'{LIBRARY}.*']),
     package_data={
-        '': ['py.typed', '*.json', '*.yaml', '*.csv', '*.xml', 'static/*', 'static/*/*']
+        '': [
+            'py.typed',
+            '*.json',
+            '*.yaml',
+            '*.csv',
+            '*.xml',
+            'static/*',
+            'static/*/*',
+            'pictures/*.png',
+        ]
     },
     data_files=data_files,
     python_requires='>=3.10',

@@ -37,6 +37,11 @@ COMMANDS: dict[str, Command] = {
         'paper',
         'tree_sway_lab.paper.command',
     ),
+    'score': Command(
+        'how well a measured sway follows from its wind and sensors',
+        'score oak.yaml --wind wind.csv --sway sway.csv --motion motion.csv --at 3.2',
+        'tree_sway_lab.twin.score_command',
+    ),
     'soak': Command(
         'run the chain through every fault of a sensor, and report what it costs',
         'soak --hours 0.002 --every 1',
@@ -44,7 +49,7 @@ COMMANDS: dict[str, Command] = {
     ),
     'twin': Command(
         'how far motion sensors bring the model to a tree that it does not know',
-        'twin straight --seconds 60 --sensors 1',
+        'twin straight --model 120 --seconds 60 --sensors 1',
         'tree_sway_lab.twin.command',
     ),
     'validate': Command(

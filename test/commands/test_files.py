@@ -118,6 +118,15 @@ def test_a_tree_that_sways_by_a_skin_or_by_weights(tmp_path: Path) -> None:
         assert b'"leaves"' in path.read_bytes()
 
 
+def test_a_tree_as_glb_is_in_leaf_and_sways_unless_told_otherwise(tmp_path: Path) -> None:
+    path = tmp_path / 'tree.glb'
+    assert cli.main(['convert', SEEDLING, '-o', str(path)]) == 0
+    content = path.read_bytes()
+    assert all(word in content for word in (b'"animations"', b'"leaves"', b'\x89PNG'))
+    assert cli.main(['convert', SEEDLING, '--leaves', 'off', '--force', '-o', str(path)]) == 0
+    assert b'"leaves"' not in path.read_bytes()
+
+
 @pytest.mark.parametrize(
     ('suffix', 'start'), [('.usda', '#usda 1.0'), ('.xml', '<mujoco'), ('.sdf', '<sdf')]
 )

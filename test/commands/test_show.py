@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+import argparse
 import asyncio
+from dataclasses import replace
 import json
 from pathlib import Path
 import re
@@ -12,12 +14,14 @@ import subprocess
 import sys
 import threading
 
+import numpy as np
 import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
 from tree_sway.commands import show  # noqa: E402
 from tree_sway.commands.cli import main  # noqa: E402
+from tree_sway.core.growth.grow import grow  # noqa: E402
 from tree_sway.core.model.settings import model_of, USUAL  # noqa: E402
 from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
 from tree_sway.stream.protocol import decode_description, decode_frame  # noqa: E402
@@ -97,6 +101,35 @@ def test_a_stand_of_a_file_offers_neither_a_model_nor_a_number_of_trees() -> Non
     of_a_tree = {each.name for each in show._controls(choices, wind)}
     of_a_stand = {each.name for each in show._controls(choices, wind, is_one_tree=False)}
     assert of_a_tree - of_a_stand == {'model', 'count'}
+
+
+def test_a_viewer_grows_a_tree_of_a_species_and_a_height() -> None:
+    arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
+    wanted = show.Choices('birch', height=4.0)
+    heights, starts = [], []
+    for choices in (wanted, wanted, replace(wanted, individual='1', height=5.5)):
+        tree = show.build_scene(choices, arguments).tree
+        heights.append(round(tree.height, 6))
+        starts.append(tree.start.tobytes())
+    assert heights == [4.0, 4.0, 5.5]
+    assert starts[0] == starts[1] != starts[2]
+
+
+@pytest.mark.parametrize(
+    ('tree', 'is_grown'), [('birch', True), ('goldcrest', False), ('oak.yaml', False)]
+)
+def test_only_a_species_that_is_no_built_in_tree_is_grown(tree: str, is_grown: bool) -> None:
+    choices = show.Choices(tree)
+    assert choices.is_grown is is_grown
+    controls = {each.name: each for each in show._controls(choices, SimulatedWind(6.0))}
+    offered = controls['tree'].choices
+    assert tree in offered
+    assert {'oak', 'spruce', 'ginkgo', 'benjamina'} <= set(offered)
+    assert len(set(offered)) == len(offered)
+    low, high = controls['height'].minimum, controls['height'].maximum
+    for key in ('birch', 'spruce'):
+        for height in (low, high):
+            assert grow(key, height, rng=np.random.default_rng(0)).height == pytest.approx(height)
 
 
 def test_a_table_of_risk_colours_the_trees_that_it_names(

@@ -43,10 +43,10 @@ def test_a_new_species_is_one_row_of_one_file(tmp_path: Path) -> None:
     (row,) = blocks_of('A new species')
     changed_copy(tmp_path, module, re.sub('^ash,', f'{row}ash,', text, flags=re.M))
     environment = os.environ | {'PYTHONPATH': str(tmp_path), 'TREE_SWAY_NO_NUMBA': '1'}
-    known = "from tree_sway import species_named; print(species_named('hornbeam').title)"
+    known = "from tree_sway import species_named; print(species_named('mulberry').title)"
     words = ['-m', 'pytest', '-p', 'no:cacheprovider', '-p', 'no:xdist']
     tests = [*words, 'test/core/tree/test_species.py', '-v']
-    for arguments, wanted in ((['-c', known], 'hornbeam'), (tests, '[hornbeam]')):
+    for arguments, wanted in ((['-c', known], 'mulberry'), (tests, '[mulberry]')):
         result = subprocess.run(
             [sys.executable, *arguments], cwd=tmp_path, env=environment,
             capture_output=True, text=True, timeout=300, check=False,

@@ -10,8 +10,8 @@ import { barkMesh, leafMesh, shapeOf } from "../../tree_sway/page/static/drawing
 import { arrowLength } from "../../tree_sway/page/static/drawing/props.js";
 import { Quality } from "../../tree_sway/page/static/drawing/quality.js";
 import { crownShade } from "../../tree_sway/page/static/drawing/shade.js";
-import { lookOf } from "../../tree_sway/page/static/drawing/species.js";
-import { leavesAcross } from "../../tree_sway/page/static/drawing/textures.js";
+import { average, lookOf } from "../../tree_sway/page/static/drawing/looks.js";
+import { leavesAlong } from "../../tree_sway/page/static/drawing/textures.js";
 import { Placer } from "../../tree_sway/page/static/placing.js";
 import { decodeDescription } from "../../tree_sway/page/static/protocol.js";
 
@@ -100,24 +100,22 @@ test("far trees are coarse, near ones fine, those out of sight nothing, all with
   assert.equal(detail.level[0], 1, "the tree that is watched is placed whatever the budget");
 });
 
-/** Length and width of a card, about which its triangle is [m]. */
-function edges({ values, indices }, i, across) {
-  const [a, b, c] = [0, 1, 2].map((k) => values.slice(19 * indices[3 * i + k] + 1).slice(0, 3));
-  const middle = a.map((x, k) => 0.5 * (x + c[k]));
-  const [long, wide] = across === 1 ? [1.45, 1.75] : [2, 2];
-  return [Math.hypot(...b.map((x, k) => x - middle[k])) / long, Math.hypot(...c.map((x, k) => x - a[k])) / wide];
+/** Length and width of a card [m]. */
+function edges({ values, indices }, i) {
+  const [a, b, c] = [0, 1, 2].map((k) => values.slice(19 * indices[6 * i + k] + 1).slice(0, 3));
+  return [Math.hypot(...b.map((x, k) => x - a[k])), Math.hypot(...c.map((x, k) => x - b[k]))];
 }
 
 test("few cards are larger and show more leaves, none of which is twice its own size", () => {
-  const { size } = lookOf(kind.species);
+  const { leaf_size: size } = lookOf(kind);
   const most = 3 * kind.arrays.leaf_segment.length;
   const areas = [most, Math.round(most / 3), Math.round(most / 12), 6].map((cards) => {
-    const { mesh, across } = leafMesh(shape, placer.order, cards, most);
+    const { mesh, along } = leafMesh(shape, placer.order, cards, most);
     let area = 0;
-    for (let i = 0; i < mesh.indices.length / 3; i++) {
-      const [long, wide] = edges(mesh, i, across);
+    for (let i = 0; i < mesh.indices.length / 6; i++) {
+      const [long, wide] = edges(mesh, i);
       area += long * wide;
-      assert.ok(long / across < 2 * size, `${long / across} m of ${size} m`);
+      assert.ok(long / along < 2 * size, `${long / along} m of ${size} m`);
     }
     return area;
   });
@@ -125,10 +123,11 @@ test("few cards are larger and show more leaves, none of which is twice its own 
 });
 
 test("a picture of a large card shows small leaves, whatever the species", () => {
-  for (const species of ["benjamina", "goldcrest", "oak", "birch", "spruce", "pine", "walnut", "xyz"]) {
-    const { size } = lookOf(species);
+  for (const form of ["ovate", "compound", "needles", "tufts", "fronds", "of no species"]) {
+    const look = { ...average, form, has_needles: ["needles", "tufts", "fronds"].includes(form) };
+    const { leaf_size: size } = look;
     for (const card of [size, 3 * size, 8 * size, 30 * size]) {
-      assert.ok(card / leavesAcross(species, card) < 2 * size);
+      assert.ok(card / leavesAlong(look, card) < 2 * size);
     }
   }
 });

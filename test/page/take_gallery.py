@@ -5,8 +5,9 @@ Take the pictures of doc/gallery.md from the page, in a headless Chromium.
 
     python test/page/take_gallery.py doc/pictures/gallery --walnut walnut.mtg
 
-Trees that are no file are grown. Pictures in full quality are drawn as with a graphics unit. A
-film is taken along the page's time line, so that its pictures are as far apart as they are shown.
+Trees that are no file are grown. Pictures in full quality are drawn as with a graphics unit, and
+have nothing but the tree unless they show the page itself. A film is taken along the page's time
+line, so that its pictures are as far apart as they are shown.
 
 """
 
@@ -28,7 +29,10 @@ from tree_sway.page.session import Choices, Session
 from tree_sway.page.wind_source import SimulatedWind
 
 STAND = Path(__file__).parents[2] / 'config' / 'stand.yaml'
-HEIGHTS = {'oak': 18, 'birch': 16, 'spruce': 22, 'pine': 20, 'willow': 12, 'walnut': 8}
+HEIGHTS = {
+    'oak': 18, 'birch': 16, 'spruce': 22, 'fir': 22, 'pine': 20, 'lime': 14, 'beech': 20,
+    'horse_chestnut': 15, 'willow': 12, 'walnut': 8,
+}  # fmt: skip
 WIDTH = 960
 AVENUE = 'x,y,species,height\n' + ''.join(
     f'{10 * row},{9 * place},lime,14\n' for place in range(10) for row in range(2)
@@ -48,7 +52,14 @@ class View:
     is_dark: bool = False
     is_phone: bool = False
     is_film: bool = False
+    has_cards: bool = False
 
+
+_BARE = """
+for (const each of document.querySelectorAll('.card, #tools')) each.style.display = 'none';
+treeSway.scene.camera.home();
+"""
+"""Hides the instruments, and fits the tree into the whole picture."""
 
 SETTLING = 15.0
 """Until a page without a graphics unit has chosen what it leaves out [s]."""
@@ -60,16 +71,20 @@ VIEWS = (
     View('benjamina', 'benjamina'),
     View('benjamina_near', 'benjamina', script='treeSway.scene.camera.zoom(0.3)'),
     View('benjamina_software', 'benjamina', is_full=False),
-    View('benjamina_dark', 'benjamina', is_dark=True),
-    View('benjamina_phone', 'benjamina', is_phone=True),
+    View('benjamina_dark', 'benjamina', is_dark=True, has_cards=True),
+    View('benjamina_phone', 'benjamina', is_phone=True, has_cards=True),
     View('goldcrest', 'goldcrest'),
     View('oak', 'oak'),
     View('oak_autumn', 'oak', script=_EVENING + _AUTUMN),
     View('birch', 'birch'),
     View('spruce', 'spruce'),
     View('spruce_software', 'spruce', is_full=False),
+    View('fir', 'fir'),
     View('pine', 'pine'),
     View('pine_near', 'pine', script='treeSway.scene.camera.zoom(0.35)'),
+    View('lime', 'lime'),
+    View('beech', 'beech'),
+    View('horse_chestnut', 'horse_chestnut'),
     View('willow', 'willow'),
     View('willow_sways', 'willow', is_film=True),
     View('walnut', 'walnut'),
@@ -133,6 +148,8 @@ async def look(url: str, view: View, path: Path) -> None:
         address = f'{url}?quality=full' if view.is_full else url
         await browser.open(address, width=width, height=height, dark=view.is_dark)
         await browser.until("window.treeSway && treeSway.state === 'live' && treeSway.fps > 0")
+        if not view.has_cards:
+            await browser.run(_BARE)
         if view.script:
             await browser.run(view.script)
         await browser.until('treeSway.traces.wind._points.length > 6')

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from tree_sway.core.model import fill_records
+from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import FormatError
 from tree_sway.stream import placing as placer
 from tree_sway.stream.placing import Placer
@@ -95,6 +96,12 @@ def damages() -> Iterator[tuple[str, bytes]]:
         for other in others:
             entry: Any = {**kinds[0], name: other}
             yield f'{name} of {str(other)[:9]}', with_header(kinds=[entry, kinds[1]])
+    oak = species_named('oak')
+    look = oak.look.described(oak.leaves, oak.habit)
+    for name in ('green', 'leaf_size', 'spray', 'has_needles'):
+        for other in others:
+            entry = {**kinds[0], 'look': {**look, name: other}}
+            yield f'look with {name} of {str(other)[:9]}', with_header(kinds=[entry, kinds[1]])
     yield 'leaves without a law', with_header(flutter={'gain': None})
 
 
@@ -112,7 +119,19 @@ def of_still_trees() -> bytes:
 
 
 DAMAGES = dict(damages())
-SOUND = {'trees that do not move': of_still_trees()}
+_LOOKS = [species_named(key) for key in species_keys()]
+SOUND = {
+    'trees that do not move': of_still_trees(),
+    **{
+        f'a look of {each.key}': with_header(
+            kinds=[
+                {**kind, 'look': each.look.described(each.leaves, each.habit)}
+                for kind in WHOLE.header['kinds']
+            ]
+        )
+        for each in _LOOKS
+    },
+}
 
 
 @pytest.fixture(scope='module')

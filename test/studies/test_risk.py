@@ -114,6 +114,17 @@ def test_a_thicker_stem_uses_less_and_leaves_cost() -> None:
     np.testing.assert_array_equal(again.share, slender.seasons[0].wood.share)
 
 
+@pytest.mark.long
+def test_an_open_spruce_falls_before_one_of_a_stand_by_forestgales() -> None:
+    """Wood of 0.9 times 36 MPa, moments of trees in stands by Hale et al. (2012)."""
+    height, diameter = 20.0, 20.0 / 60.0
+    (in_leaf,) = compute_kind(RiskKind('spruce', height, 60.0)).seasons
+    top = math.log(height / 0.03) / math.log(10.0 / 0.03)
+    strength = math.pi / 32.0 * 0.9 * 36.0e6 * diameter**3
+    in_stand = math.sqrt(strength / (111.91 * diameter**2 * height))
+    assert 0.5 < top * in_leaf.wood.speed_of(1.0) / in_stand < 0.85
+
+
 def test_an_impossible_kind_has_a_reason_in_place_of_winds(tmp_path: Path) -> None:
     result = compute_kind(RiskKind('benjamina', 20.0, 0.0))
     assert 'out of range for the habit' in result.error

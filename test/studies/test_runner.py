@@ -77,6 +77,11 @@ def test_two_processes_give_the_same_numbers_bit_for_bit(alone, tmp_path):
     columns = {'frequency [Hz]', 'tip_largest [m]', 'base_moment_rms [N m]', 'strain_largest [-]'}
     assert columns <= set(rows[0])
     assert rows[0]['tip_largest [m]'] > 0.0
+    for part in ('wood', 'roots'):
+        share, low, high = (
+            rows[0][f'{part}_strength_used{band} [-]'] for band in ('', '_low', '_high')
+        )
+        assert 0.0 < low < share < high
 
 
 def test_what_is_finished_is_not_computed_again(alone, tmp_path):

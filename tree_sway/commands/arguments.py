@@ -143,13 +143,17 @@ def add_exact_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--exact', action='store_true', help=what)
 
 
-def add_leaves_argument(parser: argparse.ArgumentParser, default: str | None = 'auto') -> None:
+def add_leaves_argument(
+    parser: argparse.ArgumentParser,
+    default: str | None = 'auto',
+    shown: str = 'on; auto with --strength',
+) -> None:
     """
     Add the choice of leaves; ``--leaves`` without a value is on.
 
-    A default of None is for a command that chooses between on and, for strength, auto.
+    A default of None is for a command that chooses between on and auto, as is shown.
     """
-    shown = default or 'on; auto with --strength'
+    shown = default or shown
     parser.add_argument(
         '--leaves',
         nargs='?',

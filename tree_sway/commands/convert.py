@@ -26,7 +26,6 @@ from tree_sway.commands.arguments import (
 )
 from tree_sway.commands.moments import at_moments, moments_of, numbered_paths
 from tree_sway.commands.progress import waiting
-from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator, solved
@@ -37,7 +36,7 @@ from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.files.export.hinged_tree_writing import mjcf_of_tree, sdf_of_tree
 from tree_sway.files.export.obj_scene import ObjScene
 from tree_sway.files.export.tree_export import SUFFIXES, write_gltf, write_tree
-from tree_sway.files.export.usd_tree import usd_of_tree
+from tree_sway.files.export.usd_writing import write_usd
 from tree_sway.files.models.model_file import SUFFIX as MODEL_SUFFIX
 from tree_sway.files.models.model_file import write_model
 from tree_sway.files.whole_file import write_text_whole
@@ -47,10 +46,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_tree_arguments(parser, forests=True)
     add_exact_argument(parser)
-    add_leaves_argument(parser)
+    add_leaves_argument(parser, None, 'on in .glb, .usda, .usdz and .html, else auto')
     add_model_argument(parser)
     add_wind_arguments(parser, 'wind recording that trees sway in until --at')
-    add_output_arguments(parser, f'{OUTPUT_HELP}, .npz, .html, .usda, .xml (MJCF), .sdf, .obj')
+    add_output_arguments(
+        parser, f'{OUTPUT_HELP}, .npz, .html, .usda, .usdz, .xml (MJCF), .sdf, .obj'
+    )
     parser.add_argument(
         '--at',
         metavar='SECONDS',
@@ -63,7 +64,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=('skin', 'morph'),
         const='skin',
         help='motion of a .glb: by a joint per segment, set from segment_poses, or '
-        "by some 20 weights, set from the tree's state (skin)",
+        "by some 20 weights, set from the tree's state, with 20 s of a breeze "
+        '(morph for one tree, skin for a forest)',
     )
 
 
@@ -80,6 +82,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise ParameterError(f"'{output}' is of no moment", where='--at', cure=cure)
     if arguments.sway is not None and suffix != '.glb':
         raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
+    if arguments.leaves is None:
+        arguments.leaves = 'on' if suffix in _DRAWN else 'auto'
     moments = None if arguments.at is None else moments_of(arguments.at)
     count = len(moments or (0.0,))
     paths = numbered_paths(output, count, may_overwrite=suffix != '.obj' or arguments.force)
@@ -92,7 +96,9 @@ def run(arguments: argparse.Namespace) -> int:
         _write_moments(scene, arguments, moments, paths)
     elif suffix == '.html':
         _write_page(scene, arguments)
-    elif suffix in _OF_ONE_TREE or suffix == MODEL_SUFFIX or arguments.sway == 'morph':
+    elif suffix in (*_USD, *_HINGED, MODEL_SUFFIX) or (
+        suffix == '.glb' and _is_to_sway(scene, arguments)
+    ):
         _write_swaying(scene, arguments, suffix)
     else:
         species = scene.species if scene.is_one_tree else None
@@ -103,14 +109,12 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-_OF_ONE_TREE: dict[str, Callable[[SwaySimulator, LeafClusters | None], str]] = {
-    '.usda': usd_of_tree,
-    '.xml': lambda simulator, _leaves: mjcf_of_tree(simulator),
-    '.sdf': lambda simulator, _leaves: sdf_of_tree(simulator),
-}
+_HINGED: dict[str, Callable[[SwaySimulator], str]] = {'.xml': mjcf_of_tree, '.sdf': sdf_of_tree}
+_USD = ('.usda', '.usdz')
+_DRAWN = ('.glb', '.html', *_USD)
+"""Formats to look at, in leaf if nothing else is asked for."""
 
-
-_FORMATS = (*SUFFIXES, MODEL_SUFFIX, '.html', *_OF_ONE_TREE, '.obj')
+_FORMATS = (*SUFFIXES, MODEL_SUFFIX, '.html', *_USD, *_HINGED, '.obj')
 
 
 def _write_moments(
@@ -131,10 +135,10 @@ def _write_moments(
 
 
 def _write_page(scene: Scene, arguments: argparse.Namespace) -> None:
-    """Write a page that sways by itself, in leaf unless leaves are off."""
+    """Write a page that sways by itself."""
     from tree_sway.page.one_file import page_of_scene
 
-    settings = Settings(in_leaf=chosen_leaves(arguments) is not False)
+    settings = Settings(in_leaf=chosen_leaves(arguments))
     with waiting('finding what sways'):
         simulator = scene.simulator(settings, model=arguments.model)
         page = page_of_scene(simulator)
@@ -159,5 +163,12 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
         leaves = drawn_leaves(scene, arguments)
         if suffix == '.glb':
             write_gltf(arguments.output, morphing_tree(simulator, leaves))
+        elif suffix in _USD:
+            write_usd(arguments.output, simulator, leaves)
         else:
-            write_text_whole(arguments.output, _OF_ONE_TREE[suffix](simulator, leaves))
+            write_text_whole(arguments.output, _HINGED[suffix](simulator))
+
+
+def _is_to_sway(scene: Scene, arguments: argparse.Namespace) -> bool:
+    """Whether a .glb has a breeze and weights: a single tree, unless a skin is asked for."""
+    return arguments.sway == 'morph' or (arguments.sway is None and scene.is_one_tree)

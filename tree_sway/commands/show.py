@@ -12,6 +12,8 @@ import sys
 import time
 import webbrowser
 
+import numpy as np
+
 from tree_sway.commands.arguments import (
     add_sway_arguments,
     chosen_leaves,
@@ -23,13 +25,17 @@ from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
+from tree_sway.core.growth.grow import grow
 from tree_sway.core.model.settings import Settings, USUAL
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
+from tree_sway.core.tree.grown_tree import rooted
+from tree_sway.core.tree.species import species_keys, species_named
 from tree_sway.errors import ParameterError
 from tree_sway.files.scenes.critical_winds import read_critical_winds
-from tree_sway.files.trees.source import open_scene
+from tree_sway.files.trees.imported_tree import TreeFile
+from tree_sway.files.trees.source import open_scene, scene_of_files
 from tree_sway.installed_models import installed_models
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.page.session import Choices, Session
@@ -42,6 +48,9 @@ _SPACING = 1.2
 """Distance of the trees of a stand over the greater of height and spread of one."""
 
 _COUNTS = ('1', '9', '100')
+_GROWN = 2.0, 40.0
+"""Least and greatest height of a tree that is grown on the page [m]."""
+_INDIVIDUALS = tuple(map(str, range(10)))
 _LABELS = {
     'mean_speed': 'Wind',
     'intensity': 'Gustiness',
@@ -136,7 +145,10 @@ def _critical_winds(
 def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
     """Make the simulator of some choices."""
     is_first = choices.tree == Path(arguments.tree).name
-    scene = opened_scene(arguments) if is_first else open_scene(choices.tree)
+    if is_first:
+        scene = opened_scene(arguments)
+    else:
+        scene = _grown(choices) if choices.is_grown else open_scene(choices.tree)
     count = int(choices.count)
     if count > 1:
         if not scene.is_one_tree:
@@ -145,6 +157,14 @@ def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
     damping, in_leaf = choices.damping_ratio or None, chosen_leaves(arguments)
     settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
     return scene.simulator(settings, model=choices.model)
+
+
+def _grown(choices: Choices) -> Scene:
+    """Grow a tree of a species, of the height and individual that a viewer wants."""
+    rng = np.random.default_rng(int(choices.individual))
+    tree = grow(choices.tree, choices.height, rng=rng)
+    species = rooted(tree, species_named(choices.tree))
+    return scene_of_files([TreeFile(tree, species, tree.name).checked()])
 
 
 def stand(scene: Scene, count: int, model: str) -> Scene:
@@ -187,9 +207,13 @@ def _controls(
         models = tuple(dict.fromkeys(('auto', *map(str, DIAL), *named)))
         controls.append(replace(Control.of(SWAY['model'], 'Model', choices.model), choices=models))
     controls += [Control.of(SWAY[name], _LABELS[name]) for name in ('tolerance', 'damping_ratio')]
-    trees = (*BUILTIN_TREES, *(() if choices.tree in BUILTIN_TREES else (choices.tree,)))
+    trees = tuple(dict.fromkeys((choices.tree, *BUILTIN_TREES, *sorted(species_keys()))))
     counts = tuple(dict.fromkeys((*_COUNTS, choices.count)))
     controls.append(Control('tree', 'Tree', choices.tree, 'Tree on the page.', choices=trees))
+    height = Control('height', 'Height', choices.height, 'Of a tree to grow.', 'm', *_GROWN)
+    controls.append(height)
+    individual = Control('individual', 'Individual', choices.individual, choices=_INDIVIDUALS)
+    controls.append(individual)
     if is_one_tree:
         # Models and number of the trees of a stand are those of its file.
         how_many = Control('count', 'Number of trees', choices.count, choices=counts)

@@ -15,10 +15,12 @@ import logging
 import threading
 import time
 
+from tree_sway.core.growth.builtin import BUILTIN_TREES
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.demand import set_demand
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
+from tree_sway.core.tree.species import species_keys
 from tree_sway.core.wind.gate import WindGate
 from tree_sway.core.wind.intake import WindIntake
 from tree_sway.core.wind.limits import FASTEST_WIND
@@ -54,6 +56,10 @@ class Choices:
         Model of the tree.
     damping_ratio
         Damping ratio of every mode; 0 for the species' own.
+    height
+        Height of a tree that is grown in [m].
+    individual
+        Which of the trees of that species and height, a whole number as text.
 
     """
 
@@ -61,6 +67,13 @@ class Choices:
     count: str = '1'
     model: str = str(Settings().model)
     damping_ratio: float = 0.0
+    height: float = 12.0
+    individual: str = '0'
+
+    @property
+    def is_grown(self) -> bool:
+        """Whether the tree is a species to grow, neither built in nor a file."""
+        return self.tree in species_keys() and self.tree not in BUILTIN_TREES
 
 
 Build = Callable[[Choices], Simulator]
@@ -195,6 +208,7 @@ class Session:
             'work_us': round(1e6 * self._work, 1),
             'trees': len(self._scene.names),
             'wind': self.wind.source,
+            'is_grown': self.choices.is_grown,
             'building': self._builder.wanted is not None,
         }
         if isinstance(self.wind, RecordedWind):

@@ -18,7 +18,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.flutter import leaf_poses
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.tree.segment_frame import ends_of_poses
-from tree_sway.core.tree.species import bark_color, leaf_traits
+from tree_sway.core.tree.species import leaf_traits, look_of
 from tree_sway.core.tree.tree import Tree
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def _tapered(trees: Sequence[Tree], start: Floats, end: Floats) -> Floats:
 def _bark(tree: Tree) -> Floats:
     """Colour of each segment, (n, 3): twigs are brown, with any bark of old wood."""
     old = np.clip(tree.base_diameter / (0.2 * tree.base_diameter[0]), 0.0, 1.0)[:, None]
-    return np.asarray(_SHADE * (_TWIG + old * (np.array(bark_color(tree.species)) - _TWIG)))
+    return np.asarray(_SHADE * (_TWIG + old * (np.array(look_of(tree.species).bark) - _TWIG)))
 
 
 def _blades(trees: Sequence[Tree], leaves: LeafClusters, placed: Floats) -> tuple[Floats, Floats]:
@@ -156,7 +156,7 @@ def _blades(trees: Sequence[Tree], leaves: LeafClusters, placed: Floats) -> tupl
     corners = placed[:, None, :3] + np.einsum('mij,mkj->mki', turn, blade)
     # A leaf is translucent: lit from either side.
     light = 0.6 + 0.55 * np.abs(turn[..., 2] @ _SUN)
-    green = light[:, None] * np.array([each.green for each in traits])[own]
+    green = light[:, None] * np.array([look_of(tree.species).green for tree in trees])[own]
     return seen(corners), np.clip(green, 0.0, 1.0)
 
 

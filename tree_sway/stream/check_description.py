@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tree_sway.core.tree.species import SPECIES
 from tree_sway.errors import FormatError, inside
 
 MOST_SEGMENTS = 500_000
@@ -44,6 +45,9 @@ def forms_of(message: str) -> Forms:
     entries = json.loads(text)[message].items()
     return {name: (_TYPES[kind], axes) for name, (kind, *axes) in entries}
 
+
+_LOOK = SPECIES['broadleaf'].look.described(SPECIES['broadleaf'].leaves, 'broadleaf')
+"""A look that has everything a page needs."""
 
 _FORMS = forms_of('description')
 """Arrays of a kind; those of leaves only where it has any."""
@@ -103,6 +107,7 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[i
     require('branch_parent', b > 0)
     require('basis_scale', arrays['basis_scale'] > 0.0)
     require('species', isinstance(kind['species'], str) and isinstance(kind['model'], str))
+    require('look', 'look' not in kind or _fits(kind['look'], _LOOK))
     numbers = kind['height'], kind['basis_error'], kind.get('modulus', 0.0)
     require('height', all(map(is_finite, numbers)))
     names = kind['branch_names']
@@ -133,6 +138,21 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[i
     if 'leaf_segment' in arrays:
         require('leaf_segment', (arrays['leaf_segment'] >= 0) & (arrays['leaf_segment'] < n))
     return n, size['coordinates']
+
+
+def _fits(look: Any, like: Any) -> bool:
+    """Whether a look has everything that another has, of the same type, and within reason."""
+    if isinstance(like, bool) or not isinstance(like, (int, float, list, tuple, dict)):
+        return type(look) is type(like)
+    if isinstance(like, dict):
+        return isinstance(look, dict) and all(
+            (name == 'autumn' and look.get(name, 0) is None) or _fits(look.get(name), value)
+            for name, value in like.items()
+        )
+    if isinstance(like, (list, tuple)):
+        own = look if isinstance(look, (list, tuple)) else ()
+        return len(like) <= len(own) < 9 and all(is_finite(x) and abs(x) < 10.0 for x in own)
+    return is_finite(look) and abs(look) < 100.0
 
 
 def sizes_of(arrays: Mapping[str, Array], forms: Forms) -> dict[str, int]:

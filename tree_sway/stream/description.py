@@ -66,6 +66,7 @@ def describe_scene(
     for number, kind in enumerate(kinds):
         places[kind.numbers], kind_of[kind.numbers] = kind.places, number
         own, tree = _branches(kind.simulator), kind.simulator.tree
+        wood = kind.simulator.species
         own['basis_matrix'] = _float32(kind.basis.matrix)
         own['basis_scale'] = _float32(kind.basis.scale)
         clusters = leaves[number] if leaves else None
@@ -77,10 +78,11 @@ def describe_scene(
         entries.append(
             {
                 'species': tree.species,
+                'look': wood.look.described(wood.leaves, wood.habit),
                 'height': round(tree.height, 4),
                 'model': kind.simulator.model,
                 'basis_error': kind.basis.error,
-                'modulus': kind.simulator.species.modulus,
+                'modulus': wood.modulus,
                 'branch_names': _names(kind.simulator),
             }
         )

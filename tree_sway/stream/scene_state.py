@@ -154,5 +154,6 @@ def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:
     simulator = kind.simulator
     if not count or not is_in_leaf(simulator.species, simulator.settings.in_leaf):
         return None
-    rng, traits = np.random.default_rng(0), simulator.species.leaves
-    return leaf_clusters(simulator.tree, rng, count=count, traits=traits)
+    rng, species = np.random.default_rng(0), simulator.species
+    traits, look = species.leaves, species.look
+    return leaf_clusters(simulator.tree, rng, count=count, traits=traits, look=look)

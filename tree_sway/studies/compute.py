@@ -60,6 +60,7 @@ def compute(case: Case, *, tree: TreeFile | None = None, wind: WindRecord | None
     row |= _summary('tip', 'm', record.tips[:, 0])
     row |= _summary('base_moment', 'N m', record.base_moment)
     row['strain_largest [-]'] = float(np.abs(record.base_strain).max())
+    row |= _used('wood', record.strength.wood) | _used('roots', record.strength.roots)
     return row
 
 
@@ -97,6 +98,13 @@ def _wind(case: Case, record: WindRecord | None = None) -> WindRecord | Floats:
         case.wind['speed'], rate=case.rate, duration=case.seconds, rng=rng,
         intensity=case.wind['intensity'],
     )  # fmt: skip
+
+
+def _used(part: str, share: Floats) -> Plain:
+    """Largest used share of the strength of a part, and its band; None if unknown."""
+    names = (f'{part}_strength_used{band} [-]' for band in ('', '_low', '_high'))
+    values = (value if np.isfinite(value) else None for value in share.tolist())
+    return dict(zip(names, values, strict=True))
 
 
 def _prefixed(what: str, asked: Plain) -> Plain:

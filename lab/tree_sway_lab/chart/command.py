@@ -11,15 +11,17 @@ from pathlib import Path
 from tree_sway.commands.progress import waiting
 
 _CHARTS = ('methods', 'fidelity', 'cost', 'portraits', 'habits')
+_OF_BROWSER = ('sprays',)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
         'what',
-        choices=(*_CHARTS, 'all'),
+        choices=(*_CHARTS, *_OF_BROWSER, 'all'),
         help='methods: of integration; fidelity: models of a tree; cost: against its size; '
         'portraits: trees at rest and in wind, and a film; habits: grown species; '
+        'sprays: leaves and bark as the page paints them, for files, by Chromium; '
         'all: every picture of the documentation',
     )
     parser.add_argument(

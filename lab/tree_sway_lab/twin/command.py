@@ -7,7 +7,9 @@ The true tree is made up: the model with all coordinates, its wood softer by a f
 higher by half, gusts that reach it limb by limb. Each row has one number of sensors: dynamic error
 of all tips and roughness, at once and smoothed, the correlation of the stem's tip, and the share
 of the time that the band of 80 % holds the tips. The part of the record in which mountings are
-found is not scored.
+found is not scored. Rows beside them: ``model``, the simulator as it is without sensors, and
+``U^2``, the square of the wind, low-passed at the first frequency of the model, with the gains
+that are best for each tip.
 """
 
 from __future__ import annotations
@@ -16,7 +18,8 @@ import argparse
 import sys
 
 from tree_sway.commands.ending import Ending
-from tree_sway_lab.twin.trial import plain_score, Score, twin_score
+from tree_sway.core.scene.make import make_simulator
+from tree_sway_lab.twin.trial import plain_score, Score, squared_score, twin_score
 from tree_sway_lab.twin.true_tree import Circumstances, sensor_places, tree_called, true_motion
 
 _HEAD = (
@@ -25,7 +28,7 @@ _HEAD = (
     'error',
     'rough',
     'smoothed',
-    'rough',
+    'smoothed rough',
     'stem r',
     'held',
     'us/step',
@@ -75,7 +78,9 @@ def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> Non
     places = sensor_places(tree, max(arguments.sensors))
     model = int(arguments.model) if arguments.model.isdecimal() else arguments.model
     true = true_motion(tree, species, places, around, in_leaf=in_leaf, model=model)
-    _print(name, 'default', plain_score(tree, species, true, in_leaf=in_leaf))
+    known = make_simulator(tree, species, in_leaf=in_leaf)
+    _print(name, 'U^2', squared_score(true, float(known.frequencies(1)[0])))
+    _print(name, 'model', plain_score(known, true))
     for count in arguments.sensors:
         score = twin_score(
             tree, species, true, places[:count], in_leaf=in_leaf, faulty=arguments.faulty

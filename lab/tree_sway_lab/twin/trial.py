@@ -9,13 +9,14 @@ from dataclasses import dataclass, replace
 import time
 
 import numpy as np
+from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.observer import LATE_STEPS
 from tree_sway.core.observe.simulated_sensor import SimulatedSensor
-from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import tips_of_poses, Tree
 from tree_sway_lab.twin.true_tree import DT, TrueMotion
@@ -59,9 +60,9 @@ class Score:
     notes: tuple[str, ...] = ()
 
 
-def plain_score(tree: Tree, species: Species, true: TrueMotion, *, in_leaf: bool) -> Score:
-    """Score the simulator as it is without sensors."""
-    sim = make_simulator(tree, species, in_leaf=in_leaf)
+def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
+    """Score a simulator as it is without sensors."""
+    tree = sim.tree
     block, tips = np.empty((tree.n_segments, 7)), np.empty_like(true.tips)
     began = time.perf_counter()
     for k, each in enumerate(true.wind):
@@ -70,6 +71,24 @@ def plain_score(tree: Tree, species: Species, true: TrueMotion, *, in_leaf: bool
     cost = 1e6 * (time.perf_counter() - began) / len(tips)
     error, roughness, stem = _compared(tips, true.tips, 0)
     return Score(error, roughness, error, roughness, stem, np.nan, cost)
+
+
+def squared_score(true: TrueMotion, frequency: float) -> Score:
+    """
+    Score the square of the wind, low-passed at a frequency [Hz], as a model of the motion.
+
+    It gets the gains by which each tip follows it best along each axis, from the truth itself.
+    """
+    squared = np.linalg.norm(true.wind, axis=1, keepdims=True) * true.wind
+    keep = float(np.exp(-2.0 * np.pi * frequency * DT))
+    passed = lfilter([1.0 - keep], [1.0, -keep], squared, axis=0)
+    inputs = np.column_stack([np.ones(len(passed)), passed])
+    flat = true.tips.reshape(len(passed), -1)
+    first = round(_TRUSTED * len(passed))
+    gains = np.linalg.lstsq(inputs[first:], flat[first:], rcond=None)[0]
+    tips = (inputs @ gains).reshape(true.tips.shape)
+    error, roughness, stem = _compared(tips, true.tips, 0)
+    return Score(error, roughness, error, roughness, stem, np.nan, 0.0)
 
 
 def twin_score(
@@ -103,13 +122,13 @@ def twin_score(
         smoothed[k] = tips_of_poses(tree, twin.place_rotations(twin.smoothed, block))
         bands[k] = twin.band()
     error, roughness, stem = _compared(tips, true.tips, 0)
-    late = LATE_STEPS + twin.observer.late
-    late_error, late_roughness, _ = _compared(smoothed, true.tips, late)
+    late_error, late_roughness = error, roughness
+    if places:
+        late = LATE_STEPS + twin.observer.late
+        late_error, late_roughness, _ = _compared(smoothed, true.tips, late)
     notes = [*twin.problems]
     if (fit := twin.observer.fit) is not None:
         notes.append(f'stiffness {fit.stiffness:.3f}, damping {fit.damping:.2f}')
-    if not places:
-        late_error, late_roughness = error, roughness
     return Score(
         error, roughness, late_error, late_roughness, stem, _held(tips, true.tips, bands),
         1e6 * spent / len(tips), tuple(notes),

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Leaves: how much of them there is, where they are, and what carries them."""
 
+from dataclasses import replace
 from functools import cache
 
 from hypothesis import given, settings
@@ -10,7 +11,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from tree_sway.core.arrays import Floats
 from tree_sway.core.growth import builtin
+from tree_sway.core.growth.grow import grow
 from tree_sway.core.leaves.foliage import (
     foliage_of,
     joined_clusters,
@@ -20,7 +23,8 @@ from tree_sway.core.leaves.foliage import (
 )
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.core.tree.leaf_traits import LeafTraits
-from tree_sway.core.tree.species import leaf_traits, species_keys
+from tree_sway.core.tree.look import Look
+from tree_sway.core.tree.species import leaf_traits, look_of, species_keys
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
 
@@ -102,7 +106,7 @@ def test_clusters_sit_on_their_segments(name: str, seed: int, count: int) -> Non
     assert np.all(leafy_length(tree)[clusters.segment] > 0.0)
     reach = 0.5 * clusters.size
     assert np.all(np.linalg.norm(clusters.offset[:, 1:], axis=1) <= reach + 1e-12)
-    assert np.all(clusters.offset[:, 0] >= 0.0)
+    assert np.all(clusters.offset[:, 0] >= -reach)
     assert np.all(clusters.offset[:, 0] <= tree.length[clusters.segment] + reach)
     np.testing.assert_allclose(np.linalg.norm(clusters.orientation, axis=1), 1.0)
 
@@ -131,6 +135,40 @@ def test_leaves_look_up() -> None:
     across = turn.apply([0.0, 0.0, 1.0])
     assert across[:, 2].min() > -1e-9
     assert np.median(across[:, 2]) > 0.7
+
+
+def shoots(tree: Tree, look: Look | None = None) -> tuple[Floats, Floats]:
+    """Directions of the shoots, and of the segments that carry them."""
+    clusters = leaf_clusters(tree, rng(), look=look)
+    rest = tree.rest_frame[clusters.segment]
+    twig = Rotation.from_quat(rest[:, [1, 2, 3, 0]])
+    own = twig * Rotation.from_quat(clusters.orientation[:, [1, 2, 3, 0]])
+    return own.apply([1.0, 0.0, 0.0]), twig.apply([1.0, 0.0, 0.0])
+
+
+def test_shoots_stand_and_hang_as_their_species() -> None:
+    tree = builtin_tree('broadleaf')
+    (away, along), (hanging, _) = (
+        shoots(tree, Look(droop=d, shoot_angle=0.5)) for d in (0.0, 2.0)
+    )
+    angle = np.arccos(np.einsum('ij,ij->i', away, along))
+    assert angle.mean() == pytest.approx(0.5, abs=0.03)
+    assert hanging[:, 2].mean() < -0.8 < away[:, 2].mean()
+    fine, coarse = (shoots(tree, Look(droop=0.0, shoot_angle=a))[0] for a in (1e-3, 1.4))
+    assert np.einsum('ij,ij->i', fine, along).min() > 0.999
+    assert np.einsum('ij,ij->i', coarse, along).mean() < 0.35
+
+
+def test_shoots_of_a_conifer_are_left_and_right_of_its_twigs() -> None:
+    tree = grow('fir', 8.0, rng=rng())
+    away, along = shoots(tree, replace(look_of('fir'), droop=0.0))
+    is_level = np.abs(along[:, 2]) < 0.5
+    # A shoot leaves its twig to the side: neither up nor down from the slope of the twig itself.
+    up = np.array([0.0, 0.0, 1.0]) - along[:, 2:] * along
+    rise = np.einsum('ij,ij->i', away, up / np.linalg.norm(up, axis=1)[:, None])
+    assert np.abs(rise[is_level]).max() < 1e-6
+    left = np.cross(along, [0.0, 0.0, 1.0])
+    assert 0.4 < np.mean(np.einsum('ij,ij->i', away, left)[is_level] > 0.0) < 0.6
 
 
 def test_same_seed_same_leaves() -> None:

@@ -2,21 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """glTF as others read it: by pygltflib, by trimesh, and by the specification alone."""
 
+import io
 import json
 import struct
 import subprocess
 
 import numpy as np
+from PIL import Image
 import pytest
 from scipy.spatial.transform import Rotation
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.tree.species import look_of, species_keys, species_named
 from tree_sway.errors import FormatError
 from tree_sway.files.export import breeze, gltf_tree
 from tree_sway.files.export.gltf_tree import morphing_tree, skinned_tree
+from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
 from tree_sway.files.export.tree_export import write_gltf, write_tree
 from tree_sway.files.export.tree_mesh import leaf_mesh, wood_mesh
 
@@ -102,7 +105,9 @@ def test_nodes_are_driven_by_the_poses_of_the_segments(simulator, leaves):
         for i, k in enumerate(document['skins'][0]['joints']):
             nodes[k]['translation'], nodes[k]['rotation'] = poses[i, :3], poses[i, 3:]
         for primitive, ours in zip(
-            mesh['primitives'], (wood_mesh(tree), leaf_mesh(leaves)), strict=True
+            mesh['primitives'],
+            (wood_mesh(tree), leaf_mesh(leaves, look_of(tree.species).spray)),
+            strict=True,
         ):
             drawn = skinned_vertices(document, arrays, primitive)
             np.testing.assert_allclose(drawn, ours.placed(poses) @ Y_UP.T, atol=2e-6)
@@ -114,7 +119,8 @@ def test_other_programs_read_it(tmp_path, simulator, leaves):
     write_tree(tmp_path / 'tree.glb', simulator.tree, leaves=leaves)
     scene = trimesh.load(tmp_path / 'tree.glb')
     assert len(scene.geometry) == 2
-    assert scene.extents[1] == pytest.approx(simulator.tree.height, rel=0.1)
+    # Few clusters are large.
+    assert scene.extents[1] == pytest.approx(simulator.tree.height, rel=0.25)
     assert {'bark', 'leaves'} == {g.visual.material.name for g in scene.geometry.values()}
 
 
@@ -201,9 +207,38 @@ def test_textures_and_normals_are_where_viewers_look(simulator, leaves, morphing
         for primitive in document['meshes'][0]['primitives']:
             attributes = {name: arrays[k] for name, k in primitive['attributes'].items()}
             texture, normals = attributes['TEXCOORD_0'], attributes['NORMAL']
-            assert texture.min() >= 0.0
-            assert texture.max() == pytest.approx(1.0)
+            assert texture.min() == 0.0
+            assert texture[:, 0].max() == pytest.approx(1.0)
+            assert texture[:, 1].max() >= 1.0
             np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=0.01)
+
+
+def test_leaves_and_bark_have_the_pictures_of_their_species(simulator, leaves):
+    glb = morphing_tree(simulator, leaves).glb()
+    document, _ = parsed(glb)
+    begin = 28 + struct.unpack_from('<I', glb, 12)[0]
+    bark, leaf = document['materials']
+    assert (leaf['alphaMode'], leaf['doubleSided']) == ('MASK', True)
+    assert 'alphaMode' not in bark
+    wanted = [bark_picture('smooth'), leaf_picture('benjamina')]
+    for material, png in zip((bark, leaf), wanted, strict=True):
+        texture = document['textures'][
+            material['pbrMetallicRoughness']['baseColorTexture']['index']
+        ]
+        view = document['bufferViews'][document['images'][texture['source']]['bufferView']]
+        at = begin + view['byteOffset']
+        assert glb[at : at + view['byteLength']] == png
+    image = np.asarray(Image.open(io.BytesIO(wanted[1])).convert('RGBA'))
+    assert 0.2 < (image[..., 3] > 128).mean() < 0.8  # leaves, and what is between them
+    seen = image[image[..., 3] > 128]
+    assert seen[:, 1].mean() > 1.3 * seen[:, [0, 2]].mean()  # green
+
+
+@pytest.mark.parametrize('species', [*species_keys(), 'of no table'])
+def test_every_species_has_a_picture_of_its_leaves(species):
+    image = Image.open(io.BytesIO(leaf_picture(species)))
+    assert image.size == (256, 256)
+    assert bark_picture(look_of(species).bark_pattern).startswith(b'\x89PNG')
 
 
 def test_a_large_tree_is_at_most_six_megabytes():
@@ -242,7 +277,7 @@ def test_blender_reads_it_and_it_moves(tmp_path, simulator, leaves):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=str(tmp_path / 'tree.glb'))
     (shown,) = [each for each in bpy.data.objects if each.type == 'MESH']
-    assert shown.dimensions.z == pytest.approx(simulator.tree.height, rel=0.1)
+    assert shown.dimensions.z == pytest.approx(simulator.tree.height, rel=0.25)
     places = []
     for frame in (10, 60):
         bpy.context.scene.frame_set(frame)

@@ -10,8 +10,9 @@ from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.building import tree_from_segments
+from tree_sway.core.tree.look import Spray
 from tree_sway.core.tree.species import species_named
-from tree_sway.files.export.tree_mesh import leaf_mesh, SIDES, wood_mesh
+from tree_sway.files.export.tree_mesh import BARK_HEIGHT, leaf_mesh, SIDES, wood_mesh
 from tree_sway.files.trees.tree_file import read_tree
 
 DATA = Path(__file__).parents[1] / 'data'
@@ -63,23 +64,33 @@ def test_normals_are_across_the_surface(tree):
 
 def test_leaves_lie_as_their_clusters(tree):
     leaves = leaf_clusters(tree, np.random.default_rng(0), count=20)
-    mesh = leaf_mesh(leaves)
-    assert len(mesh.points) == 4 * len(leaves.size)
-    assert (mesh.segment[::4] == leaves.segment).all()
-    long = np.linalg.norm(mesh.points[2::4] - mesh.points[::4], axis=1)
-    np.testing.assert_allclose(long, leaves.size, rtol=1e-12)
-    np.testing.assert_allclose(
-        (mesh.points[::4] + mesh.points[2::4]) / 2, leaves.offset, atol=1e-12
+    spray = Spray(1.5, 0.5, (0.0, 1.2))
+    mesh = leaf_mesh(leaves, spray)
+    assert len(mesh.points) == 2 * 4 * len(leaves.size)
+    assert (mesh.segment[::4] == np.tile(leaves.segment, 2)).all()
+    corners = mesh.points.reshape(2, -1, 4, 3)
+    # Each card begins where its cluster does, half of its size before its middle.
+    turns = Rotation.from_quat(leaves.orientation[:, [1, 2, 3, 0]])
+    root = leaves.offset - 0.5 * leaves.size[:, None] * turns.apply([1.0, 0.0, 0.0])
+    for card in corners:
+        np.testing.assert_allclose(0.5 * (card[:, 0] + card[:, 3]), root, atol=1e-12)
+        wide = np.linalg.norm(card[:, 3] - card[:, 0], axis=1)
+        np.testing.assert_allclose(wide, 1.5 * 0.5 * leaves.size, rtol=1e-12)
+    across = [card[:, 3] - card[:, 0] for card in corners]
+    angle = np.einsum('ij,ij->i', *across) / np.prod(
+        [np.linalg.norm(each, axis=1) for each in across], axis=0
     )
+    assert np.abs(angle).max() < 0.7  # they cross each other
 
 
-def test_a_texture_goes_along_each_branch_once(tree):
+def test_a_texture_goes_on_along_each_branch(tree):
     mesh = wood_mesh(tree)
     along = mesh.texture[:, 1].reshape(tree.n_segments, 2, SIDES)
+    high = min(BARK_HEIGHT, 0.12 * tree.height)
     for branch in range(tree.n_branches):
         here = along[tree.segments_of(branch)]
         assert (here[0, 0] == 0.0).all()
-        np.testing.assert_allclose(here[-1, 1], 1.0, rtol=1e-12)
+        np.testing.assert_allclose(here[-1, 1], tree.branch_length[branch] / high, rtol=1e-9)
         np.testing.assert_allclose(here[1:, 0], here[:-1, 1], rtol=1e-12)
     assert SIDES % 2 == 0
     around = mesh.texture[:SIDES, 0]  # there and back

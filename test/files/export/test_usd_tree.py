@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """USD as Pixar's library and Blender read it."""
 
+import zipfile
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ from tree_sway.core.tree.species import species_named
 from tree_sway.files.export.breeze import in_breeze
 from tree_sway.files.export.tree_mesh import wood_mesh
 from tree_sway.files.export.usd_tree import branch_groups, influences, usd_of_tree
+from tree_sway.files.export.usd_writing import write_usd
 
 
 @pytest.fixture(scope='module')
@@ -114,3 +117,33 @@ def test_blender_reads_it_and_it_moves(path, simulator):
         heads.append(np.array([tuple(bone.head) for bone in armature.pose.bones]))
     moved = np.linalg.norm(heads[1] - heads[0], axis=1)
     assert 1e-3 < moved.max() < 0.5 * simulator.tree.height
+
+
+@pytest.mark.parametrize('suffix', ['.usda', '.usdz'])
+def test_pictures_are_found_from_the_file(tmp_path, simulator, suffix):
+    usd = pytest.importorskip('pxr.Usd', reason='needs USD (pip install usd-core)')
+    from pxr import UsdShade
+
+    leaves = leaf_clusters(simulator.tree, np.random.default_rng(0), count=50)
+    path = tmp_path / f'gold{suffix}'
+    write_usd(path, simulator, leaves)
+    stage = usd.Stage.Open(str(path))
+    root = stage.GetDefaultPrim()
+    for kind, is_cut in (('Wood', False), ('Leaves', True)):
+        material, _ = UsdShade.MaterialBindingAPI(root.GetChild(kind)).ComputeBoundMaterial()
+        surface = material.ComputeSurfaceSource()[0]
+        assert surface.GetIdAttr().Get() == 'UsdPreviewSurface'
+        picture = stage.GetPrimAtPath(f'{material.GetPath()}/Picture')
+        found = picture.GetAttribute('inputs:file').Get().resolvedPath.rstrip(']')
+        assert found.endswith(f'gold_{"leaves" if is_cut else "bark"}.png')
+        assert bool(surface.GetInput('opacityThreshold')) == is_cut
+        count = len(root.GetChild(kind).GetAttribute('points').Get())
+        assert len(root.GetChild(kind).GetAttribute('primvars:st').Get()) == count
+    if suffix == '.usdz':
+        data = path.read_bytes()
+        for entry in zipfile.ZipFile(path).infolist():
+            name, extra = (
+                int.from_bytes(data[entry.header_offset + k :][:2], 'little') for k in (26, 28)
+            )
+            assert (entry.header_offset + 30 + name + extra) % 64 == 0
+            assert entry.compress_type == zipfile.ZIP_STORED

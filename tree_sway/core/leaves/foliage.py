@@ -20,7 +20,8 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import within
 from tree_sway.core.tree.leaf_traits import LeafTraits
-from tree_sway.core.tree.species import leaf_traits
+from tree_sway.core.tree.look import Look
+from tree_sway.core.tree.species import leaf_traits, look_of
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.convention import quaternions_of_axes
 
@@ -106,13 +107,19 @@ def clad_wood(tree: Tree, traits: LeafTraits) -> Floats:
 
 
 def leaf_clusters(
-    tree: Tree, rng: np.random.Generator, *, count: int = 1500, traits: LeafTraits | None = None
+    tree: Tree,
+    rng: np.random.Generator,
+    *,
+    count: int = 1500,
+    traits: LeafTraits | None = None,
+    look: Look | None = None,
 ) -> LeafClusters:
     """
     Place a number of clusters of leaves evenly along the outer wood of a tree at rest.
 
-    Together they have the tree's leaf area, with traits of its species if None. Raises a
-    `ParameterError` for a count below 0.
+    Together they have the tree's leaf area, and their shoots stand and hang as those of the
+    species; traits and look are those of the tree's species if None. Raises a `ParameterError` for
+    a count below 0.
     """
     within('count', count, 0, 1e9)
     leaf = traits if traits is not None else leaf_traits(tree.species)
@@ -121,16 +128,17 @@ def leaf_clusters(
     place = (np.arange(count) + rng.uniform(0.1, 0.9, count)) / max(count, 1) * ends[-1]
     segment = np.minimum(np.searchsorted(ends, place, side='right'), tree.n_segments - 1)
     along = tree.length[segment] - np.clip(ends[segment] - place, 0.0, tree.length[segment])
-    # Leaves overlap: clusters as wide as their share of the leaf area, but never smaller than a
-    # leaf.
+    # Leaves overlap: clusters have their shares of the leaf area, smaller on short twigs, but none
+    # is smaller than a leaf.
     area = float(foliage_of(tree, traits=leaf).area.sum()) / max(count, 1)
-    size = max(np.sqrt(4.0 * area / np.pi), leaf.size) * rng.uniform(0.8, 1.2, count)
-    turn = _GOLDEN_ANGLE * np.arange(count) + rng.uniform(-0.3, 0.3, count)
-    away = np.stack([np.full(count, 0.5), np.cos(turn), np.sin(turn)], axis=1)
-    away /= np.linalg.norm(away, axis=1)[:, None]
+    size = np.sqrt(tree.length[segment]) * rng.uniform(0.8, 1.2, count)
+    size *= np.sqrt(4.0 * area / np.pi / np.mean(size**2)) if count else 1.0
+    size = np.maximum(size, leaf.size * rng.uniform(0.8, 1.2, count))
+    up = _up_in(tree.rest_frame[segment])
+    away = _shoots(up, look if look is not None else look_of(tree.species), leaf, rng)
     offset = 0.5 * size[:, None] * away
     offset[:, 0] += along
-    orientation = _facing_up(away, tree.rest_frame[segment])
+    orientation = _facing_up(away, up)
     return LeafClusters(
         segment=segment.astype(np.int64),
         offset=offset,
@@ -152,10 +160,34 @@ def joined_clusters(clusters: Sequence[LeafClusters], n_segments: Sequence[int])
     return LeafClusters(**{**columns, 'segment': np.concatenate(carriers)})
 
 
-def _facing_up(away: Floats, rest: Floats) -> Floats:
-    """Orientations w x y z with x away from the twig and z as upright as possible."""
+def _up_in(rest: Floats) -> Floats:
+    """Return the upward direction in frames w x y z, (n, 3)."""
     w, x, y, z = rest.T
-    up = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], 1)
+    return np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], 1)
+
+
+def _shoots(up: Floats, look: Look, leaf: LeafTraits, rng: np.random.Generator) -> Floats:
+    """Directions of shoots in the frames of their segments: around a twig, or left and right."""
+    count = len(up)
+    turn = _GOLDEN_ANGLE * np.arange(count) + rng.uniform(-0.3, 0.3, count)
+    around = np.stack([np.zeros(count), np.cos(turn), np.sin(turn)], axis=1)
+    if leaf.are_needles and look.form != 'tufts':
+        beside = np.cross([1.0, 0.0, 0.0], up)
+        flat = np.linalg.norm(beside, axis=1)
+        is_level = flat > 0.3  # the sides of an upright shoot are all alike
+        side = np.where(np.arange(count) % 2, 1.0, -1.0) * rng.uniform(0.6, 1.2, count)
+        around[is_level] = (side / flat)[is_level, None] * beside[is_level]
+    angle = look.shoot_angle * rng.uniform(0.7, 1.3, count)
+    away = np.sin(angle)[:, None] * around
+    away[:, 0] += np.cos(angle)
+    away -= look.droop * rng.uniform(0.7, 1.3, count)[:, None] * up
+    size = np.linalg.norm(away, axis=1)
+    away[size < 1e-3], size[size < 1e-3] = [1.0, 0.0, 0.0], 1.0
+    return np.asarray(away / size[:, None])
+
+
+def _facing_up(away: Floats, up: Floats) -> Floats:
+    """Orientations w x y z with x away from the twig and z as upright as possible."""
     z = up - np.einsum('ij,ij->i', up, away)[:, None] * away
     size = np.linalg.norm(z, axis=1)
     # A leaf that points straight up may face any direction.

@@ -214,7 +214,11 @@ class Scene(PlacedTrees):
         counts = np.ceil(count * area / area.sum() - 1e-9).astype(np.int64).tolist()
         clusters = [
             leaf_clusters(
-                each.placed(), np.random.default_rng(number), count=own, traits=each.species.leaves
+                each.placed(),
+                np.random.default_rng(number),
+                count=own,
+                traits=each.species.leaves,
+                look=each.species.look,
             )
             for number, (each, own) in enumerate(zip(self.trees, counts, strict=True))
         ]

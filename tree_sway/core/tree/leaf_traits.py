@@ -34,9 +34,7 @@ class LeafTraits:
     is_evergreen
         Whether the species keeps them in winter.
     are_needles
-        Whether they are drawn as needles instead of blades.
-    green
-        Colour of the leaves in pictures, red, green and blue from 0 to 1.
+        Whether they are needles instead of blades.
 
     """
 
@@ -46,4 +44,3 @@ class LeafTraits:
     flutter_frequency: float = 4.0
     is_evergreen: bool = False
     are_needles: bool = False
-    green: tuple[float, float, float] = (0.30, 0.50, 0.20)

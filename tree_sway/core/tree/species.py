@@ -40,6 +40,7 @@ from typing import Any
 import unicodedata
 
 from tree_sway.core.tree.leaf_traits import LeafTraits
+from tree_sway.core.tree.look import Look
 from tree_sway.core.tree.wood import Species
 from tree_sway.errors import nearest, SpeciesError
 from tree_sway.tables import table_beside
@@ -54,7 +55,10 @@ NAMES: dict[str, list[str]] = {key: row.pop('names').split(', ') for key, row in
 
 def _species(row: dict[str, Any]) -> Species:
     leaves = LeafTraits(**{each.name: row.pop(each.name) for each in fields(LeafTraits)})
-    return Species(**row, leaves=leaves)
+    look = {each.name: row.pop(each.name) for each in fields(Look)}
+    if look['autumn'] == 'none':
+        look['autumn'] = None
+    return Species(**row, leaves=leaves, look=Look(**look))
 
 
 SPECIES = {key: _species(row) for key, row in _ROWS.items()}
@@ -152,9 +156,9 @@ def species_keys() -> tuple[str, ...]:
     return tuple(SPECIES)
 
 
-def bark_color(key: str) -> tuple[float, float, float]:
-    """Colour of a species' bark; that of an average tree if it is unknown."""
-    return SPECIES[key].bark if key in SPECIES else Species.bark
+def look_of(key: str) -> Look:
+    """Look of a species; that of an average broadleaf if it is unknown."""
+    return SPECIES[key].look if key in SPECIES else Look()
 
 
 def typical_root_stiffness(stem_mass: float) -> float:

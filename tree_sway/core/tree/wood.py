@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import math
 
 from tree_sway.core.tree.leaf_traits import LeafTraits
+from tree_sway.core.tree.look import Look
 
 
 @dataclass(frozen=True)
@@ -45,8 +46,8 @@ class Species:
         Modulus of rupture of green wood in [Pa]: small clear specimens in bending.
     twig_diameter
         Diameter of the last twigs in [m], to which scans are corrected.
-    bark
-        Colour of the bark in pictures, red, green and blue from 0 to 1.
+    look
+        Colours, bark and sprays of leaves in pictures.
     habit
         Habit by which `grow` makes the tree: ``conifer``, ``broadleaf`` or ``pot``.
     is_estimate
@@ -68,7 +69,7 @@ class Species:
     leaves: LeafTraits = field(default_factory=LeafTraits)
     rupture: float = 50.0e6
     twig_diameter: float = 0.0029
-    bark: tuple[float, float, float] = (0.36, 0.28, 0.22)
+    look: Look = field(default_factory=Look)
     habit: str = 'broadleaf'
     is_estimate: bool = False
 

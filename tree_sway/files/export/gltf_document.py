@@ -15,6 +15,7 @@ _COMPONENTS = {
     'int8': 5120, 'uint8': 5121, 'int16': 5122, 'uint16': 5123, 'uint32': 5125, 'float32': 5126
 }  # fmt: skip
 _SHAPES = {(): 'SCALAR', (2,): 'VEC2', (3,): 'VEC3', (4,): 'VEC4', (4, 4): 'MAT4'}
+_LINEAR, _LINEAR_MIPMAP_LINEAR, _REPEAT = 9729, 9987, 10497
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
 
@@ -67,6 +68,17 @@ class GltfDocument:
             min=columns.min(axis=0).tolist() if bounds else None,
             max=columns.max(axis=0).tolist() if bounds else None,
         )  # fmt: skip
+
+    def add_picture(self, name: str, png: bytes) -> int:
+        """Add a PNG that goes on beyond its edges as a texture and return its number."""
+        view = self.add('bufferViews', buffer=0, byteOffset=len(self._bytes), byteLength=len(png))
+        self._bytes += png + b'\0' * (-len(png) % 4)
+        image = self.add('images', name=name, mimeType='image/png', bufferView=view)
+        sampler = {'magFilter': _LINEAR, 'minFilter': _LINEAR_MIPMAP_LINEAR}
+        samplers = self._json.setdefault('samplers', [])
+        if not samplers:
+            samplers.append({**sampler, 'wrapS': _REPEAT, 'wrapT': _REPEAT})
+        return self.add('textures', source=image, sampler=0)
 
     def glb(self) -> bytes:
         """Return the document in the binary form."""

@@ -22,11 +22,12 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.model.state_basis import MARGIN, StateBasis
 from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.tree.species import bark_color, leaf_traits
+from tree_sway.core.tree.species import look_of
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError
 from tree_sway.files.export.breeze import in_breeze, RATE
 from tree_sway.files.export.gltf_document import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, GltfDocument
+from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
 from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
 
 _GENERATOR = 'tree_sway'
@@ -38,6 +39,8 @@ Share of a coordinate's unit at which the slope of a target is computed: between
 storm.
 """
 _SECONDS = 20.0
+_CUTOFF = 0.4
+"""Least alpha of a picture of leaves that is drawn."""
 
 
 def skinned_tree(tree: Tree, leaves: LeafClusters | None = None) -> GltfDocument:
@@ -152,7 +155,9 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
 
 def _meshes(tree: Tree, leaves: LeafClusters | None) -> list[tuple[str, TreeMesh]]:
     wood = ('bark', wood_mesh(tree))
-    return [wood] if leaves is None else [wood, ('leaves', leaf_mesh(leaves))]
+    if leaves is None:
+        return [wood]
+    return [wood, ('leaves', leaf_mesh(leaves, look_of(tree.species).spray))]
 
 
 def _normals(mesh: TreeMesh, poses: Floats) -> Floats:
@@ -170,11 +175,15 @@ def _primitive(
     document: GltfDocument, material: str, species: str, mesh: TreeMesh, **attributes: int
 ) -> dict[str, Any]:
     """Part of a mesh, with its colour, texture coordinates and further attributes of vertices."""
-    is_bark = material == 'bark'
-    color = bark_color(species) if is_bark else leaf_traits(species).green
+    is_bark, look = material == 'bark', look_of(species)
+    color = look.bark if is_bark else (1.0, 1.0, 1.0)
+    png = bark_picture(look.bark_pattern) if is_bark else leaf_picture(species)
     kind = np.uint16 if len(mesh.points) < 65535 else np.uint32  # 65535 starts a new strip
     return {
-        'attributes': {**attributes, 'TEXCOORD_0': _add_shares(document, mesh.texture, np.uint16)},
+        'attributes': {
+            **attributes,
+            'TEXCOORD_0': document.add_array(mesh.texture.astype(np.float32), target=ARRAY_BUFFER),
+        },
         'indices': document.add_array(
             mesh.triangles.ravel().astype(kind), target=ELEMENT_ARRAY_BUFFER
         ),
@@ -182,7 +191,10 @@ def _primitive(
             'materials',
             name=material,
             doubleSided=None if is_bark else True,
+            alphaMode=None if is_bark else 'MASK',
+            alphaCutoff=None if is_bark else _CUTOFF,
             pbrMetallicRoughness={
+                'baseColorTexture': {'index': document.add_picture(material, png)},
                 'baseColorFactor': [*(round(c**2.2, 3) for c in color), 1.0],
                 'metallicFactor': 0.0,
                 'roughnessFactor': 1.0,

@@ -13,6 +13,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import LeafClusters
+from tree_sway.core.tree.species import look_of
 from tree_sway.core.tree.tree import Tree
 from tree_sway.files.export.tree_mesh import leaf_mesh, TreeMesh, wood_mesh
 
@@ -36,7 +37,7 @@ class ObjScene:
     def __init__(self, tree: Tree, leaves: LeafClusters | None = None) -> None:
         self._meshes: list[TreeMesh] = [wood_mesh(tree)]
         if leaves is not None:
-            self._meshes.append(leaf_mesh(leaves))
+            self._meshes.append(leaf_mesh(leaves, look_of(tree.species).spray))
         self._faces, first = list[str](), 1
         for name, mesh in zip(('wood', 'leaves'), self._meshes, strict=False):
             lines = '\n'.join(f'f {a} {b} {c}' for a, b, c in (mesh.triangles + first).tolist())

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The mesh of a tree: a cone for each segment, a lozenge for each cluster of leaves."""
+"""The mesh of a tree: a cone for each segment, crossed cards for each cluster of leaves."""
 
 from __future__ import annotations
 
@@ -11,10 +11,18 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.leaves.foliage import LeafClusters
+from tree_sway.core.tree.look import Spray
 from tree_sway.core.tree.tree import Tree
 
 SIDES = 6
 """Number of sides of a cone, even; its volume is 0.827 of the round one's."""
+
+BARK_HEIGHT = 1.2
+"""Height of a picture of bark on a stem [m]."""
+
+_CORNERS = np.array([[0.0, -0.5], [1.0, -0.5], [1.0, 0.5], [0.0, 0.5]])
+_ROLL, _YAW, _BOW = 0.3, 0.35, 0.1
+"""How far cards of clusters differ [rad], and how low a card ends over its length [-]."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +31,7 @@ class TreeMesh:
     Triangles whose vertices move with one segment each.
 
     Points [m] and normals, (v, 3), are in the frame of the segment: its start, x along it. Texture
-    coordinates, (v, 2), are within 0 .. 1. Triangles, (t, 3), are counter-clockwise seen from
+    coordinates, (v, 2), go on beyond 1. Triangles, (t, 3), are counter-clockwise seen from
     outside.
     """
 
@@ -43,7 +51,8 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     """
     Return a closed cone per segment, round in its normals, of a ring of vertices at each end.
 
-    Texture coordinates go around and back, without a seam, and along the whole branch.
+    Texture coordinates go around and back, without a seam, and on along the branch: the picture is
+    as high as `BARK_HEIGHT`, less on small trees.
     """
     n = tree.n_segments
     angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
@@ -58,7 +67,7 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     end = np.cumsum(tree.length)
     before = (end - tree.length)[tree.branch_first[:-1]][tree.branch_of_segment]
     ends = np.stack([end - tree.length - before, end - before], axis=1)
-    texture[..., 1] = (ends / tree.branch_length[tree.branch_of_segment, None])[:, :, None]
+    texture[..., 1] = (ends / min(BARK_HEIGHT, 0.12 * tree.height))[:, :, None]
     i = np.arange(SIDES)
     j = (i + 1) % SIDES
     fan = np.arange(1, SIDES - 1)
@@ -74,25 +83,49 @@ def wood_mesh(tree: Tree) -> TreeMesh:
     return TreeMesh(
         rings.reshape(-1, 3),
         np.stack([outward, outward], axis=1).reshape(-1, 3),
-        np.clip(texture.reshape(-1, 2), 0.0, 1.0),
+        texture.reshape(-1, 2),
         np.repeat(np.arange(n), 2 * SIDES),
         (2 * SIDES * np.arange(n)[:, None, None] + triangles).reshape(-1, 3),
     )
 
 
-def leaf_mesh(leaves: LeafClusters) -> TreeMesh:
-    """Return a lozenge for each cluster of leaves, as long as the cluster is wide."""
-    half = 0.5 * leaves.size[:, None, None]
-    lozenge = np.array([[-1.0, 0.0, 0.0], [0.2, -0.6, 0.0], [1.0, 0.0, 0.0], [0.2, 0.6, 0.0]])
-    corners = half * lozenge
+def leaf_mesh(leaves: LeafClusters, spray: Spray, cards: int = 2) -> TreeMesh:
+    """
+    Return cards for each cluster of leaves, to be shown with a picture of its spray.
+
+    They are those of the page (``static/drawing/mesh.js``), up to as many of each cluster as are
+    given. Texture coordinates run along the shoot, and across from one side to the other.
+    """
     turns = Rotation.from_quat(leaves.orientation[:, [1, 2, 3, 0]])
-    points = np.stack([turns.apply(corners[:, k]) + leaves.offset for k in range(4)], axis=1)
-    normals = np.repeat(turns.apply([0.0, 0.0, 1.0])[:, None], 4, axis=1)
+    parts = [_cards(leaves, spray, turns, card) for card in range(min(cards, len(spray.rolls)))]
+    points, normals = (np.concatenate(each).reshape(-1, 3) for each in zip(*parts, strict=True))
+    n = len(points) // 4
     two = np.array([[0, 1, 2], [0, 2, 3]])
     return TreeMesh(
-        points.reshape(-1, 3),
-        normals.reshape(-1, 3),
-        np.tile(0.5 + 0.5 * lozenge[:, :2], (len(leaves.size), 1)),
-        np.repeat(leaves.segment.astype(np.int64), 4),
-        (4 * np.arange(len(leaves.size))[:, None, None] + two).reshape(-1, 3),
+        points,
+        normals,
+        np.tile(_CORNERS + np.array([0.0, 0.5]), (n, 1)),
+        np.tile(np.repeat(leaves.segment.astype(np.int64), 4), len(parts)),
+        (4 * np.arange(n)[:, None, None] + two).reshape(-1, 3),
     )
+
+
+def _cards(
+    leaves: LeafClusters, spray: Spray, turns: Rotation, card: int
+) -> tuple[Floats, Floats]:
+    """Corners and normals of one card of each cluster in the frames of segments, (m, 4, 3)."""
+    u, v = _CORNERS.T
+    roll = spray.rolls[card] + _ROLL * np.sin(leaves.phase)
+    yaw = _YAW * np.sin(leaves.phase + 2.1 * card)
+    around = Rotation.from_rotvec(yaw[:, None] * [0.0, 0.0, 1.0])
+    around *= Rotation.from_rotvec(roll[:, None] * [1.0, 0.0, 0.0])
+    long = spray.length * leaves.size
+    points, normals = np.empty((2, len(long), 4, 3))
+    for k in range(4):
+        flat = long[:, None] * [u[k], v[k] * spray.width, 0.0]
+        corner = around.apply(flat) - 0.5 * leaves.size[:, None] * [1.0, 0.0, 0.0]
+        corner[:, 2] -= _BOW * long * u[k]
+        points[:, k] = turns.apply(corner) + leaves.offset
+        normal = np.array([0.3 * u[k], 1.2 * v[k], 1.0])
+        normals[:, k] = (turns * around).apply(normal / np.linalg.norm(normal))
+    return points, normals

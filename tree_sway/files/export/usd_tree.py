@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.tree.species import bark_color, leaf_traits
+from tree_sway.core.tree.species import look_of
 from tree_sway.core.tree.tree import Tree
 from tree_sway.files.export.breeze import in_breeze, RATE
 from tree_sway.files.export.hinged_tree import plain_name, plain_names, poses_on_parents
@@ -30,15 +30,20 @@ _STEADY, _SETTLED = 8.0, 30.0
 _MAX_GROUPS = 4
 
 
-def usd_of_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) -> str:
+def usd_of_tree(
+    simulator: SwaySimulator,
+    leaves: LeafClusters | None = None,
+    pictures: tuple[str, str] = ('bark.png', 'leaves.png'),
+) -> str:
     """
     Return the tree of a simulator as ``.usda``, with or without leaves.
 
+    Pictures are the names of those of its bark and its leaves, beside the file.
     The simulator is run, and then set back to the state that it was in.
     """
     tree = simulator.tree
     frames = in_breeze(simulator, _SECONDS, lambda: poses_on_parents(tree, simulator.place()))
-    rest, name = tree.rest_poses, plain_name(tree.name)
+    rest, name, look = tree.rest_poses, plain_name(tree.name), look_of(tree.species)
     joints = f'uniform token[] joints = {_strings(_paths(tree))}'
     last = len(frames) - 1
     parts = [
@@ -58,13 +63,16 @@ def usd_of_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) ->
         f'float3[] translations = {_tuples(frames[0][:, :3])}',
         f'half3[] scales = {_tuples(np.ones((tree.n_segments, 3)))}',
         'quatf[] rotations.timeSamples = {',
-        *(f'{k}: {_tuples(frame[:, [6, 3, 4, 5]], "%.5f")},' for k, frame in enumerate(frames)),
+        *(f'{k}: {_tuples(frame[:, [6, 3, 4, 5]], "%.4f")},' for k, frame in enumerate(frames)),
         '}\n}',
-        _mesh('Wood', wood_mesh(tree), rest, bark_color(tree.species), name),
+        'def Scope "Looks"\n{',
+        _material('Wood', pictures[0], look.bark, name),
+        *([_material('Leaves', pictures[1], (1.0, 1.0, 1.0), name)] if leaves is not None else []),
+        '}',
+        _mesh('Wood', wood_mesh(tree), rest, look.bark, name),
     ]
     if leaves is not None:
-        green = leaf_traits(tree.species).green
-        parts.append(_mesh('Leaves', leaf_mesh(leaves), rest, green, name))
+        parts.append(_mesh('Leaves', leaf_mesh(leaves, look.spray), rest, look.green, name))
     return '\n'.join([*parts, '}\n'])
 
 
@@ -125,7 +133,9 @@ def _mesh(
     one_each = 'elementSize = 1\n    interpolation = "vertex"'
     return '\n'.join(
         [
-            f'def Mesh "{kind}" (prepend apiSchemas = ["SkelBindingAPI"])\n{{',
+            f'def Mesh "{kind}" (prepend apiSchemas = '
+            '["SkelBindingAPI", "MaterialBindingAPI"])\n{',
+            f'rel material:binding = </{root}/Looks/{kind}>',
             f'float3[] extent = {_tuples(np.array([points.min(axis=0), points.max(axis=0)]))}',
             f'bool doubleSided = {int(kind == "Leaves")}',
             'uniform token subdivisionScheme = "none"',
@@ -133,10 +143,42 @@ def _mesh(
             f'int[] faceVertexIndices = {mesh.triangles.ravel().tolist()}',
             f'point3f[] points = {_tuples(points)}',
             f'normal3f[] normals = {_tuples(normals)} (interpolation = "vertex")',
+            f'texCoord2f[] primvars:st = {_tuples(mesh.texture)} (interpolation = "vertex")',
             f'color3f[] primvars:displayColor = {_tuples(np.array([color]))}',
             f'int[] primvars:skel:jointIndices = {mesh.segment.tolist()} ({one_each})',
             f'float[] primvars:skel:jointWeights = {[1] * len(mesh.segment)} ({one_each})',
             f'rel skel:skeleton = </{root}/Skeleton>\n}}',
+        ]
+    )
+
+
+def _material(kind: str, picture: str, color: tuple[float, float, float], root: str) -> str:
+    """Write a surface with a picture times a colour, cut out by its alpha for leaves."""
+    here = f'/{root}/Looks/{kind}'
+    linear = ', '.join(f'{c**2.2:.3f}' for c in color)
+    opacity = [
+        f'float inputs:opacity.connect = <{here}/Picture.outputs:a>',
+        'float inputs:opacityThreshold = 0.4',
+    ]
+    return '\n'.join(
+        [
+            f'def Material "{kind}"\n{{',
+            f'token outputs:surface.connect = <{here}/Surface.outputs:surface>',
+            'def Shader "Surface"\n{',
+            'uniform token info:id = "UsdPreviewSurface"',
+            f'color3f inputs:diffuseColor.connect = <{here}/Picture.outputs:rgb>',
+            *(opacity if kind == 'Leaves' else []),
+            'float inputs:roughness = 1\ntoken outputs:surface\n}',
+            'def Shader "Picture"\n{',
+            'uniform token info:id = "UsdUVTexture"',
+            f'asset inputs:file = @{picture}@',
+            f'float4 inputs:scale = ({linear}, 1)',
+            f'float2 inputs:st.connect = <{here}/Place.outputs:result>',
+            'token inputs:wrapS = "repeat"\ntoken inputs:wrapT = "repeat"',
+            'float3 outputs:rgb\nfloat outputs:a\n}',
+            'def Shader "Place"\n{',
+            'uniform token info:id = "UsdPrimvarReader_float2"',
+            'string inputs:varname = "st"\nfloat2 outputs:result\n}\n}',
         ]
     )
 

@@ -94,6 +94,7 @@ const stream = new TreeStream(address.href, {
       controls = hello.controls;
       showPanel();
       element("panel").hidden = controls.length === 0;
+      fit();
       element("pull").hidden = hello.can_pull !== true;
       viewersToken = hello.viewers_token ?? "";
       risk.take(hello.critical_winds);
@@ -104,6 +105,7 @@ const stream = new TreeStream(address.href, {
       panel.update(values, Boolean(refused));
     }
     status = newStatus ?? status;
+    if (newStatus) hideIdle();
     if (Number.isFinite(status.record_time)) panel.update({ record_time: status.record_time });
   },
 }, { kept, byWind: query.has("solve") });
@@ -145,10 +147,16 @@ function showState() {
   else if (!connection.description) notice(text, word("seeking"));
 }
 
-/** Show the controls, except the tolerance where it has no effect. */
+/** Show the controls. */
 function showPanel() {
   panel.build(controls);
+  hideIdle();
+}
+
+/** Hide the controls that have no effect. */
+function hideIdle() {
   panel.hide("tolerance", !connection.description?.kinds.some(({ model }) => model === "auto"));
+  for (const name of ["height", "individual"]) panel.hide(name, !status.is_grown);
 }
 
 /** @param {string} title @param {string} text @param {boolean} [canRetry] */
@@ -190,6 +198,26 @@ function showFacts() {
   [bytes, frames, drawn, factsAt] = [0, 0, 0, now];
   showState();
   for (const trace of Object.values(traces)) trace.draw();
+}
+
+/** Where no card lies over the picture, see `Camera`. */
+function room() {
+  const [head, lines, form, tools] = ["head", "traces", "panel", "tools"].map((id) => element(id).getBoundingClientRect());
+  const [width, height] = [canvas.clientWidth || 1, canvas.clientHeight || 1];
+  const isNarrow = head.right > 0.6 * width;
+  if (isNarrow) {
+    const lowest = [lines, form].filter((each) => each.height).map((each) => each.top);
+    return [0, head.bottom / height, 1, Math.min(height, ...lowest) / height];
+  }
+  const isWall = form.height > 0.3 * height || (form.height > 0 && height < 560);
+  const top = !isWall && form.height > 0.12 * height ? form.bottom / height : 0;
+  const most = [isWall ? form.left / width : 1, tools.height ? tools.top / height : 1];
+  return [Math.max(head.right, lines.right) / width, top, ...most];
+}
+
+/** See all of the scene between the cards, unless somebody looks at something of it. */
+function fit() {
+  if (scene.camera.isHome) scene.camera.home();
 }
 
 /** A model by its name, or by how many coordinates it has. @param {string} model */
@@ -360,7 +388,10 @@ if (settings.shown in QUANTITIES) shown.value = settings.shown;
 // A page that is a file is what its `.html` would be.
 for (const id of ["glb", "html"]) element(id).hidden = kept !== null;
 speak(language());
-/** @type {HTMLDetailsElement} */ (element("panel")).open = window.innerWidth > 700;
+/** @type {HTMLDetailsElement} */ (element("panel")).open = window.innerWidth > 700 && window.innerHeight > 560;
+scene.camera.room = room;
+element("panel").addEventListener("toggle", fit);
+window.addEventListener("resize", () => requestAnimationFrame(fit));
 scene.camera.listen(canvas);
 stream.open();
 requestAnimationFrame(draw);

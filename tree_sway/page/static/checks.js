@@ -25,6 +25,9 @@ export const TYPES = { f32: Float32Array, i32: Int32Array, i16: Int16Array, u8: 
  * @type {{description: Forms, tables: Forms}} */
 export const FORMS = JSON.parse(await textOf("arrays.json"));
 
+/** Looks of leaves and bark. */
+export const LOOKS = JSON.parse(await textOf("looks.json"));
+
 const BY_BRANCH = ["branch_parent", "branch_base_segment", "branch_coordinate", "branch_keys", "branch_base_turn",
   "branch_turn"];
 
@@ -35,6 +38,19 @@ export function need(holds, name) {
 
 /** @param {unknown} value */
 const isFinite = (value) => typeof value === "number" && Math.abs(value) < GREATEST;
+
+/** Whether a look has everything that the average one has, of the same kind, and within reason.
+ * @param {any} look @param {any} like @returns {boolean} */
+function fits(look, like) {
+  if (typeof like === "number") return isFinite(look) && look > 0 && look < 100;
+  if (Array.isArray(like)) {
+    const isAlike = Array.isArray(look) && look.length >= like.length && look.length < 9;
+    return isAlike && look.every((each) => isFinite(each) && Math.abs(each) < 10);
+  }
+  if (!isObject(like)) return typeof look === typeof like;
+  return isObject(look) && Object.entries(like).every(([name, each]) =>
+    (name === "autumn" && look.autumn === null) || fits(look[name], each));
+}
 
 /** Sizes of the axes of arrays, which have their forms. @param {Arrays} parts @param {Forms} forms */
 export function sizesOf(parts, forms) {
@@ -62,6 +78,7 @@ export function checkedKind(kind, parts) {
   need(b > 0 && size["branches + 1"] === b + 1, "branch_first");
   need(arrays.basis_scale.every((value) => value > 0), "basis_scale");
   need(typeof kind.species === "string" && typeof kind.model === "string", "species");
+  need(kind.look === undefined || fits(kind.look, LOOKS.average), "look");
   need([kind.height, kind.basis_error, kind.modulus ?? 0].every(isFinite), "height");
   const names = kind.branch_names;
   need(names.length === b && names.every((name) => typeof name === "string"), "branch_names");

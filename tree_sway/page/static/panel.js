@@ -123,7 +123,7 @@ export class Panel {
 
   /** @param {Control} control */
   _choice(control) {
-    const options = control.choices.map((each) => made("option", { value: each }, each));
+    const options = control.choices.map((each) => made("option", { value: each }, each.replaceAll("_", " ")));
     const input = made("select", named(control), ...options);
     input.addEventListener("change", () => this.send(control.name, input.value));
     this._show.set(control.name, (value) => (input.value = value));

@@ -14,6 +14,8 @@ type Forms = Record<string, ["f32" | "i32" | "i16" | "u8", ...(string | number)[
 /** What trees of one shape share. */
 interface Kind {
   species: string;
+  /** That of an average broadleaf if left out. */
+  look?: Look;
   /** [m] */
   height: number;
   model: string;
@@ -237,40 +239,34 @@ interface Daylight {
   dimmed: number;
 }
 
+/** How a species looks, see `Look` in tree_sway/core/tree/look.py. */
 interface Look {
-  /** Colour: red, green and blue from 0 to 1. */
-  bark: number[];
-  pattern: "furrows" | "plates" | "smooth" | "dashes" | "flakes";
-  twig: number[];
-  /** Of a leaf. */
-  form: "ovate" | "pointed" | "lobed" | "palmate" | "compound" | "needles" | "tufts" | "fronds";
-  /** Of a leaf or a leaflet, or of a shoot with its needles [m]. */
-  size: number;
-  /** Width of a leaf over its length. */
-  slender: number;
-  leaf: number[];
-  /** Colour of a leaf with the sun behind it. */
+  /** Colours: red, green and blue from 0 to 1. Of a leaf, of the youngest. */
+  green: number[];
   fresh: number[];
-  /** Colour of a leaf before it falls; null of an evergreen. */
+  /** Of a leaf before it falls; null of an evergreen. */
   autumn: number[] | null;
+  bark: number[];
+  twig: number[];
+  bark_pattern: "furrows" | "plates" | "smooth" | "dashes" | "flakes";
+  form: "ovate" | "pointed" | "lobed" | "palmate" | "compound" | "needles" | "tufts" | "fronds";
+  /** Width of a leaf over its length. */
+  slenderness: number;
+  /** Of a leaf or a leaflet, or of a shoot with its needles [m]. */
+  leaf_size: number;
+  has_needles: boolean;
   /** Whether one alone stands in a pot. */
-  isPotted?: boolean;
+  is_potted: boolean;
+  spray: Spray;
 }
 
-/** The average broadleaf whole; what is other of the average conifer, and of each species than of its group. */
-interface Looks {
-  broadleaf: Look;
-  conifer: Partial<Look>;
-  broadleaves: Record<string, Partial<Look>>;
-  conifers: Record<string, Partial<Look>>;
-  /** Of bark. */
-  patterns: Record<string, Pattern>;
-  /** Halves of blades from the stalk to the tip. */
-  outlines: Record<string, [number, number][]>;
+/** Cards that show a cluster of leaves: length over the cluster's size, width over length, and how far
+ * each is turned about the shoot [rad]. */
+interface Spray {
+  length: number;
+  width: number;
+  rolls: number[];
 }
-
-/** The relief of bark, as its shader has it. */
-type Pattern = Record<"ridge" | "spot" | "depth" | "rough", number> & { cells: [number, number] };
 
 /** Shapes turned about the vertical. */
 interface Turned {

@@ -13,11 +13,16 @@ export class Camera {
   aspect = 1;
   matrix = new Float32Array(16);
   eye = /** @type {Vector} */ ([0, 0, 0]);
+  /** Where nothing lies over the picture: left, top, right and bottom, shares of it. @type {() => number[]} */
+  room = () => [0, 0, 1, 1];
+  /** Whether it sees all of the scene, as nobody has moved it. */
+  isHome = true;
   _size = 1;
   _box = /** @type {number[][]} */ ([[0, 0, 0], [1, 1, 1]]);
 
   /** Where a link looked from. @param {number[]} view azimuth, elevation, distance, target */
   set([azimuth, elevation, distance, x, y, z]) {
+    this.isHome = false;
     [this.azimuth, this.elevation, this.distance] = [azimuth, elevation, distance];
     this.target = [x, y, z];
   }
@@ -31,22 +36,26 @@ export class Camera {
     this.azimuth = -0.6;
     // What is much wider than high is seen from higher up.
     this.elevation = Math.min(0.21, 0.16 + 0.01 * Math.max(0, wide / tall - 3));
-    // On a phone the lines of wind and motion lie below.
-    const lower = this.aspect < 1 ? 0.15 * tall : 0;
-    this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2 - lower];
+    this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
     const seen = tall * Math.cos(this.elevation) + wide * Math.sin(this.elevation);
-    const half = (this.aspect < 1 ? 0.65 : 0.54) * Math.max(seen, wide / this.aspect, 0.7 * this._size);
+    const [left, top, right, bottom] = this.room();
+    const [across, down] = [right - left, bottom - top].map((each) => Math.max(0.2, each));
+    const half = 0.54 * Math.max(seen / down, wide / this.aspect / across, 0.7 * this._size);
     this.distance = half / HALF + (wide > 3 * tall ? 0.1 : 0.4) * wide;
+    this.pan(0.5 * this.aspect * (left + right - 1), 0.5 * (top + bottom - 1));
+    this.isHome = true;
   }
 
   /** @param {number} dx [px] @param {number} dy */
   orbit(dx, dy) {
+    this.isHome = false;
     this.azimuth -= dx * 0.006;
     this.elevation = Math.min(Math.max(this.elevation + dy * 0.005, -0.05), 1.5);
   }
 
   /** @param {number} dx share of the height @param {number} dy */
   pan(dx, dy) {
+    this.isHome = false;
     const span = 2 * this.distance * HALF;
     this.target[0] += Math.sin(this.azimuth) * dx * span;
     this.target[1] -= Math.cos(this.azimuth) * dx * span;
@@ -55,6 +64,7 @@ export class Camera {
 
   /** @param {number} factor below 1 comes nearer */
   zoom(factor) {
+    this.isHome = false;
     const least = 0.05 * this._size;
     this.distance = Math.min(Math.max(this.distance * factor, least), 20 * this._size);
   }

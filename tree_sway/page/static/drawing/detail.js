@@ -24,7 +24,7 @@ export function levelsOf({ reached, order, slots }, highest, most) {
     const segments = reached[branches];
     const pixels = Math.sqrt(AREA * segments);
     const from = levels.length === 1 ? most.far : Math.max(most.far, pixels / 2 ** 0.25);
-    const cards = Math.round(most.cards * Math.min(1, (pixels / NEAR) ** 1.3));
+    const cards = Math.round(most.cards * Math.min(1, (pixels / (0.5 * NEAR)) ** 1.3));
     levels.push({ branches, segments, pixels, from, cards: Math.max(FEWEST_CARDS, cards) });
     if (segments >= whole) break;
   }

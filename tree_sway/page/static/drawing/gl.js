@@ -73,6 +73,7 @@ export function program(gl, name) {
         gl.uniform1i(at, unit);
       },
     };
+    setters[gl.SAMPLER_2D_SHADOW] = setters[gl.SAMPLER_2D];
     uniforms[name] = setters[type];
   }
   return { program: made, fields, uniforms };
@@ -132,11 +133,13 @@ export function textureOf(gl, less, more) {
 }
 
 /** A texture of a picture, its colours times its alpha: no leaf has a rim of what is around it.
- * @param {GL} gl @param {HTMLCanvasElement} picture @param {boolean} isPlain one point is looked up */
-export function pictureTexture(gl, picture, isPlain) {
+ * @param {GL} gl @param {HTMLCanvasElement} picture @param {boolean} isPlain one point is looked up
+ * @param {boolean} [isTile] whether it goes on beyond its edges */
+export function pictureTexture(gl, picture, isPlain, isTile = false) {
   gl.activeTexture(gl.TEXTURE2);
   const texture = isPlain ? textureOf(gl, gl.NEAREST_MIPMAP_NEAREST, gl.NEAREST)
     : textureOf(gl, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
+  for (const way of isTile ? [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T] : []) gl.texParameteri(gl.TEXTURE_2D, way, gl.REPEAT);
   gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, true);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, picture);
   gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false); // poses are no colours
@@ -156,6 +159,16 @@ export function uploadPoses(gl, texture, texels, segments) {
   gl.activeTexture(gl.TEXTURE0);
   gl.bindTexture(gl.TEXTURE_2D, texture);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, TEXTURE_WIDTH, rowsOf(segments), 0, gl.RGBA, gl.FLOAT, texels);
+}
+
+/** Depths that lookups are compared with, as of a shadow; every lookup is nearer until they are drawn.
+ * @param {GL} gl @param {number} size */
+export function depthTexture(gl, size) {
+  const texture = textureOf(gl, gl.LINEAR, gl.LINEAR);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, size, size);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL);
+  return texture;
 }
 
 /** What is drawn into a texture. @param {GL} gl @param {number} width

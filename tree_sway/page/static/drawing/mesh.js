@@ -6,14 +6,13 @@
 import { AT_ORIGIN, KindPlacer, STRIDE } from "../placing.js";
 import { between, multiply, turned } from "../quaternions.js";
 import { crownShade } from "./shade.js";
-import { hasNeedles, lookOf, seeded } from "./species.js";
-import { leavesAcross } from "./textures.js";
+import { lookOf, seeded } from "./looks.js";
+import { leavesAlong } from "./textures.js";
 
 /** Least spacing of rings of bark on the screen [px], height of the picture of bark on a stem [m]. */
 const [RING_SPACING, BARK_TILE] = [6, 0.6];
-/** Cards of leaves per cluster, at most: of leaves alone, of sprays; and how much larger they are, at most,
- * where few are drawn, which show more leaves then. */
-const [ALONE, CARDS, LARGEST_CARDS] = [2, 3, 4];
+/** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then. */
+const LARGEST_CARDS = 4;
 
 /** The lowest and the highest corner of a box of points. @param {ArrayLike<number>[]} points */
 export const boxOf = (points) => [Math.min, Math.max].map((of) =>
@@ -108,31 +107,33 @@ export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pix
   return { values, indices };
 }
 
-/** Leaves: each cluster is up to three cards that fan out from the twig and show leaves in a picture. They
- * come in a mixed order, so that any first part of them is a thinner crown. Per vertex: place (3), how it
- * moves with the flutter (3), normal (3), where light comes from (3), flutter frequency and phase (2),
- * openness, tint, place in the picture (2). @param {Shape} shape @param {Int32Array} branches that are
- * drawn @param {number} cards @param {number} most cards of the whole crown, whose area fewer have as well
- * @returns {{mesh: Mesh, across: number}} and how many leaves the picture is wide */
+/** Leaves: each cluster is up to three cards that cross each other about its shoot, and show leaves in a
+ * picture. They come in a mixed order, so that any first part of them is a thinner crown. Per vertex: place
+ * (3), how it moves with the flutter (3), normal (3), where light comes from (3), flutter frequency and
+ * phase (2), openness, tint, place in the picture (2). @param {Shape} shape @param {Int32Array} branches
+ * that are drawn @param {number} cards @param {number} most cards of the whole crown, whose area fewer have
+ * as well @returns {{mesh: Mesh, along: number}} and how many leaves the picture is long */
 export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
-  const { arrays, species } = kind;
+  const { arrays } = kind;
+  const look = lookOf(kind);
+  const { rolls, length } = look.spray;
   const { leaf_segment: carrier, leaf_size: sizes, leaf_orientation: orientation } = arrays;
   /** @type {Mesh} */
   const mesh = { values: [], indices: [] };
-  if (!carrier) return { mesh, across: 1 };
+  if (!carrier) return { mesh, along: 1 };
   const random = seeded();
   const mean = Array.from(sizes).reduce((sum, size) => sum + size, 0) / sizes.length;
-  const fullest = leavesAcross(species, mean) === 1 ? ALONE : CARDS;
-  const perCluster = (/** @type {number} */ all) => Math.max(1, Math.min(fullest, Math.floor(all / carrier.length)));
+  const perCluster = (/** @type {number} */ all) => Math.max(1, Math.min(rolls.length, Math.floor(all / carrier.length)));
   const each = perCluster(cards);
   const clusters = mixed(Array.from(carrier.keys()), random).slice(0, cards);
   const whole = carrier.length * perCluster(most);
   const larger = Math.min(LARGEST_CARDS, Math.sqrt(whole / (clusters.length * each)));
-  const across = leavesAcross(species, larger * mean);
+  const along = leavesAlong(look, larger * length * mean);
   // A leaf alone has its own size, whatever the cluster has.
-  const unit = across === 1 ? Math.min(1, (1.4 * lookOf(species).size) / mean) : larger;
+  const spray = along > 1 ? { ...look.spray, length: larger * length }
+    : { rolls, width: Math.min(1, look.slenderness), length: Math.min(length, (1.4 * look.leaf_size) / mean) };
   const hung = hungOn(kind, branches);
-  const triangles = [];
+  const quads = [];
   for (const i of clusters) {
     const at = leafPlace(kind, rest, i);
     const [p, own] = [STRIDE * hung[carrier[i]], STRIDE * carrier[i] + 4];
@@ -143,44 +144,36 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
     const { open, towards } = shade(at);
     const centre = turned(back, at.map((a, c) => a - rest[p + c]));
     const light = [...turned(back, towards), arrays.leaf_frequency[i]];
+    const phase = arrays.leaf_phase[i];
     for (let card = 0; card < each; card++) {
-      const phase = arrays.leaf_phase[i] + 6.28 * random();
-      const tint = 0.85 + 0.3 * random();
+      const tint = 1 + 0.16 * Math.sin(7 * phase + 2 * card);
       const first = mesh.values.length / 19;
-      for (const corner of cardCorners(species, unit * sizes[i], card, across === 1, random)) {
+      for (const corner of cardCorners(spray, sizes[i], phase, card)) {
         const [place, swing, facing] = corner.vectors.map((each) => turned(turn, each));
         mesh.values.push(placer.slots[hung[carrier[i]]], ...place.map((each, c) => each + centre[c]), ...swing, ...facing,
-          ...light, phase, open, tint, ...corner.at);
+          ...light, phase + 2.4 * card, open, tint, ...corner.at);
       }
-      triangles.push([first, first + 1, first + 2]);
+      quads.push([first, first + 1, first + 2, first, first + 2, first + 3]);
     }
   }
-  mesh.indices = mixed(triangles, random).flat();
-  return { mesh, across };
+  mesh.indices = mixed(quads, random).flat();
+  return { mesh, along };
 }
 
 /** Corners of a card: place, motion with the flutter, normal, in the frame of the cluster; in the picture.
- * @param {string} species @param {number} size of the card [m] @param {number} number in its cluster
- * @param {boolean} isAlone whether the picture is of one leaf @param {() => number} random */
-function cardCorners(species, size, number, isAlone, random) {
-  const { form, slender } = lookOf(species);
-  const isConifer = hasNeedles(species);
-  const long = (isConifer ? 1.35 : 1) * size * (0.85 + 0.3 * random());
-  const spread = (/** @type {number} */ angle) => angle * (random() - 0.5);
-  // Cards cross each other, so that the crown is full from every side.
-  const roll = isAlone ? spread(1.6) : (Math.PI * number) / CARDS + spread(0.6);
-  const fan = spread(isAlone ? 2.2 : 1.1);
-  const hang = (isAlone && form === "pointed" ? 0.7 : form === "fronds" || form === "tufts" ? -0.5 : 0.25) + spread(0.6);
-  const around = [0, 0, Math.sin(fan / 2), Math.cos(fan / 2)];
-  multiply(around, 0, [0, Math.sin(hang / 2), 0, Math.cos(hang / 2)], 0, around);
+ * `tree_mesh.py` has the same for files. @param {Spray} spray @param {number} size of the cluster [m]
+ * @param {number} phase of its flutter, which makes each of its own @param {number} card its number */
+function cardCorners({ length, width, rolls }, size, phase, card) {
+  const long = length * size;
+  const roll = rolls[card] + 0.3 * Math.sin(phase);
+  const yaw = 0.35 * Math.sin(phase + 2.1 * card);
+  const around = [0, 0, Math.sin(yaw / 2), Math.cos(yaw / 2)];
   multiply(around, 0, [Math.sin(roll / 2), 0, 0, Math.cos(roll / 2)], 0, around);
-  // A triangle about a blade, or about a square of leaves: what would be cut away costs time.
-  const [far, half] = isAlone ? [1.45, 0.875 * Math.min(1, slender)] : [2, isConifer ? 0.72 : 1];
-  return [[0, -half], [far, 0], [0, half]].map(([u, v]) => {
-    const place = turned(around, [u * long, v * long, 0]);
-    place[0] -= 0.5 * long;
+  return [[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]].map(([u, v]) => {
+    const place = turned(around, [u * long, v * width * long, 0]);
+    place[0] -= 0.5 * size;
     place[2] -= 0.1 * long * u;
-    return { vectors: [place, [0, -place[2], place[1]], turned(around, [0, -0.7 * v, 1])], at: [u, 0.5 + v] };
+    return { vectors: [place, [0, -place[2], place[1]], turned(around, [0.3 * u, 1.2 * v, 1])], at: [u, 0.5 + v] };
   });
 }
 

@@ -33,10 +33,10 @@ export class Quality {
       this._coarsened = now;
     } else if (fps < LEAST && hasLeaves) {
       this.density = Math.max(THINNEST, this.density * 0.85);
-    } else if (fps > LEAST + 6 && this.density < 1) {
-      this.density = Math.min(1, this.density * 1.05);
     } else if (fps > WANTED && this.fineness < 1 && now - this._coarsened > 8000) {
       this.fineness = Math.min(1, this.fineness * 1.06);
+    } else if (fps > LEAST + 6 && this.density < 1) {
+      this.density = Math.min(1, this.density * 1.05);
     }
   }
 

@@ -8,24 +8,24 @@ import { Backdrop, DAYLIGHT } from "./backdrop.js";
 import { Camera } from "./camera.js";
 import { Detail, levelsOf } from "./detail.js";
 import {
-  canvasTexture, contextOf, discard, drawable, drawPart, pictureTexture, program, texelsOf, textureOf,
+  canvasTexture, contextOf, depthTexture, discard, drawable, drawPart, pictureTexture, program, texelsOf, textureOf,
   uploadPoses, use,
 } from "./gl.js";
 import { Impostor } from "./impostors.js";
 import { barkMesh, boxOf, leafMesh, shapeOf } from "./mesh.js";
 import { arrow, arrowLength, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
-import { lookOf, patterns } from "./species.js";
-import { leafPicture } from "./textures.js";
+import { lookOf } from "./looks.js";
+import { barkPicture, leafPicture } from "./textures.js";
 
 /** Without a graphics unit a shadow is drawn again after so many frames, by a share of the leaves. */
 const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
 const CROWD = 50;
 /** Segments of all trees and cards of leaves of one, at most, and height of far trees [px]. */
-const MOST = { segments: 40000, cards: 3000, far: 90 };
+const MOST = { segments: 40000, cards: 9000, far: 90 };
 /** Without a graphics unit: of a few trees, and of a crowd. */
-const MOST_SLOW = { ...MOST, segments: 12000, far: 150 };
-const MOST_CROWD = { ...MOST, segments: 5000, far: 220 };
+const MOST_SLOW = { segments: 12000, cards: 3000, far: 150 };
+const MOST_CROWD = { ...MOST_SLOW, segments: 5000, far: 220 };
 /** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
 const CHOOSE_EVERY = 6;
 /** A branch is near that is within this angle of where one points [rad]. */
@@ -89,6 +89,15 @@ export class Scene {
     this._parts = { arrow: drawable(gl, solid, arrow), pot, person, shadow: drawable(gl, shadow, square) };
     const size = this.isSlow ? 256 : 1024;
     this._shadow = canvasTexture(gl, size, size, gl.R8);
+    /** How near to the sun what casts the shadow is: trees shade themselves by it. */
+    this._sunMap = depthTexture(gl, size);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this._sunMap, 0);
+    /** Of no shadow, while the other is drawn. */
+    this._noMap = depthTexture(gl, 1);
+    const bare = canvasTexture(gl, 1, 1, gl.R8);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this._noMap, 0);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    bare.release();
     /** Where it falls: middle x, y, and half its size [m]. */
     this._shadowArea = [0, 0, 1];
     /** Height of the ground [m], and of the highest tree. */
@@ -141,7 +150,7 @@ export class Scene {
     this._extent = Math.max(wide, deep, tall, 0.05);
     this.height = Math.max(tall, 0.2 * wide, 0.2 * deep, 0.05);
     const { place: root } = trees[0];
-    this._potSize = trees.length === 1 && lookOf(kinds[0].species).isPotted ? POT_HEIGHT * this.height : 0;
+    this._potSize = trees.length === 1 && lookOf(kinds[0]).is_potted ? POT_HEIGHT * this.height : 0;
     this.ground = this._potSize ? root[2] - this._potSize : Math.min(this._low[2], root[2]);
     this._under = this._potSize ? { kind: 0, ground: this.ground, haze: 1 / (30 * this.height) }
       : { kind: 1, ground: this.ground, haze: 1 / Math.max(1500, 30 * this._extent) };
@@ -266,18 +275,20 @@ export class Scene {
     const { gl, _programs: programs, _pictures: pictures, detail: { levels: { [number]: levels } } } = this;
     const shape = this._kinds[number];
     if (level === 0) return { starts: [], numbers: [], impostor: this._bake(number) };
-    const { species } = shape.kind;
-    const { bark: barkColor, twig: twigColor, pattern } = lookOf(species);
+    const look = lookOf(shape.kind);
+    const { bark: barkColor, twig: twigColor } = look;
     const branches = shape.placer.order.slice(0, levels[level].branches);
-    const { mesh, across } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards);
+    const { mesh, along } = leafMesh(shape, branches, levels[level].cards, levels[levels.length - 1].cards);
     const bark = barkMesh(shape, branches, levels[level].pixels, this.isSlow ? COARSEST : 1);
-    const name = `${species} ${across}`;
+    const name = `${number} ${along}`;
     if (!pictures.has(name)) {
-      pictures.set(name, pictureTexture(gl, leafPicture(species, across, this.isAutumn), this.isSlow));
+      pictures.set(name, pictureTexture(gl, leafPicture(look, along, this.isAutumn), this.isSlow));
     }
+    const relief = look.bark_pattern;
+    if (!pictures.has(relief)) pictures.set(relief, pictureTexture(gl, barkPicture(relief), this.isSlow, true));
     return {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
-      skin: { barkColor, twigColor, ...patterns[pattern] }, foliage: { leaves: [2, pictures.get(name)] },
+      skin: { barkColor, twigColor, relief: [1, pictures.get(relief)] }, foliage: { leaves: [2, pictures.get(name)] },
     };
   }
 
@@ -297,7 +308,7 @@ export class Scene {
     uploadPoses(gl, this._poses, texels, segments);
     const even = { sun: [0, 0, 0], sky: [1.1, 1.1, 1.1], haze: 0, picked: NONE, isBaked: 1, law: [0, 1] };
     impostor.bake((camera, eye) => this._drawMeshes([level], false, { camera, eye, ...even }, 1),
-      lookOf(shape.kind.species).leaf);
+      lookOf(shape.kind).green);
     gl.deleteTexture(this._poses);
     this._poses = this._texture;
     return impostor;
@@ -386,8 +397,8 @@ export class Scene {
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 1);
-    gl.disable(gl.DEPTH_TEST);
-    gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     this._drawTrees(true);
     this._drawSolids(true);
   }
@@ -396,8 +407,11 @@ export class Scene {
   _begin(used, isShadow, own = {}) {
     const { camera: { matrix: camera, eye }, _poses: poses, _shadowArea: [x, y, half] } = this;
     const lit = { ...this.day, ...this._under, camera, eye, isShadow: Number(isShadow) };
-    const shadowArea = [x, y, 1 / half, lit.isShadow];
-    use(this.gl, used, { ...lit, shadowArea, poses: [0, poses], ...own });
+    const shadow = {
+      shadowArea: [x, y, 1 / half, lit.isShadow], shadowTop: 1 / (1.1 * (this._high[2] - this.ground) + 0.1),
+      sunMap: [3, isShadow ? this._noMap : this._sunMap],
+    };
+    use(this.gl, used, { ...lit, ...shadow, poses: [0, poses], ...own });
   }
 
   /** @param {boolean} isShadow */

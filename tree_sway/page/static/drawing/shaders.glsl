@@ -14,16 +14,30 @@ uniform vec3 sky;
 uniform vec3 eye;
 uniform float haze; // one over how far one sees [1/m]
 uniform vec4 shadowArea; // middle x, y, one over half its size, 1 when the shadow is drawn
+uniform float shadowTop; // one over the height of what casts it [1/m]
 vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
+// Where the shadow of a point falls in its picture, and how near to the sun the point is.
+vec3 fallen(vec3 p) {
+  vec2 flat_ = p.xy - light.xy / light.z * (p.z - ground);
+  return vec3((flat_ - shadowArea.xy) * shadowArea.z, 1.0 - 2.0 * clamp((p.z - ground) * shadowTop, 0.0, 1.0));
+}
 vec4 seen(vec3 p) {
   if (shadowArea.w < 0.5) return camera * vec4(p, 1.0);
-  vec2 flat_ = p.xy - light.xy / light.z * (p.z - ground);
-  return vec4((flat_ - shadowArea.xy) * shadowArea.z, 0.0, 1.0);
+  return vec4(fallen(p), 1.0);
 }
 float clearness(vec3 p) { float far = haze * distance(eye, p); return 1.0 / (1.0 + far + 0.5 * far * far); }
 
 #part hung seen
 // What hangs on a segment: its pose, and the scale of its tree.
+uniform mediump sampler2DShadow sunMap;
+// Share of the sun that reaches a point past what is some way above it, softly.
+float sunlight(vec3 p) {
+  vec3 at = 0.5 + 0.5 * fallen(p);
+  float low = at.z - 0.35 * shadowTop * sqrt(1.0 / shadowTop);
+  float soft = 0.0035;
+  return 0.25 * (texture(sunMap, vec3(at.xy + vec2(soft, 0.4 * soft), low)) + texture(sunMap, vec3(at.xy + vec2(-0.4 * soft, soft), low))
+    + texture(sunMap, vec3(at.xy - vec2(soft, 0.4 * soft), low)) + texture(sunMap, vec3(at.xy + vec2(0.4 * soft, -soft), low)));
+}
 uniform highp sampler2D poses;
 uniform float start; // row of the first segment of its tree
 in float segment; // of its tree
@@ -66,6 +80,7 @@ out vec3 normal;
 out vec2 at;
 out vec3 tone; // thickness, openness, clearness
 out float mark;
+out float sunny;
 void main() {
   uint row = rowOf();
   vec4 root = texel(row);
@@ -90,6 +105,7 @@ void main() {
   tone = vec3(thickness, skin.z, clearness(p));
   float own = 0.5 * float(row);
   mark = own > picked.x - 0.5 && own < picked.y + 0.5 ? 1.0 : 0.0;
+  sunny = sunlight(p);
   gl_Position = seen(p);
 }
 
@@ -98,31 +114,21 @@ in vec3 normal;
 in vec2 at;
 in vec3 tone;
 in float mark;
+in float sunny;
 uniform vec3 light;
 uniform vec3 sun;
 uniform vec3 sky;
 uniform vec3 barkColor;
 uniform vec3 twigColor;
-uniform vec2 cells; // of the relief, around and up a tile
-uniform float ridge; // how steep furrows are
-uniform float spot; // share without dark spots
-uniform float depth; // of the shade
-uniform float rough;
 uniform vec4 paint; // colour of the whole tree, and its share
+uniform sampler2D relief; // shares of the colour of the bark, twice as high as wide
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
-  float deep = 1.1 - 0.4 * depth;
-  float shown = 1.0 - smoothstep(0.4, 1.2, length(fwidth(at) * cells));
-  if (shown > 0.0) {
-    float shape = tiled((at + vec2(0.08 * tiled(4.0 * at, vec2(4.0)), 0.0)) * cells, cells);
-    float raised = ridge > 0.0 ? min(1.0, ridge * abs(2.0 * shape - 1.0)) : spot > 0.0 ? step(shape, spot) : shape;
-    deep += shown * (depth * (raised - 0.6) + rough * (tiled(at * vec2(32.0, 16.0), vec2(32.0, 16.0)) - 0.5));
-  }
-  vec3 base = mix(twigColor, barkColor * mix(1.0, deep, 0.9), tone.x);
+  vec3 base = mix(twigColor, barkColor * texture(relief, at * vec2(1.0, 0.5)).rgb, tone.x);
   base = mix(base, paint.rgb, paint.a);
-  float open = 0.3 + 0.7 * tone.y;
-  vec3 lit = open * (sky * (0.72 + 0.28 * n.z) + sun * tone.y * max(dot(n, light), 0.0));
+  float open = 0.5 + 0.5 * tone.y;
+  vec3 lit = open * sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0);
   base = mix(base * lit, vec3(1.0, 0.45, 0.1), 0.75 * mark);
   color = vec4(mix(horizon, base, tone.z), 1.0);
 }
@@ -157,8 +163,8 @@ void main() {
   float side = dot(n, back) < 0.0 ? -1.0 : 1.0;
   float across = side * dot(n, light);
   float open = flutter.z;
-  float sunny = clamp(open * (0.55 + 1.3 * dot(outward, light)), 0.0, 1.0);
-  vec3 up = sky * (0.16 + 0.84 * open) * (0.8 + 0.2 * n.z * side);
+  float sunny = sunlight(p) * (0.45 + 0.55 * open);
+  vec3 up = sky * (0.1 + 0.9 * open) * (0.8 + 0.2 * n.z * side);
   // A leaf with the sun behind it shines yellow.
   vec3 through = vec3(1.15, 1.3, 0.4) * (0.75 * max(-across, 0.0));
   vec3 direct = sun * sunny * (0.22 + 0.85 * max(across, 0.0) + through);
@@ -175,9 +181,7 @@ void main() {
   vec4 leaf = texture(leaves, at);
   // Further away leaves are mixed with what is between them: less of one will do, so that no crown thins out.
   float mixed = max(0.0, log2(length(fwidth(at)) * 180.0));
-  // The triangle of a card is larger than its picture.
-  vec2 beyond = abs(at - 0.5);
-  if (leaf.a * (1.0 + 0.07 * mixed) < 0.5 || max(beyond.x, beyond.y) > 0.5) discard;
+  if (leaf.a * (1.0 + 0.07 * mixed) < 0.5) discard;
   vec3 base = mix(leaf.rgb / leaf.a, paint.rgb, paint.a);
   color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, base * lit.rgb, lit.a), 1.0);
 }

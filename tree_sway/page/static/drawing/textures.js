@@ -2,58 +2,140 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Pictures painted by code: sprays of leaves, cut out by their alpha. */
 
-import { hasNeedles, lookOf, outlines, seeded } from "./species.js";
+import { outlineOf, seeded } from "./looks.js";
 
-/** Leaves across a picture: a leaf alone, sprays of more and more. */
-const ACROSS = [1, 3, 6, 12, 24];
-const LEAF_PIXELS = 256;
+/** Leaves along a picture: a leaf alone, sprays of more and more. */
+const ALONG = [1, 3, 5, 8, 12, 18, 24];
 /** Length of a compound leaf in leaflets. */
 const RACHIS = 3.4;
+/** Layers that leaves are painted in, the lowest in the shade of the others. */
+const LAYERS = 3;
 
-/** Leaves across the picture for cards of a size, so that none is drawn larger than 1.5 times its own.
- * @param {string} species @param {number} size of a card [m] */
-export function leavesAcross(species, size) {
-  const look = lookOf(species);
-  const least = look.form === "compound" || hasNeedles(species) ? 3 : 1;
-  const wanted = size / (1.5 * look.size);
-  return ACROSS.find((across) => across >= wanted && across >= least) ?? ACROSS[ACROSS.length - 1];
+/** Leaves along the picture for cards of a length, so that none is drawn much larger than its own.
+ * @param {Look} look @param {number} long length of a card [m] */
+export function leavesAlong(look, long) {
+  const least = look.form === "compound" ? 5 : look.has_needles ? 3 : 1;
+  const wanted = long / (1.4 * look.leaf_size);
+  return ALONG.find((along) => along >= wanted && along >= least) ?? ALONG[ALONG.length - 1];
 }
 
-/** Paint leaves of a twig. @param {string} species @param {number} across @param {boolean} isAutumn */
-export function leafPicture(species, across, isAutumn) {
-  const size = across === 1 ? LEAF_PIXELS / 2 : LEAF_PIXELS;
-  const brush = new Brush(lookOf(species), isAutumn, size, seeded(97 + across));
-  const long = 1 / across;
-  if (across === 1) brush.leaf(0.99);
-  else if (hasNeedles(species)) brush.shoot(0.98 - 0.3 * long, long);
-  else if (across <= 6) brush.spray(long);
-  else brush.cloud(long);
+/** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
+ * @param {boolean} isAutumn @param {number} [size] of the picture [px] */
+export function leafPicture(look, along, isAutumn, size = along === 1 ? 128 : 512) {
+  const brush = new Brush(look, isAutumn, size, seeded(97 + along));
+  if (along === 1) brush.leaf(0.99, 0.8);
+  else if (look.form === "tufts") brush.tuft();
+  else if (look.has_needles) brush.needles(1 / along);
+  else brush.spray(1 / along);
   return brush.context.canvas;
 }
 
-/** @param {number[]} color */
-const css = (color) => `rgb(${color.map((c) => 255 * c).join(" ")})`;
+/** Width of a picture of bark [px], which is twice as high and goes on beyond its edges. */
+const BARK_WIDE = 128;
 
-/** Paints leaves and twigs of a species on a unit square, from the middle of its left side on. */
+/** Paint bark as shares of its colour. @param {string} pattern @returns {HTMLCanvasElement} */
+export function barkPicture(pattern) {
+  const [wide, high] = [BARK_WIDE, 2 * BARK_WIDE];
+  const canvas = Object.assign(document.createElement("canvas"), { width: wide, height: high });
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const random = seeded(61);
+  const grey = (/** @type {number} */ light) => css([1, 1, 1], light);
+  /** @param {number} light @param {(context: CanvasRenderingContext2D) => void} trace */
+  const shape = (light, trace) => {
+    const [x, y] = [wide * random(), high * random()];
+    context.fillStyle = context.strokeStyle = grey(light);
+    // At every place where it is seen again.
+    for (const [dx, dy] of [[0, 0], [-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [1, 1], [-1, 1], [1, -1]]) {
+      context.setTransform(1, 0, 0, 1, x + dx * wide, y + dy * high);
+      context.beginPath();
+      trace(context);
+    }
+  };
+  const ellipse = (/** @type {number} */ light, /** @type {number} */ across, /** @type {number} */ tall) => {
+    const lean = 0.3 * (random() - 0.5);
+    shape(light, (on) => {
+      on.ellipse(0, 0, across, tall, lean, 0, 7);
+      on.fill();
+    });
+  };
+  const ground = { furrows: 0.5, plates: 0.4, smooth: 0.94, dashes: 0.98, flakes: 0.85 }[pattern] ?? 0.8;
+  context.fillStyle = grey(ground);
+  context.fillRect(0, 0, wide, high);
+  if (pattern === "furrows") {
+    for (let i = 0; i < 260; i++) {
+      const [bend, long, light] = [8 * (random() - 0.5), 18 + 40 * random(), 0.62 + 0.5 * random()];
+      context.lineWidth = 2.5 + 4.5 * random();
+      context.lineCap = "round";
+      shape(light, (on) => {
+        on.moveTo(0, 0);
+        on.quadraticCurveTo(bend, 0.5 * long, 0.6 * bend, long);
+        on.stroke();
+      });
+    }
+  } else if (pattern === "plates") {
+    for (let i = 0; i < 130; i++) {
+      const [across, tall, light] = [5 + 6 * random(), 9 + 12 * random(), 0.75 + 0.4 * random()];
+      const corners = Array.from({ length: 9 }, (_, k) => [0.7, 0.45].map(() => 0.75 + 0.35 * random()).concat(0.7 * k));
+      shape(light, (on) => {
+        for (const [a, b, turn] of corners) on.lineTo(a * across * Math.cos(turn), b * tall * Math.sin(turn));
+        on.fill();
+      });
+    }
+  } else if (pattern === "dashes") {
+    for (let i = 0; i < 60; i++) ellipse(0.88 + 0.1 * random(), 14 + 20 * random(), 2 + 5 * random());
+    for (let i = 0; i < 46; i++) ellipse(0.25 + 0.3 * random(), 3 + 9 * random(), 0.8 + 0.9 * random());
+    for (let i = 0; i < 9; i++) {
+      // Black rifts, wide in the middle.
+      const [across, tall] = [10 + 14 * random(), 3 + 5 * random()];
+      shape(0.1 + 0.08 * random(), (on) => {
+        on.moveTo(-across, 0.4 * tall);
+        on.quadraticCurveTo(-0.2 * across, -1.4 * tall, across, -0.2 * tall);
+        on.quadraticCurveTo(0.1 * across, 1.7 * tall, -across, 0.4 * tall);
+        on.fill();
+      });
+    }
+  } else {
+    const isSmooth = pattern === "smooth";
+    for (let i = 0; i < 170; i++) {
+      const light = isSmooth ? 0.86 + 0.16 * random() : 0.6 + 0.5 * random();
+      ellipse(light, (isSmooth ? 9 : 4) + 9 * random(), (isSmooth ? 1.5 : 4) + (isSmooth ? 3 : 9) * random());
+    }
+  }
+  return canvas;
+}
+
+/** @param {number[]} color @param {number} light */
+const css = (color, light) => `rgb(${color.map((c) => Math.round(255 * Math.min(1, light * c))).join(" ")})`;
+
+/** Paints a shoot from the middle of the left side of the picture on, which is one long and as wide as the
+ * spray. */
 class Brush {
   /** @param {Look} look @param {boolean} isAutumn @param {number} size [px] @param {() => number} random */
   constructor(look, isAutumn, size, random) {
     const turned = isAutumn && look.autumn;
-    const [base, fresh] = turned ? [turned, turned.map((c) => 1.15 * c)] : [look.leaf, look.fresh];
+    this.base = turned ? turned : look.green;
+    this.fresh = turned ? turned.map((c) => 1.2 * c) : look.fresh;
     this.look = look;
     this.random = random;
+    this.half = 0.5;
     this.unit = look.form === "compound" ? RACHIS : 1;
-    const half = (outlines[look.form] ?? outlines.ovate).map(([x, y]) => [x, 0.5 * look.slender * y]);
+    const half = outlineOf(look).map(([x, y]) => [x, 0.5 * look.slenderness * y]);
     const other = half.map(([x, y]) => [x, -y]).reverse();
     this.blade = new Path2D(`M${[...half, ...other].join("L")}Z`);
     const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-    this.context.setTransform(size, 0, 0, size, 0, size / 2);
+    // The picture fills the texture, however wide the card is.
+    this.half = 0.5 * look.spray.width;
+    this.context.setTransform(size, 0, 0, size / look.spray.width, 0, size / 2);
     this.context.lineCap = "round";
-    this._color = () => {
-      const [light, mixed] = [0.78 + 0.44 * random(), 0.35 * random()];
-      return css(base.map((c, i) => light * (c + mixed * (fresh[i] - c))));
-    };
+  }
+
+  /** A colour of a leaf. @param {number} light @param {number} young how far it is that of a fresh one */
+  color(light, young) {
+    const { random, base, fresh } = this;
+    const own = light * (0.85 + 0.3 * random());
+    const mixed = Math.min(1, young + 0.3 * random());
+    return css(base.map((c, i) => c + mixed * (fresh[i] - c)), own);
   }
 
   /** Paint elsewhere. @param {number} x @param {number} y @param {number} turn @param {number} scale
@@ -72,68 +154,114 @@ class Brush {
     this.context.stroke(new Path2D(`M0 0H${long}`));
   }
 
-  /** A twig with side twigs, leaves in turn on both sides. @param {number} leaf length of one
-   * @param {number} [length] of the twig; of the main one if left out */
-  spray(leaf, length) {
-    const { look, random } = this;
-    const unit = this.unit * leaf;
-    const long = length ?? Math.max(0.25, 1 - 1.05 * unit);
-    this.line(long, (length ? 0.06 : 0.1) * leaf, css(look.twig));
-    const step = (look.form === "compound" ? 0.3 : 0.4) * unit;
-    let side = 1;
-    for (let at = length ? step : 0.15 * long; at < long; at += step, side = -side) {
-      const lean = side * (0.65 + 0.5 * random());
-      if (!length && leaf < 0.3 && at < 0.8 * long) {
-        this.at(at, 0, 0.9 * lean, 1, () => this.spray(leaf, 0.42 * (1 - (0.4 * at) / long)));
-      }
-      this.at(at, 0, lean, 1, () => this.leaf(unit * (0.75 + 0.35 * random())));
-    }
-    this.at(long, 0, 0, 1, () => this.leaf(unit));
+  /** How wide the spray is at a place of its axis, on either side. @param {number} x 0 to 1 */
+  outline(x) {
+    return this.half * Math.max(0, Math.sin(Math.PI * Math.min(1, 0.12 + 0.88 * x) ** 0.85)) ** 0.7;
   }
 
-  /** Leaves without order in a disc. @param {number} leaf length of one */
-  cloud(leaf) {
+  /** A twig with side twigs; leaves in layers along them, so that the lower ones are in the shade.
+   * @param {number} leaf length of one */
+  spray(leaf) {
     const { look, random } = this;
     const unit = this.unit * leaf;
-    const count = (look.form === "compound" ? 5 : 2.1) / (unit * unit) / Math.max(0.6, 2 * look.slender);
-    for (let i = 0; i < count; i++) {
-      const far = (0.5 - 0.55 * unit) * Math.sqrt(random());
-      const at = 2 * Math.PI * random();
-      const turn = at + 2.4 * (random() - 0.5);
-      const [x, y] = [Math.cos, Math.sin].map((of) => far * of(at) - 0.4 * unit * of(turn));
-      this.at(0.5 + x, y, turn, 1, () => this.leaf(unit * (0.75 + 0.4 * random())));
-    }
-  }
-
-  /** A twig of a conifer: needles on both sides, one in the shade of the other, and side shoots that grow
-   * shorter to its tip. @param {number} length @param {number} unit length of a shoot @param {boolean} [isSide] */
-  shoot(length, unit, isSide = false) {
-    const { look: { form, twig }, random } = this;
-    const [isTuft, isFrond] = [form === "tufts", form === "fronds"];
-    const colors = [this._color(), this._color()];
-    this.line(length, 0.06 * unit, css(twig));
-    const from = isTuft ? Math.max(0, length - 0.7 * unit) : 0;
-    const long = Math.max(isTuft ? 0.75 * unit : 0.28 * unit, 0.03);
-    const width = Math.max((isTuft ? 0.04 : isFrond ? 0.2 : 0.1) * long, 0.004);
-    const count = isTuft ? 44 : (1.1 * length) / width;
-    for (let i = 0; i < count; i++) {
-      const lean = (i % 2 ? 1 : -1) * (isTuft ? 1.4 * random() : 0.6 + 0.3 * random());
-      this.at(from + (length - from) * (i / count), 0, lean, 1, () => this.line(long * (0.7 + 0.5 * random()), width, colors[i % 2]));
-    }
+    const reach = Math.max(0.3, 1 - 0.9 * unit);
+    /** @type {number[][]} */
+    const twigs = [[0, 0, 0, reach]];
     let side = 1;
-    for (let at = 0.08 * length; at < length - 0.5 * unit; at += Math.max(isSide ? unit : 0.42 * unit, 0.05), side = -side) {
-      const reach = isSide ? 0.7 * unit : 0.2 * unit + 0.48 * (length - at);
-      if (!isSide || length > 2 * unit) {
-        this.at(at, 0, side * (0.8 + 0.25 * random()), 1, () => this.shoot(reach * (0.75 + 0.4 * random()), unit, true));
+    for (let x = 0.06; x < 0.9 * reach; x += Math.max(0.05, 0.62 * unit), side = -side) {
+      const lean = side * (0.7 + 0.35 * random());
+      const room = Math.min(this.outline(x / reach), this.half - 0.1 * unit) / Math.abs(Math.sin(lean));
+      const long = (0.8 + 0.2 * random()) * Math.min(room, 0.7) - 0.75 * unit;
+      if (long > 0.25 * unit) twigs.push([x, 0, lean, long]);
+    }
+    for (const [x, y, turn, long] of twigs) this.at(x, y, turn, 1, () => this.line(long, 0.05 * leaf + 0.002, css(look.twig, 0.8)));
+    const step = (look.form === "compound" ? 0.26 : 0.42) * unit;
+    for (let layer = 0; layer < LAYERS; layer++) {
+      const light = 0.55 + (0.5 * layer) / (LAYERS - 1);
+      for (const [x, y, turn, long] of twigs) {
+        for (let far = (turn ? 0.2 : 0.5) * unit + step * (layer / LAYERS); far < long; far += step) {
+          side = -side;
+          const lean = turn + side * (0.45 + 0.7 * random());
+          const [cx, cy] = [x + far * Math.cos(turn), y + far * Math.sin(turn)];
+          // A leaf that would be cut off at the edge of the picture is a smaller one.
+          const room = (this.half - Math.abs(cy)) / Math.max(0.05, Math.abs(Math.sin(lean)) + 0.3 * look.slenderness);
+          const size = Math.min(unit * (0.7 + 0.35 * random()), 0.99 - cx, Math.sin(lean) * cy < 0 ? 1 : room);
+          if (size > 0.3 * unit) this.at(cx, cy, lean, 1, () => this.leaf(size, light));
+        }
+        const [ex, ey] = [x + long * Math.cos(turn), y + long * Math.sin(turn)];
+        const size = Math.min(0.9 * unit, 0.99 - ex, (this.half - Math.abs(ey)) / Math.max(0.1, Math.abs(Math.sin(turn))));
+        this.at(ex, ey, turn + 0.5 * (random() - 0.5), 1, () => this.leaf(size, light));
       }
     }
   }
 
-  /** One leaf from its stalk on. @param {number} long */
-  leaf(long) {
+  /** A branchlet with side shoots clad in needles, apart from each other like fingers: dark near the axis,
+   * lighter at the tips. @param {number} shoot length of needles and shoot together */
+  needles(shoot) {
+    const { look: { form, twig }, random, half } = this;
+    const isFrond = form === "fronds";
+    const apart = Math.max(0.09, 0.7 * shoot);
+    const long = (isFrond ? 0.4 : 0.62) * apart;
+    const wide = Math.max(0.16 * long, 0.005);
+    /** @type {number[][]} */
+    const shoots = [[0, 0, 0, 1 - 0.9 * long]];
+    let side = 1;
+    for (let x = 0.02; x < 0.9; x += 0.5 * apart, side = -side) {
+      const lean = side * (0.75 + 0.25 * random());
+      const reach = (0.7 + 0.3 * random()) * Math.min(this.outline(x), (half - 0.5 * long) * (1.05 - x) ** 0.6) / Math.abs(Math.sin(lean));
+      if (reach > 0.03) shoots.push([x, 0, lean, Math.min(reach, 1.1 - x)]);
+      for (let far = apart; far < reach - 0.5 * apart; far += apart) {
+        shoots.push([x + far * Math.cos(lean), far * Math.sin(lean), lean - 0.8 * side, 0.5 * (reach - far)]);
+      }
+    }
+    for (const isUpper of [false, true]) {
+      for (const [x, y, lean, reach] of shoots) {
+        this.at(x, y, lean, 1, () => {
+          if (!isUpper) this.line(reach, 0.02 * apart + 0.003, css(twig, 0.7));
+          const count = Math.max(5, Math.round((isUpper ? 1.0 : 1.5) * reach / wide));
+          for (let i = 0; i < count; i++) {
+            const far = (i + random()) / count;
+            const out = Math.min(1, 0.5 * Math.hypot(x, y) + 0.55 * far);
+            const color = this.color((isUpper ? 0.72 : 0.42) + 0.5 * out, Math.max(0, 1.6 * far - 0.8));
+            const tilt = (i % 2 ? 1 : -1) * (isFrond ? 0.45 : 0.55 + 0.5 * random()) * (isUpper ? 0.7 : 1);
+            this.at(far * reach, 0, tilt, 1, () => this.line(long * (0.6 + 0.4 * random()), wide, color));
+          }
+        });
+      }
+    }
+  }
+
+  /** Tufts of long needles at the end of a shoot and of its side shoots. */
+  tuft() {
+    const { look: { twig }, random, half } = this;
+    /** @type {number[][]} */
+    const middles = [[0.62, 0, 0.36]];
+    for (const [x, y] of [[0.5, 0.5], [0.47, -0.48], [0.3, 0.34], [0.27, -0.3]]) {
+      middles.push([x + 0.08 * random(), half * y, 0.27]);
+    }
+    middles.sort((a, b) => a[0] - b[0]);
+    for (const [x, y] of middles) {
+      this.at(0, 0, Math.atan2(y, x), 1, () => this.line(Math.hypot(x, y), 0.016, css(twig, 0.8)));
+    }
+    for (const isUpper of [false, true]) {
+      for (const [x, y, size] of middles) {
+        const heading = Math.atan2(0.6 * y, 0.4);
+        for (let i = 0; i < 70; i++) {
+          const turn = heading + (isUpper ? 1.7 : 2.6) * (random() + random() - 1);
+          const long = size * (0.65 + 0.35 * random()) * (isUpper ? 0.85 : 1);
+          const reach = Math.min(long, 0.98 - x, (half - Math.abs(y)) / Math.max(0.01, Math.abs(Math.sin(turn))) * (Math.sin(turn) * y > 0 ? 1 : 9));
+          const color = this.color((isUpper ? 0.85 : 0.5) + 0.25 * random(), isUpper ? 0.35 * random() : 0);
+          this.at(x, y, turn, 1, () => this.line(reach, 0.012, color));
+        }
+      }
+    }
+  }
+
+  /** One leaf from its stalk on. @param {number} long @param {number} light */
+  leaf(long, light) {
     const { context, look, random } = this;
-    const color = this._color();
-    const pairs = look.slender < 0.35 ? 5 : 4;
+    const color = this.color(light, light > 0.9 ? 0.12 : 0);
+    const pairs = look.slenderness < 0.35 ? 5 : 4;
     context.fillStyle = color;
     this.at(0, 0, 0, long, () => {
       if (look.form !== "compound") {

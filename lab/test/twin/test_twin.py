@@ -1,0 +1,67 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Scores of trees with sensors: known ones in closed form, and a short trial."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+from tree_sway_lab.twin.trial import _compared, _held, DT, squared_score
+from tree_sway_lab.twin.true_tree import sensor_places, tree_called, TrueMotion
+
+from tree_sway.commands.cli import main
+
+TIME = DT * np.arange(3000)
+TIPS = np.stack([np.sin(TIME), np.cos(1.3 * TIME), 0.0 * TIME], axis=1)[:, None]
+
+
+def test_the_truth_has_no_error() -> None:
+    assert _compared(TIPS, TIPS, 0) == pytest.approx((0.0, 1.0, 1.0))
+
+
+def test_error_is_of_the_motion_and_not_of_its_mean() -> None:
+    error, rough, stem = _compared(0.9 * TIPS + 5.0, TIPS, 0)
+    assert (error, rough, stem) == pytest.approx((0.1, 0.9, 1.0), abs=1e-9)
+
+
+def test_a_smoothed_motion_is_compared_with_the_truth_of_its_time() -> None:
+    late = np.roll(TIPS, 6, axis=0)
+    assert _compared(late, TIPS, 6)[0] == pytest.approx(0.0)
+    assert _compared(late, TIPS, 0)[0] > 0.05
+
+
+def test_a_band_holds_its_share_of_normal_errors() -> None:
+    wrong = np.random.default_rng(5).normal(0.0, 0.2, (20_000, 2, 3))
+    band = np.full_like(wrong, 1.2816 * 0.2)
+    assert _held(wrong, np.zeros_like(wrong), band) == pytest.approx(0.8, abs=0.01)
+
+
+def test_the_square_of_the_wind_explains_a_motion_that_is_one() -> None:
+    wind = np.zeros((len(TIME), 3))
+    wind[:, 0] = 5.0 + np.sin(TIME)
+    wind[:, 1] = np.cos(1.3 * TIME)
+    keep = float(np.exp(-2.0 * np.pi * 0.5 * DT))
+    tips, passed = np.empty((len(TIME), 1, 3)), np.zeros(3)
+    for k, each in enumerate(wind):
+        passed = keep * passed + (1.0 - keep) * np.linalg.norm(each) * each
+        tips[k, 0] = 0.01 * passed
+    tips[:, 0, 2] = 0.0
+    assert squared_score(TrueMotion(wind, tips, {}), 0.5).error < 1e-9
+
+
+def test_sensors_sit_on_the_stem_and_then_on_the_stoutest_limbs() -> None:
+    tree, _ = tree_called('straight')
+    places = sensor_places(tree, 4)
+    assert len(set(places)) == 4
+    assert places[0] == f'{tree.branch_names[0]}:0.6'
+
+
+def test_one_sensor_takes_away_most_of_the_error(capsys: pytest.CaptureFixture[str]) -> None:
+    words = 'lab twin --model 90 --seconds 45 --sensors 1 --'.split()
+    assert main([*words, 'spruce 4 6']) == 0
+    rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
+    errors = {row['sensors']: float(row['error']) for row in rows}
+    assert list(errors) == ['U^2', 'model', '1']
+    assert errors['1'] < 0.6 * min(errors['model'], errors['U^2'])

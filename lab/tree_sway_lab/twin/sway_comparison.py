@@ -1,0 +1,104 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A computed sway against a measured one: correlation, lag, amplitude and spectrum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import welch
+
+from tree_sway.core.arrays import Floats
+
+LONGEST_LAG = 5.0
+"""Largest lag that is looked for, to either side [s]."""
+
+BANDS = ((0.0, 0.5), (0.5, 1.5), (1.5, 4.0), (4.0, 10.0))
+"""Bands of the spectrum over the first frequency: gusts, the sway, and two above it."""
+
+_SEGMENT = 20.0
+"""Length of the segments of the spectrum in periods of the sway."""
+
+
+@dataclass(frozen=True)
+class SwayComparison:
+    """
+    How a computed sway differs from a measured one, about their means, over both axes.
+
+    Parameters
+    ----------
+    r
+        Correlation at the best lag [-].
+    lag
+        Time by which the computed sway is behind the measured one at its best [s].
+    error
+        Root mean square difference without a lag, over the measured motion [-].
+    rms
+        Root mean square of the computed motion over that of the measured one [-].
+    bands
+        Power of the computed motion over that of the measured one in each of `BANDS` [-]; not a
+        number above the highest measured frequency.
+
+    """
+
+    r: float
+    lag: float
+    error: float
+    rms: float
+    bands: tuple[float, ...]
+
+
+def compare_sway(
+    computed: Floats, measured: Floats, rate: float, frequency: float
+) -> SwayComparison:
+    """
+    Compare two sways of the same times.
+
+    Parameters
+    ----------
+    computed, measured
+        Displacement in [m], (n, k), one column per axis.
+    rate
+        Samples per second in [Hz].
+    frequency
+        First frequency of the tree in [Hz].
+
+    """
+    found = computed - computed.mean(axis=0)
+    wanted = measured - measured.mean(axis=0)
+    size = float(np.sqrt(np.square(wanted).mean()))
+    most = min(round(LONGEST_LAG * rate), len(found) // 4)
+    rs = [_correlation(found, wanted, lag) for lag in range(-most, most + 1)]
+    best = int(np.argmax(rs))
+    return SwayComparison(
+        rs[best],
+        (best - most) / rate,
+        float(np.sqrt(np.square(found - wanted).mean())) / size,
+        float(np.sqrt(np.square(found).mean())) / size,
+        _band_ratios(found, wanted, rate, frequency),
+    )
+
+
+def _correlation(found: Floats, wanted: Floats, lag: int) -> float:
+    """Correlation of a motion with another one that is earlier by a number of samples."""
+    n = len(found)
+    late = found[max(lag, 0) : n + min(lag, 0)]
+    early = wanted[max(-lag, 0) : n - max(lag, 0)]
+    power = np.square(late).sum() * np.square(early).sum()
+    return float((late * early).sum() / np.sqrt(max(power, 1e-300)))
+
+
+def _band_ratios(
+    found: Floats, wanted: Floats, rate: float, frequency: float
+) -> tuple[float, ...]:
+    length = min(len(found), max(round(_SEGMENT * rate / frequency), 8))
+    at, computed = welch(found, rate, nperseg=length, axis=0)
+    _, measured = welch(wanted, rate, nperseg=length, axis=0)
+    ratios = []
+    for low, high in BANDS:
+        rows = (at > low * frequency) & (at <= high * frequency)
+        is_measured = high * frequency <= 0.5 * rate and rows.any()
+        power = float(measured[rows].sum()) if is_measured else 0.0
+        ratios.append(float(computed[rows].sum()) / power if power > 0.0 else float('nan'))
+    return tuple(ratios)
