@@ -212,17 +212,11 @@ def test_who_may_set_nothing_may_not_pull(compose):
     assert nodes['viewer'].server.n_refused == 1
 
 
-def basis_is_sought():
-    return 'basis' in {thread.name for thread in threading.enumerate()}
-
-
-def test_the_first_who_listens_need_not_wait_for_the_basis(compose, observer, tree_file):
+def test_a_solver_that_is_active_has_described_its_tree(compose, observer, tree_file):
     nodes = compose(solver={'tree': tree_file})
-    observer.until(lambda: nodes['solver']._state._scene is not None, 'the basis', deadline=60.0)
-    observer.until(lambda: not basis_is_sought(), 'the end of the search')
+    assert nodes['solver']._state._scene is not None
     states = observer.listen(TREE_STATE)
     observer.until(lambda: states, 'a state')
-    assert not basis_is_sought()
     nodes.check()
 
 
@@ -276,8 +270,8 @@ def test_flags_of_the_solver_reach_the_page(compose, observer, tree_file):
     assert flags[-1] == WIND_LOST | PAUSED
 
 
-def test_without_states_no_basis_is_sought(compose, observer, tree_file):
-    compose(solver={'tree': tree_file, 'state_rate': 0.0})
+def test_without_states_no_tree_is_described(compose, observer, tree_file):
+    nodes = compose(solver={'tree': tree_file, 'state_rate': 0.0})
     poses = observer.listen(SEGMENT_POSES)
     observer.until(lambda: len(poses) > 30, 'poses')
-    assert not basis_is_sought()
+    assert nodes['solver']._state._scene is None

@@ -44,7 +44,7 @@ class Run:
 
     def __init__(self) -> None:
         self.simulator: Any = open_scene('goldcrest').simulator(Settings(), model=20)
-        self.state = SceneState(self.simulator, is_running=False)
+        self.state = SceneState(self.simulator)
         self.simulator.reset()
         client, seconds = _Client(None, None), 60.0 * MINUTES  # type: ignore[arg-type]
         rng = np.random.default_rng(5)
@@ -146,7 +146,7 @@ class Stand:
         one = open_scene('goldcrest').trees[0]
         trees = [replace(one, name=f't{k}', x=35.0 * k) for k in range(3)]
         simulator: Any = Scene(trees).simulator(Settings(model=20))
-        self.state = SceneState(simulator, is_running=False)
+        self.state = SceneState(simulator)
         simulator.reset()
         older, late = (_Client(None, None) for _ in range(2))  # type: ignore[arg-type]
         rng = np.random.default_rng(6)

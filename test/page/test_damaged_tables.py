@@ -61,7 +61,7 @@ def described_stand() -> Sound:
         PlacedTree('two', source, x=3.0, yaw=0.7, scale=1.4),
         PlacedTree('three', larger, y=3.0, species=source.species),
     ]
-    state = SceneState(Scene(trees).simulator(model=12), is_running=False)
+    state = SceneState(Scene(trees).simulator(model=12))
     tables = state.tables()
     assert tables is not None
     return Sound(state.description, decode_description(state.description), decode_tables(tables))

@@ -62,7 +62,7 @@ class Live:
 
 @pytest.fixture(scope='module')
 def live() -> Iterator[Live]:
-    """One for all tests, as finding the basis takes a while."""
+    """One for all tests, as setting a tree up takes a while."""
     made = Live()
     yield made
     made.session.stop()

@@ -156,7 +156,7 @@ def test_a_simulator_at_rest_finds_its_own_basis_and_is_as_before() -> None:
     for _ in range(30):
         simulator.step((6.0, 1.0, 0.0), 1.0 / 60.0)
     before = simulator.state().values
-    own = SceneState(simulator, is_running=False)
+    own = SceneState(simulator)
     np.testing.assert_array_equal(simulator.state().values, before)
     assert own.description == SceneState(simulator).description
 
@@ -280,6 +280,6 @@ def test_a_basis_is_found_while_the_scene_is_stepped_and_tuned() -> None:
 
 def test_a_running_scene_has_the_same_description_and_steps_none_of_its_models() -> None:
     scene = pair_of_trees()
-    at_rest = SceneState(pair_of_trees(), is_running=False).description
+    at_rest = SceneState(pair_of_trees()).description
     assert SceneState(scene).description == at_rest
     assert [model.counts.steps for model, _, _ in scene.shared] == [0]

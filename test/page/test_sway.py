@@ -61,7 +61,7 @@ def doubled(records: Any) -> Any:
 
 def exported(simulator: Simulator, folder: Path) -> Any:
     """Write what a receiver is given, and return the Python receiver of it."""
-    scene = SceneState(simulator, is_running=False)
+    scene = SceneState(simulator)
     tables = tables_of(simulator, scene.kinds, scene.identity)
     assert tables is not None
     (folder / 'description.bin').write_bytes(scene.description)

@@ -34,7 +34,7 @@ def pushed_in_javascript(simulator: Simulator, folder: Path, push: dict[str, Any
     node = shutil.which('node')
     if node is None:
         pytest.skip('node is not installed here')
-    scene = SceneState(simulator, is_running=False)
+    scene = SceneState(simulator)
     (folder / 'description.bin').write_bytes(scene.description)
     (folder / 'tables.bin').write_bytes(scene.tables() or b'')
     given = {'push': push, 'wind': WIND, 'steps': STEPS, 'steps_pushed': PUSHED}

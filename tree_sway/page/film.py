@@ -68,7 +68,7 @@ def page_pictures(
         No browser, or one that draws nothing.
 
     """
-    scene = SceneState(simulator, n_leaves, is_running=False)
+    scene = SceneState(simulator, n_leaves)
     page = page_of_state(scene, 'film.js')
     states, pictures = Queue[bytes](), Queue[bytes]()
 

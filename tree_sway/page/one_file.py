@@ -41,7 +41,7 @@ def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
     Parameters
     ----------
     simulator
-        A tree or a scene on a number of coordinates; it is run to find the basis of its state.
+        A tree or a scene on a number of coordinates.
     n_leaves
         Number of clusters of leaves, as in `SceneState`.
 
@@ -52,7 +52,7 @@ def page_of_scene(simulator: Simulator, n_leaves: int = _LEAVES) -> str:
         `why_no_tables`.
 
     """
-    return page_of_state(SceneState(simulator, n_leaves, is_running=False))
+    return page_of_state(SceneState(simulator, n_leaves))
 
 
 def page_of_state(scene: SceneState, script: str = '') -> str:

@@ -239,7 +239,7 @@ class Session:
 
     def _made(self, choices: Choices) -> tuple[SceneState, Run]:
         simulator = self._build(choices)
-        scene = SceneState(simulator, _LEAVES, is_running=False)
+        scene = SceneState(simulator, _LEAVES)
         set_demand(simulator.simulators, tolerance=self._tolerance)
         simulator.reset()
         intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))

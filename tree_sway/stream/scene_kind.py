@@ -14,12 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.model.settings import USUAL
 from tree_sway.core.model.state_basis import StateBasis
-from tree_sway.core.run.find_basis import state_basis
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
-from tree_sway.core.setup.prepare import prepare
 
 Place = tuple[float, float, float, float, float]
 """Place of a tree: x, y, z [m], rotation about the vertical [rad], scale."""
@@ -50,24 +47,13 @@ class SceneKind:
     places: list[Place]
 
 
-def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneKind]:
-    """
-    Find the kinds of a scene, and their bases.
-
-    Parameters
-    ----------
-    simulator
-        The simulator of a tree or a scene.
-    is_running
-        True if it is stepped at the same time: then a basis is found on a copy.
-
-    """
+def scene_kinds(simulator: Simulator) -> list[SceneKind]:
+    """Return the kinds of the trees of a simulator, of one tree or of a scene."""
     if not isinstance(simulator, SceneSimulator):
-        return [_alone(0, each, is_running) for each in simulator.simulators]
+        return [_alone(0, each) for each in simulator.simulators]
     kinds, trees = [], simulator.scene.trees
     for model, bank, numbers in simulator.shared:
-        # The scene steps its own records, but a change of tuning goes through the model.
-        basis = state_basis(_runner(model, is_running))
+        basis = model.basis
         per_shape = bank.all_shapes @ basis.projection.T
 
         def found(numbers: Ints = numbers, per_shape: Floats = per_shape) -> Floats:
@@ -76,26 +62,15 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
         where = [trees[number] for number in numbers.tolist()]
         places = [(tree.x, tree.y, tree.z, tree.yaw, tree.scale) for tree in where]
         kinds.append(SceneKind(model, basis, found, numbers.tolist(), places))
-    return kinds + [_alone(t, each, is_running) for t, each in simulator.own.items()]
+    return kinds + [_alone(t, each) for t, each in simulator.own.items()]
 
 
-def _alone(number: int, simulator: SwaySimulator, is_running: bool) -> SceneKind:
+def _alone(number: int, simulator: SwaySimulator) -> SceneKind:
     """Return the kind of a single tree, described at its place."""
-    basis = state_basis(_runner(simulator, is_running))
+    basis = simulator.basis
     x, y, z = simulator.tree.start[0].tolist()
 
     def found() -> Floats:
         return np.asarray(basis.projection @ simulator.bank.oscillators.rotations())[None]
 
     return SceneKind(simulator, basis, found, [number], [(x, y, z, 0.0, 1.0)])
-
-
-def _runner(simulator: SwaySimulator, is_running: bool) -> SwaySimulator:
-    """Choose the simulator for finding the basis: this one if at rest and as cheap."""
-    is_cheap = simulator.model not in ('full', 'auto')
-    if is_cheap and not is_running:
-        return simulator
-    if simulator.model != 'full':
-        return SwaySimulator(simulator.prepared)
-    made_of = simulator.tree, simulator.species, simulator.settings
-    return SwaySimulator(prepare(*made_of, model=USUAL))

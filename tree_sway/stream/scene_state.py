@@ -31,8 +31,6 @@ class SceneState:
     """
     Writer of the state of a tree or a scene.
 
-    Finding the basis takes some seconds; the simulator may run meanwhile.
-
     Parameters
     ----------
     simulator
@@ -42,8 +40,6 @@ class SceneState:
         `FULLY_LEAVED` kinds.
     frame_id
         Frame of the poses.
-    is_running
-        True if the simulator is stepped at the same time; if not, it is run itself, and set back.
 
     Raises
     ------
@@ -57,11 +53,9 @@ class SceneState:
         simulator: Simulator,
         n_leaves: int = 0,
         frame_id: str = 'map',
-        *,
-        is_running: bool = True,
     ) -> None:
         self.simulator = simulator
-        self.kinds = scene_kinds(simulator, is_running=is_running)
+        self.kinds = scene_kinds(simulator)
         if isinstance(simulator, SceneSimulator):
             self.names, name = simulator.names, simulator.scene.name
         else:

@@ -89,8 +89,8 @@ class SolverNode(TreeSwayNode):
 
     def activate(self) -> None:
         """Begin to sway from rest."""
-        self.run_worker(self.pacer)
         self._state.start()
+        self.run_worker(self.pacer)
 
     def _open(self) -> Any:
         named = self.values['species']

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import math
-import threading
 from typing import Any
 
 from tree_sway.core.scene.run import Run
@@ -22,8 +21,7 @@ class StatePublisher:
     """
     Publishes `tree_state` to subscribers, and its description in `tree_description`.
 
-    The basis takes some seconds to find, on a separate thread, as soon as the solver sways, so
-    that it is known to the first subscriber.
+    A tree that cannot be described has no state, which is logged.
     """
 
     def __init__(self, node: Any, simulator: Simulator, n_leaves: int) -> None:
@@ -36,11 +34,9 @@ class StatePublisher:
         self._scene: SceneState | None = None
 
     def start(self) -> None:
-        """Find the basis, unless it is known or states are not wanted."""
+        """Describe the trees, unless they are or states are not wanted."""
         if self._every and self._scene is None:
-            finder = threading.Thread(target=self._find, name='basis', daemon=True)
-            finder.start()
-            self._node.on_close(lambda: finder.join(timeout=10.0))
+            self._describe()
 
     def publish(self, index: int, stamp: int, run: Run) -> None:
         """Publish the state of a run if one is due at a tick of that number and time [ns]."""
@@ -55,7 +51,7 @@ class StatePublisher:
         state = ModalState(stamp, self._simulator.wind, flags, coordinates)
         self._publisher.publish(self._writer.to_bytes(state))
 
-    def _find(self) -> None:
+    def _describe(self) -> None:
         try:
             frame_id = self._node.values['frame_id']
             scene = SceneState(self._simulator, self._n_leaves, frame_id)

@@ -243,7 +243,7 @@ def test_springs_that_are_none_and_pushes_that_are_too_many_are_refused(tree):
 @pytest.mark.parametrize('name', ['goldcrest', pytest.param('benjamina', marks=pytest.mark.long)])
 def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
     sim = open_scene(name).simulator(Settings(damping_ratio=0.5), model=60)
-    tree, state = sim.tree, SceneState(sim, is_running=False)
+    tree, state = sim.tree, SceneState(sim)
     described = decode_description(state.description)
     reductions = TreeReductions(sim.tree, sim.species, sim.settings)
     factors, n_rotations = reductions.with_subtrees.reduction.factors, len(sim.rotations())

@@ -178,7 +178,7 @@ def test_morph_targets_are_named_and_within_what_is_reported(simulator, morphing
 def test_a_weight_is_a_coordinate_over_its_unit(simulator, morphing):
     document, arrays = morphing
     extras = document['meshes'][0]['extras']
-    basis = gltf_tree.state_basis(simulator)
+    basis = simulator.basis
     assert extras['basis'] == basis.digest
     coordinates = np.zeros(basis.n_coordinates)
     coordinates[2] = 0.01 * extras['unit'][2]

@@ -23,7 +23,7 @@ FULL_SCALE = 32767
 
 MARGIN = 5.0
 """
-Full scale of a coordinate over its largest value in the runs for the basis; beyond them the error
+Full scale of a coordinate over its largest value in the winds of the error; beyond these the error
 of the basis is unknown.
 
 """
@@ -43,8 +43,8 @@ class StateBasis:
     scale
         Value of each coordinate at `FULL_SCALE`, (m,).
     error
-        Largest error of the place of a segment in [m], with coordinates as int16, over a run that
-        is not one of those for the basis.
+        Largest error of the tip of a branch in [m], with coordinates as int16, in a wind of 13 m/s
+        and its gusts (`setup.stream_basis`).
 
     """
 
@@ -74,5 +74,10 @@ class StateBasis:
 
     def rounded(self, coordinates: Floats) -> Floats:
         """Coordinates (m,) after rounding to int16."""
-        steps = np.rint(coordinates * (FULL_SCALE / self.scale))
-        return np.clip(steps, -FULL_SCALE, FULL_SCALE) * (self.scale / FULL_SCALE)
+        return rounded(coordinates, self.scale)
+
+
+def rounded(coordinates: Floats, scale: Floats) -> Floats:
+    """Coordinates (..., m) after rounding to int16, of values at full scale (m,)."""
+    steps = np.rint(coordinates * (FULL_SCALE / scale))
+    return np.asarray(np.clip(steps, -FULL_SCALE, FULL_SCALE) * (scale / FULL_SCALE))

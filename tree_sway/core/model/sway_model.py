@@ -9,13 +9,14 @@ under the same names. ``doc/sway_model.md`` documents every array and the law of
 
 Sizes: n segments, b branches (a branch that rotates far is cut into several), N key rotations of
 all branches, k the largest number of them in one branch, m coordinates, q leading coordinates,
-A azimuths and L levels of the table, h harmonics.
+s streamed coordinates, A azimuths and L levels of the table, h harmonics.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, MISSING
+from functools import cached_property
 import hashlib
 from typing import Annotated, Any, get_args, get_type_hints, NamedTuple
 
@@ -28,12 +29,13 @@ from tree_sway.core.model.drag_law import DragLaw
 from tree_sway.core.model.records import N_AZIMUTHS, N_LEVELS
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.spherical_harmonics import N_HARMONICS
+from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.tree.wood import Species
 from tree_sway.errors import FormatError
 
-PLACING, LOADS, COORDINATES, TABLE, ISOLATED, LIMBS, LIMB_LOADS = (
-    'placing', 'loads of branches', 'coordinates', 'table', 'isolated branches', 'limbs',
+PLACING, LOADS, COORDINATES, STREAM, TABLE, ISOLATED, LIMBS, LIMB_LOADS = (
+    'placing', 'loads of branches', 'coordinates', 'stream', 'table', 'isolated branches', 'limbs',
     'loads of limbs',
 )  # fmt: skip
 """Groups of arrays."""
@@ -216,6 +218,20 @@ class SwayModel:
         'unit of the last axis',
     )] = field(default_factory=_absent)  # fmt: skip
 
+    stream_shapes: Annotated[Floats, Meaning(
+        STREAM, ('m', 's'), '', 'coordinates per unit of each streamed coordinate, a length',
+    )] = field(default_factory=_absent)  # fmt: skip
+    stream_projection: Annotated[Floats, Meaning(
+        STREAM, ('s', 'm'), '', 'streamed coordinates of coordinates',
+    )] = field(default_factory=_absent)  # fmt: skip
+    stream_scale: Annotated[Floats, Meaning(
+        STREAM, ('s',), 'm', 'value of each streamed coordinate at the full scale of an int16',
+    )] = field(default_factory=_absent)  # fmt: skip
+    stream_error: Annotated[Floats, Meaning(
+        STREAM, (1,), 'm', 'largest error of the tip of a branch, in int16, in a wind of 13 m/s '
+        'and its gusts',
+    )] = field(default_factory=_absent)  # fmt: skip
+
     most_pressure: float = 0.0
     most_energy: float = 0.0
     limit: Annotated[Floats, Meaning(
@@ -315,6 +331,16 @@ class SwayModel:
         """Whether gusts reach its limbs one after another."""
         return self.limb_delay.size > 0
 
+    @cached_property
+    def basis(self) -> StateBasis:
+        """Return the basis in which the motion is streamed; isolated branches have none here."""
+        return StateBasis(
+            self.shapes @ self.stream_shapes,
+            self.stream_projection @ self.projection,
+            self.stream_scale,
+            float(self.stream_error[0]),
+        )
+
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Return the arrays by name, without absent ones; numbers are arrays without an axis."""
         found = {name: np.asarray(getattr(self, name), dtype=np.float64) for name in NUMBERS}
@@ -357,6 +383,7 @@ class SwayModel:
             PLACING: True,
             LOADS: True,
             COORDINATES: not self.is_isolated,
+            STREAM: not self.is_isolated,
             TABLE: self.has_table,
             ISOLATED: self.is_isolated,
             LIMBS: self.has_limbs,
@@ -368,7 +395,8 @@ class SwayModel:
         count, twists = len(self.branch_parent), self.branch_twist.shape
         sizes: dict[int | str, int] = {'n': self.tree.n_segments, 'b': count, 'b + 1': count + 1}
         sizes |= {'k': twists[1] if len(twists) > 1 else 0, 'N': self.n_keys}
-        return sizes | {'m': len(self.stiffness), 'q': len(self.inertia_slopes)}
+        sizes |= {'m': len(self.stiffness), 's': len(self.stream_scale)}
+        return sizes | {'q': len(self.inertia_slopes)}
 
     def _check_indices(self) -> None:
         """Refuse indices by which a kernel would read past the end of an array."""

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 import math
 from typing import Any, TYPE_CHECKING
 
@@ -21,6 +22,7 @@ from tree_sway.core.checks import (
     within,
 )
 from tree_sway.core.model.drag_law import pressure
+from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.model.tree_state import digest_of, TreeState
 from tree_sway.core.run.assembly import bank_of
@@ -128,6 +130,15 @@ class SwaySimulator:
     def model(self) -> str:
         """Model in use: its name, or its number of coordinates."""
         return str(self.settings.model)
+
+    @cached_property
+    def basis(self) -> StateBasis:
+        """Return the basis in which the motion is streamed; no state is read or changed."""
+        if not self.prepared.is_isolated:
+            return self.prepared.basis
+        from tree_sway.core.setup.uncoupled_responses import basis_of_isolated
+
+        return basis_of_isolated(self.prepared, self.joints)
 
     @property
     def simulators(self) -> tuple[SwaySimulator, ...]:

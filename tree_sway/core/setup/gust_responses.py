@@ -81,12 +81,12 @@ def gust_slopes(
     pushed = (at + own_motion(branches, 'load_mode', shapes)).reshape(-1, m).T
     at += own_motion(branches, 'damping_mode', shapes)
     for ahead in winds:
-        slope = _drag_slopes(branches, ahead)
+        slope = drag_slopes(branches, ahead)
         load = pushed @ (branches['speed'][:, None, None] * slope).reshape(-1, 3)
         yield load, pushed @ (slope @ at).reshape(-1, m)
 
 
-def _drag_slopes(branches: Records, ahead: Floats) -> Floats:
+def drag_slopes(branches: Records, ahead: Floats) -> Floats:
     """Slopes of drag by the velocity of the air in a wind of 1 kg/m^3, (b, 3, 3)."""
     projector = branches['projector'][:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
     across = projector @ ahead

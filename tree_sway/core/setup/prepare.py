@@ -20,15 +20,23 @@ from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
+from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
+from tree_sway.core.setup.leaning_responses import leaning_responses
 from tree_sway.core.setup.load_table import fit_harmonics, load_table
 from tree_sway.core.setup.modal_arrays import Coordinates, modal_arrays
 from tree_sway.core.setup.modes import refuse_buckling, solvable
 from tree_sway.core.setup.one_thread import one_thread
 from tree_sway.core.setup.reductions import ReducedTree, TreeReductions
 from tree_sway.core.setup.static_responses import WindMoments
+from tree_sway.core.setup.stream_basis import (
+    arrays_of_stream,
+    basis_of_responses,
+    stream_arrays,
+    WEIGHTS,
+)
 from tree_sway.core.setup.subtree_inertia import subtree_inertia
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.species import Species
@@ -152,9 +160,33 @@ def _coupled_tree(reductions: TreeReductions, settings: Settings) -> SwayModel:
         branch_compliance=arrays['branch_compliance'],
         shape_compliance=arrays['mode_compliance'],
         inertia_slopes=slopes,
+        **_stream(reductions, coordinates, arrays['momentum'].T, table),
         **table,
         **_limbs(reductions, reduced, order, shapes if table else None),
     )
+
+
+def _stream(
+    reductions: TreeReductions, coordinates: Coordinates, projection: Floats, table: dict[str, Any]
+) -> dict[str, Any]:
+    """
+    Find the basis of the stream.
+
+    It comes from the responses of the leaning tree by its table, and where there is none from the
+    responses to gusts and winds that the coordinates come from.
+    """
+    law, shapes = reductions.drag_law, coordinates.shapes
+    branches = reductions.with_subtrees.branches
+    if table:
+        own = coordinates.stiffness, coordinates.damping
+        return stream_arrays(branches, shapes, leaning_responses(table, *own, law, tuple(WEIGHTS)))
+    if not coordinates.stiffness.size:
+        return arrays_of_stream(StateBasis(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0), 0.0))
+    responses = reductions.responses
+    in_gale = responses.in_gale * responses.rotations
+    found = basis_of_responses(branches, responses.rotations, in_gale)
+    matrix, back = projection @ found.matrix, found.projection @ shapes
+    return arrays_of_stream(replace(found, matrix=matrix, projection=back))
 
 
 EVENLY_DAMPED = 40

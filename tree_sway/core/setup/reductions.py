@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import NamedTuple, TYPE_CHECKING
 
 import numpy as np
 
@@ -43,8 +43,24 @@ Weight of steady responses over gust responses, root mean square, as for a turbu
 some 0.25.
 """
 
+_GALE = 20.0
+"""Wind of `Responses.in_gale` [m/s]."""
+
 _CANDIDATES = 120
 """Number of natural modes by which responses to gusts are computed."""
+
+
+class Responses(NamedTuple):
+    """
+    Responses of a tree to gusts and steady winds, multiplied by their weights.
+
+    They are key rotations, (N, c), and the motion of the tips by them, (any, c); times ``in_gale``
+    they are poses in a wind of 20 m/s in [rad].
+    """
+
+    rotations: Floats
+    tips: Floats
+    in_gale: float
 
 
 @dataclass(frozen=True)
@@ -121,9 +137,16 @@ class TreeReductions:
         count = n if isinstance(model, str) else min(model, n)
         if count in (0, n):
             return self.natural_modes(1 if count == 0 else None).slowest(count)
+        responses = self.responses
+        return leading_modes(reduction, responses.rotations, responses.tips, count)
+
+    @cached_property
+    def responses(self) -> Responses:
+        """Return the responses to gusts and winds of the tree reduced with its subtrees."""
         from tree_sway.core.setup.gust_responses import gust_responses
         from tree_sway.core.setup.tree_motion import tip_motion
 
+        n = self.with_subtrees.reduction.n_coordinates
         candidates = min(n, _CANDIDATES)
         natural = self.natural_modes(None if candidates == n else candidates)
         branches = self.with_subtrees.branches
@@ -139,7 +162,8 @@ class TreeReductions:
         tips, moved_steadily = tips @ mixes, moved(steady)
         weight = _STEADY * np.linalg.norm(tips) / np.linalg.norm(moved_steadily)
         answers = np.hstack([natural.shapes @ mixes, weight * steady])
-        return leading_modes(reduction, answers, np.hstack([tips, weight * moved_steadily]), count)
+        in_gale = pressure(_GALE, *self.drag_law) * _GALE**2 / weight
+        return Responses(answers, np.hstack([tips, weight * moved_steadily]), float(in_gale))
 
     def _static_responses(self) -> Floats:
         """Responses of the tree to winds as key rotations, per pressure of 1 kg/m/s^2."""

@@ -20,6 +20,22 @@ def tip_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     return displacement_at(bases, branches['tip']) + own_motion(branches, 'tip_mode', rotations)
 
 
+def tip_moments(joints: Records, forces: Floats) -> Floats:
+    """Moments on coordinates (N, m) under forces on tips (b, 3, m): `tip_motion` transposed."""
+    moments = np.zeros((int(joints['n_coordinates'].sum()), forces.shape[-1]))
+    wrench = np.concatenate([forces, np.cross(joints['tip'][:, :, None], forces, axis=1)], axis=1)
+    for b in range(len(joints) - 1, -1, -1):
+        joint = joints[b]
+        k, i = int(joint['n_coordinates']), int(joint['coordinate'])
+        moments[i : i + k] += joint['tip_mode'][:k] @ forces[b]
+        if joint['parent'] >= 0:
+            parent = joints[joint['parent']]
+            k, i = int(parent['n_coordinates']), int(parent['coordinate'])
+            moments[i : i + k] += joint['twist'][:k] @ wrench[b]
+            wrench[joint['parent']] += wrench[b]
+    return moments
+
+
 def centre_motion(branches: Records, rotations: NDArray[Any]) -> NDArray[Any]:
     """Displacement of the load centres of branches by small rotations (N, ...), (b, 3, ...)."""
     bases = base_motion(branches, rotations)

@@ -21,7 +21,6 @@ from scipy.spatial.transform import Rotation
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.model.state_basis import MARGIN, StateBasis
-from tree_sway.core.run.find_basis import state_basis
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import look_of
 from tree_sway.core.tree.tree import Tree
@@ -99,7 +98,7 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     vertex by half the size of the tree, and the vertices of a ring of wood move together. An
     animation shows a breeze.
     """
-    tree, basis = simulator.tree, state_basis(simulator)
+    tree, basis = simulator.tree, simulator.basis
     storm = basis.scale / MARGIN
     document, rest = GltfDocument(_GENERATOR), tree.rest_poses
     meshes = _meshes(tree, leaves)

@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A tree's shape in a few coordinates."""
+"""The basis of the stream: the shape of a tree in a few coordinates."""
 
 from __future__ import annotations
 
@@ -10,14 +10,17 @@ import sys
 
 import numpy as np
 import pytest
+from scipy import linalg
+from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.model.state_basis import FULL_SCALE
-from tree_sway.core.run.find_basis import state_basis, tip_moments
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup.tree_motion import tip_motion
+from tree_sway.core.setup.leaning_responses import leaning_responses, N_FREQUENCIES
+from tree_sway.core.setup.stream_basis import COUNTS, LEFT_OUT, principal_components
+from tree_sway.core.setup.tree_motion import tip_moments, tip_motion
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
-from tree_sway.stream.protocol import quantised
+from tree_sway.stream.protocol import FRAME_SIZE, quantised
 
 DT = 1.0 / 60.0
 
@@ -26,7 +29,7 @@ DT = 1.0 / 60.0
 def with_basis(name):
     """Make a tree that sways, and its basis; once."""
     sim = make_simulator(builtin_tree(name), model=60)
-    return sim, state_basis(sim)
+    return sim, sim.basis
 
 
 @pytest.fixture
@@ -99,8 +102,75 @@ def test_forces_on_tips_do_the_work_that_moments_do(fork):
     assert x.T @ tip_moments(joints, forces) == pytest.approx(work, rel=1e-12)
 
 
+def test_principal_components_are_those_of_the_singular_values():
+    """Against scipy's singular value decomposition of the motion of the tips."""
+    rng = np.random.default_rng(4)
+    tips = rng.normal(size=(90, 40)) * np.geomspace(1.0, 1e-3, 40)
+    motions = rng.normal(size=(40, 200)) * np.geomspace(1.0, 1e-3, 200)
+    shapes, projection = principal_components(tips.T @ tips, motions)
+    ways, sizes, _ = linalg.svd(tips @ motions)
+    count = shapes.shape[1]
+    assert count in COUNTS
+    left_out = np.sqrt(1.0 - np.cumsum(sizes**2) / np.sum(sizes**2))
+    assert left_out[count - 1] <= LEFT_OUT < left_out[count - 5]
+    assert projection @ shapes == pytest.approx(np.eye(count), abs=1e-9)
+    found, wanted = tips @ shapes, ways[:, :count]
+    assert np.abs((found * wanted).sum(axis=0)) == pytest.approx(np.ones(count), abs=1e-6)
+
+
+def test_motions_that_are_too_many_for_a_frame_take_the_most_that_it_has():
+    shapes, _ = principal_components(np.eye(50), np.eye(50))
+    assert shapes.shape == (50, COUNTS[-1])
+
+
+@pytest.mark.parametrize('model', ['branch', 'full', 'auto', 12])
+def test_the_motion_of_every_model_is_streamed(model):
+    sim = make_simulator(bench_tree(), model=model)
+    gap, motion = gaps(sim, sim.basis, 9.0)
+    assert np.sqrt(np.square(gap).mean()) < 0.01 * np.sqrt(np.square(motion).sum(axis=2).mean())
+
+
+def test_a_frame_has_at_most_a_hundred_bytes(basis):
+    assert FRAME_SIZE + 2 * basis.n_coordinates <= 100
+
+
+@pytest.mark.parametrize(('what', 'component'), [('along', 0), ('across', 1), ('up', 2)])
+def test_gusts_move_a_leaning_tree_as_they_do_when_it_is_stepped(what, component):
+    """Small gusts of one frequency on a steady wind of 13 m/s, stepped until they repeat."""
+    speed, azimuth = 13.0, 4  # of 24: 60 degrees
+    sim = make_simulator(bench_tree(), model=12)
+    bank = sim.bank.oscillators
+    stiffness, damping = bank.modal.stiffness, bank.modal.damping
+    leaning = next(
+        leaning_responses(sim.prepared.arrays(), stiffness, damping, sim.drag_law, (speed,))
+    )
+    slowest, fastest = np.sqrt([stiffness.min(), stiffness.max()])
+    swept = np.geomspace(slowest / 1.5, 1.5 * fastest, N_FREQUENCIES)
+    spectrum = np.maximum(swept, slowest) ** (-1.0 / 3.0)
+    amplitude = spectrum / np.linalg.norm(spectrum) * 0.25 * (1.0, 0.8, 0.5)[component]
+    n_frequency, gust, dt = 6, 0.01 * speed, 1.0 / 120.0
+    expected = leaning.gusts[azimuth, n_frequency, :, component] / amplitude[n_frequency]
+    angle = np.pi / 3.0
+    ways = (np.cos(angle), np.sin(angle), 0.0), (-np.sin(angle), np.cos(angle), 0.0), (0, 0, 1.0)
+    steady, beside = speed * np.array(ways[0]), gust * np.array(ways[component])
+    period = 2.0 * np.pi / swept[n_frequency]
+    steps = round(40.0 * period / dt)
+    phase = swept[n_frequency] * dt * (np.arange(steps) + 0.5)
+    found = np.zeros((steps, 12))
+    for step, now in enumerate(np.cos(phase)):
+        sim.step(steady + now * beside, dt)
+        found[step] = bank.swing[0]
+    last = slice(-round(10.0 * period / dt), None)
+    wave = np.exp(1j * swept[n_frequency] * dt * (np.arange(steps) + 1.0))[last]
+    moved = found[last] - found[last].mean(axis=0)
+    response = 2.0 * (wave.conj() @ moved) / len(wave) / (gust / speed)
+    root = np.sqrt(stiffness)  # by the energy of the coordinates
+    apart = np.linalg.norm(root * (response - expected)) / np.linalg.norm(root * response)
+    assert apart < 0.1, what
+
+
 def test_a_tree_without_motion_has_a_basis(fork):
-    basis = state_basis(make_simulator(fork(), model=0))
+    basis = make_simulator(fork(), model=0).basis
     assert (basis.rotations(basis.coordinates(np.zeros(len(basis.matrix)))) == 0.0).all()
 
 
@@ -108,7 +178,7 @@ def test_the_simulator_is_left_as_it_was(fork):
     sim = make_simulator(fork(), model='branch')
     sim.step((4.0, 1.0, 0.0), DT)
     before = sim.state().values.tobytes()
-    state_basis(sim)
+    assert sim.basis.n_coordinates > 0
     assert sim.state().values.tobytes() == before
 
 
@@ -116,11 +186,9 @@ PROGRAM = """
 import hashlib
 import numpy as np
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.run.find_basis import state_basis
 sim = make_simulator(builtin_tree("goldcrest"), model=60)
-basis = state_basis(sim)
+basis = sim.basis
 coordinates = np.linspace(-0.1, 0.1, basis.n_coordinates) * basis.scale
 poses = sim.place_rotations(basis.rotations(coordinates))
 print(basis.digest, hashlib.sha256(poses.tobytes()).hexdigest())
