@@ -16,6 +16,8 @@ import pytest
 
 pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
+from tree_sway_lab.bench.bench_tree import bench_tree  # noqa: E402
+
 from tree_sway.core.growth.builtin import BUILTIN_TREES  # noqa: E402
 from tree_sway.core.kernel import WHY_PLAIN  # noqa: E402
 from tree_sway.core.model.records import time_step_layout  # noqa: E402
@@ -87,6 +89,7 @@ def compared(simulator: Simulator, folder: Path) -> dict[str, float]:
     assert done.returncode == 0, done.stderr
     found: dict[str, float] = json.loads(done.stdout)
     assert found['compared'] == sum(map(len, expected))
+    assert found['reduced'] == received.reduced
     assert clamped > 0
     print(found)
     return found
@@ -116,6 +119,45 @@ def test_a_stand_sways_as_in_python(tmp_path: Path) -> None:
     ]  # fmt: skip
     found = compared(Scene(trees, 'row').simulator(Settings(), model=20), tmp_path)
     assert found['wrong'] <= ROUNDING * max(1.0, found['greatest'])
+
+
+@pytest.fixture
+def clamped() -> Simulator:
+    """Return a stand of which one tree is clamped in an ordinary wind."""
+    kinds = bench_tree(), open_scene(str(SCAN / 'fork.treeqsm24.txt')).trees[0].tree
+    trees = [PlacedTree(f'tree {i}', kinds[i % 2], x=9.0 * i) for i in range(3)]
+    simulator = Scene(trees, 'row').simulator(Settings(), model=20)
+    model = simulator.shared[0][0]
+    model.bank.oscillators.table.record['most_energy'] *= 1e-4
+    simulator._tables['most_energy'][0] *= 1e-4
+    return simulator
+
+
+def test_trees_that_stay_clamped_go_on_with_fewer_coordinates_as_in_python(
+    clamped: Simulator, tmp_path: Path
+) -> None:
+    found = compared(clamped, tmp_path)
+    assert found['reduced'] >= 2
+    assert found['wrong'] <= ROUNDING * max(1.0, found['greatest'])
+
+
+def test_a_receiver_in_python_leaves_coordinates_out_when_the_simulator_does(
+    clamped: Simulator, tmp_path: Path
+) -> None:
+    received, reduced = exported(clamped, tmp_path), []
+    for wind in gusty()[:400]:
+        clamped.step(wind, DT)
+        received.step(wind)
+        reduced.append((clamped.counts.reduced, received.reduced))
+        left_out = received.instances['left_out']
+        assert np.array_equal(left_out, clamped._instances['left_out'])
+    assert max(reduced)[0] > 0
+    received.correct(received.state() + 0.01)
+    for instance in received.instances:
+        count = 20 - int(instance['left_out'])
+        assert (instance['eta'][count:] == 0.0).all()
+    received.reset()
+    assert (received.instances['left_out'] == 0).all()
 
 
 def test_a_stiff_coordinate_gets_to_the_middle_of_a_step_as_in_python(

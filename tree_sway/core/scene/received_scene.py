@@ -21,7 +21,14 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.exported_table import table_of
 from tree_sway.core.model.records import instance_layout, time_step_layout
 from tree_sway.core.oscillators.propagator import propagator
-from tree_sway.core.run.table_model import fill_time_step, Propagators
+from tree_sway.core.run.clamp_watch import ClampWatch, fewer
+from tree_sway.core.run.table_model import (
+    bent_too_far,
+    come_to_rest,
+    drop,
+    fill_time_step,
+    Propagators,
+)
 from tree_sway.core.scene.placement_records import own_steps, placement_records
 from tree_sway.core.wind.gust_travel import GustHistory
 from tree_sway.errors import ParameterError
@@ -96,7 +103,10 @@ class ReceivedScene:
             )
             fill_time_step(own, Propagators(damping, stiffness, whole, half), own_dt)
         self._placed = placement_records(self._kind_of, places, speeds)
-        self._placed['time_step'] = step
+        self._placed['time_step'] = self._full_steps = step
+        self._steps, self._watches = 0, dict[int, ClampWatch]()
+        self.reduced = 0
+        """Times that a tree whose steps stayed clamped continued on fewer coordinates."""
         self.gusts = GustHistory(places[:, :3], anemometer, convection_ratio=convection_ratio)
         self._states = [kind.arrays['state'].astype(np.float64) for kind in kinds]
         self._corrections = [kind.arrays['correction'].astype(np.float64) for kind in kinds]
@@ -104,10 +114,40 @@ class ReceivedScene:
         self._first = np.concatenate([[0], np.cumsum(described[self._kind_of])])
 
     def step(self, wind: ArrayLike) -> int:
-        """Advance by a step of mean wind (3,) in [m/s]; count trees whose wind was clamped."""
+        """
+        Advance by a step of mean wind (3,) in [m/s]; count trees that were clamped.
+
+        A tree whose steps stay clamped continues from rest on fewer coordinates.
+        """
         winds = self.gusts.push(wind, self._dt)
         arrays = self.tables, self._time_steps, self._placed, self.instances, self._laws
-        return step_stand(*arrays, winds)[0]
+        clamped = step_stand(*arrays, winds)[0]
+        self._steps += 1
+        if clamped:
+            self._watch_clamped()
+        return clamped
+
+    def _watch_clamped(self) -> None:
+        """Solve fewer coordinates of the trees whose steps stay clamped."""
+        most = self.tables['most_pressure'][self._kind_of]
+        for number in np.flatnonzero(bent_too_far(self.instances, most)).tolist():
+            watch = self._watches.setdefault(number, ClampWatch())
+            if not watch.is_stuck(self._steps, self._dt):
+                continue
+            before = self._count(number)
+            count = fewer(before)
+            if count < before:
+                come_to_rest(self.instances[number : number + 1])
+                self.instances['left_out'][number] += before - count
+                own = self._time_steps[self._placed['time_step'][number]].copy()
+                drop(own, count)
+                self._placed['time_step'][number] = len(self._time_steps)
+                self._time_steps = np.append(self._time_steps, own)
+                self.reduced += 1
+
+    def _count(self, tree: int) -> int:
+        """Return the number of coordinates of a tree that are solved."""
+        return self._sizes[int(self._kind_of[tree])] - int(self.instances['left_out'][tree])
 
     def coordinates(self, tree: int) -> Floats:
         """Modal coordinates of a tree, (m,)."""
@@ -132,15 +172,17 @@ class ReceivedScene:
         change[part] = values - self.state()[part]
         for tree, kind in enumerate(self._kind_of.tolist()):
             own = change[self._first[tree] : self._first[tree + 1]] @ self._corrections[kind]
-            instance, size = self.instances[tree], self._sizes[kind]
-            whole = self._time_steps['whole'][self._placed['time_step'][tree], :, :size]
-            instance['eta'][:size] += own
+            instance, count = self.instances[tree], self._count(tree)
+            whole = self._time_steps['whole'][self._placed['time_step'][tree], :, :count]
+            instance['eta'][:count] += own[:count]
             way = np.maximum(whole[1], _SLOWEST * whole[1].max())
-            instance['rate'][:size] += own * whole[5] / (way * steps)
+            instance['rate'][:count] += own[:count] * whole[5] / (way * steps)
 
     def reset(self) -> None:
         """Return to rest, without wind."""
         self.instances[:] = np.zeros((), dtype=self.instances.dtype)
+        self._placed['time_step'] = self._full_steps
+        self._watches.clear()
         self.gusts.reset()
 
 

@@ -8,6 +8,7 @@
  * doc/tree_as_a_file.md is for its users. */
 
 import { checkTable, checkTablesHeader, FORMS, need, ProtocolError } from "./checks.js";
+import { ClampWatch, fewer } from "./clamp_watch.js";
 import { reader } from "./protocol.js";
 import { Touch } from "./touch.js";
 
@@ -151,6 +152,17 @@ export class TreeState {
     this.eta = new Float64Array(table.m);
     this.rate = new Float64Array(table.m);
     this.force = new Float64Array(table.m);
+    /** Number of the first coordinates that are solved. */
+    this.count = table.m;
+    /** Whether the last step was clamped in a wind that cannot bend the tree so far. */
+    this.isBentTooFar = false;
+  }
+
+  /** Return to rest, and solve the first coordinates only. @param {number} [count] all unless given */
+  reset(count = this.table.m) {
+    for (const each of [this.eta, this.rate, this.force]) each.fill(0);
+    this.count = count;
+    this.isBentTooFar = false;
   }
 
   /** Go on a step. @param {Float64Array} half `toMiddle` of half a step @param {Float64Array} whole
@@ -170,7 +182,7 @@ export class TreeState {
       midRate[i] = half[at + 3] * eta[i] + half[at + 4] * rate[i] + half[at + 5] * force[i];
     }
     const push = Math.min(drag * speed * speed, mostPressure);
-    windForce(table, speed > 0 ? [wx / speed, wy / speed, wz / speed] : [1, 0, 0], push, drag);
+    windForce(table, speed > 0 ? [wx / speed, wy / speed, wz / speed] : [1, 0, 0], push, drag, this.count);
     let energy = 0;
     for (let i = 0, at = 0; i < m; i++, at += 6) {
       // Implicit in all damping, as if the others moved with it: stable for any wind and step.
@@ -191,6 +203,7 @@ export class TreeState {
       }
       isOutside = true;
     }
+    this.isBentTooFar = isOutside && push < 0.5 * mostPressure;
     return isOutside;
   }
 
@@ -209,8 +222,9 @@ export class TreeState {
 
 /** Modal forces of an even wind on a tree half a step on, and the diagonal of their slope by the rates,
  * into the scratch of its table. @param {Table} table @param {number[]} way where the wind goes, a unit
- * vector @param {number} push dynamic pressure [kg/m/s^2] @param {number} drag the same over speed squared */
-function windForce(table, [x, y, z], push, drag) {
+ * vector @param {number} push dynamic pressure [kg/m/s^2] @param {number} drag the same over speed squared
+ * @param {number} count of the first coordinates, whose motion loads all */
+function windForce(table, [x, y, z], push, drag, count) {
   const { m, slopes, lean, values, arrays } = table;
   const { motion, load, limit, equilibrium, harmonics, cross_damping: cross } = arrays;
   const [eta, rate, force, diagonal, leaning, leaned, offA, offB, offC, offD] = table.scratch;
@@ -241,15 +255,15 @@ function windForce(table, [x, y, z], push, drag) {
   const dragged = drag * Math.sqrt(moving);
   const [ta, tb, tc, td] = [slopes[first], slopes[first + 1], slopes[second], slopes[second + 1]];
   const [near, next, pole] = [lean[here], lean[there], table.steep[z > 0 ? 1 : 0]];
-  for (let i = 0, at = 0, flat = 0; i < m; i++) {
-    const own = at + 2 * i + 1;
-    let [turned, damped] = [0, 0];
-    for (let k = 0; k < m; k++, at += 2, flat++) {
+  for (let i = 0; i < m; i++) {
+    const own = 2 * (i * m + i) + 1;
+    let [turned, damped, at, flat] = [0, 0, 2 * i * m, i * m];
+    for (let k = 0; k < count; k++, at += 2, flat++) {
       turned += offA[k] * ta[at] + offB[k] * tb[at] + offC[k] * tc[at] + offD[k] * td[at]
         + leaning[k] * near[flat] + leaned[k] * next[flat];
       damped += rate[k] * (a4 * ta[at + 1] + b4 * tb[at + 1] + c4 * tc[at + 1] + d4 * td[at + 1]);
     }
-    for (let k = 0, p = at - 2 * m; steep > 0 && k < m; k++) {
+    for (let k = 0, p = 2 * i * m; steep > 0 && k < count; k++) {
       turned += Math.fround(s4 * Math.fround(eta[k])) * pole[p++];
       damped += s4 * rate[k] * pole[p++];
     }
@@ -391,6 +405,10 @@ export class Stand {
     this.gusts = this._newGusts();
     /** Trees whose load was at the edge of their table in the last step. */
     this.outside = 0;
+    /** Times that a tree whose steps stayed clamped went on from rest with fewer coordinates. */
+    this.reduced = 0;
+    this._steps = 0;
+    this._watches = /** @type {Map<number, ClampWatch>} */ (new Map());
     const found = /** @type {Map<string, Float64Array[]>} */ (new Map());
     /** Pushes by the numbers of trees. */
     this._touches = /** @type {Map<number, Touch>} */ (new Map());
@@ -406,7 +424,7 @@ export class Stand {
       found.set(key, [half, whole]);
       const speed = tables.speeds[number];
       const turn = [speed * Math.cos(place[3]), speed * Math.sin(place[3])];
-      return { state: new TreeState(table), half, whole, speed, turn, firstCoordinate };
+      return { state: new TreeState(table), half, whole, speed, turn, firstCoordinate, full: [half, whole] };
     });
   }
 
@@ -415,14 +433,28 @@ export class Stand {
     if (!Number.isFinite(x + y + z)) throw new ProtocolError("a wind that is not finite");
     this.gusts.push(x, y, z);
     this.outside = 0;
+    this._steps++;
     this.trees.forEach(({ state, half, whole, speed, turn: [c, s] }, i) => {
       const [u, v, w] = this.gusts.felt[i];
       if (state.step(half, whole, c * u + s * v, c * v - s * u, speed * w)) this.outside++;
       const touch = this._touches.get(i);
-      if (!touch) return;
+      if (!touch) return state.isBentTooFar ? this._watchClamped(i) : undefined;
       const goesOn = touch.step(state, state.coordinates(new Float64Array(state.table.n)), half, whole, this.dt);
       if (!goesOn) this._touches.delete(i);
     });
+  }
+
+  /** Go on with fewer coordinates of a tree whose steps stay clamped. @param {number} number */
+  _watchClamped(number) {
+    const watch = this._watches.get(number) ?? new ClampWatch();
+    this._watches.set(number, watch);
+    if (!watch.isStuck(this._steps, this.dt)) return;
+    const tree = this.trees[number];
+    const count = fewer(tree.state.count);
+    if (count === tree.state.count) return;
+    tree.state.reset(count);
+    [tree.half, tree.whole] = tree.full.map((each) => each.map((value, at) => (at < 6 * count ? value : 0)));
+    this.reduced++;
   }
 
   /** Push at the root side of a segment, or pull it by a spring, while the trees go on swaying.
@@ -462,14 +494,14 @@ export class Stand {
     const { nCoordinates, scale } = this.description;
     const now = this.write(new Float64Array(nCoordinates));
     let largest = 0;
-    for (const { state: { eta, rate, table }, whole, firstCoordinate: first } of this.trees) {
+    for (const { state: { eta, rate, count, table }, whole, firstCoordinate: first } of this.trees) {
       const { m, n, arrays: { correction } } = table;
       const ways = eta.map((_, i) => whole[6 * i + 1]);
       const least = SLOWEST * Math.max(...ways);
       for (let k = 0; k < n; k++) {
         const by = values[first + k - from] - now[first + k];
         if (first + k < from || first + k - from >= values.length) continue;
-        for (let i = 0; i < m; i++) {
+        for (let i = 0; i < count; i++) {
           const own = by * correction[k * m + i];
           eta[i] += own;
           rate[i] += (own * whole[6 * i + 4]) / (Math.max(ways[i], least) * steps);
@@ -482,7 +514,11 @@ export class Stand {
 
   /** Back to rest, without wind. */
   reset() {
-    for (const { state } of this.trees) for (const each of [state.eta, state.rate, state.force]) each.fill(0);
+    for (const tree of this.trees) {
+      tree.state.reset();
+      [tree.half, tree.whole] = tree.full;
+    }
+    this._watches.clear();
     this.gusts = this._newGusts();
   }
 }
