@@ -39,6 +39,15 @@ def within(
     return number
 
 
+def whole(name: str, value: object, low: int, high: int) -> int:
+    """Return a whole number in a closed range; a `ParameterError` refuses fractions and truths."""
+    number = math.nan if isinstance(value, bool | np.bool_) else within(name, value, low, high)  # type: ignore[arg-type]
+    if not number.is_integer():
+        cure = f'use a whole number from {low} to {high}'
+        raise ParameterError(f'{name} of {value}', where=name, cure=cure)
+    return int(number)
+
+
 def refuse_time_step(dt: float) -> None:
     """Refuse a time step [s] that is not finite and above 0."""
     if not (math.isfinite(dt) and dt > 0.0):

@@ -155,13 +155,19 @@ def test_what_is_no_wind_is_refused_with_a_cure(fork, wind):
         simulate(fork(), wind, model=2)
 
 
+@pytest.mark.parametrize('wind', [5.0, np.nan, np.zeros((5, 7)), [[1.0, 2.0]]])
+def test_a_wind_of_another_shape_is_refused(fork, wind):
+    with pytest.raises(ParameterError, match=r'wind (of shape|that is not finite)'):
+        simulate(fork(), wind, model=2)
+
+
 @pytest.mark.parametrize('branches', ['stem', ['b1'], [0.5], 3])
 def test_branches_that_are_no_numbers_are_refused(fork, branches):
     with pytest.raises(ParameterError, match='not numbers of branches'):
         simulate(fork(), np.zeros((3, 3)), model=2, branches=branches)
 
 
-@pytest.mark.parametrize('count', [0, -1, np.nan, 'all'])
+@pytest.mark.parametrize('count', [0, -1, np.nan, 'all', 2.5, True])
 def test_a_count_of_frequencies_is_one_at_least(fork, count):
     for model in (2, 'branch'):
         with pytest.raises(ParameterError, match='count'):

@@ -19,7 +19,7 @@ from tree_sway.core.checks import (
     array_to_read,
     refuse_time_step,
     three_numbers,
-    within,
+    whole,
 )
 from tree_sway.core.model.drag_law import pressure
 from tree_sway.core.model.state_basis import StateBasis
@@ -155,9 +155,9 @@ class SwaySimulator:
         Lowest natural frequencies of the tree in [Hz], without air, (count,) or fewer.
 
         On the model ``branch`` they are those of the isolated branches. A `ParameterError` refuses
-        a count below 1.
+        a count that is no whole number above 0.
         """
-        count = int(within('count', count, 1, 1e9))
+        count = whole('count', count, 1, 10**9)
         if self.settings.model == 'branch':
             tunable = self.bank.oscillators.tunable
             circular = np.sort(np.sqrt(tunable.stiffness / tunable.inertia))[:count]

@@ -296,6 +296,7 @@ def _steps(
             text = ' '.join(repr(wind).split())[:80]
             cure = 'open a file by read_wind, or give the mean of each step, (t, 3)'
             raise ParameterError(f'{text} is no wind', where='wind', cure=cure) from None
+        means = np.atleast_1d(means)
         is_long = means.ndim == 2 and means.shape[1] == 3
         count, what = len(means) if is_long else 0, f'wind of shape {means.shape}'
         if not np.isfinite(means).all():

@@ -109,10 +109,14 @@ def leaning_responses(
 
 
 def _growth(speed: float, law: DragLaw) -> float:
-    """Differentiate the dynamic pressure by the speed, both over their own values: U / s ds/dU."""
+    """
+    Differentiate the dynamic pressure by the speed, both over their own values: U / s ds/dU.
+
+    It is 0 where there is no drag.
+    """
     slow, fast = (1.0 - _TURN) * speed, (1.0 + _TURN) * speed
     low, high = pressure(slow, *law) * slow**2, pressure(fast, *law) * fast**2
-    return (high - low) / (_TURN * (high + low))
+    return (high - low) / (_TURN * (high + low)) if high + low > 0.0 else 0.0
 
 
 def _by_azimuth(poses: Floats) -> Floats:

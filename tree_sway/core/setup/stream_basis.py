@@ -52,6 +52,9 @@ _BETWEEN = 0.1
 _LEAST_SCALE = 1e-4
 """Smallest value of a coordinate that is within its scale, over the size of the tree."""
 
+_STILL = 1e-12
+"""Motion of all tips in [m], root of the sum of squares, that is none."""
+
 _TINY = np.finfo(np.float64).tiny
 
 
@@ -183,7 +186,7 @@ def _weighted(inner: Floats, response: Leaning) -> Floats:
     sized = []
     for weight, motion in parts:
         size = np.sqrt(np.einsum('mi,mi->', motion, inner @ motion))
-        sized.append(weight / max(float(size), _TINY) * motion)
+        sized.append(weight / size * motion if size > _STILL else np.zeros_like(motion))
     return WEIGHTS[response.speed] * np.hstack(sized)
 
 
