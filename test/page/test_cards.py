@@ -22,7 +22,7 @@ def test_cards_are_those_of_the_page(javascript: Callable[..., Any]) -> None:
     """`leafMesh` of the page has the same corners, in the frames of its segments."""
     tree = builtin_tree('goldcrest', 0)
     simulator = make_simulator(tree, species_named('goldcrest'), model=12)
-    scene = SceneState(simulator, 40, is_running=False)
+    scene = SceneState(simulator, 40)
     (leaves,), spray = scene.leaves, species_named('goldcrest').look.spray
     assert leaves is not None
     ours = leaf_mesh(leaves, spray, 3)

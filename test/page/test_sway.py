@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 import json
 from pathlib import Path
 import shutil
@@ -128,7 +129,7 @@ def clamped() -> Simulator:
     trees = [PlacedTree(f'tree {i}', kinds[i % 2], x=9.0 * i) for i in range(3)]
     simulator = Scene(trees, 'row').simulator(Settings(), model=20)
     model = simulator.shared[0][0]
-    model.bank.oscillators.table.record['most_energy'] *= 1e-4
+    model.prepared = replace(model.prepared, most_energy=1e-4 * model.prepared.most_energy)
     simulator._tables['most_energy'][0] *= 1e-4
     return simulator
 

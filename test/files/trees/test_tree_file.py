@@ -23,7 +23,7 @@ def test_content_decides_and_suffix_breaks_ties(tmp_path):
 def test_format_by_name():
     assert read_tree(DATA / 'segments.csv', format='csv').tree.n_branches == 2
     with pytest.raises(
-        ParameterError, match="unknown tree format 'dwg'; use archi, simpleforest, mtg, csv"
+        ParameterError, match="unknown tree format 'dwg'; use archi, simpleforest, mtg, npz, csv"
     ):
         read_tree(DATA / 'segments.csv', format='dwg')
     with pytest.raises(FormatError):

@@ -161,7 +161,3 @@ def test_the_files_in_config_are_good_and_repeat_no_default(path):
         by_name = {each.name: each for each in table}
         for name, value in body['ros__parameters'].items():
             assert by_name[name].checked(value) != by_name[name].default
-
-
-def test_the_solver_has_no_more_knobs_than_people_can_read():
-    assert len(SOLVER) <= 25

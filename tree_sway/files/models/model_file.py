@@ -109,7 +109,7 @@ def _read_arrays(path: Path) -> dict[str, NDArray[Any]]:
                 f'{size >> 20} MiB of arrays',
                 cure=f'convert a tree with up to {LARGEST >> 20} MiB',
             )
-        with np.load(path, allow_pickle=False) as file:
+        with np.load(path) as file:
             return dict(file)
     except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
         raise _damaged(str(error)) from None
