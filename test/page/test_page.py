@@ -160,7 +160,7 @@ def test_the_head_names_the_wind_the_line_and_the_error(live: Live, visit: Visit
 
     async def script(browser: Browser) -> None:
         await browser.until(f"{text % 'source'} === 'Simulated wind'")
-        assert await browser.run(text % 'state-text') == 'Connected'
+        await browser.until(f"{text % 'state-text'} === 'Connected'")
         sign, value, unit = (await browser.run(text % 'error')).split()
         assert (sign, unit) == ('±', 'mm')
         basis = live.session._scene.kinds[0].basis
