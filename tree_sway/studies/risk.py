@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.strength.critical_wind import ROOT_BAND_OF_SOILS, WOOD_BAND_80
+from tree_sway.core.strength.strength_band import root_band, wood_band
 from tree_sway.files.scenes.inventory.read_inventory import Inventory
 from tree_sway.files.scenes.kind_classes import kind_classes
 from tree_sway.studies.cluster import cluster, run_all
@@ -144,9 +144,9 @@ def _winds(
     more = (slenderness / result.slenderness) ** power
     crowns = OPEN_GROUND.over_anemometer(_CROWN * np.array([result.kind.height, height]))
     scale = float(crowns[0] / crowns[1])
-    least, most = WOOD_BAND_80 if part == 'wood' else ROOT_BAND_OF_SOILS
-    low, middle, high = (
-        min(scale * curve.speed_of(strength / more), FASTEST) for strength in (least, 1.0, most)
+    used = (wood_band if part == 'wood' else root_band)(in_leaf=curves.in_leaf)
+    middle, high, low = (
+        min(scale * curve.speed_of(1.0 / (each * more)), FASTEST) for each in used.tolist()
     )
     return low, middle, high
 
