@@ -13,7 +13,7 @@ each limb are for the sensors to tell.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 import math
@@ -27,6 +27,7 @@ from tree_sway.core.checks import three_numbers, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
+from tree_sway.core.observe.members import Members, uncertainty_of
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
 from tree_sway.core.observe.sensor_place import place_on, tip_slopes
@@ -47,9 +48,6 @@ _STORM = 36.0
 
 _KNOWN_AHEAD = 0.5
 """Time in [s] by which samples of records are known ahead of a step."""
-
-_QUANTILE = 1.2816
-"""Standard deviations within which 80 % of a normal distribution lie."""
 
 _DYNAMIC = 4.0
 """Energy of the motion in a storm over that of the static deflection."""
@@ -80,6 +78,8 @@ class ObservedTree(SwaySimulator):
         Whether the smoothed state is kept too (`smoothed`).
     learns
         Whether stiffness and damping follow the sensors.
+    has_band
+        Whether it also says how sure it is (`band`).
 
     Raises
     ------
@@ -104,6 +104,7 @@ class ObservedTree(SwaySimulator):
         rate: float = 60.0,
         is_smoothed: bool = False,
         learns: bool = True,
+        has_band: bool = False,
         cache: ModelCache | None = PREPARED,
         plain: bool = False,
         **changes: Any,
@@ -121,7 +122,7 @@ class ObservedTree(SwaySimulator):
                 cure='use a number of coordinates, such as 60',
             )
         self._places = {name: place_on(self.tree, where) for name, where in at.items()}
-        self._is_smoothed, self._rate = is_smoothed, 0.0
+        self._is_smoothed, self._has_band, self._rate = is_smoothed, has_band, 0.0
         self.sensors: dict[str, MotionSensor] = {}
         """Sensors by their names."""
         self._records: dict[str, _Record] = {}
@@ -157,6 +158,11 @@ class ObservedTree(SwaySimulator):
         tracks = [SensorTrack(each, frequency, 1.0 / rate) for each in self.sensors.values()]
         self.observer = Observer(self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed)
         """What the sensors tell."""
+        self.members: Members | None = None
+        """Trees that the real one might be; None without a band."""
+        if self._has_band:
+            spreads = uncertainty_of(in_leaf=bool(self.settings.in_leaf))
+            self.members = Members(self.observer, 1.0 / rate, spreads)
 
     @property
     def period(self) -> float:
@@ -242,6 +248,8 @@ class ObservedTree(SwaySimulator):
         n_periods = max(round(dt * self._rate), 1)
         added[:] = self.observer.step(self.now, math.hypot(x, y, z), swing, n_periods)
         self._bound(added)
+        if self.members is not None:
+            self.members.step(swing, (x, y))
         eta += added[0]
         rate += added[1]
         if self.observer.fit is not self._known:
@@ -253,6 +261,12 @@ class ObservedTree(SwaySimulator):
         self._known = fit
         if fit is None or not self.learns:
             return
+        if self.members is not None:
+            known = self.members.spreads
+            self.members.spreads = known._replace(
+                stiffness=min(fit.stiffness_error, known.stiffness),
+                damping=min(fit.damping_error, known.damping),
+            )
         ratio = min(fit.damping * self.prepared.damping_ratio, 1.0)
         with suppress(ParameterError):  # a tree that would buckle stays as it is
             self.tune(stiffness_factor=fit.stiffness, damping_ratio=ratio)
@@ -276,6 +290,8 @@ class ObservedTree(SwaySimulator):
         self._crown.reset()
         self._added[:] = 0.0
         self.observer.reset()
+        if self.members is not None:
+            self.members.reset()
         self.now, self._given = 0.0, None
         for record in self._records.values():
             record.next = 0
@@ -292,18 +308,59 @@ class ObservedTree(SwaySimulator):
         """Key rotations in [rad] of `LATE_STEPS` ago by what was measured since, (N,)."""
         return np.asarray(self.bank.oscillators.shapes @ self.observer.smoothed)
 
-    def band(self) -> Floats:
+    def band(self, branches: Sequence[int] | None = None) -> Floats:
         """
-        Half the width of the band that holds 80 % of the true motion of each tip [m], (b, 3).
+        Where the real tips are for 80 % of the time, beyond those of the corrected motion.
 
-        It comes from the covariance of the correction, or of the unknown forces where no sensor is
-        in use, and from how large the innovations have been of late.
+        Parameters
+        ----------
+        branches
+            Branches whose tips are asked for; all if None.
+
+        Returns
+        -------
+        Floats
+            Lower and upper bound of each tip's displacement less that of this tree in [m],
+            (2, k, 3).
+
+        Raises
+        ------
+        ParameterError
+            A tree made without a band.
+
         """
+        members = self._members_with_band()
         if self._tips is None:
-            slopes = tip_slopes(self)
-            self._tips = slopes.reshape(-1, slopes.shape[2])
-        deviation = self.observer.tip_deviation(self._tips)
-        return np.asarray(_QUANTILE * deviation.reshape(-1, 3))
+            self._tips = tip_slopes(self)
+        return members.band(self._tips if branches is None else self._tips[list(branches)])
+
+    def load_band(self, per_rotation: Floats) -> Floats:
+        """
+        Where the real load of the wood is for 80 % of the time, beyond that of this tree.
+
+        Parameters
+        ----------
+        per_rotation
+            Load per unit of the first key rotations, (k, ...), such as `moment_per_rotation`.
+
+        Returns
+        -------
+        Floats
+            Lower and upper bound less the load of this tree, in its unit, (2, ...).
+
+        """
+        members = self._members_with_band()
+        shapes = self.bank.oscillators.shapes[: len(per_rotation), : self.observer.count]
+        readout = np.tensordot(per_rotation, shapes, axes=(0, 0))
+        # Stiffer wood bears more at the same bend.
+        bent = readout @ (self._corrected[0][:, None] + members.errors)
+        return members.band(readout, (members.stiffness - 1.0) * bent)
+
+    def _members_with_band(self) -> Members:
+        if self.members is None:
+            cure = 'make it with has_band=True'
+            raise ParameterError('a tree without a band', where=self.tree.name, cure=cure)
+        return self.members
 
     @property
     def problems(self) -> list[str]:
