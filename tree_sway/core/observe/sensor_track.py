@@ -29,8 +29,8 @@ LEARNING = 20.0
 _LATER, _MEMORY = 1.4, 600.0
 _ABSENT_AFTER, _TRUSTED_AGAIN = 1.0, 5.0
 _AVERAGED = 2.0
-_COMPARED = 0.5
-"""Periods of the first frequency over which motions are averaged to find a mounting."""
+_COMPARED = 1.0
+"""Periods of the first sway over which motions are averaged to find a mounting."""
 
 _DISAGREES, _AGREES = 16.0, 4.0
 _FLOOR = np.array([0.03, 0.004, 0.002])
