@@ -9,7 +9,7 @@ limbs meet, each drawn from the spread of its source:
 - Wood: Young's modulus of clear wood of one species varies by 22 % (Forest Products Laboratory,
   Wood Handbook, 2010, table 5-6).
 - Damping: its logarithm by 0.5; 0.01 to 0.08 among bare stems (Moore & Maguire 2005) is +-2 of it.
-- Drag and leaf area: `strength_band`.
+- Drag and leaf area: `load_spreads`.
 - Gusts: a share of each reaches the crown at once (`USUAL_COHERENCE`), and so do those that last
   much longer than `TIME_CONSTANT`. The rest has the variance that the measured wind has above that
   frequency, but meets limb by limb, correlated as in `disturbance`.
@@ -37,9 +37,9 @@ import numpy as np
 from scipy.special import ndtri
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.model.load_spreads import DRAG, LEAVES, SHARE_WITHIN
 from tree_sway.core.observe.disturbance import GUST, TIME_CONSTANT
 from tree_sway.core.oscillators.propagator import propagator
-from tree_sway.core.strength.strength_band import DRAG, LEAVES, SHARE_WITHIN
 from tree_sway.core.wind.crown_wind import USUAL_COHERENCE
 
 if TYPE_CHECKING:
