@@ -29,7 +29,7 @@ from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.page.newest import Newest
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.server import PageServer
-from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, WindSource
+from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, wind_ahead, WindSource
 from tree_sway.sensors.live_wind import LiveWind
 from tree_sway.stream.controls import Refused, Value
 from tree_sway.stream.scene_state import SceneState
@@ -213,6 +213,8 @@ class Session:
         }
         if isinstance(self.wind, RecordedWind):
             status['record_time'] = self.wind.time(self._now)
+        if isinstance(self.wind, (RecordedWind, SimulatedWind)):
+            status['wind_ahead'] = wind_ahead(self.wind, self._now)
         return status
 
     def written(self, suffix: str) -> bytes:

@@ -105,7 +105,10 @@ const stream = new TreeStream(address.href, {
       panel.update(values, Boolean(refused));
     }
     status = newStatus ?? status;
-    if (newStatus) hideIdle();
+    if (newStatus) {
+      hideIdle();
+      scene.grass.gusts.foresee(sceneTime, newStatus.wind_ahead);
+    }
     if (Number.isFinite(status.record_time)) panel.update({ record_time: status.record_time });
   },
 }, { kept, byWind: query.has("solve") });
