@@ -16,6 +16,7 @@ import threading
 import time
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES
+from tree_sway.core.leaves.calendar import SUMMER
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.demand import set_demand
 from tree_sway.core.scene.run import Run
@@ -60,6 +61,8 @@ class Choices:
         Height of a tree that is grown in [m].
     individual
         Which of the trees of that species and height, a whole number as text.
+    month
+        Time of the year of a tree that is grown, in months from 1: `leaf_share`.
 
     """
 
@@ -69,6 +72,7 @@ class Choices:
     damping_ratio: float = 0.0
     height: float = 12.0
     individual: str = '0'
+    month: float = SUMMER
 
     @property
     def is_grown(self) -> bool:
