@@ -15,6 +15,7 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.commands import cli
+from tree_sway.core.growth.grow import grow
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.files.export.tree_export import write_tree
 
@@ -169,6 +170,17 @@ def test_a_species_of_a_file_has_the_wood_of_the_file(
     assert of_forest.count(f'{heavy["frequencies"][0]:.3f} Hz') == 2
 
 
+def test_a_name_longer_than_a_line_is_cut_for_people_alone(tmp_path, capsys):
+    name = 'a' * 200
+    file = tmp_path / 'pole.yaml'
+    write_pole(file, 3.0, 0.05)
+    rows = [row for row in file.read_text('utf-8').splitlines() if not row.startswith('name:')]
+    file.write_text('\n'.join([f'name: {name}', *rows]), 'utf-8')
+    assert facts(capsys, str(file))['name'] == name
+    assert cli.main(['info', str(file)]) == 0
+    assert max(len(line) for line in capsys.readouterr().out.splitlines()) < 160
+
+
 @pytest.mark.parametrize(
     ('text', 'expected'),
     [
@@ -195,3 +207,18 @@ def test_what_is_odd_is_reported(
     assert goldcrest['warnings'] == []
     odd = facts(capsys, 'goldcrest', '--modulus', '1e11')['warnings']
     assert [each.split(',')[0] for each in odd] == ['a modulus of 100 GPa']
+
+
+@pytest.mark.parametrize(('exposure', 'said'), [('open', 'outside'), ('stand', 'within')])
+def test_the_published_moment_of_a_spruce_is_within_the_band_or_said_to_be_outside(
+    exposure: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """20 m and 25 cm: 112 d^2 h U^2 (Hale et al. 2012) is of trees that shelter each other."""
+    tree = grow('spruce', 20.0, 0.25, rng=np.random.default_rng(0))
+    path = tmp_path / 'spruce.yaml'
+    write_tree(path, tree)
+    words = ('--species', 'spruce', '--speed', '10', '--exposure', exposure, '--count', '1')
+    found = facts(capsys, str(path), *words)
+    assert found['published_moment'] == pytest.approx(111.7 * 0.25**2 * 20.0 * 100.0, rel=0.01)
+    (note,) = (each for each in found['notes'] if 'published' in each)
+    assert f'{said} that band' in note

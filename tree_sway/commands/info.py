@@ -27,6 +27,7 @@ from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import Kind, PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.setup.season import in_season
+from tree_sway.core.strength.strength_use import StrengthUse
 from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT, breast_height_diameter
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.species import Species
@@ -39,6 +40,7 @@ _SUMS = ('branches', 'segments', 'volume', 'mass')
 _POWERS = {'height': 1, 'volume': 3, 'mass': 3}
 """Scaling of figures with the size of a tree."""
 _MOST_LINES = 40
+_LONGEST_NAME = 60
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -123,11 +125,7 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
         )
         published = _published_moment(placed, species, arguments.speed)
         if published is not None:
-            notes.append(
-                f'largest moment at the base {used.base_moment / 1e3:.3g} kN m; that of conifers '
-                f'in stands {published / 1e3:.3g} kN m, 112 d^2 h U^2 with the hourly mean at '
-                'the top of the stand (Hale et al. 2012)'
-            )
+            notes.append(_moment_note(used, published, exposure.kind))
     frequencies = [mode['frequency'] for mode in modes]
     return {
         'name': tree.name, 'notes': notes,
@@ -158,6 +156,25 @@ def _published_moment(tree: Tree, species: Species, speed: float) -> float | Non
     return 111.7 * diameter**2 * tree.height * speed**2
 
 
+def _moment_note(used: StrengthUse, published: float, exposure: str) -> str:
+    """Say the largest moment at the base with its band, and where the published one lies."""
+    low, high = (each / 1e3 for each in used.moment_band)
+    if low <= published / 1e3 <= high:
+        where = 'within that band'
+    elif exposure == 'stand':
+        where = 'outside that band: one of the two is wrong for this tree'
+    else:
+        where = (
+            'outside that band, as such trees shelter each other and their crowns are cut short: '
+            'with --exposure stand the tree is one of them'
+        )
+    return (
+        f'largest moment at the base {used.base_moment / 1e3:.3g} kN m ({low:.3g} to {high:.3g} '
+        f'kN m); the published one of conifers in stands is {published / 1e3:.3g} kN m, {where} '
+        '(112 d^2 h U^2 with the hourly mean at the top of the stand: Hale et al. 2012)'
+    )
+
+
 def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:
     """Collect the facts on several trees, each scaled from its kind as in the solver."""
     trees = []
@@ -186,7 +203,7 @@ def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:
 
 def _text(facts: dict[str, Any]) -> str:
     """Format the facts as text."""
-    lines = [f'{facts["name"]}, from {facts["source"]}']
+    lines = [f'{_short(facts["name"])}, from {facts["source"]}']
     lines += _forest_lines(facts) if 'trees' in facts else _tree_lines(facts)
     lines += [f'  note       {note}' for note in facts['notes']]
     lines += [f'  warning    {oddity}' for oddity in facts['warnings']]
@@ -199,6 +216,11 @@ def _text(facts: dict[str, Any]) -> str:
             for mode in modes
         ]
     return '\n'.join(lines)
+
+
+def _short(name: str) -> str:
+    """Return a name of at most a line; `--json` has it whole."""
+    return name if len(name) <= _LONGEST_NAME else f'{name[: _LONGEST_NAME - 3]}...'
 
 
 def _tree_lines(facts: dict[str, Any]) -> list[str]:
@@ -218,7 +240,7 @@ def _tree_lines(facts: dict[str, Any]) -> list[str]:
 def _forest_lines(facts: dict[str, Any]) -> list[str]:
     trees = facts['trees']
     shown = trees[:_MOST_LINES]
-    wide = max(4, *(len(tree['name']) for tree in shown))
+    wide = max(4, *(len(_short(tree['name'])) for tree in shown))
     lines = [
         f'  size       {len(trees)} trees of {len(facts["kinds"])} kinds, {facts["branches"]} '
         f'branches, {facts["segments"]} segments, {facts["volume"] * 1e3:.4g} l of wood, '
@@ -229,8 +251,8 @@ def _forest_lines(facts: dict[str, Any]) -> list[str]:
         place, slowest = tree['place'], tree['frequencies']
         sways = f'{slowest[0]:6.3f} Hz' if slowest else '        -'
         lines.append(
-            f'  {tree["name"]:{wide}}   {tree["species"]:11} {place["x"]:6.2f}   {place["y"]:6.2f}'
-            f'   {tree["height"]:6.2f} m {tree["mass"]:7.4g} kg   {sways}'
+            f'  {_short(tree["name"]):{wide}}   {tree["species"]:11} {place["x"]:6.2f}'
+            f'   {place["y"]:6.2f}   {tree["height"]:6.2f} m {tree["mass"]:7.4g} kg   {sways}'
             f'{"   in leaf" if tree["in_leaf"] else ""}'
         )
     if len(trees) > len(shown):
