@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.observe.disturbance import Disturbance, disturbance, TIME_CONSTANT
+from tree_sway.core.observe.lateness import Lateness
 from tree_sway.core.observe.sensor_place import place_motion, PlaceMotion
 from tree_sway.core.observe.sensor_track import as_felt, ROWS, sensed_rows, SensorTrack
 from tree_sway.core.observe.steady_filter import (
@@ -118,8 +119,7 @@ class Observer:
         """Number of coordinates that are corrected."""
         self._is_smoothed = is_smoothed
         self._places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
-        self.late = 0
-        """Steps by which sensors are read late."""
+        self._lateness = Lateness(len(self.tracks), dt, _LATEST)
         self._computed = np.zeros((_HISTORY, len(self.tracks), ROWS))
         self._eta = np.zeros((_HISTORY, shapes.shape[1]))
         self._states = np.zeros((_HISTORY, self.count))
@@ -129,8 +129,6 @@ class Observer:
         self._used: tuple[int, ...] = ()
         self._designed_for = 0.0
         self._mean_speed = self._gustiness = 0.0
-        self.share = 0.0
-        """Energy of the correction over that of the whole motion, a running mean [-]."""
         self._causal: _Estimate | None = None
         self._late_one: _Estimate | None = None
         self._unknown: Disturbance | None = None
@@ -153,6 +151,16 @@ class Observer:
         rows = [sensed_rows(each, self._stiffness, self._damping) for each in self._places]
         self._rows = np.concatenate([np.zeros((0, 3 * len(self._stiffness))), *rows])
         self._designed_for = 0.0
+
+    @property
+    def late(self) -> int:
+        """Steps by which sensors are read late."""
+        return self._lateness.steps
+
+    @property
+    def stiffness(self) -> Floats:
+        """Stiffness of the corrected coordinates, of unit mass, in [1/s^2], (count,)."""
+        return self._stiffness[: self.count]
 
     @property
     def is_active(self) -> bool:
@@ -202,23 +210,20 @@ class Observer:
             return self._fade(n_periods)
         self._watch_refused(beyond)
         self._learn()
-        return self._correct(self._causal, beyond, swing, n_periods)
+        return self._correct(self._causal, beyond, n_periods)
 
     def _beyond(self, time: float) -> list[Floats | None]:
         """Motion of each sensor beyond the model's, at the step that is late."""
+        for k, track in enumerate(self.tracks):
+            if track.may_be_used:
+                self._lateness.note(k, time, track.sensor.newest)
+        self._lateness.settle(time)
         at = self._steps - 1 - self.late
         if at <= self._done:  # more steps late than before: nothing new
             return [None] * len(self.tracks)
         computed = self._computed[at % _HISTORY]
         when = time - self.late * self._dt
         found = [track.read(when, rows) for track, rows in zip(self.tracks, computed, strict=True)]
-        newest = [track.sensor.newest for track in self.tracks if track.in_use]
-        if (
-            newest
-            and max(newest) < when - 0.01 * self._dt
-            and time - max(newest) < _LATEST * self._dt
-        ):
-            self.late = min(self.late + 1, _LATEST)
         return found
 
     @property
@@ -311,15 +316,11 @@ class Observer:
         rows = as_felt(sensed_rows(first, stiffness, damping), has_gravity=has_gravity)
         return rows[3 * track.fitted : 3 * track.fitted + 3]
 
-    def _correct(
-        self,
-        causal: _Estimate,
-        beyond: list[Floats | None],
-        swing: tuple[Floats, ...],
-        n_periods: int,
-    ) -> Floats:
+    def _correct(self, causal: _Estimate, beyond: list[Floats | None], n_periods: int) -> Floats:
         at, late, n = self._steps - 1 - self.late, self._late_one, self.count
         if at > self._done:
+            # More than one step where sensors have become less late.
+            n_periods *= min(at - self._done, _LATEST)
             self._done = at
             values, known = self._joined(beyond)
             causal.move(n_periods)
@@ -331,7 +332,6 @@ class Observer:
         moved = causal.state
         if self.late:
             moved = (self._ahead[self.late] * moved).sum(axis=1)
-        self._note_share(moved, swing)
         return np.asarray(moved[:2, :n])
 
     def _joined(self, beyond: list[Floats | None]) -> tuple[Floats, NDArray[np.bool_]]:
@@ -365,13 +365,6 @@ class Observer:
             expected = np.einsum('ij,jk,ik->i', felt, self._open, felt)
             missed = self._picked(k, row) - felt @ state
             self.tracks[k].judge(missed, np.sqrt(expected + np.square(_CAUSAL * noise)))
-
-    def _note_share(self, moved: Floats, swing: tuple[Floats, ...]) -> None:
-        n = self.count
-        whole = swing[0][:n] + moved[0]
-        own = float(self._stiffness[:n] @ np.square(moved[0]))
-        total = float(self._stiffness[:n] @ np.square(whole)) + own
-        self.share += self._dt / _RECENT * (own / max(total, 1e-300) - self.share)
 
     def _smooth(self, late: _Estimate, newest: int) -> None:
         """Estimate the displacements of the lag ago, and keep them for the window."""
