@@ -30,9 +30,7 @@ def test_every_sample_comes_once_and_in_step(phone: Any, sense: Any) -> None:
     assert np.abs(found - 0.5 * np.sin(np.pi * at)).max() < 0.5 * math.pi * 0.15
 
 
-def test_the_rate_is_interpolated_to_the_times_of_the_acceleration(
-    phone: Any, sense: Any
-) -> None:
+def test_the_rate_is_interpolated_to_the_times_of_the_acceleration(phone: Any, sense: Any) -> None:
     sensed = sense(phone(ACCELERATION | GYROSCOPE).url)
     sensed.until(lambda: len(sensed.samples) > 100)
     assert sensed.live.quantities == ('acceleration', 'rate')

@@ -42,6 +42,7 @@ class Lateness:
         self._lags = [0.0] * count
         self._newest = [-math.inf] * count
         self._came = [-math.inf] * count
+        self._is_settled = True
         self.steps = 0
         """Steps by which sensors are read late."""
 
@@ -51,7 +52,8 @@ class Lateness:
         if newest == before:
             return
         self._newest[sensor], self._came[sensor] = newest, time
-        lag = time - before
+        self._is_settled = False
+        lag = time - self._dt - before  # at the last step without it
         if newest < before or lag > self._most * self._dt:
             return
         missing = max(lag, 0.0) - self._lags[sensor]
@@ -59,10 +61,11 @@ class Lateness:
 
     def settle(self, time: float) -> None:
         """Find the steps that cover the sensors that are heard, at the time of a step in [s]."""
+        if self._is_settled:
+            return
+        self._is_settled = True
         heard = [
-            lag
-            for lag, came in zip(self._lags, self._came, strict=True)
-            if time - came < _SILENT
+            lag for lag, came in zip(self._lags, self._came, strict=True) if time - came < _SILENT
         ]
         needed = min(math.ceil(max(heard, default=0.0) / self._dt - 0.01), self._most)
         if needed > self.steps or (heard and needed < self.steps - _KEPT):
