@@ -28,6 +28,7 @@ from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
 from tree_sway.core.growth.grow import grow
+from tree_sway.core.leaves.calendar import FIRST_MONTH, is_bare, LAST_MONTH, species_in_month
 from tree_sway.core.model.settings import model_of, Settings, USUAL
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
@@ -176,6 +177,8 @@ def build_scene(
             raise ParameterError('a stand of a forest', where='--stand', cure='name one tree')
         scene = stand(scene, count, choices.model)
     damping, in_leaf = choices.damping_ratio or None, chosen_leaves(arguments)
+    if not is_first and choices.is_grown and is_bare(species_named(choices.tree), choices.month):
+        in_leaf = False
     settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
     if places and is_first and count == 1:
         return scene.observed(replace(settings, model=model_of(choices.model)), places, RATE)
@@ -183,10 +186,10 @@ def build_scene(
 
 
 def _grown(choices: Choices) -> Scene:
-    """Grow a tree of a species, of the height and individual that a viewer wants."""
+    """Grow a tree of a species, of the height, individual and month that a viewer wants."""
     rng = np.random.default_rng(int(choices.individual))
     tree = grow(choices.tree, choices.height, rng=rng)
-    species = rooted(tree, species_named(choices.tree))
+    species = species_in_month(rooted(tree, species_named(choices.tree)), tree, choices.month)
     return scene_of_files([TreeFile(tree, species, tree.name).checked()])
 
 
@@ -237,6 +240,8 @@ def _controls(
     controls.append(height)
     individual = Control('individual', 'Individual', choices.individual, choices=_INDIVIDUALS)
     controls.append(individual)
+    year = 'Of a tree to grow: its leaves, also for the wind.', '', FIRST_MONTH, LAST_MONTH
+    controls.append(Control('month', 'Season', choices.month, *year))
     if is_one_tree:
         # Models and number of the trees of a stand are those of its file.
         how_many = Control('count', 'Number of trees', choices.count, choices=counts)

@@ -16,6 +16,7 @@ import threading
 import time
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES
+from tree_sway.core.leaves.calendar import SUMMER
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.observe.observed_tree import ObservedTree
 from tree_sway.core.observe.sensor_report import sensor_reports
@@ -31,7 +32,7 @@ from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.page.newest import Newest
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.server import PageServer
-from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, WindSource
+from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, wind_ahead, WindSource
 from tree_sway.sensors.live_wind import LiveWind
 from tree_sway.sensors.motion.motion_feed import MotionFeed
 from tree_sway.stream.controls import Refused, Value
@@ -66,6 +67,8 @@ class Choices:
         Height of a tree that is grown in [m].
     individual
         Which of the trees of that species and height, a whole number as text.
+    month
+        Time of the year of a tree that is grown, in months from 1: `leaf_share`.
 
     """
 
@@ -75,6 +78,7 @@ class Choices:
     damping_ratio: float = 0.0
     height: float = 12.0
     individual: str = '0'
+    month: float = SUMMER
 
     @property
     def is_grown(self) -> bool:
@@ -223,6 +227,8 @@ class Session:
         }
         if isinstance(self.wind, RecordedWind):
             status['record_time'] = self.wind.time(self._now)
+        if isinstance(self.wind, (RecordedWind, SimulatedWind)):
+            status['wind_ahead'] = wind_ahead(self.wind, self._now)
         if self._motion.sensors:
             status['motion'] = self._motion_status(simulator)
         return status
