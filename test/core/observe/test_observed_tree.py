@@ -219,9 +219,11 @@ def test_a_state_carries_the_correction() -> None:
 
 
 def test_a_bad_wind_is_refused_and_counted() -> None:
-    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
+    twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT}, has_band=True)
     assert twin.step((np.nan, 0.0, 0.0), DT)
     assert twin.counts.refused == 1
+    twin.step((5.0, 0.0, 0.0), DT)
+    assert np.isfinite(twin.band()).all()
     twin.reset()
     assert not twin.rotations().any()
 

@@ -121,7 +121,7 @@ class Members:
         unknown, spreads = observer.unknown, self.spreads
         factors = np.exp(np.array(spreads)[:, None] * self._drawn)
         self.stiffness, loss, self._drag = factors
-        stiffness = np.outer(observer.stiffness[:n], self.stiffness)
+        stiffness = np.outer(observer.stiffness, self.stiffness)
         damping = np.outer(observer.damping[:n], loss * np.sqrt(self.stiffness))
         self._air = unknown.air_damping[:, None]
         damping += self._air * self._drag
@@ -198,7 +198,7 @@ class Members:
         n, gains = self._count, self._observer.gains
         assert gains is not None
         estimate, felt = self._estimate, self._felt
-        stiffness = self._observer.stiffness[:n, None]
+        stiffness = self._observer.stiffness[:, None]
         damping = self._observer.damping[:n, None]
         np.multiply(gains.law.step[..., None], estimate, out=self._moved)
         np.add.reduce(self._moved, axis=1, out=estimate)

@@ -14,6 +14,8 @@ export class Quality {
   fineness = 1;
   /** Share of the leaves that is drawn. */
   density = 1;
+  /** Whether there is time for grass. */
+  hasGrass = true;
   _from = 0;
   _frames = 0;
   _last = 0;
