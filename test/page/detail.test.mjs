@@ -145,7 +145,7 @@ test("it is darker inside a crown than at its edge, and light comes from outside
   assert.equal(crownShade([], [], [0, 0, 0], [1, 1, 1])([0, 0, 0]).open, 1);
 });
 
-test("a slow page leaves out pixels first, then frames, and leaves last", () => {
+test("a slow page leaves out pixels first, then frames, then grass, and leaves last", () => {
   const quality = new Quality();
   let now = 0;
   const run = (fps, seconds) => {
@@ -156,10 +156,14 @@ test("a slow page leaves out pixels first, then frames, and leaves last", () => 
   run(30, 20);
   assert.ok(quality.fineness < 0.6);
   assert.equal(quality.density, 1);
+  assert.ok(quality.hasGrass);
+  run(20, 1);
+  assert.ok(!quality.hasGrass && quality.density === 1);
   run(12, 20);
   assert.ok(quality.density < 1 && quality.density >= 0.4);
   run(60, 120);
   assert.equal(quality.density, 1);
+  assert.ok(quality.hasGrass);
 });
 
 test("a small tree has fewer rings of bark, none thinner than half a pixel", () => {
