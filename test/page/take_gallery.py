@@ -74,7 +74,6 @@ VIEWS = (
     View('benjamina_near', 'benjamina', script='treeSway.scene.camera.zoom(0.3)'),
     View('benjamina_software', 'benjamina', is_full=False),
     View('benjamina_dark', 'benjamina', is_dark=True, has_cards=True),
-    View('benjamina_phone', 'benjamina', size=(390, 844), has_cards=True),
     View('goldcrest', 'goldcrest'),
     View('oak', 'oak'),
     View('oak_autumn', 'oak', script=_EVENING + _AUTUMN),
