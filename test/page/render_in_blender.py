@@ -9,6 +9,7 @@ python test/page/render_in_blender.py oak.glb oak.png
 import argparse
 import importlib
 import math
+import os
 from typing import Any
 
 FRAME, SAMPLES, SIZE = 60, 16, 480
@@ -76,3 +77,5 @@ if __name__ == '__main__':
     parser.add_argument('picture')
     given = parser.parse_args()
     render(given.file, given.picture)
+    # bpy 5.0 crashes as the interpreter ends, when the picture is written.
+    os._exit(0 if os.path.exists(given.picture) else 1)
