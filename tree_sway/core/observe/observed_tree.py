@@ -27,6 +27,7 @@ from tree_sway.core.checks import three_numbers, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
+from tree_sway.core.observe.explained_motion import ExplainedMotion
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
 from tree_sway.core.observe.sensor_place import place_on, tip_slopes
@@ -121,6 +122,9 @@ class ObservedTree(SwaySimulator):
                 cure='use a number of coordinates, such as 60',
             )
         self._places = {name: place_on(self.tree, where) for name, where in at.items()}
+        self.at = {name: str(where) for name, where in at.items()}
+        """Place of each sensor as it was given."""
+        self._explained = ExplainedMotion()
         self._is_smoothed, self._rate = is_smoothed, 0.0
         self.sensors: dict[str, MotionSensor] = {}
         """Sensors by their names."""
@@ -244,6 +248,8 @@ class ObservedTree(SwaySimulator):
         self._bound(added)
         eta += added[0]
         rate += added[1]
+        if self.observer.is_active:
+            self._explained.note(dt, self.observer.stiffness, eta, added[0])
         if self.observer.fit is not self._known:
             self._take_on(self.observer.fit)
         return status
@@ -304,6 +310,15 @@ class ObservedTree(SwaySimulator):
             self._tips = slopes.reshape(-1, slopes.shape[2])
         deviation = self.observer.tip_deviation(self._tips)
         return np.asarray(_QUANTILE * deviation.reshape(-1, 3))
+
+    @property
+    def explained(self) -> float:
+        """
+        Share of the motion that the wind alone explains, 0 to 1.
+
+        It is that of the last half minute in which a sensor was in use, 1 before any was.
+        """
+        return self._explained.share
 
     @property
     def problems(self) -> list[str]:

@@ -164,6 +164,11 @@ class SensorTrack:
         return known * math.sqrt(held)
 
     @property
+    def may_be_used(self) -> bool:
+        """Whether it is in use, or its mounting is being found."""
+        return self.in_use or self.alignment is None
+
+    @property
     def problem(self) -> str:
         """Why it is not in use, and what to do; empty if it is."""
         name = self.sensor.name
