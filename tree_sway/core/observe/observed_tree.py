@@ -143,7 +143,7 @@ class ObservedTree(SwaySimulator):
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
         self._given: float | None = None
-        self._speed = 0.0
+        self._last_wind = (0.0, 0.0, 0.0)
         self._known: TreeFit | None = None
         self._tips: Floats | None = None
         self.learns = learns
@@ -239,12 +239,11 @@ class ObservedTree(SwaySimulator):
         eta -= added[0]
         rate -= added[1]
         if is_wind(x, y, z, self._max_wind):  # else the last wind moves the tree
-            self._speed = math.hypot(x, y, z)
+            self._last_wind = x, y, z
             apart = (self._share @ self._crown.push(x, y, z, dt)).tolist()
             status = super().step((x + apart[0], y + apart[1], z + apart[2]), dt)
         else:
             status = super().step((x, y, z), dt)
-            x, y, z = self._wind.tolist()
         if status & RESTARTED:
             added[:] = 0.0
             self.observer.reset()
@@ -253,10 +252,11 @@ class ObservedTree(SwaySimulator):
         if self._records:
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
-        added[:] = self.observer.step(self.now, self._speed, swing, n_periods)
+        speed = math.hypot(*self._last_wind)
+        added[:] = self.observer.step(self.now, speed, swing, n_periods)
         self._bound(added)
         if self.members is not None:
-            self.members.step(swing, (x, y))
+            self.members.step(swing, self._last_wind[:2])
         eta += added[0]
         rate += added[1]
         if self.observer.is_active:
@@ -301,7 +301,8 @@ class ObservedTree(SwaySimulator):
         self.observer.reset()
         if self.members is not None:
             self.members.reset()
-        self.now, self._given, self._speed = 0.0, None, 0.0
+        self.now, self._given = 0.0, None
+        self._last_wind = (0.0, 0.0, 0.0)
         for record in self._records.values():
             record.next = 0
 
