@@ -38,7 +38,10 @@ def bank_of(model: SwayModel, *, plain: bool = False) -> Bank:
     branches, segments = _branches(model, places), segment_records(places)
     oscillators = _oscillators(model, branches, plain)
     blocks = block_records(branches, segments)
-    return Bank(oscillators, branches, segments, blocks, model.mass, plain)
+    bank = Bank(oscillators, branches, segments, blocks, model.mass, plain)
+    if model.is_limp:
+        oscillators.begin(model, bank)
+    return bank
 
 
 def _oscillators(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
@@ -77,6 +80,10 @@ def _on_table(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
     from tree_sway.core.run.modal_coordinates import ModalCoordinates
 
     coordinates = ModalCoordinates(branches, model)
+    if model.is_limp:
+        from tree_sway.core.run.limp_tree import LimpBank, NumpyLimpBank
+
+        return (NumpyLimpBank if plain else LimpBank)(coordinates, table_record(model))
     if plain:
         from tree_sway.core.run.numpy_table import NumpyTableBank
 

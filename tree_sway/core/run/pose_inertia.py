@@ -1,0 +1,158 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Inertia, centrifugal force and weight of a tree at the pose it has, in its own coordinates.
+
+With p the middles of the segments, m their masses and ``J = dp/dq``, Lagrange's equations of the
+tree are (Shabana 2020, *Dynamics of Multibody Systems*, chapter 3)
+
+    M q'' + J' m (dJ/dt) q' = forces + J' m g,   M = J' m J.
+
+All three are found by placing the tree: a column of J is the difference of two places of the
+segments, and the centrifugal force the second difference along the motion. **Columns are renewed
+in turn**, `RENEWED` a step, so that one is at most some tenth of a second old: M is a product of
+a matrix with itself, and so is positive definite however old its columns are.
+
+**No energy comes of it.** In truth the change of M and the centrifugal force do no work together.
+So the rates are scaled to the kinetic energy that they had before a renewal, and what the
+centrifugal force has along the motion is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats
+
+LEADING = 60
+"""Largest number of coordinates whose inertia is that of the pose; others keep that at rest."""
+
+RENEWED = 6
+"""Number of columns that a step renews."""
+
+_COLUMN_TURN, _MOTION_TURN = 1e-5, 1e-2
+"""Largest key rotation [rad] of the differences for a column, and along the motion."""
+
+Middles = Callable[[Floats], Floats]
+"""
+Middles of the segments by key rotations (N,), times the square roots of their masses, (3 n,).
+"""
+
+
+class PoseInertia:
+    """
+    Inertia of a tree at its pose, relative to that at rest.
+
+    Parameters
+    ----------
+    middles
+        Places the tree.
+    shapes
+        Key rotations per unit of each leading coordinate, (N, q).
+    gravity
+        Gravity on each of the `Middles`, times the square root of its mass, (3 n,).
+    weight_slopes
+        Derivative of the weight's force on leading coordinates by all, at rest, (q, m).
+
+    """
+
+    def __init__(
+        self, middles: Middles, shapes: Floats, gravity: Floats, weight_slopes: Floats
+    ) -> None:
+        self._middles, self._gravity = middles, gravity
+        at_rest = self._columns_at_rest(shapes)
+        # The model's coordinates have unit mass, that of its points to some percent.
+        unit = np.linalg.inv(np.linalg.cholesky(at_rest @ at_rest.T))
+        self._directions = np.ascontiguousarray((shapes @ unit.T).T)
+        self._step = _COLUMN_TURN / np.maximum(np.abs(self._directions).max(axis=1), 1e-300)
+        self._at_rest, self._weight_slopes = unit @ at_rest, unit @ weight_slopes
+        self._weight_at_rest = self._at_rest @ gravity
+        self.columns = self._at_rest.copy()
+        """J of the leading coordinates, times the square roots of the masses, (q, 3 n)."""
+        self.change = np.zeros((len(shapes.T), len(shapes.T)))
+        """M less that at rest, which is 1, (q, q)."""
+        self.weight = np.zeros(len(self.change))
+        """Force of the weight beyond that which is linear in the coordinates, (q,)."""
+        self._next = 0
+
+    def _columns_at_rest(self, shapes: Floats) -> Floats:
+        """Find J at rest by central differences, (q, 3 n)."""
+        return np.array([
+            (self._middles(turn * shape) - self._middles(-turn * shape)) / (2.0 * turn)
+            for shape in shapes.T
+            for turn in (_COLUMN_TURN / max(float(np.abs(shape).max()), 1e-300),)
+        ])  # fmt: skip
+
+    def reset(self) -> None:
+        """Return to rest."""
+        self.columns[:] = self._at_rest
+        self.change[:] = 0.0
+        self.weight[:] = 0.0
+        self._next = 0
+
+    def renew(self, eta: Floats, rotations: Floats, here: Floats, rate: Floats) -> None:
+        """
+        Renew the next columns at a pose, and keep the kinetic energy of a motion.
+
+        Parameters
+        ----------
+        eta, rotations, here
+            Coordinates (m,) of the pose, its key rotations (N,), and the `Middles` there.
+        rate
+            Rates of the coordinates, (m,), scaled.
+
+        """
+        count = min(RENEWED, len(self.change))
+        rows = (self._next + np.arange(count)) % len(self.change)
+        self._next = int(rows[-1] + 1) % len(self.change)
+        before = self.kinetic_energy(rate)
+        for row in rows.tolist():
+            step = self._step[row]
+            column = self.columns[row]
+            np.subtract(self._middles(rotations + step * self._directions[row]), here, out=column)
+            column /= step
+        renewed = self.columns[rows]
+        inertia = renewed @ self.columns.T
+        inertia[np.arange(count), rows] -= 1.0
+        self.change[rows], self.change[:, rows] = inertia, inertia.T
+        weight = renewed @ self._gravity - self._weight_at_rest[rows]
+        self.weight[rows] = weight - self._weight_slopes[rows] @ eta
+        after = self.kinetic_energy(rate)
+        if after > 0.0:
+            rate *= np.sqrt(before / after)
+
+    def kinetic_energy(self, rate: Floats) -> float:
+        """Twice the kinetic energy of a motion of rates (m,), [J]."""
+        leading = rate[: len(self.change)]
+        return float(rate @ rate + leading @ (self.change @ leading))
+
+    def centrifugal(
+        self, rotations: Floats, here: Floats, rate: Floats, rotation_rates: Floats
+    ) -> Floats:
+        """
+        Find ``J' m (dJ/dt) q'`` but for what does work on the motion, (q,).
+
+        Parameters
+        ----------
+        rotations, here
+            Key rotations (N,), and the `Middles` there.
+        rate, rotation_rates
+            Rates of the coordinates (m,), and of the key rotations (N,).
+
+        """
+        fastest = float(np.abs(rotation_rates).max(initial=0.0))
+        energy = self.kinetic_energy(rate)
+        if not (fastest > 0.0 and energy > 0.0):
+            return np.zeros(len(self.change))
+        step = _MOTION_TURN / fastest
+        along = step * rotation_rates
+        bend = self._middles(rotations + along)
+        bend = bend + self._middles(rotations - along)
+        bend -= 2.0 * here
+        force = self.columns @ bend / step**2
+        leading = rate[: len(self.change)]
+        momentum = leading + self.change @ leading
+        force -= (force @ leading) / energy * momentum
+        return np.asarray(force)
