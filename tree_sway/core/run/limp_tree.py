@@ -37,11 +37,11 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.model.drag_law import DragLaw, pressure
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.bank import Bank
+from tree_sway.core.run.middles import Middles
 from tree_sway.core.run.numpy_table import NumpyTableBank
-from tree_sway.core.run.pose_inertia import LEADING, Middles, PoseInertia
+from tree_sway.core.run.pose_inertia import LEADING, PoseInertia
 from tree_sway.core.run.table_model import WindBasisBank
 from tree_sway.core.setup.tree_motion import centre_motion
-from tree_sway.core.tree.segment_frame import ends_of_poses
 
 _FASTEST = 2.5
 """Largest angle [rad] that a coordinate swings by in a step with the inertia of the pose."""
@@ -74,8 +74,9 @@ class LimpStep(WindBasisBank):
         mass, shapes = model.segment_mass, model.shapes[:, :LEADING]
         down = np.repeat(np.sqrt(mass), 3) * np.tile([0.0, 0.0, -gravity], len(mass))
         slopes = model.weight_slopes[: shapes.shape[1]]
-        self._middles = middles_of(model, bank)
+        self._middles = Middles(bank, model.segment_mass, model.tree.length)
         self.pose = PoseInertia(self._middles, shapes, down, slopes)
+        self._here = np.zeros(3 * len(mass))
         self._shapes = np.ascontiguousarray(model.shapes)
         self._by_coordinate = np.ascontiguousarray(model.shapes.T)
         moved = centre_motion(self.branches, model.shapes).reshape(-1, m)
@@ -143,7 +144,7 @@ class LimpStep(WindBasisBank):
         middle = half[0] * eta + half[1] * rate + half[2] * force
         middle_rate = half[3] * eta + half[4] * rate + half[5] * force
         rotations, rotation_rates = self._shapes @ middle, self._shapes @ middle_rate
-        here = self._middles(rotations)
+        here = self._middles.fill(rotations, self._here)
         self.pose.renew(middle, rotations, here, rate)
         moments = self._wind_moments(rotations, rotation_rates, np.array([wx, wy, wz]))
         wanted = per_speed_squared * (self._by_coordinate @ moments)
@@ -199,16 +200,3 @@ class LimpBank(LimpStep, WindBasisBank):
 
 class NumpyLimpBank(LimpStep, NumpyTableBank):
     """A limp tree in numpy."""
-
-
-def middles_of(model: SwayModel, bank: Bank) -> Middles:
-    """Return how a bank places the middles of the segments of a model."""
-    root, half = np.sqrt(model.segment_mass)[:, None], 0.5 * model.tree.length
-    origin, poses = np.zeros(3), np.empty((model.tree.n_segments, 7))
-    place = bank.place
-
-    def middles(rotations: Floats) -> Floats:
-        place(rotations, origin, poses)
-        return np.asarray((root * ends_of_poses(poses, half)[1]).reshape(-1))
-
-    return middles

@@ -20,11 +20,10 @@ centrifugal force has along the motion is left out.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.run.middles import Middles
 
 LEADING = 60
 """Largest number of coordinates whose inertia is that of the pose; others keep that at rest."""
@@ -34,12 +33,6 @@ RENEWED = 6
 
 _COLUMN_TURN, _MOTION_TURN = 1e-5, 1e-2
 """Largest key rotation [rad] of the differences for a column, and along the motion."""
-
-Middles = Callable[[Floats], Floats]
-"""
-Middles of the segments by key rotations (N,), times the square roots of their masses, (3 n,).
-"""
-
 
 class PoseInertia:
     """
@@ -52,7 +45,7 @@ class PoseInertia:
     shapes
         Key rotations per unit of each leading coordinate, (N, q).
     gravity
-        Gravity on each of the `Middles`, times the square root of its mass, (3 n,).
+        Gravity on each of the `Middles` over its factor, (3 n,).
     weight_slopes
         Derivative of the weight's force on leading coordinates by all, at rest, (q, m).
 
@@ -62,6 +55,7 @@ class PoseInertia:
         self, middles: Middles, shapes: Floats, gravity: Floats, weight_slopes: Floats
     ) -> None:
         self._middles, self._gravity = middles, gravity
+        self._room, self._other = np.zeros((2, len(gravity)))
         at_rest = self._columns_at_rest(shapes)
         # The model's coordinates have unit mass, that of its points to some percent.
         unit = np.linalg.inv(np.linalg.cholesky(at_rest @ at_rest.T))
@@ -79,11 +73,13 @@ class PoseInertia:
 
     def _columns_at_rest(self, shapes: Floats) -> Floats:
         """Find J at rest by central differences, (q, 3 n)."""
-        return np.array([
-            (self._middles(turn * shape) - self._middles(-turn * shape)) / (2.0 * turn)
-            for shape in shapes.T
-            for turn in (_COLUMN_TURN / max(float(np.abs(shape).max()), 1e-300),)
-        ])  # fmt: skip
+        columns = np.zeros((shapes.shape[1], len(self._gravity)))
+        for shape, column in zip(shapes.T, columns, strict=True):
+            turn = _COLUMN_TURN / max(float(np.abs(shape).max()), 1e-300)
+            ahead = self._middles.fill(turn * shape, self._room)
+            behind = self._middles.fill(-turn * shape, self._other)
+            column[:] = (ahead - behind) / (2.0 * turn)
+        return columns
 
     def reset(self) -> None:
         """Return to rest."""
@@ -111,7 +107,8 @@ class PoseInertia:
         for row in rows.tolist():
             step = self._step[row]
             column = self.columns[row]
-            np.subtract(self._middles(rotations + step * self._directions[row]), here, out=column)
+            self._middles.fill(rotations + step * self._directions[row], column)
+            column -= here
             column /= step
         renewed = self.columns[rows]
         inertia = renewed @ self.columns.T
@@ -148,9 +145,10 @@ class PoseInertia:
             return np.zeros(len(self.change))
         step = _MOTION_TURN / fastest
         along = step * rotation_rates
-        bend = self._middles(rotations + along)
-        bend = bend + self._middles(rotations - along)
-        bend -= 2.0 * here
+        bend = self._middles.fill(rotations + along, self._room)
+        bend += self._middles.fill(rotations - along, self._other)
+        bend -= here
+        bend -= here
         force = self.columns @ bend / step**2
         leading = rate[: len(self.change)]
         momentum = leading + self.change @ leading
