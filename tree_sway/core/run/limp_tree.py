@@ -113,6 +113,7 @@ class LimpStep(WindBasisBank):
         """Return to rest."""
         super().reset()
         self.pose.reset()
+        self._wind_moments.reset()
 
     def _step_in_wind(
         self, stored: Floats, max_wind: float, law: DragLaw, x: float, y: float, z: float
@@ -145,7 +146,8 @@ class LimpStep(WindBasisBank):
         middle_rate = half[3] * eta + half[4] * rate + half[5] * force
         rotations, rotation_rates = self._shapes @ middle, self._shapes @ middle_rate
         here = self._middles.fill(rotations, self._here)
-        self.pose.renew(middle, rotations, here, rate)
+        fastest = float(np.abs(rotation_rates).max(initial=0.0))
+        self.pose.renew(middle, rotations, here, rate, fastest * law.h)
         moments = self._wind_moments(rotations, rotation_rates, np.array([wx, wy, wz]))
         wanted = per_speed_squared * (self._by_coordinate @ moments)
         n = len(self.pose.change)

@@ -20,6 +20,8 @@ centrifugal force has along the motion is left out.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from tree_sway.core.arrays import Floats
@@ -28,8 +30,11 @@ from tree_sway.core.run.middles import Middles
 LEADING = 60
 """Largest number of coordinates whose inertia is that of the pose; others keep that at rest."""
 
-RENEWED = 6
-"""Number of columns that a step renews."""
+RENEWED, OLDEST = 6, 0.3
+"""
+Least number of columns that a step renews, and the largest rotation [rad] of a branch between two
+renewals of a column.
+"""
 
 _COLUMN_TURN, _MOTION_TURN = 1e-5, 1e-2
 """Largest key rotation [rad] of the differences for a column, and along the motion."""
@@ -88,7 +93,9 @@ class PoseInertia:
         self.weight[:] = 0.0
         self._next = 0
 
-    def renew(self, eta: Floats, rotations: Floats, here: Floats, rate: Floats) -> None:
+    def renew(
+        self, eta: Floats, rotations: Floats, here: Floats, rate: Floats, turned: float
+    ) -> None:
         """
         Renew the next columns at a pose, and keep the kinetic energy of a motion.
 
@@ -98,9 +105,13 @@ class PoseInertia:
             Coordinates (m,) of the pose, its key rotations (N,), and the `Middles` there.
         rate
             Rates of the coordinates, (m,), scaled.
+        turned
+            Largest rotation of a branch in the step, [rad].
 
         """
-        count = min(RENEWED, len(self.change))
+        count = len(self.change)
+        if turned < OLDEST:
+            count = min(count, max(RENEWED, math.ceil(count * turned / OLDEST)))
         rows = (self._next + np.arange(count)) % len(self.change)
         self._next = int(rows[-1] + 1) % len(self.change)
         before = self.kinetic_energy(rate)

@@ -38,6 +38,10 @@ class WindMoments:
         self.branches, self._plain = branches, plain or bool(WHY_PLAIN)
         self.n = int(branches['n_coordinates'].sum())
 
+    def reset(self) -> None:
+        """Forget the drag of the last call, which may be of a motion that was not finite."""
+        self._records[2]['drag_impulse'] = 0.0
+
     @cached_property
     def _passes(self) -> NumpyPasses:
         return NumpyPasses(self.branches)
