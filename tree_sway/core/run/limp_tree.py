@@ -38,13 +38,26 @@ from tree_sway.core.model.drag_law import DragLaw, pressure
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.middles import Middles
+from tree_sway.core.run.modal_coordinates import FARTHEST
 from tree_sway.core.run.numpy_table import NumpyTableBank
 from tree_sway.core.run.pose_inertia import LEADING, PoseInertia
-from tree_sway.core.run.table_model import WindBasisBank
+from tree_sway.core.run.table_model import STATE_FIELDS, WindBasisBank
 from tree_sway.core.setup.tree_motion import centre_motion
 
 _FASTEST = 2.5
 """Largest angle [rad] that a coordinate swings by in a step with the inertia of the pose."""
+
+STRONG = 20.0, 25.0
+"""
+Winds [m/s] between which the step goes over from that of the pose to that of the table: in storms
+twigs stream along the wind, where loads branch by branch rattle.
+"""
+
+LONGEST_STEP, MOST_TURN = 0.04, 1.0
+"""
+Longest step [s] with the inertia of the pose, and the largest rotation of a branch in one [rad].
+After a step that would turn further, the table takes over for a second.
+"""
 
 (_solve,) = get_lapack_funcs(('posv',), dtype=np.float64)
 
@@ -83,6 +96,7 @@ class LimpStep(WindBasisBank):
         drag = np.repeat(2.0 * self.branches['area'] * self.branches['speed'], 3)
         self._drag = moved.T @ (drag[:, None] * moved)
         self._law: StepLaw | None = None
+        self._doubt, self._is_fresh = 0.0, True
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
@@ -113,6 +127,7 @@ class LimpStep(WindBasisBank):
         """Return to rest."""
         super().reset()
         self.pose.reset()
+        self._doubt, self._is_fresh = 0.0, True
         self._wind_moments.reset()
 
     def _step_in_wind(
@@ -129,54 +144,78 @@ class LimpStep(WindBasisBank):
     def _limp_step(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Step; returns 1 where wind or motion were clamped to the limit of the table."""
         instance, law = self.instance[0], self._law
-        if instance['left_out'] or law is None:
+        share = self._share_of_table(math.sqrt(wx * wx + wy * wy + wz * wz))
+        if share == 1.0 or law is None:
+            self._is_fresh = False
             return int(self._step(wx, wy, wz, per_speed_squared))
         m = len(law.half[0])
-        eta, rate, force = (instance[name][:m] for name in ('eta', 'rate', 'force'))
-        instance['wind'], instance['pressure'] = (wx, wy, wz), per_speed_squared
-        speed = math.sqrt(wx * wx + wy * wy + wz * wz)
-        most = float(self.record[0]['most_pressure'])
-        is_outside = per_speed_squared * speed * speed > most
-        if is_outside:
-            per_speed_squared = most / (speed * speed)
-        energy_before = self._energy(eta, rate)
+        state = [instance[name][:m] for name in STATE_FIELDS[:3]]
+        at_pose = self._step_at_pose(law, np.array([wx, wy, wz]), per_speed_squared)
+        if at_pose is None:
+            self._doubt, share = 1.0, 1.0
+        outside = 0
+        if share > 0.0:
+            outside = int(self._step(wx, wy, wz, per_speed_squared))
+        else:
+            instance['wind'], instance['pressure'] = (wx, wy, wz), per_speed_squared
+            instance['outside'], instance['diagonal'] = 0, 0.0
+        if at_pose is not None:
+            for now, own in zip(state, at_pose, strict=True):
+                now[:] = own + share * (now - own)
+        return outside
 
+    def _share_of_table(self, speed: float) -> float:
+        """Weight of the table's step in a wind [m/s], 0 to 1."""
+        if self.instance['left_out'][0] or self._law is None or self._law.h > LONGEST_STEP:
+            return 1.0
+        self._doubt = max(0.0, self._doubt - self._law.h)
+        return min(max((speed - STRONG[0]) / (STRONG[1] - STRONG[0]), self._doubt, 0.0), 1.0)
+
+    def _step_at_pose(
+        self, law: StepLaw, wind: Floats, per_speed_squared: float
+    ) -> tuple[Floats, Floats, Floats] | None:
+        """
+        Find coordinates, rates and force after a step with the inertia and the loads of the pose.
+
+        None where the step adds more energy than any wind, or turns a branch too far.
+        """
+        instance, m = self.instance[0], len(law.half[0])
+        eta, force = instance['eta'][:m], instance['force'][:m]
+        rate = instance['rate'][:m].copy()
         half, whole = law.half, law.whole
+        before = self._energy(eta, rate)
         middle = half[0] * eta + half[1] * rate + half[2] * force
         middle_rate = half[3] * eta + half[4] * rate + half[5] * force
         rotations, rotation_rates = self._shapes @ middle, self._shapes @ middle_rate
         here = self._middles.fill(rotations, self._here)
-        fastest = float(np.abs(rotation_rates).max(initial=0.0))
-        self.pose.renew(middle, rotations, here, rate, fastest * law.h)
-        moments = self._wind_moments(rotations, rotation_rates, np.array([wx, wy, wz]))
+        turned = law.h * float(np.abs(rotation_rates).max(initial=0.0))
+        self.pose.renew(middle, rotations, here, rate, turned if self._is_fresh else math.inf)
+        self._is_fresh = True
+        moments = self._wind_moments(rotations, rotation_rates, wind)
         wanted = per_speed_squared * (self._by_coordinate @ moments)
         n = len(self.pose.change)
         wanted[:n] += self.pose.weight
         wanted[:n] -= self.pose.centrifugal(rotations, here, middle_rate, rotation_rates)
-
-        self._find_force(law, wanted, per_speed_squared * speed)
-        eta_now = eta.copy()
-        eta[:] = whole[0] * eta_now + whole[1] * rate + whole[2] * force
-        rate[:] = whole[3] * eta_now + whole[4] * rate + whole[5] * force
-        energy = self._energy(eta, rate)
-        most = max(energy_before, float(self.record[0]['most_energy']))
-        if not energy <= most:
-            share = math.sqrt(most / energy) if energy < math.inf else math.nan
-            eta *= share
-            rate *= share
-            is_outside = True
-        instance['outside'] = is_outside
         instance['wanted'][:m] = wanted
-        return int(is_outside)
+        speed = math.sqrt(float(wind @ wind))
+        found = self._constant_force(law, wanted, eta, rate, per_speed_squared * speed)
+        moved = whole[0] * eta + whole[1] * rate + whole[2] * found
+        faster = whole[3] * eta + whole[4] * rate + whole[5] * found
+        energy = self._energy(moved, faster)
+        turned = law.h * float(np.abs(self._shapes @ faster).max(initial=0.0))
+        bent = float(np.abs(self._shapes @ moved).max(initial=0.0))
+        most = max(before, float(self.record[0]['most_energy']))
+        is_likely = energy <= most and turned <= MOST_TURN and bent <= FARTHEST
+        return (moved, faster, found) if is_likely else None
 
-    def _find_force(self, law: StepLaw, wanted: Floats, drag: float) -> None:
-        """Find the constant force of a step, with inertia and damping implicit."""
-        instance, m = self.instance[0], len(wanted)
-        eta, rate, force = (instance[name][:m] for name in ('eta', 'rate', 'force'))
+    def _constant_force(
+        self, law: StepLaw, wanted: Floats, eta: Floats, rate: Floats, drag: float
+    ) -> Floats:
+        """Find the force of a step, (m,), with inertia and damping implicit."""
+        force = self.instance[0]['force'][: len(wanted)]
         own_drag = 0.5 * drag * np.diagonal(self._drag) * law.whole[5]
         found = (wanted + own_drag * force) / (1.0 + own_drag)
-        c = law.coupled
-        n = len(self.pose.change)
+        c, n = law.coupled, len(self.pose.change)
         inertia, damping = self.pose.change, (0.5 * drag * law.h) * self._drag[:n, :n]
         if not isinstance(c, slice):
             inertia, damping = inertia[np.ix_(c, c)], damping[np.ix_(c, c)]
@@ -189,7 +228,7 @@ class LimpStep(WindBasisBank):
         _, accelerations, failed = _solve(matrix, right, lower=1, overwrite_a=1)
         if not failed:
             found[:n][c] = accelerations / gain
-        force[:] = found
+        return np.asarray(found)
 
     def _energy(self, eta: Floats, rate: Floats) -> float:
         """Twice the strain and kinetic energy [J]."""
