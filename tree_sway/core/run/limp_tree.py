@@ -40,7 +40,7 @@ from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.middles import Middles
 from tree_sway.core.run.modal_coordinates import FARTHEST
 from tree_sway.core.run.numpy_table import NumpyTableBank
-from tree_sway.core.run.pose_inertia import LEADING, PoseInertia
+from tree_sway.core.run.pose_inertia import PoseInertia
 from tree_sway.core.run.table_model import STATE_FIELDS, WindBasisBank
 from tree_sway.core.setup.tree_motion import centre_motion
 
@@ -58,6 +58,8 @@ LONGEST_STEP, MOST_TURN = 0.04, 1.0
 Longest step [s] with the inertia of the pose, and the largest rotation of a branch in one [rad].
 After a step that would turn further, the table takes over for a second.
 """
+
+_SLACK = 0.02
 
 (_solve,) = get_lapack_funcs(('posv',), dtype=np.float64)
 
@@ -84,23 +86,27 @@ class LimpStep(WindBasisBank):
     def begin(self, model: SwayModel, bank: Bank) -> None:
         """Prepare the law of a model, by a bank that places it."""
         m, gravity = model.n_coordinates, model.settings.gravity
-        mass, shapes = model.segment_mass, model.shapes[:, :LEADING]
+        mass = model.segment_mass
         down = np.repeat(np.sqrt(mass), 3) * np.tile([0.0, 0.0, -gravity], len(mass))
-        slopes = model.weight_slopes[: shapes.shape[1]]
         self._middles = Middles(bank, model.segment_mass, model.tree.length)
-        self.pose = PoseInertia(self._middles, shapes, down, slopes)
-        self._here = np.zeros(3 * len(mass))
+        self.pose = PoseInertia(self._middles, model.shapes, down, model.weight_slopes)
+        self._here, self._room = np.zeros((2, 3 * len(mass)))
         self._shapes = np.ascontiguousarray(model.shapes)
         self._by_coordinate = np.ascontiguousarray(model.shapes.T)
         moved = centre_motion(self.branches, model.shapes).reshape(-1, m)
         drag = np.repeat(2.0 * self.branches['area'] * self.branches['speed'], 3)
         self._drag = moved.T @ (drag[:, None] * moved)
         self._law: StepLaw | None = None
+        self._last_rate, self._last_stiffness = np.zeros(0), np.zeros(0)
         self._doubt, self._is_fresh = 0.0, True
+        self._forget()
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         super().set_step(dt)
+        if not np.array_equal(self.modal.stiffness, self._last_stiffness):
+            self._last_stiffness = self.modal.stiffness.copy()
+            self._forget()
         m = self.modal.shapes.shape[1]
         half = self.time_step[0]['half'][:, :m].copy()
         whole = self.modal.whole.T[[0, 1, 2, 4, 5, 6]]
@@ -128,6 +134,7 @@ class LimpStep(WindBasisBank):
         super().reset()
         self.pose.reset()
         self._doubt, self._is_fresh = 0.0, True
+        self._forget()
         self._wind_moments.reset()
 
     def _step_in_wind(
@@ -141,15 +148,22 @@ class LimpStep(WindBasisBank):
         load = pressure(math.sqrt(wx * wx + wy * wy + wz * wz), *law)
         return int(is_refused) + 2 * self._limp_step(wx, wy, wz, load)
 
+    def _forget(self) -> None:
+        """Bound the energy from the next step on: the tree was pushed, tuned or begun anew."""
+        self._allowed = math.inf
+
     def _limp_step(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Step; returns 1 where wind or motion were clamped to the limit of the table."""
         instance, law = self.instance[0], self._law
         share = self._share_of_table(math.sqrt(wx * wx + wy * wy + wz * wz))
         if share == 1.0 or law is None:
             self._is_fresh = False
+            self._forget()
             return int(self._step(wx, wy, wz, per_speed_squared))
         m = len(law.half[0])
         state = [instance[name][:m] for name in STATE_FIELDS[:3]]
+        if not np.array_equal(state[1], self._last_rate):
+            self._forget()
         at_pose = self._step_at_pose(law, np.array([wx, wy, wz]), per_speed_squared)
         if at_pose is None:
             self._doubt, share = 1.0, 1.0
@@ -162,6 +176,9 @@ class LimpStep(WindBasisBank):
         if at_pose is not None:
             for now, own in zip(state, at_pose, strict=True):
                 now[:] = own + share * (now - own)
+        if share > 0.0:
+            self._forget()
+        self._last_rate = state[1].copy()
         return outside
 
     def _share_of_table(self, speed: float) -> float:
@@ -192,7 +209,8 @@ class LimpStep(WindBasisBank):
         self.pose.renew(middle, rotations, here, rate, turned if self._is_fresh else math.inf)
         self._is_fresh = True
         moments = self._wind_moments(rotations, rotation_rates, wind)
-        wanted = per_speed_squared * (self._by_coordinate @ moments)
+        by_wind = per_speed_squared * (self._by_coordinate @ moments)
+        wanted = by_wind.copy()
         n = len(self.pose.change)
         wanted[:n] += self.pose.weight
         wanted[:n] -= self.pose.centrifugal(rotations, here, middle_rate, rotation_rates)
@@ -203,10 +221,31 @@ class LimpStep(WindBasisBank):
         faster = whole[3] * eta + whole[4] * rate + whole[5] * found
         energy = self._energy(moved, faster)
         turned = law.h * float(np.abs(self._shapes @ faster).max(initial=0.0))
-        bent = float(np.abs(self._shapes @ moved).max(initial=0.0))
+        bent = self._shapes @ moved
         most = max(before, float(self.record[0]['most_energy']))
-        is_likely = energy <= most and turned <= MOST_TURN and bent <= FARTHEST
-        return (moved, faster, found) if is_likely else None
+        if not (energy <= most and turned <= MOST_TURN and np.abs(bent).max() <= FARTHEST):
+            return None
+        self._bound(moved, faster, bent, float(by_wind @ (moved - eta)))
+        return moved, faster, found
+
+    def _bound(self, eta: Floats, rate: Floats, rotations: Floats, work: float) -> None:
+        """
+        Scale rates so that a step of the wind's work [J] has not made more energy than that.
+
+        What the steps before have lost may be made again, up to a share `_SLACK` of the energy:
+        the energy of a motion that is exact but for rounding rises and falls by the step's error.
+        """
+        pose = self.pose
+        here = self._middles.fill(rotations, self._room)
+        total = 0.5 * self._energy(eta, rate)
+        energy = total + pose.potential(eta, here)
+        allowed = self._allowed + work
+        if energy > allowed:
+            kinetic = 0.5 * pose.kinetic_energy(rate)
+            left = max(kinetic - (energy - allowed), 0.0)
+            rate *= math.sqrt(left / kinetic) if kinetic > 0.0 else 0.0
+            energy += left - kinetic
+        self._allowed = min(allowed, energy + _SLACK * total)
 
     def _constant_force(
         self, law: StepLaw, wanted: Floats, eta: Floats, rate: Floats, drag: float

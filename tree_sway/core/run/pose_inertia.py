@@ -48,11 +48,11 @@ class PoseInertia:
     middles
         Places the tree.
     shapes
-        Key rotations per unit of each leading coordinate, (N, q).
+        Key rotations per unit of each coordinate, (N, m), of which the first q are leading.
     gravity
         Gravity on each of the `Middles` over its factor, (3 n,).
     weight_slopes
-        Derivative of the weight's force on leading coordinates by all, at rest, (q, m).
+        Derivative of the weight's force on the coordinates by each of them, at rest, (m, m).
 
     """
 
@@ -62,17 +62,20 @@ class PoseInertia:
         self._middles, self._gravity = middles, gravity
         self._room, self._other = np.zeros((2, len(gravity)))
         at_rest = self._columns_at_rest(shapes)
+        self._place_at_rest = middles.fill(0.0 * shapes[:, 0], np.zeros(len(gravity)))
+        self._force_at_rest, self._slopes = at_rest @ gravity, weight_slopes
         # The model's coordinates have unit mass, that of its points to some percent.
-        unit = np.linalg.inv(np.linalg.cholesky(at_rest @ at_rest.T))
-        self._directions = np.ascontiguousarray((shapes @ unit.T).T)
+        q = min(LEADING, shapes.shape[1])
+        unit = np.linalg.inv(np.linalg.cholesky(at_rest[:q] @ at_rest[:q].T))
+        self._directions = np.ascontiguousarray((shapes[:, :q] @ unit.T).T)
         self._step = _COLUMN_TURN / np.maximum(np.abs(self._directions).max(axis=1), 1e-300)
-        self._at_rest, self._weight_slopes = unit @ at_rest, unit @ weight_slopes
+        self._at_rest, self._weight_slopes = unit @ at_rest[:q], unit @ weight_slopes[:q]
         self._weight_at_rest = self._at_rest @ gravity
         self.columns = self._at_rest.copy()
         """J of the leading coordinates, times the square roots of the masses, (q, 3 n)."""
-        self.change = np.zeros((len(shapes.T), len(shapes.T)))
+        self.change = np.zeros((q, q))
         """M less that at rest, which is 1, (q, q)."""
-        self.weight = np.zeros(len(self.change))
+        self.weight = np.zeros(q)
         """Force of the weight beyond that which is linear in the coordinates, (q,)."""
         self._next = 0
 
@@ -130,6 +133,11 @@ class PoseInertia:
         after = self.kinetic_energy(rate)
         if after > 0.0:
             rate *= np.sqrt(before / after)
+
+    def potential(self, eta: Floats, here: Floats) -> float:
+        """Energy [J] of the weight beyond that which the stiffness has, at coordinates (m,)."""
+        linear = float(self._force_at_rest @ eta) + 0.5 * float(eta @ (self._slopes @ eta))
+        return linear - float(self._gravity @ (here - self._place_at_rest))
 
     def kinetic_energy(self, rate: Floats) -> float:
         """Twice the kinetic energy of a motion of rates (m,), [J]."""
