@@ -75,8 +75,8 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
         ]
         sheet = TreeRecord(folder, 'tree.yaml', 'wind.csv', placed, wind_source=arguments.sensor)
         write_tree_record(sheet)
-        for each, sensor in zip(tables, placed, strict=True):
-            each.path = folder / sensor.file
+        for table, sensor in zip(tables, placed, strict=True):
+            table.path = folder / sensor.file
         with (folder / 'wind.csv').open('w', encoding='utf-8', newline='') as file:
             wind_table = WindTable(file)
             with listening(arguments, heard=wind_table.take) as wind:
@@ -88,14 +88,16 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
                     pass
             wind_table.close()
         problems = [each.live.problem for each in feed.sensors.values()]
-    for each in tables:
-        each.close()
-    came = [(a, each.count) for a, each in zip(placed, tables, strict=True) if each.count]
+    for table in tables:
+        table.close()
+    came = [
+        (sensor, table.count) for sensor, table in zip(placed, tables, strict=True) if table.count
+    ]
     heard = [sensor for sensor, _ in came]
     write_tree_record(sheet._replace(motion=heard, wind_source=wind.name))
-    for each, problem in zip(placed, problems, strict=True):
+    for sensor, problem in zip(placed, problems, strict=True):
         if problem:
-            print(f'note: {each.source} at {each.at}: {problem}', file=sys.stderr)
+            print(f'note: {sensor.source} at {sensor.at}: {problem}', file=sys.stderr)
     if not wind_table.count:
         raise TransportError(wind.problem or 'no wind came', where='--sensor')
     if not came:

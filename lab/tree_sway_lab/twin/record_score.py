@@ -88,10 +88,10 @@ def score_record(record: TreeRecord) -> Iterator[HeldOut]:
         cure = f'record {SKIPPED + LEAST:.0f} s and more'
         raise ParameterError(what, where=record.path(record.wind), cure=cure)
     sensors = []
-    for number, each in enumerate(record.motion):
-        motion = read_motion(record.path(each.file))
+    for number, sensor in enumerate(record.motion):
+        motion = read_motion(record.path(sensor.file))
         after = motion.times_after(wind.epoch)
-        sensors.append(Measured(f'{number}', each.at, motion, after))
+        sensors.append(Measured(f'{number}', sensor.at, motion, after))
     frequency = float(make_simulator(tree, model=0, in_leaf=in_leaf).frequencies(1)[0])
     alone = _motions(make_simulator(tree, in_leaf=in_leaf), blown, sensors)
     squared = low_passed(blown, frequency, RATE)
