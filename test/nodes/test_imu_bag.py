@@ -37,7 +37,11 @@ from tree_sway_ros.wire.wind_messages import (  # noqa: E402
 )
 
 PERIOD = 16_666_667
-DT, SECONDS, EPOCH = PERIOD * 1e-9, 40, 1_700_000_000 * 10**9
+DT, SECONDS = PERIOD * 1e-9, 40
+EPOCH = 102_000_000_000 * PERIOD + 3_000_000
+"""First sample of the wind in [ns], 3 ms after a step of the solver."""
+LATER = 5_000_000
+"""Time in [ns] by which further samples are off the steps: none is at the end of one."""
 TREE = builtin_tree('goldcrest')
 AT = f'{TREE.branch_names[0]}:0.7'
 TIP = int(TREE.branch_of_segment[int(np.argmax(TREE.end[:, 2]))])
@@ -52,6 +56,7 @@ def bag(tmp_path: Any) -> str:
     wind, missed = (
         simulate_turbulence(4.0, rate=60.0, duration=SECONDS, rng=rng) for _ in range(2)
     )
+    wind[:, 2] = 0.0  # the node `wind` keeps the horizontal part alone
     true, poses = make_simulator(TREE, softer), np.empty((len(wind), 7))
     for k, each in enumerate(wind + 0.7 * (missed - missed.mean(axis=0))):
         true.step(each, DT)
@@ -62,7 +67,7 @@ def bag(tmp_path: Any) -> str:
         writer.add('/wind', 'geometry_msgs/msg/Vector3Stamped')
         writer.add('/tree/imu', 'sensor_msgs/msg/Imu')
         for k in range(0, len(wind), 3):
-            stamp = EPOCH + k * PERIOD
+            stamp = EPOCH + k * PERIOD + (LATER if k else 0)
             message = wind_to_message(WIND_CLASSES[TYPE], WindSample(stamp, 'map', *wind[k]))
             writer.write('/wind', stamp, serialize_message(message))
         for at, force, rate in zip(motion.time, motion.acceleration, motion.rate, strict=True):
