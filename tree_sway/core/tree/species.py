@@ -108,7 +108,7 @@ def species_named(name: str) -> Species:
         raise SpeciesError(f"'{name}' is the name of a file", cure=cure)
     words = _plain(name).split()
     # A first word alone is a genus; pin oak is no pine, though that is pin in French.
-    genus = words[:1] if len(words) == 1 or len(words[0]) >= _SHORTEST_END else []
+    genus = [word for word in words[:1] if len(words) == 1 or len(word) >= _SHORTEST_END]
     for known in (' '.join(words), ' '.join(words[:2]), *genus):
         if known in _KEYS:
             return SPECIES[_KEYS[known]]
