@@ -255,6 +255,7 @@ def test_an_interrupted_table_can_be_read(tmp_path: Path, monkeypatch) -> None:
         (['-o', 'risk.txt'], 'end it with .csv'),
         (['--workers', '0'], '--workers'),
         (['--spacing', '0'], '--spacing'),
+        (['--spacing', '3'], 'trees in the open have no spacing'),
         (['--scheduler', 'nowhere'], 'write tcp://host:8786'),
     ],
 )

@@ -18,7 +18,12 @@ from tree_sway.commands.arguments import (
     chosen_leaves,
     opened_scene,
 )
-from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
+from tree_sway.commands.exposure import (
+    add_exposure_arguments,
+    chosen_exposure,
+    refuse_unused_exposure,
+    turbulence_of,
+)
 from tree_sway.commands.mode_table import mode_table
 from tree_sway.commands.progress import bar
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
@@ -68,7 +73,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Print the facts on the trees."""
     within('--count', arguments.count, 1, 1e6)
-    if arguments.speed is not None:
+    if arguments.speed is None:
+        refuse_unused_exposure(arguments, '--speed U')
+    else:
         SWAY['mean_speed'].checked(arguments.speed)
     scene = opened_scene(arguments)
     kinds = scene.kinds

@@ -10,6 +10,7 @@ from contextlib import contextmanager, ExitStack
 import sys
 from typing import TYPE_CHECKING
 
+from tree_sway.commands.motion_arguments import add_place_argument, sensors_and_places
 from tree_sway.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -19,17 +20,12 @@ if TYPE_CHECKING:
 
 def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
     """Add ``--motion`` and ``--at``."""
-    add = parser.add_argument
-    add(
+    parser.add_argument(
         '--motion', action='append', default=[], metavar='URL',
         help='live motion sensor on the real tree: http://PHONE:8080 '
         '(phyphox), udp:PORT or mqtt://host/topic (JSON); repeatable (doc/phone_on_a_tree.md)',
     )  # fmt: skip
-    add(
-        '--at', action='append', default=[], metavar='PLACE',
-        help='where that sensor sits: a height on the stem [m], as 3.2, or BRANCH:SHARE, as '
-        'b12:0.5; once for each --motion',
-    )  # fmt: skip
+    add_place_argument(parser)
 
 
 @contextmanager
@@ -56,11 +52,8 @@ def sensing(
     from tree_sway.sensors.motion.motion_feed import MotionFeed, PlacedSensor
     from tree_sway.sensors.motion.motion_registry import open_motion
 
-    if len(arguments.motion) != len(arguments.at):
-        what = f'{len(arguments.motion)} --motion and {len(arguments.at)} --at'
-        raise ParameterError(what, cure='give the place of each sensor: --motion URL --at 3.2')
     placed = []
-    for number, (url, at) in enumerate(zip(arguments.motion, arguments.at, strict=True)):
+    for number, (url, at) in enumerate(sensors_and_places(arguments)):
         tell = heard[number] if heard else None
         placed.append(PlacedSensor(LiveMotion(open_motion(url), _say, heard=tell), at))
     feed = MotionFeed(placed)

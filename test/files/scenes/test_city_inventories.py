@@ -192,6 +192,8 @@ def test_units_that_were_chosen_are_said(tmp_path: Path) -> None:
     assert 'dbh is taken as inches, by height over it' in '\n'.join(read(path).notes)
     path.write_text(CITIES['feet by diameter'][0])
     assert 'height is taken as feet, by height over diameter' in '\n'.join(read(path).notes)
+    path.write_text('x,y,species,height [parsec]\n0,0,oak,12\n')
+    assert "height [parsec]: 'parsec' is no known unit" in '\n'.join(read(path).notes)
 
 
 def test_heights_in_another_unit_say_so(tmp_path: Path) -> None:

@@ -142,6 +142,7 @@ class ObservedTree(SwaySimulator):
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
         self._given: float | None = None
+        self._speed = 0.0
         self._known: TreeFit | None = None
         self._tips: Floats | None = None
         self.learns = learns
@@ -231,7 +232,8 @@ class ObservedTree(SwaySimulator):
         swing, (eta, rate), added = self._swing, self._corrected, self._added
         eta -= added[0]
         rate -= added[1]
-        if is_wind(x, y, z, self._max_wind):
+        if is_wind(x, y, z, self._max_wind):  # else the last wind moves the tree
+            self._speed = math.hypot(x, y, z)
             apart = (self._share @ self._crown.push(x, y, z, dt)).tolist()
             status = super().step((x + apart[0], y + apart[1], z + apart[2]), dt)
         else:
@@ -244,7 +246,7 @@ class ObservedTree(SwaySimulator):
         if self._records:
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
-        added[:] = self.observer.step(self.now, math.hypot(x, y, z), swing, n_periods)
+        added[:] = self.observer.step(self.now, self._speed, swing, n_periods)
         self._bound(added)
         eta += added[0]
         rate += added[1]
@@ -282,7 +284,7 @@ class ObservedTree(SwaySimulator):
         self._crown.reset()
         self._added[:] = 0.0
         self.observer.reset()
-        self.now, self._given = 0.0, None
+        self.now, self._given, self._speed = 0.0, None, 0.0
         for record in self._records.values():
             record.next = 0
 

@@ -203,7 +203,7 @@ class Observer:
         time
             Time of the end of the step in [s].
         speed
-            Speed of the mean wind in [m/s].
+            Speed of the mean wind that moves the tree in [m/s], finite.
         swing
             Displacement, rate and force of each coordinate in the wind alone, (m,).
         n_periods
@@ -217,11 +217,7 @@ class Observer:
         """
         slot = self._steps % _HISTORY
         self._steps += 1
-        share = self._dt / _RECENT
-        if self._steps * self._dt < _RECENT:
-            share = 1.0 / self._steps
-        self._mean_speed += share * (speed - self._mean_speed)
-        self._gustiness += share * ((speed - self._mean_speed) ** 2 - self._gustiness)
+        self._note_wind(speed)
         m, state = len(self._stiffness), self._swing
         state[:m], state[m : 2 * m], state[2 * m :] = swing
         for k, rows in enumerate(self._rows):
@@ -239,6 +235,14 @@ class Observer:
             self._correct(self._causal, beyond, n_periods)
         self._find_energies(self._first_stiffness, swing[0], swing[1], self._moved, self.energies)
         return self._moved[:2]
+
+    def _note_wind(self, speed: float) -> None:
+        """Follow the mean speed of the wind and its deviation."""
+        share = self._dt / _RECENT
+        if self._steps * self._dt < _RECENT:
+            share = 1.0 / self._steps
+        self._mean_speed += share * (speed - self._mean_speed)
+        self._gustiness += share * ((speed - self._mean_speed) ** 2 - self._gustiness)
 
     @cached_property
     def _find_energies(self) -> Callable[..., None]:

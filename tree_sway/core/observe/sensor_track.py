@@ -174,7 +174,10 @@ class SensorTrack:
         name = self.sensor.name
         if self.in_use:
             return ''
-        if self.sensor.counts.accepted == 0:
+        counts = self.sensor.counts
+        if counts.accepted == 0 and counts.refused:
+            return f'{name}: all of {counts.refused} samples were refused: check what it sends'
+        if counts.accepted == 0:
             return f'{name}: no sample yet'
         if self.alignment is None:
             left = (self._next_fit - self._count) * self._dt

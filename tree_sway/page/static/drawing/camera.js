@@ -83,8 +83,8 @@ export class Camera {
   /** @returns {Float32Array} from the scene to clip space, column by column */
   update() {
     // It does not go below the ground.
-    const above = Math.max(0, this.target[2] - this._box[0][2] - 0.01 * this._size);
-    this.elevation = Math.max(this.elevation, -Math.asin(Math.min(1, above / this.distance)));
+    const above = this.target[2] - this._box[0][2] - 0.01 * this._size;
+    this.elevation = Math.max(this.elevation, -Math.asin(Math.min(1, Math.max(-0.9, above / this.distance))));
     const { right, up, back } = this.axes();
     const [x, y, z] = this.target.map((each, c) => each + this.distance * back[c]);
     this.eye = [x, y, z];
