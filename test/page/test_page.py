@@ -485,7 +485,10 @@ def test_the_head_names_the_live_wind_its_speed_and_its_age(
 def test_trees_are_coloured_by_a_storm(live: Live, browser_class: Any) -> None:
     """Goldcrest's band is 20 to 30 m/s: a storm is below, within or above it."""
     server = PageServer(
-        PageSettings(), ControlPanel(), live.session.status, critical_winds={'goldcrest': (20, 30)}
+        PageSettings(port=0),
+        ControlPanel(),
+        live.session.status,
+        critical_winds={'goldcrest': (20, 30)},
     )
 
     async def look() -> None:
