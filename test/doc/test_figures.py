@@ -15,6 +15,7 @@ import pytest
 
 from tree_sway.cache.model_cache import MOST
 from tree_sway.commands import cli
+from tree_sway.core.model import load_spreads
 from tree_sway.core.model.settings import USUAL
 from tree_sway.core.strength import strength_band
 from tree_sway.core.tree.species import ROOT_MOMENT, species_named
@@ -36,16 +37,16 @@ FIGURES = {
     'doc/tree_as_a_file.md': {r'`--model 20`: 20 coordinates, not (\d+)': [USUAL]},
     'doc/tutorials/study.md': {r'one model for all trees, (\d+) coordinates': [USUAL]},
     'doc/tutorials/scan_to_numbers.md': {
-        r'band that holds (\d+) % of trees': [round(100 * strength_band.SHARE_WITHIN)],
+        r'band that holds (\d+) % of trees': [round(100 * load_spreads.SHARE_WITHIN)],
         r'\| wood \| ([\d.]+), and up to (\d+) % off for knots': [
             strength_band.WOOD, round(100 * strength_band.KNOTS),
         ],
         r'\| roots \| ([\d.]+) of trees of one species and size, ([\d.]+) of species': [
             strength_band.ROOTS_OF_A_SPECIES, strength_band.ROOTS_OF_SPECIES,
         ],
-        r'\| drag of the crown \| ([\d.]+) ': [strength_band.DRAG],
-        r'\| wind at the crown \| ([\d.]+) of the load': [strength_band.WIND],
-        r'\| leaves, in leaf \| ([\d.]+) ': [strength_band.LEAVES],
+        r'\| drag of the crown \| ([\d.]+) ': [load_spreads.DRAG],
+        r'\| wind at the crown \| ([\d.]+) of the load': [load_spreads.WIND],
+        r'\| leaves, in leaf \| ([\d.]+) ': [load_spreads.LEAVES],
         r'(\d+) N m of root moment': [ROOT_MOMENT],
     },
     'doc/reference.md': {r'Rows (\d+) s and more apart are means': [LEAST_INTERVAL]},

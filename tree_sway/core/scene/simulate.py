@@ -76,6 +76,7 @@ def simulate(
     branches: Sequence[int] | None = None,
     settings: Settings | None = None,
     motion: Sequence[PlacedMotion] = (),
+    band: bool = False,
     **changes: Any,
 ) -> SwayRecord:
     """
@@ -99,6 +100,8 @@ def simulate(
     motion
         Records of motion sensors on the real tree, which the motion then follows
         (`ObservedTree`).
+    band
+        Whether to find where the real tree is for 80 % of the time, too (`ObservedTree.band`).
 
     Returns
     -------
@@ -114,7 +117,7 @@ def simulate(
         A tree that buckles.
 
     """
-    rig = Rig(tree, settings, motion=motion, **changes)
+    rig = Rig(tree, settings, motion=motion, band=band, **changes)
     return rig.run(wind, rate=rate, seconds=seconds, branches=branches)
 
 
@@ -129,6 +132,7 @@ class Rig:
         *,
         tolerance: float = 0.005,
         cache: ModelCache | None = PREPARED,
+        band: bool = False,
         **changes: Any,
     ) -> None:
         """Reduce the tree, once for the simulator and for its strain."""
@@ -137,9 +141,11 @@ class Rig:
         self.tree, self.reductions = bare, TreeReductions(bare, species, solved(chosen))
         self.motion = motion
         self.simulator: SwaySimulator
-        if motion:
+        if motion or band:
             places = {each.name: each.at for each in motion}
-            self.simulator = ObservedTree(tree, settings=chosen, at=places, cache=cache)
+            self.simulator = ObservedTree(
+                tree, settings=chosen, at=places, cache=cache, has_band=band
+            )
         else:
             auto = {'tolerance': tolerance} if chosen.model == 'auto' else {}
             self.simulator = simulator_of(self.reductions, cache=cache, **auto)
@@ -168,6 +174,7 @@ class Rig:
         before = replace(simulator.counts)
         gauge, per_rotation = StrengthGauge(self.reductions), moment_per_rotation(self.reductions)
         poses, rows = np.empty((tree.n_segments, 7)), list[tuple[Floats, ...]]()
+        bands = list[tuple[Floats, Floats]]()
         rest = tips_of_poses(tree, simulator.place(), chosen)
 
         def measure(end: int, mean: Floats) -> None:
@@ -175,6 +182,9 @@ class Rig:
             rotations = simulator.rotations()
             moment = rotations[: len(per_rotation)] @ per_rotation
             rows.append((mean, tips, moment, gauge.read(rotations, moment)[chosen]))
+            if isinstance(simulator, ObservedTree) and simulator.members is not None:
+                load = simulator.load_band(per_rotation)
+                bands.append((tips + simulator.band(chosen.tolist()), moment + load))
 
         count, steps = _steps(simulator, wind, within('rate', rate, 1.0, 10_000.0, 'Hz'), measure)
         if seconds is not None:
@@ -194,6 +204,7 @@ class Rig:
                 *_other_times(self.motion, count / rate),
                 *_said_by_sensors(simulator),
             ),
+            *(np.array(column) for column in zip(*bands, strict=True)),
         )  # fmt: skip
 
     def strength_curve(
