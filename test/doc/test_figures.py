@@ -68,11 +68,15 @@ FIGURES = {
             check_description.MOST_SEGMENTS, check_description.MOST_POSES / 1e6,
             check_description.MOST_COORDINATES,
         ],
-        r'frames per second that it takes, ([\d.]+) to (\d+)': [page_client.SLOWEST, page_client.FASTEST],
+        r'frames per second that it takes, ([\d.]+) to (\d+)': [
+            page_client.SLOWEST, page_client.FASTEST,
+        ],
         r'let (\d+) kB be on their way, (\d+) to (\d+) frames': [
             client._ON_THE_WAY / 1e3, client._LEAST_CREDIT, client._MOST_CREDIT,
         ],
-        r'every (\d+) s up to (\d+) coordinates': [page_client.STATE_PERIOD, page_client.MOST_IN_STATE],
+        r'every (\d+) s up to (\d+) coordinates': [
+            page_client.STATE_PERIOD, page_client.MOST_IN_STATE,
+        ],
         r'made again after ([\d.]+) s, then 1, 2, up to (\d+)': [
             client._SHORTEST_WAIT, client._LONGEST_WAIT,
         ],
