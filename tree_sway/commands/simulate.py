@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         '--band', action='store_true',
         help='also write within which bounds the tips and the moment of the real tree are for '
-        '80 % of the time, by the spreads of wood, damping, drag, leaves and gusts',
+        '80 %% of the time, by the spreads of wood, damping, drag, leaves and gusts',
     )  # fmt: skip
     add_output_arguments(parser, 'table to write: .csv, .parquet or .json')
 

@@ -111,7 +111,7 @@ def record_until(end, start=0.0):
         (STEADY, {'seconds': -1.0}, 'seconds: -1.0 is out of range'),
         (STEADY, {'branches': [7]}, 'branch 7'),
         (STEADY, {'model': 'best'}, "unknown model 'best'"),
-        (record_until(2e5), {}, r'2e\+05 s at 60 Hz are 1\.2e\+07 steps; give at most'),
+        (record_until(2e5), {}, r'200000 s at 60 Hz are 1\.2e\+07 steps; give at most'),
         (record_until(1e300), {}, 'steps; give at most'),
         (record_until(1.7e308, -1.7e308), {}, 'steps; give at most'),
     ],
