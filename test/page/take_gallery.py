@@ -59,9 +59,10 @@ class View:
 
 _BARE = """
 for (const each of document.querySelectorAll('.card, #tools')) each.style.display = 'none';
+treeSway.scene.hasArrow = false;
 treeSway.scene.camera.home();
 """
-"""Hides the instruments, and fits the tree into the whole picture."""
+"""Hides the instruments and the arrow of the wind, and fits the tree into the whole picture."""
 
 SETTLING = 15.0
 """Until a page without a graphics unit has chosen what it leaves out [s]."""

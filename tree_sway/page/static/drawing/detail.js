@@ -11,25 +11,25 @@ const FEWEST_CARDS = 40;
 
 /** Levels of a kind: its picture, of which the top alone is placed; then each of about twice the segments
  * of the one before. @param {import("../placing.js").KindPlacer} placer @param {number} highest segment,
- * which is of every other level @param {{segments: number, cards: number, far: number}} most segments and
- * cards of leaves; and the height [px] below which a tree is drawn as a picture @returns {Level[]} */
+ * which is of every other level @param {{segments: number, cards: number, near: number, far: number}} most segments,
+ * cards of leaves; and the heights [px] from which it has all of them, and below which it is drawn as a
+ * picture @returns {Level[]} */
 export function levelsOf({ reached, order, slots }, highest, most) {
   let branches = 0;
   while (reached[branches] <= slots[highest]) branches++;
   const whole = Math.max(Math.min(most.segments, reached[order.length]), reached[branches]);
   /** @type {Level[]} */
   const levels = [{ branches: 0, segments: 1, cards: 0, pixels: most.far, from: 0 }];
-  for (let wanted = (most.far * most.far) / AREA; ; wanted *= 2) {
-    while (branches < order.length && reached[branches] < Math.min(wanted, whole)) branches++;
+  for (let pixels = most.far; ; pixels *= Math.SQRT2) {
+    const wanted = Math.min((pixels * pixels) / AREA, whole);
+    while (branches < order.length && reached[branches] < wanted) branches++;
     const segments = reached[branches];
-    const pixels = Math.sqrt(AREA * segments);
     const from = levels.length === 1 ? most.far : Math.max(most.far, pixels / 2 ** 0.25);
-    const cards = Math.round(most.cards * Math.min(1, (pixels / (0.5 * NEAR)) ** 1.3));
-    levels.push({ branches, segments, pixels, from, cards: Math.max(FEWEST_CARDS, cards) });
-    if (segments >= whole) break;
+    const isFinest = segments >= whole && pixels >= most.near;
+    const cards = isFinest ? most.cards : Math.round(most.cards * Math.min(1, (pixels / most.near) ** 1.3));
+    levels.push({ branches, segments, pixels: isFinest ? Math.max(pixels, NEAR) : pixels, from, cards: Math.max(FEWEST_CARDS, cards) });
+    if (isFinest) break;
   }
-  const finest = levels[levels.length - 1];
-  [finest.pixels, finest.cards] = [Math.max(finest.pixels, NEAR), most.cards];
   return levels;
 }
 
