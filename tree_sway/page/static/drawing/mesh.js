@@ -23,6 +23,9 @@ const VARIETY = 200;
 /** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the shares of the
  * cards of a cluster at the end of a branch, and along thin wood without clusters. */
 const [THIN, END_SHARE, BARE_SHARE] = [1.6, 0.3, 0.4];
+/** Numbers of a corner of a card. */
+const PER_LEAF = 19;
+const ORIGIN = [0, 0, 0];
 /** How low a card ends over its length. */
 const BOW = 0.1;
 /** Radius of wood that shows the bark of the stem, over the height of the tree. */
@@ -79,8 +82,8 @@ export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pix
   const pixel = size / pixels;
   const point = pixel / fineness;
   const tile = Math.min(BARK_TILE, 0.06 * size);
-  /** @type {Mesh} */
-  const { values, indices } = { values: [], indices: [] };
+  const values = /** @type {number[]} */ ([]);
+  const indices = /** @type {number[]} */ ([]);
   for (const branch of branches) {
     const [from, end] = [first[branch], first[branch + 1]];
     const thick = radius[2 * from];
@@ -127,12 +130,11 @@ export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pix
  * light comes from (3), flutter frequency and phase (2), openness, tint, place in the picture (2).
  * @param {Shape} shape @param {Int32Array} branches that are drawn @param {number} cards @param {number} most
  * cards of the whole crown, whose area fewer have as well
- * @returns {{mesh: Mesh, along: number}} and how many leaves the picture is long */
-export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
+ * @returns {{mesh: {values: Float32Array, indices: number[]}, along: number}} and how many leaves the picture
+ * is long */
+export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, most) {
   const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
-  /** @type {Mesh} */
-  const mesh = { values: [], indices: [] };
-  if (!carrier?.length) return { mesh, along: 1 };
+  if (!carrier?.length) return { mesh: { values: new Float32Array(0), indices: [] }, along: 1 };
   const random = seeded();
   const mean = Array.from(sizes).reduce((sum, size) => sum + size, 0) / sizes.length;
   const look = lookOf(kind);
@@ -141,40 +143,48 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
   if (isSpread) shoots.push(...bareShoots(kind, rest, branches, mean));
   const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
   const hung = hungOn(kind, branches);
-  const quads = [];
-  const values = [];
-  for (const { segment, at, frame, size, phase, frequency, share } of shoots) {
+  // No leaf is in the ground; those of what is potted may hang lower.
+  const lowest = look.is_potted ? -Infinity : rest[2] + 0.02 * (high[2] - rest[2]);
+  const numbers = shoots.map(({ share }) => Math.ceil(share * each));
+  const values = new Float32Array(4 * PER_LEAF * numbers.reduce((sum, number) => sum + number, 0));
+  let written = 0;
+  const write = (/** @type {number[]} */ ...more) => {
+    for (const value of more) values[written++] = value;
+  };
+  shoots.forEach(({ segment, at, frame, size, phase, frequency }, i) => {
     const p = STRIDE * hung[segment];
     const back = [-rest[p + 4], -rest[p + 5], -rest[p + 6], rest[p + 7]];
     const axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(frame, axis));
     const own = axes.map((axis) => turned(back, axis));
     const centre = turned(back, at.map((a, c) => a - rest[p + c]));
-    for (let card = 0; card < share * each; card++) {
+    for (let card = 0; card < numbers[i]; card++) {
       const tint = 1 + 0.16 * Math.sin(7 * phase + 2 * card);
       const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, phase, card);
-      const { open, towards } = shade(inFrame(axes, corners[2].place, size).map((each, c) => each + at[c]));
+      const end = inFrame(axes, corners[2].place, size, at);
+      if (end[2] < lowest) continue;
+      const { open, towards } = shade(end);
       const from = turned(back, towards);
-      const first = values.length / 19;
-      for (const { place, normal, u, v } of corners) {
-        const [x, y, z] = inFrame(own, place, size);
-        const [sx, sy, sz] = inFrame(own, [0, -place[2], place[1]], size);
-        const [nx, ny, nz] = inFrame(own, normal, 1);
-        values.push(placer.slots[hung[segment]], x + centre[0], y + centre[1], z + centre[2], sx, sy, sz, nx, ny, nz,
-          from[0], from[1], from[2], frequency, phase + 2.4 * card, open, tint, u, v);
+      for (const { place, swing, normal, u, v } of corners) {
+        write(placer.slots[hung[segment]]);
+        write(...inFrame(own, place, size, centre));
+        write(...inFrame(own, swing, size));
+        write(...inFrame(own, normal, 1));
+        write(from[0], from[1], from[2], frequency, phase + 2.4 * card, open, tint, u, v);
       }
-      quads.push([first, first + 1, first + 2, first, first + 2, first + 3]);
     }
-  }
-  mesh.values = values;
-  mesh.indices = mixed(quads, random).flat();
-  return { mesh, along };
+  });
+  const cardNumbers = mixed(Array.from({ length: written / (4 * PER_LEAF) }, (_, card) => 4 * card), random);
+  return { mesh: { values: values.subarray(0, written), indices: cardNumbers.flatMap((v) => [v, v + 1, v + 2, v, v + 2, v + 3]) }, along };
 }
 
-/** A vector of a frame with given axes, scaled. @param {number[][]} axes @param {number[]} v
- * @param {number} scale */
-function inFrame([a, b, c], [x, y, z], scale) {
-  return [scale * (x * a[0] + y * b[0] + z * c[0]), scale * (x * a[1] + y * b[1] + z * c[1]),
-    scale * (x * a[2] + y * b[2] + z * c[2])];
+/** A vector of a frame with given axes, scaled, from a place on. @param {number[][]} axes
+ * @param {number[]} vector @param {number} scale @param {number[]} [from] */
+function inFrame([a, b, c], vector, scale, from = ORIGIN) {
+  const x = scale * vector[0];
+  const y = scale * vector[1];
+  const z = scale * vector[2];
+  return [from[0] + x * a[0] + y * b[0] + z * c[0], from[1] + x * a[1] + y * b[1] + z * c[1],
+    from[2] + x * a[2] + y * b[2] + z * c[2]];
 }
 
 /** A cluster of the description: its segment, its middle and frame at rest, its size [m], its flutter, and
@@ -247,7 +257,7 @@ function cardsOf(look, mean, clusters, cards, most) {
   return { each: Math.max(1, Math.min(each, Math.round(leaves))), along: 1, spray, isSpread: true };
 }
 
-/** Corners of a card of a cluster of size 1: place, normal, in the frame of the cluster; in the picture.
+/** Corners of a card of a cluster of size 1: place, motion, normal, in the frame of the cluster; in the picture.
  * `tree_mesh.py` has those of files. @param {Spray} spray @param {number} phase of the flutter of the cluster,
  * which makes each of its own @param {number} card its number */
 function cardCorners({ length, width, rolls }, phase, card) {
@@ -269,7 +279,7 @@ function spreadCorners(look, { length, width }, random) {
   const isTuft = look.form === "tufts";
   const isFlat = look.has_needles && !isTuft;
   const some = () => random() + random() - 1;
-  const middle = [whole * (0.5 + 0.5 * some()), wide * some(), (isFlat ? 0.4 : 0.8) * wide * some()];
+  const middle = [whole * (0.5 + 0.5 * some()), wide * some(), (isFlat ? 0.55 : 0.8) * wide * some()];
   const away = unit(middle.map((each) => each + 0.25 * whole * some()));
   const upright = unit([0, 1, 2].map((c) => (c === 2 ? 1 : 0) - away[2] * away[c] + 1e-6 * c));
   const beside = cross(upright, away);
@@ -282,9 +292,13 @@ function spreadCorners(look, { length, width }, random) {
   }));
 }
 
-/** Four corners of a picture. @param {(u: number, v: number) => {place: number[], normal: number[]}} at */
+/** Four corners of a picture, and how they move with the flutter.
+ * @param {(u: number, v: number) => {place: number[], normal: number[]}} at */
 function cornersOf(at) {
-  return [[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]].map(([u, v]) => ({ ...at(u, v), u, v: 0.5 + v }));
+  return [[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]].map(([u, v]) => {
+    const { place, normal } = at(u, v);
+    return { place, swing: [0, -place[2], place[1]], normal, u, v: 0.5 + v };
+  });
 }
 
 /** From where the shoot leaves its twig, and lower. @param {number[]} place @param {number} low */

@@ -22,12 +22,12 @@ import { barkPicture, leafPicture } from "./textures.js";
 /** Without a graphics unit a shadow is drawn again after so many frames, by a share of the leaves. */
 const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
 const CROWD = 50;
-/** Segments of all trees and cards of leaves of one, at most, and the heights of a tree that has all of its
- * cards and of one that is a picture [px]. */
-const MOST = { segments: 40000, cards: 36000, near: 700, far: 90 };
+/** Segments of a tree and cards of its leaves, and both of all trees, at most; and the heights of a tree that
+ * has all of its cards and of one that is a picture [px]. */
+const MOST = { segments: 40000, cards: 36000, all: 160000, near: 700, far: 90 };
 /** Without a graphics unit: of a few trees, and of a crowd. */
-const MOST_SLOW = { segments: 12000, cards: 3000, near: 400, far: 150 };
-const MOST_CROWD = { ...MOST_SLOW, segments: 5000, far: 220 };
+const MOST_SLOW = { segments: 12000, cards: 3000, all: 15000, near: 400, far: 150 };
+const MOST_CROWD = { ...MOST_SLOW, segments: 5000, all: 8000, far: 220 };
 /** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
 const CHOOSE_EVERY = 6;
 /** A branch is near that is within this angle of where one points [rad]. */
@@ -147,7 +147,7 @@ export class Scene {
     const radii = this._kinds.map(({ low, high }) => 0.6 * Math.hypot(...low.map((l, c) => high[c] - l)));
     const tops = trees.map(({ kind, place }) => place[2] + place[4] * this._kinds[kind].high[2]);
     this.detail = new Detail(trees, levels, radii, tops.indexOf(tops.reduce((a, b) => Math.max(a, b))));
-    this._budget = most.segments + most.cards;
+    this._budget = most.all;
     const corners = trees.flatMap(({ kind, place }) => Array.from({ length: 8 }, (_, corner) => {
       const { low, high } = this._kinds[kind];
       return placed(place, low.map((each, c) => (corner & (1 << c) ? high[c] : each)));
