@@ -34,7 +34,17 @@ class Spray:
     rolls: tuple[float, ...]
 
 
-FORMS = ('ovate', 'pointed', 'lobed', 'palmate', 'compound', 'digitate', 'needles', 'fronds', 'tufts')
+FORMS = (
+    'ovate',
+    'pointed',
+    'lobed',
+    'palmate',
+    'compound',
+    'digitate',
+    'needles',
+    'fronds',
+    'tufts',
+)
 """Outlines of leaves, and the ways that needles stand."""
 
 _LEVEL, _CROSSED = (0.0, 1.35, -0.75), (0.2, -0.9, 1.3)
