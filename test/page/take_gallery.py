@@ -24,7 +24,8 @@ from PIL import Image
 from tree_sway_lab.browser import Browser
 
 from tree_sway.commands import cli, show
-from tree_sway.page.server import PageServer, PageSettings
+from tree_sway.page.page_settings import PageSettings
+from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, Session
 from tree_sway.page.wind_source import SimulatedWind
 from tree_sway.stream.controls import ControlPanel

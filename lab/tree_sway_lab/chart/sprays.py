@@ -19,7 +19,8 @@ from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.tree.species import SPECIES
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
-from tree_sway.page.server import PageServer, PageSettings
+from tree_sway.page.page_settings import PageSettings
+from tree_sway.page.server import PageServer
 from tree_sway_lab.browser import Browser, chromium
 
 _PIXELS = 256

@@ -165,6 +165,28 @@ interface Mesh {
   indices: number[];
 }
 
+/** A motion sensor on the real tree. */
+interface SensorStatus {
+  /** With its place. */
+  name?: string;
+  /** Whether the tree follows it. */
+  in_use?: boolean;
+  /** Why not, and what to do. */
+  problem?: string;
+  /** What remains between it and the tree, over what is expected. */
+  residual?: number;
+  /** Samples per second [Hz]. */
+  rate?: number;
+  /** What was recognised, such as a unit. */
+  notes?: string[];
+}
+
+/** Motion sensors, and the share of the motion that the wind alone explains. */
+interface MotionStatus {
+  sensors?: SensorStatus[];
+  explained?: number;
+}
+
 /** What the wind is, and for a live one its newest reading. */
 interface WindStatus {
   kind?: string;
