@@ -30,7 +30,7 @@ from tree_sway.core.run.middles import Middles
 LEADING = 60
 """Largest number of coordinates whose inertia is that of the pose; others keep that at rest."""
 
-RENEWED, OLDEST = 6, 0.3
+RENEWED, OLDEST = 4, 0.3
 """
 Least number of columns that a step renews, and the largest rotation [rad] of a branch between two
 renewals of a column.
