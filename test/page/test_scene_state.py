@@ -66,7 +66,7 @@ def tall() -> tuple[SceneState, list[bytes], list[Any]]:
     tree = grow('broadleaf', 8.0, rng=np.random.default_rng(0))
     simulator = make_simulator(tree, species_named(tree.species), model=12)
     state = SceneState(simulator)
-    keys = simulator.bank.branches['coordinate']
+    keys = simulator.banks[0].branches['coordinate']
     assert (np.diff(keys) < 0).any()  # key segments in another order than their coordinates
     return state, *swayed(simulator, state, 7.0)
 

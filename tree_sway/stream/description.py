@@ -80,7 +80,7 @@ def describe_scene(
                 'height': round(tree.height, 4),
                 'model': kind.simulator.model,
                 'basis_error': kind.basis.error,
-                'modulus': kind.simulator.species.modulus,
+                'modulus': kind.simulator.models[0].species.modulus,
                 'branch_names': _names(kind.simulator),
             }
         )
@@ -102,7 +102,7 @@ def describe_scene(
 
 def _branches(simulator: SwaySimulator) -> dict[str, Array]:
     """Arrays of one kind for placing its branches by key rotations."""
-    tree, branches, segments = simulator.tree, _in_order(simulator), simulator.bank.segments
+    tree, branches, segments = simulator.tree, _in_order(simulator), simulator.banks[0].segments
     keys, sizes = branches['n_coordinates'], branches['end'] - branches['first']
     base_turn, own_turn = np.full((2, len(branches)), NO_ROW, dtype=np.int32)
     turns: list[Floats] = [np.zeros((0, 3))]
@@ -154,7 +154,7 @@ def _in_order(simulator: SwaySimulator) -> Records:
 
     A branch that is cut is several, and the children of its first piece come before the second.
     """
-    branches = simulator.bank.branches
+    branches = simulator.banks[0].branches
     order = np.argsort(branches['first'])
     ordered, place = branches[order], np.argsort(order)
     ordered['parent'] = np.where(ordered['parent'] < 0, -1, place[ordered['parent']])

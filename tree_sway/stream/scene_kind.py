@@ -13,12 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Floats
 from tree_sway.core.model.settings import USUAL
 from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.run.find_basis import state_basis
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
+from tree_sway.core.run.simulator import SharedTable, SwaySimulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.setup.prepare import prepare
 
 Place = tuple[float, float, float, float, float]
@@ -62,20 +62,17 @@ def scene_kinds(simulator: Simulator, *, is_running: bool = True) -> list[SceneK
         True if it is stepped at the same time: then a basis is found on a copy.
 
     """
-    if not isinstance(simulator, SceneSimulator):
-        return [_alone(0, each, is_running) for each in simulator.simulators]
-    kinds, trees = [], simulator.scene.trees
-    for model, bank, numbers in simulator.shared:
+    kinds, places = [], simulator.places
+    for shared in simulator.shared:
         # The scene steps its own records, but a change of tuning goes through the model.
-        basis = state_basis(_runner(model, is_running))
-        per_shape = bank.all_shapes @ basis.projection.T
+        basis = state_basis(_runner(shared.simulator, is_running))
+        per_shape = shared.bank.all_shapes @ basis.projection.T
 
-        def found(numbers: Ints = numbers, per_shape: Floats = per_shape) -> Floats:
-            return np.asarray(simulator.shares(numbers) @ per_shape)
+        def found(shared: SharedTable = shared, per_shape: Floats = per_shape) -> Floats:
+            return np.asarray(shared.coordinates() @ per_shape)
 
-        where = [trees[number] for number in numbers.tolist()]
-        places = [(tree.x, tree.y, tree.z, tree.yaw, tree.scale) for tree in where]
-        kinds.append(SceneKind(model, basis, found, numbers.tolist(), places))
+        where = [(x, y, z, yaw, scale) for x, y, z, yaw, scale in places[shared.numbers].tolist()]
+        kinds.append(SceneKind(shared.simulator, basis, found, shared.numbers.tolist(), where))
     return kinds + [_alone(t, each, is_running) for t, each in simulator.own.items()]
 
 
@@ -85,7 +82,7 @@ def _alone(number: int, simulator: SwaySimulator, is_running: bool) -> SceneKind
     x, y, z = simulator.tree.start[0].tolist()
 
     def found() -> Floats:
-        return np.asarray(basis.projection @ simulator.bank.oscillators.rotations())[None]
+        return np.asarray(basis.projection @ simulator.banks[0].oscillators.rotations())[None]
 
     return SceneKind(simulator, basis, found, [number], [(x, y, z, 0.0, 1.0)])
 
@@ -96,6 +93,6 @@ def _runner(simulator: SwaySimulator, is_running: bool) -> SwaySimulator:
     if is_cheap and not is_running:
         return simulator
     if simulator.model != 'full':
-        return SwaySimulator(simulator.prepared)
-    made_of = simulator.tree, simulator.species, simulator.settings
+        return SwaySimulator(simulator.models[0])
+    made_of = simulator.tree, simulator.models[0].species, simulator.settings
     return SwaySimulator(prepare(*made_of, model=USUAL))

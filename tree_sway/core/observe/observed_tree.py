@@ -115,7 +115,7 @@ class ObservedTree(SwaySimulator):
         whole = replace(chosen, crown_coherence=1.0)
         reductions = TreeReductions(bare, wood, whole, plain=plain)
         super().__init__(prepared(reductions, cache=cache), plain=plain)
-        if not hasattr(self.bank.oscillators, 'swing') or self.settings.model == 0:
+        if not hasattr(self._bank.oscillators, 'swing') or self.settings.model == 0:
             raise ParameterError(
                 f"motion sensors on model '{self.model}'",
                 where='model',
@@ -157,13 +157,13 @@ class ObservedTree(SwaySimulator):
 
     def _swing(self) -> tuple[Floats, ...]:
         """Return views of displacement, rate and force of each coordinate, (m,)."""
-        oscillators: Any = self.bank.oscillators
+        oscillators: Any = self._bank.oscillators
         return tuple(oscillators.swing)
 
     def _storm_energy(self) -> float:
         """Energy that no correction exceeds, per unit mass of the coordinates."""
         n = self.observer.count
-        tunable = self.bank.oscillators.tunable
+        tunable = self._bank.oscillators.tunable
         stiffness = np.array(tunable.stiffness[:n]) / tunable.inertia
         load = _STORM * crown_slope(self, _STORM, n)
         return _DYNAMIC * float((np.square(load).sum(axis=0) / stiffness).sum())
@@ -251,7 +251,7 @@ class ObservedTree(SwaySimulator):
         self._known = fit
         if fit is None or not self.learns:
             return
-        ratio = min(fit.damping * self.prepared.damping_ratio, 1.0)
+        ratio = min(fit.damping * self.models[0].damping_ratio, 1.0)
         with suppress(ParameterError):  # a tree that would buckle stays as it is
             self.tune(stiffness_factor=fit.stiffness, damping_ratio=ratio)
 
@@ -290,7 +290,7 @@ class ObservedTree(SwaySimulator):
     @property
     def smoothed(self) -> Floats:
         """Key rotations in [rad] of `LATE_STEPS` ago by what was measured since, (N,)."""
-        return np.asarray(self.bank.oscillators.shapes @ self.observer.smoothed)
+        return np.asarray(self._bank.oscillators.shapes @ self.observer.smoothed)
 
     def band(self) -> Floats:
         """
@@ -300,9 +300,9 @@ class ObservedTree(SwaySimulator):
         in use, and from how large the innovations have been of late.
         """
         if self._tips is None:
-            shapes = np.ascontiguousarray(self.bank.oscillators.shapes)
-            last = np.searchsorted(self.joints['end'], self.tree.branch_first[1:])
-            motion = tip_motion(self.joints, shapes)[last]
+            shapes = np.ascontiguousarray(self._bank.oscillators.shapes)
+            last = np.searchsorted(self._bank.branches['end'], self.tree.branch_first[1:])
+            motion = tip_motion(self._bank.branches, shapes)[last]
             self._tips = motion.reshape(-1, shapes.shape[1])
         deviation = self.observer.tip_deviation(self._tips)
         return np.asarray(_QUANTILE * deviation.reshape(-1, 3))

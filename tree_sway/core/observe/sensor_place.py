@@ -110,7 +110,7 @@ def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
 
     The rotation is a rotation vector in the frame of the tree, and so is the displacement.
     """
-    shapes = simulator.bank.oscillators.shapes
+    shapes = simulator.banks[0].oscillators.shapes
     poses = np.zeros((simulator.tree.n_segments, 7))
     away = place.along * float(simulator.tree.length[place.segment])
     displacement, rotation = np.zeros((2, 3, shapes.shape[1]))

@@ -54,7 +54,7 @@ def state_basis(simulator: SwaySimulator) -> StateBasis:
     ]
     trial = list(_run(simulator, TRIAL_SPEED, 98, turns=0.7))
     simulator.set_state(before)
-    matrix, projection = _singular_shapes(simulator.joints, runs)
+    matrix, projection = _singular_shapes(simulator.banks[0].branches, runs)
     greatest = np.abs(projection @ np.hstack(runs)).max(axis=1)
     scale = MARGIN * np.maximum(greatest, np.finfo(np.float64).tiny)
     for count in COUNTS:
