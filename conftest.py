@@ -5,6 +5,7 @@
 import contextlib
 import faulthandler
 import gc
+from importlib.metadata import EntryPoint
 import os
 from pathlib import Path
 import random
@@ -29,6 +30,11 @@ from tree_sway.core.model.model_cache import PREPARED  # noqa: E402
 from tree_sway.core.scene.make import make_simulator  # noqa: E402
 from tree_sway.core.tree.building import tree_from_segments  # noqa: E402
 from tree_sway.errors import MissingDependencyError  # noqa: E402
+from tree_sway.installed_models import GROUP, installed_models  # noqa: E402
+
+# The laboratory of this checkout may not be installed, or have been before it had models.
+_FULL = EntryPoint('full', 'tree_sway_lab.full.assembly:full_bank', GROUP)
+installed_models().setdefault('full', _FULL)
 
 # The same commit passes or fails alike everywhere; HYPOTHESIS_PROFILE=explore looks further.
 settings.register_profile('repeatable', derandomize=True, deadline=None)

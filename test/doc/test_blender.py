@@ -13,7 +13,7 @@ import pytest
 from tree_sway.commands.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / 'doc' / 'blender_godot.md'
+PAGE = ROOT / 'doc' / 'integrate.md'
 SEEDLING = ROOT / 'test' / 'files' / 'data' / 'seedling.yaml'
 
 

@@ -99,7 +99,7 @@ NAMED = {
 }  # fmt: skip
 """Formats that pages name, and the program's name of each."""
 NOT_HERE = re.compile(
-    r'\b(OBJ|FBX|PLY|LAS|LAZ|STL|DXF|IFC|HDF5|GRIB2?|Alembic|KML|GPX|'
+    r'\b(FBX|PLY|LAS|LAZ|STL|DXF|IFC|HDF5|GRIB2?|Alembic|KML|GPX|'
     r'Collada|URDF|AVI|WebM|E57|VTK|Feather|ORC|shapefile)\b',
     re.IGNORECASE,
 )

@@ -47,7 +47,7 @@ def blocks(page: Path, *languages: str) -> list[tuple[str, str]]:
     return [(language, text) for language, text in found if language in languages]
 
 
-LONG = ('blender_godot', 'calibration', 'integrate', 'tree_as_a_file', 'trees')
+LONG = ('calibration', 'integrate', 'tree_as_a_file', 'trees')
 """Pages whose commands take longer; `.ci/run` runs them, too."""
 
 

@@ -27,13 +27,14 @@ from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import Kind, PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.setup.season import in_season
+from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT, breast_height_diameter
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import TreeError
 from tree_sway.parameters.sway_parameters import SWAY
 
-_BREAST_HEIGHT, _GRAVITY = 1.3, 9.81
+_GRAVITY = 9.81
 _SUMS = ('branches', 'segments', 'volume', 'mass')
 _POWERS = {'height': 1, 'volume': 3, 'mass': 3}
 """Scaling of figures with the size of a tree."""
@@ -134,7 +135,7 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
         'branches': tree.n_branches, 'segments': tree.n_segments, 'height': tree.height,
         'length': float(tree.length.sum()),
         'volume': float(tree.volume.sum()), 'base_diameter': float(tree.base_diameter[0]),
-        'breast_height_diameter': _breast_height_diameter(tree), 'species': species.key,
+        'breast_height_diameter': breast_height_diameter(tree), 'species': species.key,
         'wood': f'{species.title}{" (an estimate)" if species.is_estimate else ""}',
         'modulus': species.modulus, 'density': species.density, 'mass': mass,
         'root_stiffness': None if math.isinf(species.root_stiffness) else species.root_stiffness,
@@ -144,16 +145,6 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
     }  # fmt: skip
 
 
-def _breast_height_diameter(tree: Tree) -> float | None:
-    """Diameter of the stem 1.3 m above the ground in [m]; None if it is not that high."""
-    stem = tree.segments_of(0)
-    level = np.append(tree.start[stem, 2], tree.end[stem, 2][-1]) - tree.start[0, 2]
-    thick = np.append(tree.base_diameter[stem], tree.tip_diameter[stem][-1])
-    if level.max() < _BREAST_HEIGHT:
-        return None
-    return float(np.interp(_BREAST_HEIGHT, np.maximum.accumulate(level), thick))
-
-
 def _published_moment(tree: Tree, species: Species, speed: float) -> float | None:
     """
     Largest moment in an hour at the base of a conifer in a stand in [N m].
@@ -161,7 +152,7 @@ def _published_moment(tree: Tree, species: Species, speed: float) -> float | Non
     Hale et al. (2012), European Journal of Forest Research 131, 203-217: 111.7 d^2 h U^2, d at
     breast height, U the mean at the top of the stand. None for others and below 1.3 m.
     """
-    diameter = _breast_height_diameter(tree)
+    diameter = breast_height_diameter(tree)
     if species.habit != 'conifer' or diameter is None:
         return None
     return 111.7 * diameter**2 * tree.height * speed**2
@@ -212,7 +203,7 @@ def _text(facts: dict[str, Any]) -> str:
 
 def _tree_lines(facts: dict[str, Any]) -> list[str]:
     breast, roots = facts['breast_height_diameter'], facts['root_stiffness']
-    high = '' if breast is None else f', {breast * 1e3:.1f} mm at {_BREAST_HEIGHT} m'
+    high = '' if breast is None else f', {breast * 1e3:.1f} mm at {BREAST_HEIGHT} m'
     return [
         f'  size       {facts["branches"]} branches, {facts["segments"]} segments, '
         f'{facts["height"]:.2f} m high, {facts["volume"] * 1e3:.4g} l of wood',

@@ -23,13 +23,14 @@ from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
-from tree_sway.core.model.settings import MODELS, Settings, USUAL
+from tree_sway.core.model.settings import Settings, USUAL
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import ParameterError
 from tree_sway.files.scenes.critical_winds import read_critical_winds
 from tree_sway.files.trees.source import open_scene
+from tree_sway.installed_models import installed_models
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.page.session import Choices, Session
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
@@ -182,7 +183,8 @@ def _controls(
         span = 's', 0.0, wind.length
         controls.append(Control('record_time', 'Time', 0.0, 'Of the record.', *span))
     if is_one_tree:
-        models = tuple(dict.fromkeys(('auto', *map(str, DIAL), *MODELS[1:], choices.model)))
+        named = 'branch', *installed_models(), choices.model
+        models = tuple(dict.fromkeys(('auto', *map(str, DIAL), *named)))
         controls.append(replace(Control.of(SWAY['model'], 'Model', choices.model), choices=models))
     controls += [Control.of(SWAY[name], _LABELS[name]) for name in ('tolerance', 'damping_ratio')]
     trees = (*BUILTIN_TREES, *(() if choices.tree in BUILTIN_TREES else (choices.tree,)))

@@ -62,6 +62,9 @@ class Times:
     note: str = ''
 
 
+_TIME_OF_DAY = re.compile(r'\d{1,2}:\d\d(?::\d\d)?\s*(?:[AaPp]\.?[Mm]\.?)?')
+
+
 def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
     """
     Return the times of texts: numbers of a unit ``factor`` in [s], or dates.
@@ -85,6 +88,8 @@ def times_of(stamps: Sequence[str], factor: float = 1.0) -> Times:
 def dates(stamps: Sequence[str]) -> Times:
     """Return the times of dates, NaN for other texts; those without a zone are taken as UTC."""
     texts = [stamp.strip() for stamp in stamps]
+    if all(_TIME_OF_DAY.fullmatch(text) for text in texts if text) and any(texts):
+        return _clocks(texts)
     is_month_first, note = _order(texts)
     found = (_microseconds(text, is_month_first) for text in texts)
     microseconds = np.fromiter(found, np.int64, len(texts))
@@ -94,6 +99,16 @@ def dates(stamps: Sequence[str]) -> Times:
     seconds = np.full(len(texts), np.nan)
     seconds[is_good] = (microseconds[is_good] - first) / 1e6
     return Times(seconds, first / 1e6, note)
+
+
+def _clocks(texts: Sequence[str]) -> Times:
+    """Return the times of a clock without dates, a day later where it begins anew."""
+    days = dates([f'2000-01-01 {text}' if text else '' for text in texts])
+    seconds = days.seconds.copy()
+    known = np.isfinite(seconds)
+    steps = np.diff(seconds[known], prepend=seconds[known][:1])
+    seconds[known] += 86400.0 * (np.cumsum(steps < -43200.0) - np.cumsum(steps > 43200.0))
+    return Times(seconds, None, 'the times have no date')
 
 
 def _order(texts: Sequence[str]) -> tuple[bool, str]:

@@ -54,6 +54,9 @@ class Parameter:
         library.
     most
         A number from 0 to this is accepted beside the choices; None for none.
+    more
+        Further accepted strings, as ``module:NAME`` of a function that returns them; it is called
+        for a string that is not among the choices.
     live
         True if it may change while the node runs.
     source
@@ -69,6 +72,7 @@ class Parameter:
     maximum: float | None = None
     choices: tuple[str, ...] = ()
     most: int | None = None
+    more: str = ''
     live: bool = False
     source: str = ''
 
@@ -91,7 +95,7 @@ class Parameter:
             self._check_range(value)
         if self.most is not None and str(value).isdecimal() and int(value) <= self.most:
             return value
-        if self.choices and value not in self.choices:
+        if self.choices and value not in self.choices and value not in self._further_choices():
             short = str(value).replace('/msg/', '/')  # both are names of types in ROS
             if short in self.choices:
                 return short
@@ -110,6 +114,9 @@ class Parameter:
         low = '' if self.minimum is None else f'{self.minimum:g}'
         high = '' if self.maximum is None else f'{self.maximum:g}'
         return f'{low} .. {high}'
+
+    def _further_choices(self) -> Iterable[str]:
+        return _named(self.more)() if self.more else ()
 
     def _checked_tuple(self, value: Value) -> tuple[float, ...]:
         size = len(self.default)
@@ -178,8 +185,13 @@ def _read(name: str, body: Mapping[str, Any]) -> Parameter:
 
 
 def _choices(entry: str) -> Iterable[str]:
+    return _named(entry) if ':' in entry else (entry,)
+
+
+def _named(entry: str) -> Any:
+    """Return the object that ``module:NAME`` refers to."""
     module, _, name = entry.partition(':')
-    return getattr(importlib.import_module(module), name) if name else (entry,)
+    return getattr(importlib.import_module(module), name)
 
 
 def unknown_names(table: Table, names: Iterable[str]) -> list[str]:

@@ -129,7 +129,7 @@ def test_convert_writes_a_model_that_commands_open(tmp_path, capsys, monkeypatch
     capsys.readouterr()
     assert main(['info', 'b.npz']) == 0
     said = capsys.readouterr()
-    assert 'prepared on model 12' in said.err
+    assert 'prepared on model 12' in said.out
     assert 'benjamina' in said.out
 
 

@@ -76,3 +76,12 @@ def test_cylinders_are_scaled_before_anything_is_done_to_them():
 def test_a_twig_of_three_metres_is_refused():
     with pytest.raises(ParameterError, match=r'twig_diameter: 3\.0 is out .*; use 0 to 0\.1 m'):
         open_tree(DATA / 'forest.treefile.txt', tree=1, twig_diameter=3.0)
+
+
+def test_what_a_scan_could_not_see_is_grown_on_request_and_said():
+    scan = Path(__file__).parents[3] / 'examples' / 'data' / 'forest_tree.treeqsm.txt'
+    found = open_tree(scan, beyond_scan='grow')
+    assert found.tree.n_branches > open_tree(scan).tree.n_branches
+    assert any('is grown beyond it' in note for note in found.notes)
+    with pytest.raises(ParameterError, match='beyond_scan'):
+        open_tree(scan, beyond_scan='all')

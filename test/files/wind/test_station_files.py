@@ -333,3 +333,41 @@ def test_dates_of_all_kinds(stamps: tuple[str, str], step: float, tmp_path: Path
     path.write_text('\n'.join(['time;u;v', *(f'{stamp};1;2' for stamp in stamps)]))
     record = read_wind(path, turbulence=False)
     assert record.time.tolist() == [0.0, step]
+
+
+def test_a_column_called_wind_has_points_or_a_speed(tmp_path: Path) -> None:
+    """As on the page of a station at Weather Underground, with units in the cells."""
+    path = tmp_path / 'station.csv'
+    path.write_text(
+        'Time,Temperature,Dew Point,Humidity,Wind,Speed,Gust,Pressure\n'
+        '12:04 AM,50.1 °F,45.3 °F,84 %,West,4.2 mph,6.5 mph,29.91 in\n'
+        '12:09 AM,50.0 °F,45.3 °F,84 %,WSW,5.1 mph,7.8 mph,29.91 in\n',
+        encoding='utf-8',
+    )
+    record = read_wind(path, turbulence=False)
+    assert record.velocity[0] == pytest.approx([4.2 * MILE, 0.0, 0.0], abs=1e-6)
+    assert record.time.tolist() == [0.0, 300.0]
+
+
+def test_a_clock_without_dates_begins_anew_at_midnight(tmp_path: Path) -> None:
+    path = tmp_path / 'station.csv'
+    clocks = ('11:55 PM', '11:58 PM', '12:01 AM', '12:04 AM')
+    lines = [f'{clock},5,270' for clock in clocks]
+    path.write_text('\n'.join(['time,speed [m/s],direction', *lines]) + '\n')
+    record = read_wind(path, turbulence=False)
+    assert record.time.tolist() == [0.0, 180.0, 360.0, 540.0]
+    assert record.epoch is None
+    assert 'no date' in ' '.join(record.notes)
+
+
+def test_rows_may_be_newest_first(tmp_path: Path) -> None:
+    path = tmp_path / 'station.csv'
+    lines = [f'2026-11-01 00:{m:02d}:00,{m},270' for m in (10, 5, 0)]
+    path.write_text('\n'.join(['time,speed [m/s],direction', *lines]) + '\n')
+    record = read_wind(path, turbulence=False)
+    assert record.time.tolist() == [0.0, 300.0, 600.0]
+    assert record.velocity[:, 0] == pytest.approx([0.0, 5.0, 10.0])
+    assert record.refused == 0
+    forward = tmp_path / 'forward.csv'
+    forward.write_text('\n'.join(['time,speed [m/s],direction', *lines[::-1]]) + '\n')
+    assert record.epoch == read_wind(forward, turbulence=False).epoch

@@ -21,8 +21,11 @@ from tree_sway.errors import nearest, ParameterError
 USUAL = 60
 """Default number of coordinates."""
 
-MODELS = ('auto', 'branch', 'full')
-"""Models with a name; other models are numbers of coordinates."""
+OF_LAB = ('full',)
+"""Models of the laboratory, which is a project of its own."""
+
+MODELS = ('auto', 'branch', *OF_LAB)
+"""Models with a name; others are numbers of coordinates, or come from further packages."""
 
 MOST = 1000
 """Largest number of coordinates."""
@@ -55,8 +58,9 @@ class Settings:
     ----------
     model
         Number of coordinates of the tree, or all if there are fewer; 0 does not move. Or
-        ``branch``, the paper's, isolated branches; ``full``, all coordinates and the load of every
-        branch; or ``auto``, the smallest number that suffices for the scene.
+        ``branch``, the paper's, isolated branches; ``auto``, the smallest number that suffices for
+        the scene; or ``full``, all coordinates and the load of every branch, where the laboratory
+        is installed.
     volume_stiffness, volume_damping
         The two constants of the paper's rule for the model ``branch``, stiffness and damping of a
         branch over its volume in [N m/rad/m^3] and [N m s/rad/m^3]; a stiffness of 0 for that of
@@ -163,11 +167,15 @@ def settings_with(settings: Settings | None, changes: Mapping[str, Any]) -> Sett
 
 def model_of(given: object) -> int | str:
     """
-    Return a model as a field of `Settings`: one of `MODELS` or a number, also from text.
+    Return a model as a field of `Settings`: a number, also from text, or the name of a model.
 
-    A `ParameterError` lists the models.
+    A `ParameterError` lists the models; a `MissingDependencyError` says what to install for one.
     """
     if isinstance(given, str) and given in MODELS:
+        if given in OF_LAB:
+            from tree_sway.installed_models import refuse_missing_model
+
+            refuse_missing_model(given)
         return given
     number = given
     if isinstance(given, str) and given.isdecimal() and len(given) <= _MOST_DIGITS:
@@ -176,6 +184,11 @@ def model_of(given: object) -> int | str:
         number = int(number)  # files of numbers have floats
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number <= MOST:
         return number
+    if isinstance(given, str):
+        from tree_sway.installed_models import installed_models
+
+        if given in installed_models():
+            return given
     near = nearest(str(given), MODELS)
     raise ParameterError(
         f"unknown model '{given}'",

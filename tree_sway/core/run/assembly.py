@@ -3,7 +3,9 @@
 """
 From a `SwayModel` to the bank that steps and places it.
 
-Modules of one law are imported where a tree needs them.
+A number of coordinates is stepped on a table of winds, the model ``branch`` branch by branch. The
+oscillators of other models come from installed packages (`installed_models`). Modules of one law
+are imported where a tree needs them.
 """
 
 from __future__ import annotations
@@ -42,34 +44,46 @@ def bank_of(model: SwayModel, *, plain: bool = False) -> Bank:
 def _oscillators(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
     """Make the oscillators of the law of a model."""
     if model.is_isolated:
-        from tree_sway.core.run.branch_oscillators import UncoupledBank
+        return _isolated(model, branches, plain)
+    name = model.settings.model
+    if isinstance(name, str):
+        from tree_sway.installed_models import maker_of
 
-        isolated: type[UncoupledBank] = UncoupledBank
-        if plain:
-            from tree_sway.core.run.numpy_banks import NumpyUncoupledBank
-
-            isolated = NumpyUncoupledBank
-        given = (model.inertia, model.own_damping, model.stiffness, model.weight)
-        return isolated(branches, *(array.copy() for array in given))
-    from tree_sway.core.run.modal import ModalBank
-
-    coupled: type[ModalBank] = ModalBank
-    if plain:
-        from tree_sway.core.run.numpy_banks import NumpyModalBank
-
-        coupled = NumpyModalBank
-    modal = coupled(branches, model)
+        made: Oscillators = maker_of(name)(model, branches, plain)
+        return made
     if not model.has_table:
-        return modal
-    from tree_sway.core.model.table_record import table_record
+        from tree_sway.core.run.rigid import RigidBank
 
+        return RigidBank(branches, model)
+    return _on_table(model, branches, plain)
+
+
+def _isolated(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
+    """Make an oscillator for each branch; what a tuning changes is copied."""
+    from tree_sway.core.run.branch_oscillators import BranchOscillators
+
+    kind: type[BranchOscillators] = BranchOscillators
+    if plain:
+        from tree_sway.core.run.numpy_branch_oscillators import NumpyBranchOscillators
+
+        kind = NumpyBranchOscillators
+    given = (model.inertia, model.own_damping, model.stiffness, model.weight)
+    return kind(branches, *(array.copy() for array in given))
+
+
+def _on_table(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
+    """Make the coordinates that a table loads."""
+    from tree_sway.core.model.table_record import table_record
+    from tree_sway.core.run.modal_coordinates import ModalCoordinates
+
+    coordinates = ModalCoordinates(branches, model)
     if plain:
         from tree_sway.core.run.numpy_table import NumpyTableBank
 
-        return NumpyTableBank(modal, table_record(model))
+        return NumpyTableBank(coordinates, table_record(model))
     from tree_sway.core.run.table_model import WindBasisBank
 
-    return WindBasisBank(modal, table_record(model))
+    return WindBasisBank(coordinates, table_record(model))
 
 
 def _places(model: SwayModel) -> Places:

@@ -25,7 +25,6 @@ class Oscillators(Protocol):
     n_outside: int
     """Steps outside of its table, if it has one."""
     branches: Records
-    work: Records
     shapes: Floats
     """Key rotations per unit of each coordinate, (N, m)."""
 

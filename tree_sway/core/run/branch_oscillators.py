@@ -1,19 +1,42 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-The model `branch`, the paper's: every branch a separate oscillator on two axes.
+The model `branch`, the method of Kanda & Ohya: one equation of motion for each branch.
 
-A branch meets its own wind with its own inertia, as if its base were at rest.
+In each branch the paper solves the motion of the segment that plays the central part in its
+deformation, and places the others geometrically. With q the position and rotation of this segment,
+M its mass, P the force of the wind, K the resistance to bending and R the friction,
 
-The load is found once per step, at the state at the middle of the step (exponential midpoint
-rule), and is constant over the step; its dependence on the branch's own angle is corrected once
-within the step (`two_axis.step_branch`).
+    M v' = F - G^T lambda,   v = q',   phi(q) = 0,   G = d phi / d q        (1)
+    F = P - K - R,   K = k1 theta,   R = k2 theta'                          (2)
+
+The constraint phi holds the root-side node of the segment in its place. Here q is the rotation
+about this node, so that phi holds by itself and lambda is eliminated. A branch has two such key
+rotations theta, about two fixed axes across its chord:
+
+    J theta'' = T - k1 theta - k2 theta'
+
+with T the moment of P on the branch, in its bent direction, and J its inertia about the base, with
+the branches that it carries (`setup.subtree_inertia`). The other segments follow by its shape
+(`placing`). As in the paper each branch moves as if its base were at rest: neither the motion of
+its parent nor the wind on the branches that it carries has an effect on it.
+
+k1 and k2 are those of the beam and the damping ratio of the wood, or by the paper's rule
+proportional to the volume of the branch and its parent (`Settings.volume_stiffness`).
+
+**A step.** Between two loads the equation is linear, and is solved exactly
+(`oscillators.propagator`). The load is found once per step, at the state at the middle of the step
+(exponential midpoint rule), and is constant over the step. Its dependence on the angle of the
+branch is corrected once within the step (`two_axis.step_branch`).
+
+The paper's own form, with multipliers and a plane that follows the wind, is in the laboratory.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property, partial
+import math
 
 import numpy as np
 
@@ -40,9 +63,24 @@ from tree_sway.core.oscillators.two_axis import (
 from tree_sway.core.run.branchwise import Branchwise, Tunable
 from tree_sway.core.setup.branch_loads import own_loads, set_air, wind_forces
 
+NOT_FINITE = -1
+"""Result of a step after which the motion is not finite."""
 
-class UncoupledBank(Branchwise):
-    """Oscillators of all branches, in [kg m^2], [N m s/rad] and [N m/rad], (b,)."""
+
+class BranchOscillators(Branchwise):
+    """
+    Oscillators of all branches.
+
+    Parameters
+    ----------
+    branches
+        Records of `Branch`, (b,).
+    inertia, damping, stiffness
+        J in [kg m^2], k2 in [N m s/rad] and k1 in [N m/rad] of each branch, (b,).
+    weight
+        Part of the stiffness by gravity in [N m/rad], (b,).
+
+    """
 
     shapes = np.zeros((0, 0))
 
@@ -125,12 +163,13 @@ def _advance(
         group, j = banks[b // WIDTH], b % WIDTH
         for k in range(2):
             group.now_x[k, j], group.now_v[k, j] = x[2 * b + k], v[2 * b + k]
+    # The load P at the middle of the step, then the step.
     for block in range(len(banks)):
         _to_middle(banks[block])
     set_air(work, banks, wx, wy, wz)
     wind_forces(banks, per_speed_squared)
     own_loads(banks)
-    clamped, total = 0, 0.0
+    clamped, is_finite = 0, True
     for block in range(len(banks)):
         clamped += _step(banks[block])
     for b in range(n):
@@ -138,9 +177,11 @@ def _advance(
         for k in range(3):
             work[b].force[k] = group.force[k, j]
         for k in range(2):
-            x[2 * b + k], v[2 * b + k] = group.now_x[k, j], group.now_v[k, j]
-            total += 0.0 * x[2 * b + k] + 0.0 * v[2 * b + k]
-    return clamped if total == 0.0 else -1
+            angle, rate = group.now_x[k, j], group.now_v[k, j]
+            x[2 * b + k], v[2 * b + k] = angle, rate
+            if not (math.isfinite(angle) and math.isfinite(rate)):
+                is_finite = False
+    return clamped if is_finite else NOT_FINITE
 
 
 @part

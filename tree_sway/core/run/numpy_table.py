@@ -32,6 +32,8 @@ Views = Mapping[str, NDArray[Any]]
 class NumpyTableBank(WindBasisBank):
     """`WindBasisBank` in numpy."""
 
+    is_plain = True
+
     @cached_property
     def _step(self) -> Callable[..., int]:
         return partial(_advance, *self._views)

@@ -23,7 +23,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import array_to_read, within
 from tree_sway.core.model.settings import STIFFEST
 from tree_sway.core.run.bank import Bank
-from tree_sway.core.run.modal import FARTHEST
+from tree_sway.core.run.modal_coordinates import FARTHEST
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError

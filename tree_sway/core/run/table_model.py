@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property, partial
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,10 +35,13 @@ from tree_sway.core.model.records import (
     TimeSteps,
     zeros_in_lines,
 )
-from tree_sway.core.run.modal import ModalBank
+from tree_sway.core.run.modal_coordinates import ModalCoordinates
 from tree_sway.core.run.placing import expand, room_for
 from tree_sway.core.run.simd import shapes_together, TOGETHER
 from tree_sway.core.run.table_load import wind_force
+
+if TYPE_CHECKING:
+    from tree_sway.core.setup.static_responses import WindMoments
 
 STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside', 'left_out')
 """Fields of an instance that are its state."""
@@ -48,15 +51,17 @@ class WindBasisBank:
     """
     Oscillators of a tree in uniform winds, loaded by a table.
 
-    ``modal`` are the same modes on the loads of all branches, ``table`` is a `table_record`, (1,).
+    ``modal`` are its coordinates, ``table`` is a `table_record`, (1,).
     """
+
+    is_plain = False
 
     loads: Records | None = None
 
-    def __init__(self, modal: ModalBank, table: Records) -> None:
+    def __init__(self, modal: ModalCoordinates, table: Records) -> None:
         """Begin at rest."""
         self.modal, self.table = modal, table
-        self.branches, self.work, self.shapes = modal.branches, modal.work, modal.shapes
+        self.branches, self.shapes = modal.branches, modal.shapes
         self.compliance, self.limit = modal.compliance, modal.limit
         self.tunable, self.air_damping = modal.tunable, modal.air_damping
         # Rounded everywhere, as kernels read them in single precision.
@@ -114,13 +119,18 @@ class WindBasisBank:
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
-        self.modal.set_step(dt)
+        self.modal.set_time_step(dt)
         fill_time_step(self.time_step[0], propagators_of(self.modal), dt)
         if self._n_dropped[0]:
             drop(self.time_step[0], self.n_solved)
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
-        """Advance one step, as `ModalBank.advance`."""
+        """
+        Advance one step under a mean wind [m/s], with `drag_law.pressure` in [kg/m^3].
+
+        Returns 1 if the step was clamped to the limit of the table, -1 if the motion is not
+        finite, else 0.
+        """
         return self.step_outside() if self._step(wx, wy, wz, per_speed_squared) else 0
 
     def step_outside(self) -> int:
@@ -178,9 +188,16 @@ class WindBasisBank:
         return self._x
 
     def forces(self) -> Floats:
-        """Force of the last step's wind on each branch [N], (b, 3); a pass over all branches."""
-        step_branches(self.instance[0], self.modal)
-        return self.modal.forces()
+        """Force of the last step's wind on each branch as it is and moves now in [N], (b, 3)."""
+        instance = self.instance[0]
+        per_wind = self._wind_moments.forces(*self.motion(), instance['wind'])
+        return np.asarray(float(instance['pressure']) * per_wind)
+
+    @cached_property
+    def _wind_moments(self) -> WindMoments:
+        from tree_sway.core.setup.static_responses import WindMoments
+
+        return WindMoments(self.branches, plain=self.is_plain)
 
     def motion(self) -> tuple[Floats, Floats]:
         """Key rotations in [rad] and their rates in [rad/s], both (N,)."""
@@ -190,15 +207,14 @@ class WindBasisBank:
     def take_over(self, x: Floats, v: Floats) -> None:
         """Continue from key rotations and rates, (N,), projected on the modes."""
         self.reset()
-        self.modal.take_over(x, v)
         m = self.modal.shapes.shape[1]
-        self.instance['eta'][0, :m], self.instance['rate'][0, :m] = self.modal.modal[:2]
+        eta, rate = self.modal.projected(x, v)
+        self.instance['eta'][0, :m], self.instance['rate'][0, :m] = eta, rate
 
     def reset(self) -> None:
         """Return to rest."""
         for array in self.memory():
             array[...] = 0.0
-        self.modal.reset()
 
 
 def bent_too_far(instances: Records, most_pressure: Floats) -> NDArray[np.bool_]:
@@ -238,8 +254,8 @@ class Propagators(NamedTuple):
     half: Floats
 
 
-def propagators_of(modal: ModalBank) -> Propagators:
-    """Return the propagators of a bank over its time step."""
+def propagators_of(modal: ModalCoordinates) -> Propagators:
+    """Return the propagators of coordinates over their time step."""
     return Propagators(modal.damping, modal.stiffness, modal.whole, modal.half)
 
 
@@ -269,15 +285,6 @@ def _implicit_euler(damping: Floats, stiffness: Floats, h: float) -> Floats:
     displacement = h * rate
     displacement[0] += 1.0
     return np.concatenate([displacement, rate])
-
-
-def step_branches(instance: np.void, modal: ModalBank) -> int:
-    """Step the modes from the state of an instance, in its wind, on the loads of all branches."""
-    m = modal.shapes.shape[1]
-    eta, rate, force = (instance[name][:m] for name in ('eta', 'rate', 'force'))
-    modal.take(eta, rate, force)
-    wx, wy, wz = instance['wind'].tolist()
-    return modal.advance(wx, wy, wz, float(instance['pressure']))
 
 
 @part

@@ -50,6 +50,7 @@ class Coordinates:
 
 def modal_arrays(branches: Records, reduction: Reduction, modes: Modes) -> dict[str, Floats]:
     """Find what is known of coordinates beside their shapes and frequencies."""
+    # One mode after the other, so that loops over coordinates are vectorised.
     shapes = np.ascontiguousarray(modes.shapes.T)
     return {
         'diagonal': np.asarray(reduction.stiffness.diagonal()),

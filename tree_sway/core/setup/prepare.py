@@ -93,7 +93,7 @@ def prepared(
     if found is not None:
         with suppress(FormatError):  # of an older version, or damaged: it is made again
             stored = SwayModel.of_arrays(found, tree, species, settings)
-            reductions.circular = 2.0 * np.pi * stored.natural_frequencies
+            reductions.frequencies = stored.natural_frequencies
             return stored
     with solvable(tree):
         is_isolated = settings.model == 'branch'
@@ -134,7 +134,7 @@ def _coupled_tree(reductions: TreeReductions, settings: Settings) -> SwayModel:
         reduced.branches['area'],
     )
     table: dict[str, Any] = {}
-    if settings.model != 'full' and modes.circular.size:
+    if isinstance(settings.model, int) and modes.circular.size:
         table = load_table(coordinates, reductions.wind_moments, reductions.drag_law)
     order = np.argsort(reduced.branches['first'])
     return SwayModel(
@@ -142,7 +142,7 @@ def _coupled_tree(reductions: TreeReductions, settings: Settings) -> SwayModel:
         stiffness=coordinates.stiffness,
         own_damping=coordinates.damping,
         weight=arrays['weight'],
-        natural_frequencies=reductions.circular / (2.0 * np.pi),
+        natural_frequencies=reductions.frequencies,
         shapes=shapes,
         projection=arrays['momentum'].T,
         relative_damping=relative,

@@ -87,8 +87,8 @@ class TreeReductions:
         Law of the whole tree; equivalent area of bare wood of the leaves of each branch in [m^2],
         (b,).
         """
-        self.circular = np.zeros(0)
-        """Lowest known natural circular frequencies in [rad/s]."""
+        self.frequencies = np.zeros(0)
+        """Lowest known natural frequencies in [Hz]."""
         self._slowest: Modes | None = None
 
     @property
@@ -105,14 +105,14 @@ class TreeReductions:
             with solvable(self.tree):
                 reduced = self.with_subtrees
                 self._slowest = natural_modes(reduced.tree, reduced.reduction, count)
-            self.circular = self._slowest.circular
+            self.frequencies = self._slowest.frequencies
         return self._slowest.slowest(wanted)
 
     def natural_frequencies(self, count: int) -> Floats:
         """Lowest natural frequencies in [Hz], (count,) or fewer."""
-        if count > len(self.circular):
+        if count > len(self.frequencies):
             self.natural_modes(min(count, self.with_subtrees.reduction.n_coordinates))
-        return np.asarray(self.circular[:count] / (2.0 * np.pi))
+        return self.frequencies[:count]
 
     def modes(self, model: int | str) -> Modes:
         """Return all modes, or the leading ones in winds."""

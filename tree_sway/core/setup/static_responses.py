@@ -61,14 +61,19 @@ class WindMoments:
         self._in_numpy(x, v, wind, moments)
         return moments
 
+    def forces(self, x: Floats, v: Floats, wind: Floats) -> Floats:
+        """Find the forces on the branches, (b, 3), by a wind as in a call, in the tree's frame."""
+        self(x, v, wind)
+        return np.asarray(self._records[1]['force'])
+
     def _in_numpy(self, x: Floats, v: Floats, wind: Floats, moments: Floats) -> None:
         """Write the moments, and in the records what `LoadSlopes` reads, as the kernel does."""
         passes, n = self._passes, len(self.branches)
         angles, rates = passes.per_branch(x), passes.per_branch(v)
         bases = passes.outward(angles, rates)
         force = passes.wind_forces(bases, angles, rates, wind, 1.0, np.zeros(n), np.zeros((n, 3)))
-        passes.bent_loads(bases, angles, force, moments)
         _, work, loads = self._records
+        work['force'] = passes.bent_loads(bases, angles, force, moments)
         for name in ('orientation', 'rotation', 'displacement', 'arm'):
             work[name] = getattr(bases, name)
         work['wrench'] = passes.wrench

@@ -136,6 +136,8 @@ def species_like(name: str) -> tuple[Species, str]:
     plain = _plain(name)
     first, last = (plain.split() or [''])[0], (plain.split() or [''])[-1]
     ends = (each for each in _ENDS if last.endswith(each))
+    # Foresters' abbreviations of two letters, as Fi for spruce, are whole names alone.
+    first, last = (each if len(each) > 2 else '' for each in (first, last))
     end = last if last in _KEYS else next(ends, first if first in _KEYS else '')
     if end:
         group = SPECIES[_KEYS[end]]

@@ -13,6 +13,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of, within
+from tree_sway.core.growth.beyond_scan import grown_beyond, is_cut
 from tree_sway.core.setup.standing import standing_tree
 from tree_sway.core.tree.plausibility import refuse_implausible
 from tree_sway.core.tree.species import Species, species_named
@@ -60,9 +61,12 @@ class TreeOptions:
         Axis of the file that points up, ``z`` or ``y``.
     twig_diameter
         Diameter in [m] of the last twigs, which are too thick in the file (`corrected_twigs`);
-        that of the species if None, and 0 to leave all twigs as they are.
+        that of the species if None, unless the scan ends at a thickness (`is_cut`), and 0 to leave
+        all twigs as they are.
     trusted_diameter
         Diameter above which a scan is trusted in [m].
+    beyond_scan
+        ``grow`` what the scan could not see (`grown_beyond`), or ``none``.
     thicken
         Whether to thicken the limbs that cannot carry themselves (`standing_tree`).
     to_origin
@@ -78,6 +82,7 @@ class TreeOptions:
     up: str = 'z'
     twig_diameter: float | None = None
     trusted_diameter: float = 0.05
+    beyond_scan: str = 'none'
     thicken: bool = True
     to_origin: bool = True
     tree: int = 0
@@ -89,6 +94,7 @@ class TreeOptions:
                 within(name, getattr(self, name), low, high, 'm (0.01 is 1 cm)')
         one_of('up', self.up, ('z', 'y'))
         one_of('to_origin', self.to_origin, (True, False))
+        one_of('beyond_scan', self.beyond_scan, ('grow', 'none'))
         one_of('thicken', self.thicken, (True, False))
 
     def in_metres(self, shape: _Shape) -> _Shape:
@@ -114,7 +120,7 @@ class TreeOptions:
         given = content.species if self.species is None else species_named(self.species)
         species, faults = wood(given), list(content.faults)
         twig = species.twig_diameter if self.twig_diameter is None else self.twig_diameter
-        if twig > 0.0:
+        if twig > 0.0 and (self.twig_diameter is not None or not is_cut(tree)):
             tree = corrected_twigs(tree, twig, self.trusted_diameter)
         left = float(tree.volume.sum() / content.tree.volume.sum())
         if left < 1.0:
@@ -122,6 +128,11 @@ class TreeOptions:
                 f'twigs are made {1e3 * twig:g} mm thick: {100.0 * (1.0 - left):.0f} % of the '
                 'wood taken off (twig_diameter=0 leaves it)'
             )
+        if self.beyond_scan == 'grow':
+            tree, beyond = grown_beyond(
+                replace(tree, species=species.key), twig, self.trusted_diameter
+            )
+            notes += [] if beyond is None else [beyond.sentence()]
         if self.to_origin and tree.start[0].any():
             origin = tree.start[0].copy()
             tree = replace(tree, start=tree.start - origin, end=tree.end - origin)

@@ -15,15 +15,20 @@ the column of gusts if there is one (`filled_means`). A row that is not numbers 
 from __future__ import annotations
 
 from array import array
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.wind.convention import WindConvention
 from tree_sway.errors import ParameterError
+from tree_sway.files.column_names import folded, unit_factor
 from tree_sway.files.table_file import Column, TextTable
 from tree_sway.files.text_file import read_table_lines
+from tree_sway.files.time_stamps import Times
+from tree_sway.files.wind.cell_units import with_units_in_head
+from tree_sway.files.wind.compass import degrees_of
 from tree_sway.files.wind.layouts.known import layout_of
 from tree_sway.files.wind.layouts.plain import PLAIN
 from tree_sway.files.wind.record import WindRecord, WindRows
@@ -84,6 +89,7 @@ def wind_of_table(
     seed: float = 0,
 ) -> WindRecord:
     """Return the wind of a table, as `read_table_wind`."""
+    table = with_units_in_head(table)
     rows, notes = WindRows(table.source), list[str]()
     time = time_columns(table)
     components = _components(table, columns)
@@ -92,6 +98,9 @@ def wind_of_table(
         convention = convention or 'to'
     else:
         found = {each: c for each in ('wind_speed', 'wind_direction') if (c := table.find(each))}
+        if 'wind_speed' in found and 'wind_direction' not in found:
+            points = _points(table, found['wind_speed'])
+            found |= {} if points is None else {'wind_direction': points}
         from_where = found.get('wind_direction') or direction
         _refuse_missing(table, time is not None, 'wind_speed' in found, from_where is not None)
         assert from_where is not None
@@ -103,11 +112,31 @@ def wind_of_table(
     stored = np.flatnonzero(winds.good)
     times = row_times(table, *time, stored.tolist())
     notes += [times.note] if times.note else []
-    _fill(rows, table, winds, times.seconds, speed_unit)
+    if len(stored) > 1 and bool((np.diff(times.seconds) < 0.0).all()):
+        # The newest row first, as services export them.
+        stored, times = stored[::-1], _reversed(times)
+    _fill(rows, table, winds, stored, times.seconds, speed_unit)
     record = rows.record(
         epoch=times.epoch, yaw=yaw, direction_convention=convention, notes=tuple(notes)
     )
     return filled_means(record, turbulence, seed)
+
+
+def _points(table: TextTable, speed: Column) -> Column | None:
+    """Column called Wind with points of the compass, beside one of the speed; None without one."""
+    for index, name in enumerate(table.columns):
+        if folded(name) == 'wind' and index != speed.index:
+            degrees = degrees_of(table.cells(index, range(len(table.texts))))
+            if np.isfinite(degrees).mean() > 0.5:
+                return Column(index, unit_factor('angle', 'deg') or 1.0)
+    return None
+
+
+def _reversed(times: Times) -> Times:
+    """Put times of rows in the other order, from the oldest."""
+    first = float(times.seconds[-1])
+    epoch = None if times.epoch is None else times.epoch + first
+    return replace(times, seconds=times.seconds[::-1] - first, epoch=epoch)
 
 
 def _components(table: TextTable, names: tuple[str, ...] | None) -> list[Column]:
@@ -147,10 +176,10 @@ def _speed(table: TextTable, column: Column, unit: str | None) -> tuple[Column, 
 
 
 def _fill(
-    rows: WindRows, table: TextTable, winds: RowWinds, seconds: Floats, unit: str | None
-) -> None:
-    """Put the good rows into a record's rows, with their gusts."""
-    stored = np.flatnonzero(winds.good)
+    rows: WindRows, table: TextTable, winds: RowWinds, stored: Ints, seconds: Floats,
+    unit: str | None,
+) -> None:  # fmt: skip
+    """Put good rows, in the order of their times, into a record's rows, with their gusts."""
     rows.number = array('q', [table.numbers[row] for row in stored.tolist()])
     rows.velocity = array('d', winds.velocity[stored].ravel())
     rows.time = array('d', seconds)

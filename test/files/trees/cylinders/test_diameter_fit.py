@@ -44,11 +44,14 @@ def test_nothing_becomes_thicker():
 
 def test_scans_are_corrected_by_species_unless_it_is_switched_off():
     scan = DATA / 'fork.treeqsm24.txt'
-    as_scanned = open_tree(scan, twig_diameter=0.0).tree
+    thin = {'diameter_unit': 0.12}
+    as_scanned = open_tree(scan, twig_diameter=0.0, **thin).tree
     for species, twig in (('ash', 0.0045), ('birch', 0.0017)):
-        opened = open_tree(scan, species=species, trusted_diameter=0.2, thicken=False)
+        opened = open_tree(scan, species=species, trusted_diameter=0.024, thicken=False, **thin)
         off = 1.0 - opened.tree.volume.sum() / as_scanned.volume.sum()
         assert opened.tree.tip_diameter[-1] == pytest.approx(twig)
         assert f': {100.0 * off:.0f} % of the wood taken off' in opened.notes[0]
+    cut = open_tree(scan, trusted_diameter=0.2, thicken=False)
+    assert cut.tree.tip_diameter[-1] == pytest.approx(0.04)
     measured = open_tree(DATA / 'fork.swc', tree=1)
     assert not any('wood' in note for note in measured.notes)

@@ -97,6 +97,20 @@ def test_arrays_of_cylinders_are_read_as_text_is(tmp_path, n_columns, base, name
         assert text.tree.volume.sum() == pytest.approx(VOLUME, rel=1e-5)
 
 
+def test_averaged_cylinders_are_read_whose_axes_have_any_length(tmp_path):
+    rng = np.random.default_rng(4)
+    rows = np.arange(40)
+    start = 0.5 * rows[:, None] * [[0.0, 0.0, 1.0]]
+    axis = np.tile([0.0, 0.0, 1.0], (40, 1))
+    axis[::7] *= rng.uniform(1.5, 30.0, (6, 1))
+    parts = [np.full(40, 0.1), np.full(40, 0.5), start, axis, rows, (rows + 2) % 41]
+    table = np.hstack([np.reshape(part, (40, -1)) for part in parts])
+    savemat(tmp_path / 'averaged.mat', {'CylData_updated': np.single(table)})
+    found = read_tree(tmp_path / 'averaged.mat', **AS_SCANNED)
+    assert found.tree.n_branches == 1
+    assert found.tree.height == pytest.approx(20.0, rel=1e-5)
+
+
 def test_a_matrix_that_is_no_cylinders_is_refused(tmp_path):
     savemat(tmp_path / 'matrix.mat', {'x': np.random.default_rng(0).normal(size=(20, 12))})
     with pytest.raises(FormatError, match='no array of cylinders'):

@@ -13,6 +13,8 @@ from tree_sway.files.text_file import finite
 _NUMBER = re.compile(r'(?<![\w.])\d+(?:[.,]\d+)?')
 _UNIT = re.compile(r"[\d\s]([a-zA-Z]+\.?|'|\")\s*$")
 _SEVERAL = re.compile(r'\d\D{0,4}?(?:[+;&]|,\s)\s*\d')
+_CLASS = re.compile(r'^\s*[a-z]\.\s+(?=\d)')
+"""Letter of a class before its range, as in ``c. 9 tot 12 m.``."""
 _SPLIT = re.compile(r'[+;&]|,\s')
 _WORDS = ('tot', 'to', 'bis', 'à', 'a', 'und', 'ca', 'bzw')
 
@@ -28,6 +30,7 @@ def cell_number(text: str) -> tuple[float, str] | None:
         return plain, ''
     if _SEVERAL.search(text):
         return None
+    text = _CLASS.sub('', text)
     numbers = [float(each.replace(',', '.')) for each in _NUMBER.findall(text)]
     if not 1 <= len(numbers) <= 2 or (text.strip()[:1] in '-−' and len(numbers) == 1):
         return None

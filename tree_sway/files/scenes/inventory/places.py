@@ -18,6 +18,8 @@ _FAR = 1e5
 _NUMBER = re.compile(r'-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?')
 _LATITUDE_FIRST = re.compile(r'\s*\(?\s*-?\d+(\.\d+)?\s*,\s*-?\d+(\.\d+)?\s*\)?\s*')
 _GEOMETRY = re.compile(r'POINT|"?coordinates"?', re.IGNORECASE)
+_DEGREE_DIGITS = 5
+"""Digits after the point of degrees, the fifth of which is a metre; metres have fewer."""
 _STATES_SOUTH = 24.0
 _STATES_NORTH = np.array([
     (-125.0, 49.0), (-95.2, 49.0), (-89.6, 48.0), (-84.6, 46.5), (-83.0, 45.5), (-82.5, 43.0),
@@ -46,9 +48,26 @@ def places_of(columns: InventoryColumns) -> Places | None:
     on_map = columns.find('x', 'y')
     if on_map is not None:
         x, y = (columns.numbers(column.index)[0] * column.factor for column in on_map)
+        if all(
+            _has_degrees(columns, each.index, most)
+            for each, most in zip(on_map, (180, 90), strict=True)
+        ):
+            names = ' and '.join(columns.table.columns[each.index] for each in on_map)
+            columns.note(f'{names} are taken as longitude and latitude, by their many digits')
+            return _of_degrees(columns, y, x)
         return _near_origin(columns, x, y)
     geometry = columns.table.find('place')
     return None if geometry is None else _of_geometries(columns, geometry.index)
+
+
+def _has_degrees(columns: InventoryColumns, index: int, most: float) -> bool:
+    """Whether a column has degrees: within their range, with digits that metres need not have."""
+    values, unit = columns.numbers(index)
+    known = np.abs(values[np.isfinite(values)])
+    if unit or columns.table.unit_of(index, 'x') or not len(known) or known.max() > most:
+        return False
+    digits = [len(cell.partition('.')[2].strip()) for cell in columns.texts(index) if cell]
+    return float(np.median(digits)) >= _DEGREE_DIGITS
 
 
 def _of_geometries(columns: InventoryColumns, index: int) -> Places:

@@ -106,7 +106,7 @@ def inventory_of(
     names, wood = species_of_rows(columns, given)
     keys = [wood[each].key if each in wood else each for each in names]
     diameter = diameters_of(columns, places.is_in_states)
-    height = heights_of(columns, diameter)
+    height = heights_of(columns, diameter, places.is_in_states)
     for row in np.flatnonzero(~np.isfinite(places.x + places.y)).tolist():
         columns.leave_out(row, 'no place', _why_no_place(table, row))
     height = np.full(columns.n_rows, np.nan) if height is None else height

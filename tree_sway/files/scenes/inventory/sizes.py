@@ -25,6 +25,8 @@ THICKEST = 12.0
 """Diameter at breast height that no tree exceeds [m]; the thickest known is 11.6 m."""
 _SLENDER = (12.0, 130.0)
 """Usual heights over diameters of trees, for the choice of a unit."""
+_MIDDLING = 45.0
+"""Usual height over diameter of a tree of a city."""
 _INCH, _FOOT, _CM, _MM = 0.0254, 0.3048, 0.01, 0.001
 _SAID = {1.0: 'm', _CM: 'cm', _MM: 'mm', _INCH: 'inches', _FOOT: 'feet'}
 
@@ -87,7 +89,9 @@ def _height_column(columns: InventoryColumns) -> int | None:
     return next(filled, found[0] if found else None)
 
 
-def heights_of(columns: InventoryColumns, diameter: Floats | None) -> Floats | None:
+def heights_of(
+    columns: InventoryColumns, diameter: Floats | None, is_in_states: bool = False
+) -> Floats | None:
     """Heights [m], NaN without one; None if no column has them."""
     index = _height_column(columns)
     if index is None:
@@ -99,7 +103,9 @@ def heights_of(columns: InventoryColumns, diameter: Floats | None) -> Floats | N
     if factor is None:
         factor = 1.0
         ratio = 0.0 if diameter is None else _slenderness(values, diameter)
-        if ratio > _SLENDER[1] and _SLENDER[0] < ratio * _FOOT < _SLENDER[1]:
+        # In the United States a city's heights are in feet or in metres.
+        most = _MIDDLING / math.sqrt(_FOOT) if is_in_states else _SLENDER[1]
+        if ratio > most and _SLENDER[0] < ratio * _FOOT < _SLENDER[1]:
             factor = _FOOT
             columns.note(f'{name} is taken as feet, by height over diameter')
     height = values * factor

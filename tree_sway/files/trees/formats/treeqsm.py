@@ -40,6 +40,11 @@ _UNMISTAKABLE = 13
 """Number of columns from which a table without a header is one of cylinders."""
 _UNIT_ERROR = 0.02
 """Largest difference of the length of a cylinder's axis from 1 where it tells what a table is."""
+_LEAST_SHARE = 0.7
+"""
+Share of the rows of a table that must be cylinders: published scans whose neighbouring cylinders
+were averaged have axes of any length in an eighth of them (Jackson et al. 2019).
+"""
 
 
 def _is_text(head: str) -> bool:
@@ -61,7 +66,7 @@ def _are_cylinders(table: Floats) -> bool:
     is_axis = (np.abs(axes - 1.0) < _UNIT_ERROR) | ((axes == 0.0) & (table[:, 1] == 0.0))
     sizes, parent = table[:, :2], table[:, 8]
     is_whole = (parent == np.round(parent)) & (parent >= -1)
-    return bool((is_axis & is_whole & (sizes >= 0.0).all(axis=1)).mean() > 0.9)
+    return bool((is_axis & is_whole & (sizes >= 0.0).all(axis=1)).mean() > _LEAST_SHARE)
 
 
 def _read_mat(path: Path) -> tuple[Cylinders, ...]:

@@ -1,10 +1,10 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-Natural modes of the coupled tree as oscillators, on the loads of all branches.
+The model `full`: all coordinates of a tree, under the load on every branch.
 
-The model `full` steps all modes, a number of coordinates steps that number. The load is that of
-the state at the middle of the step, and is constant over the step.
+It is the reference of the table models: its load is found branch by branch, in the wind and at the
+motion of each, at the state in the middle of the step, and is constant over the step.
 
 **Implicit load.** The motion in a step changes the load itself: twigs in a storm point along the
 wind within a fraction of a step. So the load is iterated until it is that of the resulting state;
@@ -28,9 +28,9 @@ from tree_sway.core.kernel import entry_of, fused, part
 from tree_sway.core.model.fill_records import load_records
 from tree_sway.core.model.records import Branches, Loads, WIDTH, WORK, Works
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.oscillators.propagator import fill_propagator
 from tree_sway.core.oscillators.two_axis import LOAD_MAX
-from tree_sway.core.run.branchwise import Branchwise, Tunable
+from tree_sway.core.run.branchwise import Branchwise
+from tree_sway.core.run.modal_coordinates import FARTHEST, ModalCoordinates
 from tree_sway.core.setup.bent_inertia import MOST_CHANGE
 from tree_sway.core.setup.branch_loads import wind_moments
 
@@ -44,38 +44,18 @@ ENOUGH = 0.02
 TURNS = 10
 """Iterations for the accelerations of the bent tree: each leaves `MOST_CHANGE` of the error."""
 
-FARTHEST, MOST_TURN = 2.0, 1.0
-"""Largest rotation of a branch on its parent, and in a step, in [rad]."""
+MOST_TURN = 1.0
+"""Largest rotation of a branch on its parent in a step, in [rad]."""
 
 
-class ModalBank(Branchwise):
-    """
-    Oscillators of the slowest or all natural modes of a tree, of one damping ratio.
-
-    ``branches`` are the records of a model.
-    """
+class FullBank(Branchwise, ModalCoordinates):
+    """Oscillators of the coordinates of a tree, loaded branch by branch."""
 
     def __init__(self, branches: Records, model: SwayModel) -> None:
-        """Make room for the coefficients and the state; what a tuning changes is copied."""
-        self._shapes = np.ascontiguousarray(model.shapes.T)
-        m, n = self._shapes.shape
-        self.branches, self.shapes = branches, self._shapes.T
-        self.stiffness = model.stiffness.copy()
-        self.loss = model.relative_damping
-        """Damping ratio of each mode over that of the tree, (m,)."""
-        self.damping = model.own_damping.copy()
-        self.limit = model.key_limit.copy()
-        self.weight = model.weight
-        """Stiffness by gravity of each mode in [1/s^2], (m,); negative where weight softens it."""
-        self.compliance = model.branch_compliance.copy(), model.shape_compliance.copy()
-        """
-        Compliance of every isolated branch, (N, 9), and of the modes of isolated branches, (m, m).
-        """
-        self._momentum = model.projection
-        self.inertia_slopes = model.inertia_slopes
-        """Slopes of the inertia by leading coordinates, (q, q, q), as `inertia_slopes`."""
+        """Make room for the state."""
+        super().__init__(branches, model)
+        m, n = self.by_coordinate.shape
         self._springs = np.zeros((5 + len(self.inertia_slopes), m))
-        self._participation = model.participation
         self.work = np.zeros(len(branches), dtype=WORK)
         self.loads = load_records(branches)
         """Records of `load_layout`."""
@@ -83,24 +63,17 @@ class ModalBank(Branchwise):
         self.swing = tuple(self.modal[:3])
         """Displacement, rate and force of each mode, (m,)."""
         self.state = np.zeros((3, n))
-        self.whole, self.half = np.zeros((2, m, 8))
         self._fastest = np.zeros(1)
         self._tried = np.zeros((2 + 2 * MOST_TRIALS, n))
-
-    def set_time_step(self, dt: float) -> None:
-        """Refill the propagator of the modes for a time step [s]."""
-        one = np.ones(len(self.stiffness))
-        self._fastest[0] = MOST_TURN / dt
-        self._springs[0], self._springs[1] = self.stiffness, self.damping
-        fill_propagator(one, self.damping, self.stiffness, dt, self.whole)
-        fill_propagator(one, self.damping, self.stiffness, 0.5 * dt, self.half)
 
     def set_step(self, dt: float) -> None:
         """Refill the coefficients for a time step [s]."""
         self.set_time_step(dt)
+        self._fastest[0] = MOST_TURN / dt
+        self._springs[0], self._springs[1] = self.stiffness, self.damping
         block, slot = np.divmod(np.arange(len(self.branches)), WIDTH)
         velocity = self.half[:, 6] + self.half[:, 7]
-        compliance = np.einsum('bm,m->b', self._participation, velocity)  # not by threads
+        compliance = np.einsum('bm,m->b', self.participation, velocity)  # not by threads
         self.loads['compliance'][block, slot] = compliance
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
@@ -109,45 +82,25 @@ class ModalBank(Branchwise):
 
         Returns how many loads were clamped to their limit, -1 if the motion is not finite.
         """
-        if not len(self.stiffness):
-            return 0
         return int(self._compiled(wx, wy, wz, per_speed_squared))
 
     @cached_property
     def _compiled(self) -> Callable[..., int]:
         arrays = (
-            self.branches, self.work, self.loads, self.modal, self.state, self._shapes,
-            self.limit, self.whole, self.half, self._tried, self._momentum, self._fastest,
+            self.branches, self.work, self.loads, self.modal, self.state, self.by_coordinate,
+            self.limit, self.whole, self.half, self._tried, self.momentum, self._fastest,
             self.inertia_slopes, self._springs,
         )  # fmt: skip
         return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
 
     @cached_property
     def _compiled_expand(self) -> Callable[[], None]:
-        arrays = self._shapes, self.modal, self.state
+        arrays = self.by_coordinate, self.modal, self.state
         return partial(entry_of(_expand, *arrays), *arrays)
-
-    @property
-    def tunable(self) -> Tunable:
-        """Return the arrays that change with stiffness, damping and gravity."""
-        others = (self.limit, 1.0), *((each, -1.0) for each in self.compliance)
-        return Tunable(self.stiffness, self.damping, 1.0, self.weight, others, self.loss)
-
-    @property
-    def air_damping(self) -> Floats:
-        """Damping of each mode by the air per drag and speed, at least, (m,)."""
-        damping: Floats = 2.0 * (self.branches['area'] * self.branches['speed'])
-        return damping @ self._participation
 
     def memory(self) -> tuple[Floats, ...]:
         """Return views of the state."""
         return self.modal[:3], self.state[0], self.loads['drag_impulse']
-
-    def take(self, eta: Floats, rate: Floats, force: Floats) -> None:
-        """Continue from modes, rates and forces (m,)."""
-        self.modal[0], self.modal[1], self.modal[2] = eta, rate, force
-        self.state[0] = 0.0
-        self.loads['drag_impulse'] = 0.0
 
     def rotations(self) -> Floats:
         """Key rotations in [rad], (N,)."""
@@ -161,7 +114,7 @@ class ModalBank(Branchwise):
     def take_over(self, x: Floats, v: Floats) -> None:
         """Continue from key rotations and rates, (N,), projected on the modes."""
         self.reset()
-        self.modal[0], self.modal[1] = self._momentum @ x, self._momentum @ v
+        self.modal[0], self.modal[1] = self.projected(x, v)
 
     def reset(self) -> None:
         """Return to rest."""

@@ -1,0 +1,18 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""From a prepared model of all coordinates to the oscillators of the model `full`."""
+
+from __future__ import annotations
+
+from tree_sway.core.arrays import Records
+from tree_sway.core.model.sway_model import SwayModel
+from tree_sway_lab.full.bank import FullBank
+
+
+def full_bank(model: SwayModel, branches: Records, plain: bool) -> FullBank:
+    """Make the oscillators of all coordinates of a tree; with ``plain`` nothing is compiled."""
+    if plain:
+        from tree_sway_lab.full.numpy_bank import NumpyFullBank
+
+        return NumpyFullBank(branches, model)
+    return FullBank(branches, model)

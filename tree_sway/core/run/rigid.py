@@ -1,0 +1,55 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The model of no coordinates: a tree that the wind does not move."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.model.fill_records import load_records
+from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.run.branchwise import Branchwise
+from tree_sway.core.run.modal_coordinates import ModalCoordinates
+
+
+class RigidBank(Branchwise, ModalCoordinates):
+    """A tree without coordinates; it is bent by pushes alone, as its branches are."""
+
+    def __init__(self, branches: Records, model: SwayModel) -> None:
+        """Make the arrays of a tree at rest."""
+        super().__init__(branches, model)
+        self.loads = load_records(self.branches)
+        self.swing = tuple(np.zeros((3, 0)))
+        """Displacement, rate and force of each coordinate, (0,)."""
+        self._rest = np.zeros(len(self.shapes))
+
+    def set_step(self, dt: float) -> None:
+        """Refill the propagators, of no coordinates."""
+        self.set_time_step(dt)
+
+    def advance(self, *_: float) -> int:
+        """Return that no load was clamped."""
+        return 0
+
+    def memory(self) -> tuple[Floats, ...]:
+        """Return views of the state: there is none."""
+        return ()
+
+    def rotations(self) -> Floats:
+        """Key rotations in [rad], (N,): 0."""
+        return self._rest
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Key rotations in [rad] and their rates in [rad/s], both (N,): 0."""
+        return self._rest.copy(), self._rest.copy()
+
+    def take_over(self, x: Floats, v: Floats) -> None:
+        """Stay at rest."""
+
+    def forces(self) -> Floats:
+        """Force of the wind on each branch, (b, 3): not computed, 0."""
+        return np.zeros((len(self.branches), 3))
+
+    def reset(self) -> None:
+        """Stay at rest."""

@@ -1,0 +1,46 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Models of installed packages, by the entry point group `tree_sway.models`.
+
+An entry point names a function ``make(model, branches, plain)`` that returns the `Oscillators` of
+a tree, from its `SwayModel` on all coordinates and the records of its branches. The reference
+model ``full`` comes so, from the laboratory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from importlib.metadata import entry_points, EntryPoint
+from typing import Any
+
+from tree_sway.errors import MissingDependencyError
+
+GROUP = 'tree_sway.models'
+
+
+@cache
+def installed_models() -> dict[str, EntryPoint]:
+    """Return the entry points of models by their names."""
+    return {point.name: point for point in entry_points(group=GROUP)}
+
+
+def maker_of(model: str) -> Callable[..., Any]:
+    """Return the function that makes an installed model; refuse one that is missing."""
+    refuse_missing_model(model)
+    make: Callable[..., Any] = installed_models()[model].load()
+    return make
+
+
+def refuse_missing_model(model: str) -> None:
+    """Raise a `MissingDependencyError` that says how to install a model of the laboratory."""
+    if model not in installed_models():
+        from tree_sway.extras import line_in_venv
+
+        install = line_in_venv('lab') or 'pip install ./lab in the checkout'
+        raise MissingDependencyError(
+            f"model '{model}' belongs to the laboratory, which is not installed",
+            where='model',
+            cure=f'install it: {install}; or give a number of coordinates',
+        )
