@@ -91,7 +91,7 @@ def test_what_is_beyond_full_scale_is_held(basis):
 
 
 def test_forces_on_tips_do_the_work_that_moments_do(fork):
-    joints = make_simulator(fork(), model='full', enrich='all').joints
+    joints = make_simulator(fork(), model='full', enrich='all').banks[0].branches
     rng = np.random.default_rng(3)
     x = rng.normal(size=(int(joints['n_coordinates'].sum()), 4))
     forces = rng.normal(size=(len(joints), 3, 5))
