@@ -222,7 +222,7 @@ def test_a_record_goes_on_from_any_of_its_times(live: tuple[Session, Sink]) -> N
 def test_damping_and_wind_are_those_in_use(live: tuple[Session, Sink]) -> None:
     session, sink = live
     own = session.values()['damping_ratio']
-    assert own == session._scene.kinds[0].simulator.prepared.damping_ratio > 0.0
+    assert own == session._scene.kinds[0].simulator.models[0].damping_ratio > 0.0
     assert session.choices.damping_ratio == 0.0
     session.apply('damping_ratio', 0.25)
     until(lambda: len(sink.descriptions) == 2)

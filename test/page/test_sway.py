@@ -128,8 +128,9 @@ def clamped() -> Simulator:
     kinds = bench_tree(), open_scene(str(SCAN / 'fork.treeqsm24.txt')).trees[0].tree
     trees = [PlacedTree(f'tree {i}', kinds[i % 2], x=9.0 * i) for i in range(3)]
     simulator = Scene(trees, 'row').simulator(Settings(), model=20)
-    model = simulator.shared[0][0]
-    model.prepared = replace(model.prepared, most_energy=1e-4 * model.prepared.most_energy)
+    model = simulator.groups[0].simulator
+    (prepared,) = model.models
+    model.models = (replace(prepared, most_energy=1e-4 * prepared.most_energy),)
     simulator._tables['most_energy'][0] *= 1e-4
     return simulator
 

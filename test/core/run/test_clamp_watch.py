@@ -21,7 +21,7 @@ WIND = (9.0, 1.0, 0.0)
 def clamp_always(simulator, number=0):
     """Make a table in which no energy is allowed, as of a tree that swings up by itself."""
     tables = getattr(simulator, '_tables', None)
-    record = simulator.bank.oscillators.record if tables is None else tables
+    record = simulator.banks[0].oscillators.record if tables is None else tables
     record['most_energy'][number] = 1e-12
 
 
@@ -44,7 +44,7 @@ def test_numbers_end_at_the_fewest():
 @pytest.mark.parametrize('model', [12, 'auto'])
 def test_it_shows_fewer_coordinates_until_it_is_reset(fork, model):
     sim = make_simulator(fork(), model=model)
-    most = sim.bank.oscillators.shapes.shape[1]
+    most = sim.banks[0].oscillators.shapes.shape[1]
     clamp_always(sim)
     for _ in range(round(0.9 / DT)):
         assert sim.step(WIND, DT) == LOAD_CLAMPED
@@ -52,16 +52,16 @@ def test_it_shows_fewer_coordinates_until_it_is_reset(fork, model):
     for _ in range(round(0.2 / DT)):
         sim.step(WIND, DT)
     assert sim.counts.reduced == 1
-    assert sim.n_shown <= fewer(most)
+    assert sim.banks[0].n_shown <= fewer(most)
     if model == 'auto':
-        assert sim.choice.n_coordinates <= sim.n_shown
+        assert sim.choice.n_coordinates <= sim.banks[0].n_shown
         assert sim.review().n_coordinates <= fewer(most)
-    state, shown = sim.state(), sim.n_shown
+    state, shown = sim.state(), sim.banks[0].n_shown
     sim.reset()
-    assert sim.n_shown > shown or model == 'auto'
+    assert sim.banks[0].n_shown > shown or model == 'auto'
     assert sim.counts.reduced == 1
     sim.set_state(state)
-    assert sim.n_shown == shown
+    assert sim.banks[0].n_shown == shown
     if model == 'auto':
         assert sim.review().n_coordinates <= fewer(most)
 
@@ -76,7 +76,7 @@ def test_a_storm_beyond_the_table_and_a_pull_take_no_coordinates(fork):
         sim.push(0, (5.0, 0.0, 0.0), 1.0)
         sim.step(WIND, DT)
     assert sim.counts.reduced == 0
-    assert sim.n_shown == sim.bank.oscillators.shapes.shape[1]
+    assert sim.banks[0].n_shown == sim.banks[0].oscillators.shapes.shape[1]
 
 
 def test_a_tree_of_a_scene_shows_fewer_and_the_others_do_not(fork):

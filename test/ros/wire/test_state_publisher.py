@@ -60,4 +60,4 @@ def test_the_publisher_leaves_a_scene_that_is_tuned_as_it_is() -> None:
         np.testing.assert_allclose(own, expected, rtol=1e-9, atol=1e-12)
     own, expected = (each.place() for each in (scene, undisturbed))
     np.testing.assert_allclose(own, expected, atol=1e-6)
-    assert [model.counts.steps for model, _, _ in scene.shared] == [0]
+    assert [group.simulator.counts.steps for group in scene.groups] == [0]

@@ -114,7 +114,7 @@ class ObservedTree(SwaySimulator):
         whole = replace(chosen, crown_coherence=1.0)
         reductions = TreeReductions(bare, wood, whole, plain=plain)
         super().__init__(prepared(reductions, cache=cache), plain=plain)
-        if not hasattr(self.bank.oscillators, 'swing') or self.settings.model == 0:
+        if not hasattr(self._bank.oscillators, 'swing') or self.settings.model == 0:
             raise ParameterError(
                 f"motion sensors on model '{self.model}'",
                 where='model',
@@ -161,13 +161,13 @@ class ObservedTree(SwaySimulator):
 
     def _swing(self) -> tuple[Floats, ...]:
         """Return views of displacement, rate and force of each coordinate, (m,)."""
-        oscillators: Any = self.bank.oscillators
+        oscillators: Any = self._bank.oscillators
         return tuple(oscillators.swing)
 
     def _storm_energy(self) -> float:
         """Energy that no correction exceeds, per unit mass of the coordinates."""
         n = self.observer.count
-        tunable = self.bank.oscillators.tunable
+        tunable = self._bank.oscillators.tunable
         stiffness = np.array(tunable.stiffness[:n]) / tunable.inertia
         load = _STORM * crown_slope(self, _STORM, n)
         return _DYNAMIC * float((np.square(load).sum(axis=0) / stiffness).sum())
@@ -255,7 +255,7 @@ class ObservedTree(SwaySimulator):
         self._known = fit
         if fit is None or not self.learns:
             return
-        ratio = min(fit.damping * self.prepared.damping_ratio, 1.0)
+        ratio = min(fit.damping * self.models[0].damping_ratio, 1.0)
         with suppress(ParameterError):  # a tree that would buckle stays as it is
             self.tune(stiffness_factor=fit.stiffness, damping_ratio=ratio)
 
@@ -294,7 +294,7 @@ class ObservedTree(SwaySimulator):
     @property
     def smoothed(self) -> Floats:
         """Key rotations in [rad] of `LATE_STEPS` ago by what was measured since, (N,)."""
-        return np.asarray(self.bank.oscillators.shapes @ self.observer.smoothed)
+        return np.asarray(self._bank.oscillators.shapes @ self.observer.smoothed)
 
     def band(self) -> Floats:
         """

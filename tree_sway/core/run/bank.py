@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Protocol, TYPE_CHECKING
+from typing import Any, Protocol, TYPE_CHECKING
 
 import numpy as np
 
@@ -87,6 +87,12 @@ class Bank:
     blocks: Records
     mass: float
     plain: bool = bool(WHY_PLAIN)
+
+    @property
+    def n_shown(self) -> int:
+        """Number of coordinates that move; on a model without a table all."""
+        oscillators: Any = self.oscillators
+        return int(getattr(oscillators, 'n_shown', oscillators.shapes.shape[1]))
 
     @cached_property
     def bases(self) -> Floats:

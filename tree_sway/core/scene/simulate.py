@@ -250,7 +250,7 @@ def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
     if now.reduced > before.reduced:
         found.append(
             'steps stayed clamped to the limit of the model, and coordinates were left out: '
-            f"{simulator.n_shown} moved at the end; compare with model 'full'"
+            f"{simulator.banks[0].n_shown} moved at the end; compare with model 'full'"
         )
     elif now.clamped > before.clamped:
         n_steps = now.steps - before.steps
