@@ -197,7 +197,7 @@ def test_what_the_factors_leave_out_is_not_seen(tmp_path: Path) -> None:
     for wind in gusty(600):
         simulator.step(wind, DT)
         received.step(wind)
-        eta = simulator.memory()[1][0, :20]
+        eta = simulator.banks[0].oscillators.memory()[0][0, :20]
         farthest = max(farthest, float(np.abs(eta).max()))
         left_out = max(left_out, float(np.abs(received.coordinates(0) - eta).max()))
     assert left_out <= 1e-3 * farthest

@@ -125,9 +125,9 @@ class AdaptiveSimulator(SwaySimulator):
         """Estimate every number of coordinates of the tuned tree in a wind."""
         return self._estimator.estimates(climate)
 
-    def memory(self) -> tuple[Floats, ...]:
+    def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, and of how each coordinate is shown."""
-        return *super().memory(), self._shares, self._begun, self._left
+        return *super()._memory(), self._shares, self._begun, self._left
 
     def set_state(self, state: TreeState) -> None:
         """Continue from a state and its shown shares; see `SwaySimulator.set_state`."""

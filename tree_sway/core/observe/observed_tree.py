@@ -270,9 +270,9 @@ class ObservedTree(SwaySimulator):
         # The wind alone may move it so far; sensors do not add to that.
         return correction * (math.sqrt(self._limit / energy) if own < self._limit else 0.0)
 
-    def memory(self) -> tuple[Floats, ...]:
+    def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
-        return (*super().memory(), *self._crown.memory(), self._added)
+        return (*super()._memory(), *self._crown.memory(), self._added)
 
     def reset(self) -> None:
         """Return to rest, with no wind; what is known about the sensors stays."""
@@ -284,9 +284,9 @@ class ObservedTree(SwaySimulator):
         for record in self._records.values():
             record.next = 0
 
-    def glide(self, dt: float) -> bool:
+    def _glide(self, dt: float) -> bool:
         """Continue a transition of `tune`, and observe the changed tree."""
-        is_changed = super().glide(dt)
+        is_changed = super()._glide(dt)
         if is_changed:
             self.observer.refresh()
         return is_changed

@@ -94,6 +94,11 @@ class Bank:
         oscillators: Any = self.oscillators
         return int(getattr(oscillators, 'n_shown', oscillators.shapes.shape[1]))
 
+    def base_moment(self) -> Floats:
+        """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
+        coupling, force = self.branches['coupling'], self.oscillators.forces()
+        return np.asarray(np.einsum('bij,bj->i', coupling, force))
+
     @cached_property
     def bases(self) -> Floats:
         """Return memory for the bases of `place`, (b, 8)."""

@@ -5,8 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 import math
 from typing import NamedTuple, TYPE_CHECKING, TypeAlias
 
@@ -32,7 +31,7 @@ from tree_sway.core.model.tree_state import (
     values_of,
 )
 from tree_sway.core.run.assembly import bank_of
-from tree_sway.core.run.bank import Bank, Oscillators
+from tree_sway.core.run.bank import Bank
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import nearest, ParameterError
@@ -208,14 +207,14 @@ class SwaySimulator:
         tuned = () if self._tuning is None else self._tuning.changes
         return digest_of(self.tree, self.models[0].species, self.settings, *tuned)
 
-    def memory(self) -> tuple[Floats, ...]:
+    def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, the wind of the last step first."""
         crown = () if self._gusts is None else self._gusts.wind.memory()
         return self._wind, *self._bank.oscillators.memory(), *crown
 
     def state(self) -> TreeState:
         """Return a copy of the state."""
-        return TreeState(self.tree.name, self.digest(), self.model, values_of(self.memory()))
+        return TreeState(self.tree.name, self.digest(), self.model, values_of(self._memory()))
 
     def set_state(self, state: TreeState) -> None:
         """
@@ -225,7 +224,7 @@ class SwaySimulator:
         keeps the present state.
         """
         refuse_other_state(state, self.state())
-        fill_memory(self.memory(), state.values)
+        fill_memory(self._memory(), state.values)
         self._dt = math.nan  # the state determines which coordinates the step solves
 
     def rotations(self) -> Floats:
@@ -271,7 +270,7 @@ class SwaySimulator:
         if is_changed:
             refuse_time_step(dt)
         # A transition advances with every step, also where the length of the step varies.
-        if self._tuning is not None and self.glide(dt):
+        if self._tuning is not None and self._glide(dt):
             is_changed = True
         if is_changed:
             self._set_step(dt)
@@ -285,7 +284,11 @@ class SwaySimulator:
             clamped = self._bank.oscillators.step_outside() if outcome & 2 else 0
             if clamped > 0:
                 self._watch_clamped(dt)
-            return (WIND_REFUSED if outcome & 1 else OK) | self._count(clamped) | self.touched(dt)
+            return (
+                (WIND_REFUSED if outcome & 1 else OK)
+                | self._count(clamped)
+                | self._step_pushes(dt)
+            )
         status = OK
         if is_wind(x, y, z, self._max_wind):
             self._wind[:] = x, y, z
@@ -300,7 +303,7 @@ class SwaySimulator:
             outcome = self._gusts.advance(wx, wy, wz, load, dt)
         if outcome > 0:
             self._watch_clamped(dt)
-        return status | self._count(outcome) | self.touched(dt)
+        return status | self._count(outcome) | self._step_pushes(dt)
 
     def push(
         self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
@@ -350,7 +353,7 @@ class SwaySimulator:
         """Pushes on the tree under the number 0, until their effect is gone."""
         return {} if self._touch is None else {0: self._touch}
 
-    def touched(self, dt: float) -> int:
+    def _step_pushes(self, dt: float) -> int:
         """Add the effect of pushes over the last step [s]; returns bits as `step`."""
         if self._touch is None or self._touch.is_gone:
             self._touch = None
@@ -433,8 +436,7 @@ class SwaySimulator:
     @property
     def base_moment(self) -> Floats:
         """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
-        coupling, force = self._bank.branches['coupling'], self._bank.oscillators.forces()
-        return np.asarray(np.einsum('bij,bj->i', coupling, force))
+        return self._bank.base_moment()
 
     def check_tuning(self, **changes: float) -> Tuning:
         """Check changes as `tune`; returns all values after the changes."""
@@ -465,7 +467,7 @@ class SwaySimulator:
         if self._tuning is not None:
             self._tuning.go_to(goal)
 
-    def glide(self, dt: float) -> bool:
+    def _glide(self, dt: float) -> bool:
         """Continue a transition of `tune`; returns whether the coefficients have changed."""
         return self._tuning is not None and self._tuning.step(dt)
 
@@ -504,13 +506,6 @@ class TreeGroup(NamedTuple):
     simulator: SwaySimulator
     numbers: Ints
     in_basis: Callable[[StateBasis], Motion]
-
-
-def with_oscillators(simulator: SwaySimulator, oscillators: Oscillators) -> SwaySimulator:
-    """Return a simulator of the same tree whose state is in other oscillators."""
-    one = copy(simulator)
-    one._bank = replace(simulator._bank, oscillators=oscillators)
-    return one
 
 
 def rows_of_tree(name: str, names: Sequence[str], ends: Sequence[int], where: str) -> slice:
