@@ -271,10 +271,16 @@ def test_a_basis_is_found_while_the_scene_is_stepped_and_tuned() -> None:
     gently_tuned(undisturbed, lambda: True)
     # Both have reached the same goal.
     np.testing.assert_allclose(
-        scene._time_steps['whole'], undisturbed._time_steps['whole'], rtol=1e-12, atol=1e-15
+        scene._shared._time_steps['whole'],
+        undisturbed._shared._time_steps['whole'],
+        rtol=1e-12,
+        atol=1e-15,
     )
     np.testing.assert_allclose(
-        scene._time_steps['half'], undisturbed._time_steps['half'], rtol=1e-12, atol=1e-15
+        scene._shared._time_steps['half'],
+        undisturbed._shared._time_steps['half'],
+        rtol=1e-12,
+        atol=1e-15,
     )
 
 

@@ -131,7 +131,7 @@ def clamped() -> Simulator:
     model = simulator.groups[0].simulator
     (prepared,) = model.models
     model.models = (replace(prepared, most_energy=1e-4 * prepared.most_energy),)
-    simulator._tables['most_energy'][0] *= 1e-4
+    simulator._shared._tables['most_energy'][0] *= 1e-4
     return simulator
 
 
@@ -152,7 +152,7 @@ def test_a_receiver_in_python_leaves_coordinates_out_when_the_simulator_does(
         received.step(wind)
         reduced.append((clamped.counts.reduced, received.reduced))
         left_out = received.instances['left_out']
-        assert np.array_equal(left_out, clamped._instances['left_out'])
+        assert np.array_equal(left_out, clamped._shared._instances['left_out'])
     assert max(reduced)[0] > 0
     received.correct(received.state() + 0.01)
     for instance in received.instances:

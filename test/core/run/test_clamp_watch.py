@@ -84,16 +84,16 @@ def test_a_tree_of_a_scene_shows_fewer_and_the_others_do_not(fork):
     other = fork(2)
     scene = Scene([PlacedTree('a', tree), PlacedTree('b', tree, 3.0), PlacedTree('c', other, 6.0)])
     sim = scene.simulator(model=12)
-    kind = int(sim._placed['kind'][2])
+    kind = int(sim._shared.placements['kind'][2])
     clamp_always(sim, kind)
     for _ in range(90):
         assert sim.step(WIND, DT) == LOAD_CLAMPED
-    shown = sim._numbers.tolist()
+    shown = sim._shared._counted.tolist()
     assert shown[:2] == [12, 12]
-    assert shown[2] == fewer(min(12, sim._banks[kind].shapes.shape[1]))
+    assert shown[2] == fewer(min(12, sim.banks[kind].oscillators.shapes.shape[1]))
     assert sim.counts.reduced == 1
     sim.reset()
-    assert sim._numbers.tolist() == [12, 12, 12]
+    assert sim._shared._counted.tolist() == [12, 12, 12]
 
 
 def test_a_simulation_says_so(fork, monkeypatch):
