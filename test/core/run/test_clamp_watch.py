@@ -20,8 +20,8 @@ WIND = (9.0, 1.0, 0.0)
 
 def clamp_always(simulator, number=0):
     """Make a table in which no energy is allowed, as of a tree that swings up by itself."""
-    tables = getattr(simulator, '_tables', None)
-    record = simulator.banks[0].oscillators.record if tables is None else tables
+    shared = getattr(simulator, '_shared', None)
+    record = simulator.banks[0].oscillators.record if shared is None else shared._tables
     record['most_energy'][number] = 1e-12
 
 
