@@ -169,6 +169,17 @@ def test_a_species_of_a_file_has_the_wood_of_the_file(
     assert of_forest.count(f'{heavy["frequencies"][0]:.3f} Hz') == 2
 
 
+def test_a_name_longer_than_a_line_is_cut_for_people_alone(tmp_path, capsys):
+    name = 'a' * 200
+    file = tmp_path / 'pole.yaml'
+    write_pole(file, 3.0, 0.05)
+    rows = [row for row in file.read_text('utf-8').splitlines() if not row.startswith('name:')]
+    file.write_text('\n'.join([f'name: {name}', *rows]), 'utf-8')
+    assert facts(capsys, str(file))['name'] == name
+    assert cli.main(['info', str(file)]) == 0
+    assert max(len(line) for line in capsys.readouterr().out.splitlines()) < 160
+
+
 @pytest.mark.parametrize(
     ('text', 'expected'),
     [

@@ -12,7 +12,9 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.exposure import Exposure, exposure_of, EXPOSURES
 
 
-def add_exposure_arguments(parser: argparse.ArgumentParser) -> None:
+def add_exposure_arguments(
+    parser: argparse.ArgumentParser, *, with_anemometer: bool = True
+) -> None:
     """Add where the trees stand, and at which height the mean wind is."""
     add = parser.add_argument_group('exposure').add_argument
     add(
@@ -24,6 +26,8 @@ def add_exposure_arguments(parser: argparse.ArgumentParser) -> None:
         '--spacing', type=float, metavar='D',
         help='mean distance between the trees of a stand [m]; 0.18 of their height if left out',
     )  # fmt: skip
+    if not with_anemometer:
+        return
     add(
         '--anemometer-height', type=float, metavar='Z',
         help='height of the mean wind above the ground [m]; if left out, that of the top of the '

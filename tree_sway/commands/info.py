@@ -39,6 +39,7 @@ _SUMS = ('branches', 'segments', 'volume', 'mass')
 _POWERS = {'height': 1, 'volume': 3, 'mass': 3}
 """Scaling of figures with the size of a tree."""
 _MOST_LINES = 40
+_LONGEST_NAME = 60
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -186,7 +187,7 @@ def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:
 
 def _text(facts: dict[str, Any]) -> str:
     """Format the facts as text."""
-    lines = [f'{facts["name"]}, from {facts["source"]}']
+    lines = [f'{_short(facts["name"])}, from {facts["source"]}']
     lines += _forest_lines(facts) if 'trees' in facts else _tree_lines(facts)
     lines += [f'  note       {note}' for note in facts['notes']]
     lines += [f'  warning    {oddity}' for oddity in facts['warnings']]
@@ -199,6 +200,11 @@ def _text(facts: dict[str, Any]) -> str:
             for mode in modes
         ]
     return '\n'.join(lines)
+
+
+def _short(name: str) -> str:
+    """Return a name of at most a line; `--json` has it whole."""
+    return name if len(name) <= _LONGEST_NAME else f'{name[: _LONGEST_NAME - 3]}...'
 
 
 def _tree_lines(facts: dict[str, Any]) -> list[str]:
@@ -218,7 +224,7 @@ def _tree_lines(facts: dict[str, Any]) -> list[str]:
 def _forest_lines(facts: dict[str, Any]) -> list[str]:
     trees = facts['trees']
     shown = trees[:_MOST_LINES]
-    wide = max(4, *(len(tree['name']) for tree in shown))
+    wide = max(4, *(len(_short(tree['name'])) for tree in shown))
     lines = [
         f'  size       {len(trees)} trees of {len(facts["kinds"])} kinds, {facts["branches"]} '
         f'branches, {facts["segments"]} segments, {facts["volume"] * 1e3:.4g} l of wood, '
@@ -229,8 +235,8 @@ def _forest_lines(facts: dict[str, Any]) -> list[str]:
         place, slowest = tree['place'], tree['frequencies']
         sways = f'{slowest[0]:6.3f} Hz' if slowest else '        -'
         lines.append(
-            f'  {tree["name"]:{wide}}   {tree["species"]:11} {place["x"]:6.2f}   {place["y"]:6.2f}'
-            f'   {tree["height"]:6.2f} m {tree["mass"]:7.4g} kg   {sways}'
+            f'  {_short(tree["name"]):{wide}}   {tree["species"]:11} {place["x"]:6.2f}'
+            f'   {place["y"]:6.2f}   {tree["height"]:6.2f} m {tree["mass"]:7.4g} kg   {sways}'
             f'{"   in leaf" if tree["in_leaf"] else ""}'
         )
     if len(trees) > len(shown):

@@ -5,9 +5,10 @@ Critical winds of the trees of an inventory: a row each, from the curves of its 
 
 Trees of a kind have one species, and heights and stems near each other. Each is scaled to its own:
 a tree as its kind, but larger, uses the same share in the same wind at its crown, which is taken
-three quarters up. Leaves, and with them the load, follow the section d^2 of the stem (pipe model,
-`leaf_traits`; d^2 h U^2 in Hale et al. 2012); bare branches are in proportion to d. The strength
-of the stem is that of its section modulus, d^3, and that of roots is of the mass of the stem, d^2.
+three quarters up, among neighbours that grow in proportion. Leaves, and with them the load, follow
+the section d^2 of the stem (pipe model, `leaf_traits`; d^2 h U^2 in Hale et al. 2012); bare
+branches are in proportion to d. The strength of the stem is that of its section modulus, d^3, and
+that of roots is of the mass of the stem, d^2.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ from typing import Any
 import numpy as np
 
 from tree_sway.core.strength.critical_wind import ROOT_BAND_OF_SOILS, WOOD_BAND_80
+from tree_sway.core.wind.exposure import Exposure
 from tree_sway.files.scenes.inventory.read_inventory import Inventory
 from tree_sway.files.scenes.kind_classes import kind_classes
 from tree_sway.studies.cluster import cluster, run_all
 from tree_sway.studies.risk_kind import (
     compute_kind,
     KindResult,
-    OPEN_GROUND,
     RiskKind,
     SeasonCurves,
 )
@@ -49,9 +50,34 @@ class RiskWork:
     kinds: dict[RiskKind, list[int]]
 
 
-def risk_work(inventory: Inventory, seed: int = 0, most: int = MOST_KINDS) -> RiskWork:
-    """Group the trees of an inventory into at most some kinds; more alike where they are few."""
+def risk_work(
+    inventory: Inventory,
+    seed: int = 0,
+    most: int = MOST_KINDS,
+    *,
+    exposure: str = 'open',
+    spacing: float | None = None,
+) -> RiskWork:
+    """
+    Group the trees of an inventory into at most some kinds; more alike where they are few.
+
+    Parameters
+    ----------
+    inventory
+        The trees.
+    seed
+        Of grown trees and gusts.
+    most
+        Number of kinds, or two for each species if those are more, for each exposure.
+    exposure
+        Of trees whose exposure the inventory does not say, one of `EXPOSURES`.
+    spacing
+        Mean distance between the trees of a stand in [m]; 0.18 of their height if None.
+
+    """
     keys = [inventory.wood[each].key for each in inventory.species]
+    exposures = [each or exposure for each in inventory.exposures]
+    most = max(most, 2 * len(set(keys))) * len(set(exposures))
     heights, slendernesses = 1.5, 1.2
     while True:
         classes = kind_classes(
@@ -64,8 +90,11 @@ def risk_work(inventory: Inventory, seed: int = 0, most: int = MOST_KINDS) -> Ri
         kinds: dict[RiskKind, list[int]] = {}
         sizes = zip(classes.height.tolist(), classes.slenderness.tolist(), strict=True)
         for row, (key, (height, slenderness)) in enumerate(zip(keys, sizes, strict=True)):
-            kinds.setdefault(RiskKind(key, height, slenderness, seed), []).append(row)
-        if len(kinds) <= max(most, 2 * len(set(keys))) or heights > 20.0:
+            where = exposures[row]
+            apart = 0.0 if spacing is None or where == 'open' else spacing
+            kind = RiskKind(key, height, slenderness, seed, where, apart)
+            kinds.setdefault(kind, []).append(row)
+        if len(kinds) <= most or heights > 20.0:
             return RiskWork(inventory, kinds)
         heights, slendernesses = heights * _WIDER, slendernesses * _WIDER**0.5
 
@@ -100,7 +129,7 @@ def _row(inventory: Inventory, row: int, result: KindResult) -> Row:
         'species': result.kind.species,
         'height [m]': round(height, 2),
         'diameter [m]': round(diameter, 3) if np.isfinite(diameter) else None,
-        'exposure': 'open',
+        'exposure': result.kind.exposure,
     }
     winds = {
         (part, curves.in_leaf): _winds(curves, part, height, diameter, result)
@@ -109,7 +138,8 @@ def _row(inventory: Inventory, row: int, result: KindResult) -> Row:
     }
     first = min(winds, key=lambda each: winds[each][1]) if winds else None
     low, middle, high = winds[first] if first is not None else (None, None, None)
-    top = float(OPEN_GROUND.over_anemometer(np.array(height)))
+    exposure = result.exposure.scaled(height)
+    top = float(exposure.profile().over_anemometer(np.array(height))) / exposure.at_ten_metres
     found |= {
         'critical_wind_10m [m/s]': _rounded(middle),
         'critical_wind_10m [km/h]': _rounded(middle, _KM_H),
@@ -142,13 +172,19 @@ def _winds(
     load = 2.0 if curves.in_leaf else 1.0
     power = (3.0 if part == 'wood' else 2.0) - load
     more = (slenderness / result.slenderness) ** power
-    crowns = OPEN_GROUND.over_anemometer(_CROWN * np.array([result.kind.height, height]))
-    scale = float(crowns[0] / crowns[1])
+    own = result.exposure.scaled(height)
+    scale = _at_crown(result.exposure.scaled(result.kind.height)) / _at_crown(own)
+    scale *= own.at_ten_metres
     least, most = WOOD_BAND_80 if part == 'wood' else ROOT_BAND_OF_SOILS
     low, middle, high = (
         min(scale * curve.speed_of(strength / more), FASTEST) for strength in (least, 1.0, most)
     )
     return low, middle, high
+
+
+def _at_crown(exposure: Exposure) -> float:
+    """Wind three quarters up a tree over the mean wind of its exposure [-]."""
+    return float(exposure.profile().over_anemometer(np.array(_CROWN * exposure.height)))
 
 
 def _rounded(value: float | None, factor: float = 1.0) -> float | None:
@@ -174,4 +210,7 @@ def _assumed(
         said.append(result.note)
     if critical is not None and critical >= FASTEST:
         said.append(f'above {FASTEST:g} m/s')
-    return [*said, 'grown crown', 'no shelter', 'roots of a mean soil']
+    if result.kind.exposure != 'open' and not result.error:
+        said.append(f'trees {result.exposure.scaled(inventory.height[row]).spacing:.2g} m apart')
+    shelter = 'no shelter' if result.kind.exposure == 'open' else 'as high as its neighbours'
+    return [*said, 'grown crown', shelter, 'roots of a mean soil']

@@ -14,6 +14,7 @@ import time
 from typing import TextIO
 
 from tree_sway.commands.arguments import refuse_overwriting
+from tree_sway.commands.exposure import add_exposure_arguments
 from tree_sway.commands.progress import bar
 from tree_sway.core.checks import within
 from tree_sway.errors import FormatError, ParameterError
@@ -27,7 +28,7 @@ from tree_sway.studies.risk import risk_rows, risk_work, RiskWork, Row
 from tree_sway.studies.runner import cores
 
 _LEFT_OUT = (
-    'rot, wounds and forks, wet or shallow soil, neighbours and pruning are not included; '
+    'rot, wounds and forks, wet or shallow soil and pruning are not included; '
     'it is no verdict on a tree'
 )
 
@@ -43,6 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--workers', type=int, metavar='N', help='processes; one per core if left out'
     )
     add_scheduler_argument(parser)
+    add_exposure_arguments(parser, with_anemometer=False)
     parser.add_argument(
         '--seed', type=int, default=0, metavar='N', help='of grown trees and gusts (%(default)s)'
     )
@@ -54,6 +56,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.workers is not None:
         within('--workers', arguments.workers, 1, 1024)
     within('--seed', arguments.seed, 0, 2**31)
+    if arguments.spacing is not None:
+        within('--spacing', arguments.spacing, 0.1, 100.0, 'm')
     if arguments.scheduler is not None:
         refuse_wrong_address(arguments.scheduler)
     output = path_of(arguments.output)
@@ -65,7 +69,9 @@ def run(arguments: argparse.Namespace) -> int:
     inventory = inventory_of(inventory_table(path, read_head(path)), needs_place=False)
     for note in inventory.notes:
         print(f'note: {note}', file=sys.stderr)
-    work = risk_work(inventory, arguments.seed)
+    work = risk_work(
+        inventory, arguments.seed, exposure=arguments.exposure, spacing=arguments.spacing
+    )
     workers = arguments.workers or cores()
     print(
         f'{len(inventory.names)} trees of {len(work.kinds)} kinds; {_LEFT_OUT}',

@@ -4,8 +4,9 @@
 Strength that the tree of a kind uses by wind speed, in leaf and bare, in any process.
 
 A tree is grown by species, height and stem, set up, and blown by gusts of three mean winds: the
-first is usual, the others are near those at which its roots and its wood reach their strength. The
-wind rises with height as over grass (log law, 0.03 m), its mean is that at 10 m.
+first is usual, the others are near those at which its roots and its wood reach their strength. In
+the open the wind rises with height as over grass and its mean is that at 10 m; at the edge of a
+stand and inside it, it is that of `exposure`, and its mean that at the top of the trees.
 """
 
 from __future__ import annotations
@@ -23,32 +24,40 @@ from tree_sway.core.strength.critical_wind import largest_expected, ShareCurve
 from tree_sway.core.tree.grown_tree import rooted
 from tree_sway.core.tree.species import species_named
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.height_profile import WindProfile
+from tree_sway.core.wind.exposure import Exposure, exposure_of, STATION_HEIGHT
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import TreeSwayError
 from tree_sway.files.trees.imported_tree import TreeFile
 
-OPEN_GROUND = WindProfile('log')
-"""Wind by height over open ground; the anemometer is at 10 m."""
 _MODEL, _RATE, _SECONDS = 20, 30.0, 120.0
 _FIRST, _SLOWEST, _FASTEST = 15.0, 4.0, 60.0
 _USUAL_POWER = 1.5
 """Power of the wind speed that the load of a crown grows by, between 1 and 2."""
 
 
+_IN_THE_OPEN = Exposure(anemometer_height=STATION_HEIGHT)
+
+
 @dataclass(frozen=True)
 class RiskKind:
-    """Trees of one species and form: height [m], and height over diameter, 0 if unknown."""
+    """
+    Trees of one species, form and exposure.
+
+    ``height`` in [m], ``slenderness`` height over diameter, 0 if unknown; ``exposure`` one of
+    `EXPOSURES`; ``spacing`` of the trees of a stand in [m], 0 for the usual one.
+    """
 
     species: str
     height: float
     slenderness: float
     seed: int = 0
+    exposure: str = 'open'
+    spacing: float = 0.0
 
 
 @dataclass(frozen=True)
 class SeasonCurves:
-    """Shares of strength of wood and of roots by the mean wind at 10 m, in leaf or bare."""
+    """Shares of strength of wood and of roots by the mean wind of the exposure, leaves or none."""
 
     in_leaf: bool
     wood: ShareCurve
@@ -60,13 +69,14 @@ class KindResult:
     """
     What a kind of trees uses, or why it cannot be computed.
 
-    ``slenderness`` is height over diameter at breast height of the grown tree, ``note`` what was
-    changed to grow it; ``error`` is empty if all went well.
+    ``slenderness`` is height over diameter at breast height of the grown tree, ``exposure`` that
+    of the kind, ``note`` what was changed to grow it; ``error`` is empty if all went well.
     """
 
     kind: RiskKind
     seasons: tuple[SeasonCurves, ...] = ()
     slenderness: float = 0.0
+    exposure: Exposure = _IN_THE_OPEN
     note: str = ''
     error: str = ''
 
@@ -95,13 +105,21 @@ def _computed(kind: RiskKind) -> KindResult:
         note = f'{note}; {limbs}' if note else limbs
     whole = TreeFile(tree, rooted(tree, species), kind.species)
     seasons = (True,) if species.leaves.is_evergreen else (True, False)
-    curves = tuple(_season(whole, kind.seed, in_leaf) for in_leaf in seasons)
-    return KindResult(kind, curves, kind.height / _diameter(tree), note)
+    exposure = exposure_of(
+        tree,
+        species,
+        kind.exposure,
+        spacing=kind.spacing or None,
+        anemometer_height=STATION_HEIGHT if kind.exposure == 'open' else None,
+    )
+    curves = tuple(_season(whole, kind.seed, in_leaf, exposure) for in_leaf in seasons)
+    return KindResult(kind, curves, kind.height / _diameter(tree), exposure, note)
 
 
-def _season(tree: TreeFile, seed: int, in_leaf: bool) -> SeasonCurves:
-    rig = Rig(tree, model=_MODEL, in_leaf=in_leaf, profile=OPEN_GROUND)
-    shares = {_FIRST: _shares(rig, _FIRST, seed)}
+def _season(tree: TreeFile, seed: int, in_leaf: bool, exposure: Exposure) -> SeasonCurves:
+    ground = float(tree.tree.start[0, 2])
+    rig = Rig(tree, model=_MODEL, in_leaf=in_leaf, profile=exposure.profile(ground))
+    shares = {_FIRST: _shares(rig, exposure, _FIRST, seed)}
     for part in (0, 1, 0):  # wood, roots, and wood again by a better guess
         curve = _curve(shares, part)
         if len(shares) == 1:
@@ -110,16 +128,22 @@ def _season(tree: TreeFile, seed: int, in_leaf: bool) -> SeasonCurves:
             guess = curve.speed_of(1.0)
         speed = float(np.clip(guess, _SLOWEST, _FASTEST))
         if all(abs(speed / known - 1.0) > 0.05 for known in shares):
-            shares[speed] = _shares(rig, speed, seed)
+            shares[speed] = _shares(rig, exposure, speed, seed)
     if len(shares) == 1:
-        shares[2.0 * _FIRST] = _shares(rig, 2.0 * _FIRST, seed)
+        shares[2.0 * _FIRST] = _shares(rig, exposure, 2.0 * _FIRST, seed)
     return SeasonCurves(in_leaf, _curve(shares, 0), _curve(shares, 1))
 
 
-def _shares(rig: Rig, speed: float, seed: int) -> tuple[float, float]:
-    """Shares of wood and roots in the largest gust that is expected of a mean wind at 10 m."""
-    rng = np.random.default_rng(seed + 1)
-    wind = simulate_turbulence(speed, rate=_RATE, duration=_SECONDS, rng=rng)
+def _shares(rig: Rig, exposure: Exposure, speed: float, seed: int) -> tuple[float, float]:
+    """Shares of wood and roots in the largest gust that is expected of a mean wind [m/s]."""
+    wind = simulate_turbulence(
+        speed,
+        rate=_RATE,
+        duration=_SECONDS,
+        rng=np.random.default_rng(seed + 1),
+        height=exposure.turbulence_height,
+        intensity=None if exposure.kind == 'open' else exposure.intensity,
+    )
     record = rig.run(wind, rate=_RATE)
     along = record.base_moment @ _unit(record.base_moment.mean(axis=0))
     largest = float(np.linalg.norm(record.base_moment, axis=1).max())

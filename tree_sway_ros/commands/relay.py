@@ -15,7 +15,7 @@ from typing import Any
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
 from tree_sway.commands.ending import Ending
-from tree_sway.errors import ParameterError
+from tree_sway.errors import ParameterError, TransportError
 from tree_sway.page.access import read_token
 from tree_sway.stream.client import StreamClient
 from tree_sway.stream.protocol import Frame, PAUSED, WIND_LOST
@@ -28,6 +28,9 @@ from tree_sway_ros.wire.wind_messages import WindWriter
 _LOOK = 0.2
 _REPORT_EVERY = 1.0
 """Interval of reports on `/diagnostics` [s]."""
+
+_SILENT, _PATIENCE = 3.0, 30.0
+"""Time without a first frame after which that is said, and after which it is an error [s]."""
 
 _OVERDUE = 2.0
 """Time without a frame after which the remote site counts as lost [s]."""
@@ -50,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     with Ending() as ending, Listener('tree_sway_relay', arguments.namespace) as site:
         relay = Relay(site.node)
         with StreamClient(url, rate=arguments.rate, wind_only=True, on_frame=relay.take) as client:
-            client.wait()
+            _wait_for(client)
             print(f'relaying the wind of {client.url}', flush=True)
             end = time.monotonic() + seconds
             while not ending.is_asked and time.monotonic() < end:
@@ -58,6 +61,20 @@ def run(arguments: argparse.Namespace) -> int:
                 relay.report(client)
             print(f'{relay.published} samples, {client.unreadable} unreadable')
     return 0
+
+
+def _wait_for(client: StreamClient) -> None:
+    """Wait for the first frame; say after some seconds why there is none yet."""
+    began = time.monotonic()
+    try:
+        client.wait(_SILENT)
+        return
+    except TransportError:
+        if time.monotonic() - began < _SILENT:
+            raise  # the server refuses: waiting does not help
+        problem = client.problem or 'no answer'
+    print(f'waiting for {client.url} ({problem}); Ctrl-C ends it', flush=True)
+    client.wait(_PATIENCE - _SILENT)
 
 
 def with_token(url: str, token: str) -> str:

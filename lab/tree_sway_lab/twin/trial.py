@@ -43,8 +43,8 @@ class Score:
         Correlation of the stem's tip with the true one, the smaller of both axes [-].
     held
         Share of the time that the band of 80 % holds the tips [-].
-    cost
-        Time of a step in [us], sensors and all.
+    cost, worst
+        Median and 99th percentile of the time of a step in [us], sensors and all, while scored.
     notes
         What the sensors say.
 
@@ -57,6 +57,7 @@ class Score:
     stem: float
     held: float
     cost: float
+    worst: float
     notes: tuple[str, ...] = ()
 
 
@@ -64,13 +65,20 @@ def plain_score(sim: SwaySimulator, true: TrueMotion) -> Score:
     """Score a simulator as it is without sensors."""
     tree = sim.tree
     block, tips = np.empty((tree.n_segments, 7)), np.empty_like(true.tips)
-    began = time.perf_counter()
+    spent = np.empty(len(tips))
     for k, each in enumerate(true.wind):
+        began = time.perf_counter()
         sim.step(each, DT)
+        spent[k] = time.perf_counter() - began
         tips[k] = tips_of_poses(tree, sim.place(block))
-    cost = 1e6 * (time.perf_counter() - began) / len(tips)
     error, roughness, stem = _compared(tips, true.tips, 0)
-    return Score(error, roughness, error, roughness, stem, np.nan, cost)
+    return Score(error, roughness, error, roughness, stem, np.nan, *_costs(spent))
+
+
+def _costs(spent: Floats) -> tuple[float, float]:
+    """Median and 99th percentile of times of steps, in [us], of the later part of a record."""
+    later = 1e6 * spent[round(_TRUSTED * len(spent)) :]
+    return float(np.median(later)), float(np.quantile(later, 0.99))
 
 
 def squared_score(true: TrueMotion, frequency: float) -> Score:
@@ -88,7 +96,7 @@ def squared_score(true: TrueMotion, frequency: float) -> Score:
     gains = np.linalg.lstsq(inputs[first:], flat[first:], rcond=None)[0]
     tips = (inputs @ gains).reshape(true.tips.shape)
     error, roughness, stem = _compared(tips, true.tips, 0)
-    return Score(error, roughness, error, roughness, stem, np.nan, 0.0)
+    return Score(error, roughness, error, roughness, stem, np.nan, 0.0, 0.0)
 
 
 def twin_score(
@@ -113,11 +121,11 @@ def twin_score(
         twin.replay(name, motion.time, acceleration=motion.acceleration, rate=motion.rate)
     block = np.empty((tree.n_segments, 7))
     tips, smoothed, bands = (np.empty_like(true.tips) for _ in range(3))
-    spent = 0.0
+    spent = np.empty(len(tips))
     for k, each in enumerate(true.wind):
         began = time.perf_counter()
         twin.step(each, DT)
-        spent += time.perf_counter() - began
+        spent[k] = time.perf_counter() - began
         tips[k] = tips_of_poses(tree, twin.place(block))
         smoothed[k] = tips_of_poses(tree, twin.place_rotations(twin.smoothed, block))
         bands[k] = twin.band()
@@ -131,7 +139,7 @@ def twin_score(
         notes.append(f'stiffness {fit.stiffness:.3f}, damping {fit.damping:.2f}')
     return Score(
         error, roughness, late_error, late_roughness, stem, _held(tips, true.tips, bands),
-        1e6 * spent / len(tips), tuple(notes),
+        *_costs(spent), tuple(notes),
     )  # fmt: skip
 
 

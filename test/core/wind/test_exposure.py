@@ -52,6 +52,19 @@ def test_the_wind_of_a_stand_is_1_at_its_top_and_less_below_and_more_above(kind)
         assert ratio[2] == pytest.approx(math.exp(-0.5 * ATTENUATION))
 
 
+def test_the_wind_at_ten_metres_does_not_depend_on_where_the_anemometer_is():
+    assert Exposure('open', 20.0).at_ten_metres == 1.0
+    low = Exposure('open', 4.0)
+    assert low.at_ten_metres == pytest.approx(np.log(10 / 0.03) / np.log(4 / 0.03))
+    top = Exposure('stand', **SITKA)
+    above = Exposure('stand', **SITKA, anemometer_height=top.displacement + 10.0)
+    assert top.height < above.anemometer_height
+    assert above.at_ten_metres == pytest.approx(1.0)
+    assert top.at_ten_metres == pytest.approx(
+        float(top.profile().over_anemometer(np.array(above.anemometer_height)))
+    )
+
+
 def test_an_anemometer_above_a_stand_sees_more_wind_than_its_top():
     low = Exposure('stand', **SITKA).profile()
     high = Exposure('stand', **SITKA, anemometer_height=40.0).profile()

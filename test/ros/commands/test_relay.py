@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+import socket
 import subprocess
 import sys
 import threading
@@ -135,6 +136,24 @@ def test_the_wind_of_a_page_is_published_as_a_driver_would(tmp_path: Path, token
     assert (np.diff(stamps) > 0.0).all()
     assert abs(stamps[-1] - time.time()) < DEADLINE
     assert {(each.vector.x, each.vector.y) for each in ear.heard} == {(3.0, 0.0)}
+
+
+@pytest.mark.usefixtures('own_domain')
+def test_an_address_where_nobody_listens_is_said_while_it_waits() -> None:
+    with socket.create_server(('localhost', 0)) as closed:
+        port = closed.getsockname()[1]
+    command = [
+        sys.executable,
+        '-m',
+        'tree_sway.commands.cli',
+        'relay',
+        f'https://localhost:{port}',
+    ]
+    with subprocess.Popen(command, cwd=ROOT, text=True, stdout=subprocess.PIPE) as relay:
+        assert relay.stdout is not None
+        assert f'waiting for wss://localhost:{port}/stream (' in relay.stdout.readline()
+        relay.terminate()
+        assert relay.wait(DEADLINE) == 0
 
 
 @pytest.mark.usefixtures('own_domain')

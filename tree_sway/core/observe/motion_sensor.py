@@ -10,30 +10,45 @@ of order is refused and counted.
 
 from __future__ import annotations
 
-from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
-import math
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import entry_of
+from tree_sway.core.observe.sample_ring import (
+    empty_ring,
+    keep_sample,
+    KEPT,
+    longest_gap,
+    NEWEST,
+    NOT_FINITE,
+    OUT_OF_ORDER,
+    PERIOD,
+    read_samples,
+    RESTARTED,
+    SATURATED,
+    TOO_LARGE,
+)
 from tree_sway.core.observe.sensor_place import SensorPlace, turn_between
 
 QUANTITIES = ('acceleration', 'rate', 'orientation')
 """Quantities of a sample: [m/s^2], [rad/s], and a quaternion x y z w."""
 
-MOST_ACCELERATION, MOST_RATE = 320.0, 2500.0
-"""Largest values of sensors: 32 g in [m/s^2]; 2,000 degrees per second, also in degrees."""
+_ROWS = {'acceleration': slice(0, 3), 'rate': slice(3, 6), 'orientation': slice(6, 9)}
+"""Where each quantity is in a sample."""
 
-_SATURATED = {'acceleration': 15.0, 'rate': 4.0}
-"""Values above which a repeated number is the limit of a sensor; below, one that moves little."""
-_REPEATED = 3
-_QUEUE = 4096
-_CLOCK_BACK = 1.0
-_LONGEST_GAP = 0.25
-_SILENT_PERIODS = 4.0
-_SAME_TIME = 0.01
+_COUNTED = {
+    KEPT: 'accepted',
+    NOT_FINITE: 'not_finite',
+    TOO_LARGE: 'too_large',
+    SATURATED: 'saturated',
+    OUT_OF_ORDER: 'out_of_order',
+    RESTARTED: 'restarted',
+}
 
 
 @dataclass
@@ -83,19 +98,34 @@ class MotionSensor:
         """Quantities of its first sample; others are ignored."""
         self.stated_noise = (0.0, 0.0, 0.0)
         """Noise that its maker states: acceleration, rate, rotation; 0 where it does not."""
-        self.period = math.nan
-        """Time between samples in [s], a running median; not a number before two samples."""
-        self._samples: deque[tuple[float, Floats]] = deque(maxlen=_QUEUE)
-        self._newest = -math.inf
-        self._behind = 0
-        self._same = np.zeros(6, dtype=np.int64)
-        self._before = np.full(6, np.nan)
+        self._is_measured = np.ones(9, dtype=np.bool_)
+        self._sample, self._found = np.full((2, 9), np.nan)
+        self._ring = empty_ring()
         self._reference: Floats | None = None
 
     @property
     def newest(self) -> float:
         """Time of the newest sample in [s]; minus infinity before any."""
-        return self._newest
+        return float(self._clock[NEWEST])
+
+    @property
+    def period(self) -> float:
+        """Time between samples in [s], a running median; not a number before two samples."""
+        return float(self._clock[PERIOD])
+
+    @cached_property
+    def _clock(self) -> Floats:
+        return np.asarray(self._ring['clock'][0])
+
+    @cached_property
+    def _keep(self) -> Callable[[float], int]:
+        """Check and keep the sample in `_sample`, of a time."""
+        call = entry_of(keep_sample, self._ring, 0.0, self._sample, self._is_measured)
+        return lambda time: call(self._ring, time, self._sample, self._is_measured)
+
+    @cached_property
+    def _read(self) -> Callable[..., bool]:
+        return partial(entry_of(read_samples, self._ring, 0.0, 0.0, self._found), self._ring)
 
     def offer(
         self,
@@ -126,24 +156,31 @@ class MotionSensor:
             Whether it was accepted; refusals are counted.
 
         """
-        given = {'acceleration': acceleration, 'rate': rate, 'orientation': orientation}
         if not self.quantities:
-            self.quantities = tuple(name for name in QUANTITIES if given[name] is not None)
-        values = np.full(9, np.nan)
+            self._begin(acceleration is not None, rate is not None, orientation is not None)
+        values = self._sample
         try:
-            for name, rows in _ROWS.items():
-                if name in self.quantities and name != 'orientation':
-                    values[rows] = given[name]
+            if 'acceleration' in self.quantities:
+                values[0:3] = acceleration
+            if 'rate' in self.quantities:
+                values[3:6] = rate
             if 'orientation' in self.quantities:
-                values[_ROWS['orientation']] = self._turn(np.asarray(orientation, dtype=float))
-            time = float(time)
-        except (TypeError, ValueError):
-            self.counts.not_finite += 1
-            return False
-        if not self._is_good(time, values):
-            return False
-        self._keep(time, values)
-        return True
+                values[6:9] = self._turn(np.asarray(orientation, dtype=float))
+            outcome = self._keep(float(time))
+        except (TypeError, ValueError, OverflowError):
+            outcome = NOT_FINITE
+        counts, name = self.counts, _COUNTED[outcome]
+        setattr(counts, name, getattr(counts, name) + 1)
+        if outcome == RESTARTED:
+            counts.accepted += 1
+        return outcome in {KEPT, RESTARTED}
+
+    def _begin(self, *is_given: bool) -> None:
+        """Take the quantities of the first sample as those of the sensor."""
+        pairs = zip(QUANTITIES, is_given, strict=True)
+        self.quantities = tuple(name for name, given in pairs if given)
+        if self.quantities:
+            self._is_measured[:] = np.repeat(is_given, 3)
 
     def _turn(self, quaternion: Floats) -> Floats:
         """Rotation vector from the first orientation, (3,); not finite for no quaternion."""
@@ -160,53 +197,10 @@ class MotionSensor:
         """First orientation, x y z w; None without orientations."""
         return self._reference
 
-    def _is_good(self, time: float, values: Floats) -> bool:
-        """Check a sample, and count the first reason against it."""
-        counts = self.counts
-        asked = np.concatenate([values[_ROWS[name]] for name in self.quantities] or [values])
-        if not (math.isfinite(time) and np.isfinite(asked).all()):
-            counts.not_finite += 1
-            return False
-        motion = np.nan_to_num(values[:6])
-        if np.abs(motion[:3]).max() > MOST_ACCELERATION or np.abs(motion[3:]).max() > MOST_RATE:
-            counts.too_large += 1
-            return False
-        if time <= self._newest:
-            return self._is_restart(time)
-        self._behind = 0
-        self._same = np.where(values[:6] == self._before, self._same + 1, 0)
-        self._before = values[:6]
-        limits = np.repeat([_SATURATED['acceleration'], _SATURATED['rate']], 3)
-        if ((self._same >= _REPEATED) & (np.abs(motion) > limits)).any():
-            counts.saturated += 1
-            return False
-        return True
-
-    def _is_restart(self, time: float) -> bool:
-        """Refuse a sample of the past; several in a row, far back, are those of a new clock."""
-        self._behind += time < self._newest - _CLOCK_BACK
-        if self._behind >= _REPEATED:
-            self.counts.restarted += 1
-            self._samples.clear()
-            self._newest, self._behind = -math.inf, 0
-            return True
-        self.counts.out_of_order += 1
-        return False
-
-    def _keep(self, time: float, values: Floats) -> None:
-        step = time - self._newest
-        if math.isfinite(step):
-            # A running median: up or down by a twentieth.
-            known = step if math.isnan(self.period) else self.period
-            self.period = known * (1.05 if step > known else 0.95 if step < known else 1.0)
-        self._samples.append((time, values))
-        self._newest = time
-        self.counts.accepted += 1
-
     @property
     def longest_gap(self) -> float:
         """Longest time between samples that is bridged in [s]."""
-        return max(_LONGEST_GAP, 0.0 if math.isnan(self.period) else _SILENT_PERIODS * self.period)
+        return longest_gap(self.period)
 
     def at(self, time: float, dt: float) -> Floats | None:
         """
@@ -219,35 +213,7 @@ class MotionSensor:
         -------
         Floats or None
             Acceleration, rate and rotation, (9,), not a number where not measured; None where no
-            sample is near.
+            sample is near. The array is reused.
 
         """
-        samples = self._samples
-        while len(samples) > 2 and samples[1][0] < time - 0.5 * dt:
-            samples.popleft()
-        total, count = np.zeros(9), 0
-        before: tuple[float, Floats] | None = None
-        after: tuple[float, Floats] | None = None
-        for stamp, values in samples:
-            if stamp > time + 0.5 * dt:
-                after = (stamp, values) if after is None else after
-                break
-            if stamp > time - 0.5 * dt:
-                total += values
-                count += 1
-            if stamp <= time:
-                before = (stamp, values)
-            elif after is None:
-                after = (stamp, values)
-        if count > 1:
-            return total / count
-        if before is not None and time - before[0] < _SAME_TIME * dt:
-            return before[1]
-        if before is None or after is None or after[0] - before[0] > self.longest_gap:
-            return None
-        share = (time - before[0]) / (after[0] - before[0])
-        return before[1] + share * (after[1] - before[1])
-
-
-_ROWS = {'acceleration': slice(0, 3), 'rate': slice(3, 6), 'orientation': slice(6, 9)}
-"""Where each quantity is in a sample."""
+        return self._found if self._read(time, dt, self._found) else None

@@ -129,7 +129,11 @@ class ObservedTree(SwaySimulator):
         delays = delays_of(self.tree, reductions.leaf_load_area)
         self._share = delays.share
         self._crown = CrownWind(delays.spread, coherence)
-        self._added = np.zeros((2, self.observer.count))
+        oscillators: Any = self._bank.oscillators
+        self._swing: tuple[Floats, ...] = tuple(oscillators.swing)
+        n = self.observer.count
+        self._corrected = self._swing[0][:n], self._swing[1][:n]
+        self._added = np.zeros((2, n))
         self._limit = self._storm_energy()
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
@@ -158,11 +162,6 @@ class ObservedTree(SwaySimulator):
     def period(self) -> float:
         """Time step in [s] of the sensors' gains."""
         return 1.0 / self._rate
-
-    def _swing(self) -> tuple[Floats, ...]:
-        """Return views of displacement, rate and force of each coordinate, (m,)."""
-        oscillators: Any = self._bank.oscillators
-        return tuple(oscillators.swing)
 
     def _storm_energy(self) -> float:
         """Energy that no correction exceeds, per unit mass of the coordinates."""
@@ -225,27 +224,26 @@ class ObservedTree(SwaySimulator):
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
         """Advance one step as `SwaySimulator.step`, then correct the motion."""
         x, y, z = three_numbers('wind', wind_mean)
-        eta, rate, _ = self._swing()
-        n = self.observer.count
-        eta[:n] -= self._added[0]
-        rate[:n] -= self._added[1]
+        swing, (eta, rate), added = self._swing, self._corrected, self._added
+        eta -= added[0]
+        rate -= added[1]
         if is_wind(x, y, z, self._max_wind):
             apart = (self._share @ self._crown.push(x, y, z, dt)).tolist()
             status = super().step((x + apart[0], y + apart[1], z + apart[2]), dt)
         else:
             status = super().step((x, y, z), dt)
         if status & RESTARTED:
-            self._added[:] = 0.0
+            added[:] = 0.0
             self.observer.reset()
         self.now = self.now + dt if self._given is None else self._given
         self._given = None
-        self._offer_records(self.now + _KNOWN_AHEAD)
-        swing = self._swing()
+        if self._records:
+            self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
-        correction = self.observer.step(self.now, math.hypot(x, y, z), swing, n_periods)
-        self._added = self._bounded(correction, swing)
-        swing[0][:n] += self._added[0]
-        swing[1][:n] += self._added[1]
+        added[:] = self.observer.step(self.now, math.hypot(x, y, z), swing, n_periods)
+        self._bound(added)
+        eta += added[0]
+        rate += added[1]
         if self.observer.fit is not self._known:
             self._take_on(self.observer.fit)
         return status
@@ -259,16 +257,14 @@ class ObservedTree(SwaySimulator):
         with suppress(ParameterError):  # a tree that would buckle stays as it is
             self.tune(stiffness_factor=fit.stiffness, damping_ratio=ratio)
 
-    def _bounded(self, correction: Floats, swing: tuple[Floats, ...]) -> Floats:
-        """Scale a correction so that the tree does not move beyond its own storms."""
-        n = self.observer.count
-        energy = self.observer.energy(swing[0][:n] + correction[0], swing[1][:n] + correction[1])
+    def _bound(self, correction: Floats) -> None:
+        """Scale a correction so that the tree does not move beyond its own storms, in place."""
+        energy, own = self.observer.energies[2:].tolist()
         if energy <= self._limit:
-            return correction
-        own = self.observer.energy(swing[0][:n], swing[1][:n])
+            return
         self.observer.limit(self._limit / max(energy, 1e-300))
         # The wind alone may move it so far; sensors do not add to that.
-        return correction * (math.sqrt(self._limit / energy) if own < self._limit else 0.0)
+        correction *= math.sqrt(self._limit / energy) if own < self._limit else 0.0
 
     def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""

@@ -15,26 +15,28 @@ late by a fixed lag.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 import math
-from typing import TYPE_CHECKING
+from typing import NamedTuple, TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import entry_of, kernel
 from tree_sway.core.observe.disturbance import Disturbance, disturbance, TIME_CONSTANT
+from tree_sway.core.observe.estimate import Estimate
 from tree_sway.core.observe.sensor_place import place_motion, PlaceMotion
 from tree_sway.core.observe.sensor_track import as_felt, ROWS, sensed_rows, SensorTrack
 from tree_sway.core.observe.steady_filter import (
+    filter_in_parts,
     stationary_covariance,
-    steady_filter,
     SteadyFilter,
     sway_law,
     SwayLaw,
 )
 from tree_sway.core.observe.tree_fit import fits, Spectrum, TreeFit
+from tree_sway.core.setup.one_thread import one_thread
 
 if TYPE_CHECKING:
     from tree_sway.core.run.simulator import SwaySimulator
@@ -46,7 +48,6 @@ _CAUSAL, _SMOOTH = 8.0, 3.5
 """Noise for which gains are found, over the noise of the sensors."""
 
 _FADE = 0.3
-_CLIPPED = 6.0
 _HISTORY = 64
 _LATEST = 30
 _RECENT = 30.0
@@ -61,30 +62,42 @@ LATE_STEPS = SMOOTHED_LAG + len(_WINDOW) // 2
 """Steps by which the smoothed state is late."""
 
 
-@dataclass
-class _Estimate:
-    """A filter, its state (3, m), and the innovations of the last steps (l, p)."""
+class _Design(NamedTuple):
+    """Gains for the sensors in use: numbers of those, at once, and of the smoother if any."""
 
-    gains: SteadyFilter
-    state: Floats
-    innovations: Floats
+    used: tuple[int, ...]
+    causal: SteadyFilter
+    late: SteadyFilter | None
 
-    def move(self, n_periods: int) -> None:
-        """Move the state by a number of steps."""
-        for _ in range(n_periods):
-            self.state = (self.gains.law.step * self.state).sum(axis=1)
 
-    def correct(self, beyond: Floats, known: NDArray[np.bool_]) -> Floats:
-        """Correct the state by measurements (p,), where known; return the innovations."""
-        gains = self.gains
-        innovation = beyond - gains.sensed @ self.state.ravel()
-        innovation[~known] = 0.0
-        limit = _CLIPPED * gains.deviation
-        used = np.clip(innovation, -limit, limit)
-        self.state += (gains.gain @ used).reshape(self.state.shape)
-        self.innovations[:-1] = self.innovations[1:]
-        self.innovations[-1] = used
-        return innovation
+@kernel
+def find_energies(
+    stiffness: Floats, eta: Floats, rate: Floats, correction: Floats, out: Floats
+) -> None:
+    """
+    Find energies of a motion and its correction, all twice and per unit mass.
+
+    Parameters
+    ----------
+    stiffness
+        Stiffness of the first coordinates [1/s^2], (n,).
+    eta, rate
+        Displacement and rate, (n,) or more.
+    correction
+        What is added to both, (2, n) or more rows.
+    out
+        Elastic energy of the correction and of the corrected motion, and all energy of the
+        corrected and of the uncorrected motion, (4,), written.
+
+    """
+    added, elastic, kinetic, own = 0.0, 0.0, 0.0, 0.0
+    for i in range(len(stiffness)):
+        k, q, v, dq, dv = stiffness[i], eta[i], rate[i], correction[0, i], correction[1, i]
+        added += k * dq * dq
+        elastic += k * (q + dq) * (q + dq)
+        kinetic += (v + dv) * (v + dv)
+        own += k * q * q + v * v
+    out[0], out[1], out[2], out[3] = added, elastic, elastic + kinetic, own
 
 
 class Observer:
@@ -131,8 +144,10 @@ class Observer:
         self._mean_speed = self._gustiness = 0.0
         self.share = 0.0
         """Energy of the correction over that of the whole motion, a running mean [-]."""
-        self._causal: _Estimate | None = None
-        self._late_one: _Estimate | None = None
+        self._causal: Estimate | None = None
+        self._late_one: Estimate | None = None
+        self._designing: Iterator[_Design | None] | None = None
+        self._designed: tuple[int, ...] = ()
         self._unknown: Disturbance | None = None
         self._fitting: Iterator[TreeFit | None] | None = None
         self._fit_after = _FIRST_FIT
@@ -141,8 +156,15 @@ class Observer:
         self._made = (0.0 * shapes[0], 0.0 * shapes[0])
         self._open = np.zeros((3 * self.count, 3 * self.count))
         self._damped = np.zeros(self.count)
-        self._ahead: list[Floats] = []
-        self.refresh()
+        self._ahead: dict[int, Floats] = {}
+        self._moved = np.zeros((3, self.count))
+        self._terms = np.zeros((3, 3, self.count))
+        self._values = np.zeros(0)
+        self.energies = np.zeros(4)
+        """Energies of the last correction, as `find_energies` writes them."""
+        self._swing = np.zeros(3 * shapes.shape[1])
+        with one_thread():
+            self.refresh()
         self._made = (self._stiffness, self._damping)
 
     def refresh(self) -> None:
@@ -150,8 +172,11 @@ class Observer:
         tunable = self._simulator.banks[0].oscillators.tunable
         self._stiffness = np.array(tunable.stiffness) / tunable.inertia
         self._damping = np.array(tunable.damping) / tunable.inertia
-        rows = [sensed_rows(each, self._stiffness, self._damping) for each in self._places]
-        self._rows = np.concatenate([np.zeros((0, 3 * len(self._stiffness))), *rows])
+        self._first_stiffness = self._stiffness[: self.count].copy()
+        self._rows = [
+            np.ascontiguousarray(sensed_rows(each, self._stiffness, self._damping))
+            for each in self._places
+        ]
         self._designed_for = 0.0
 
     @property
@@ -179,7 +204,7 @@ class Observer:
         Returns
         -------
         Floats
-            Correction of displacement and rate, (2, count).
+            Correction of displacement and rate, (2, count). The array is reused.
 
         """
         slot = self._steps % _HISTORY
@@ -189,20 +214,32 @@ class Observer:
             share = 1.0 / self._steps
         self._mean_speed += share * (speed - self._mean_speed)
         self._gustiness += share * ((speed - self._mean_speed) ** 2 - self._gustiness)
-        state = np.concatenate(swing)
-        self._computed[slot] = (self._rows @ state).reshape(-1, ROWS)
+        m, state = len(self._stiffness), self._swing
+        state[:m], state[m : 2 * m], state[2 * m :] = swing
+        for k, rows in enumerate(self._rows):
+            np.dot(rows, state, out=self._computed[slot, k])
         self._eta[slot] = swing[0]
         beyond = self._beyond(time)
-        used = tuple(k for k, track in enumerate(self.tracks) if track.in_use)
-        if used != self._used or (used and self._is_outdated):
-            self._design(used)
+        self._redesign()
         if self._causal is None:
-            return np.zeros((2, self.count))
-        if not self._used:
-            return self._fade(n_periods)
-        self._watch_refused(beyond)
-        self._learn()
-        return self._correct(self._causal, beyond, swing, n_periods)
+            self._moved[:] = 0.0
+        elif not self._used:
+            self._fade(self._causal, n_periods)
+        else:
+            self._watch_refused(beyond)
+            self._learn()
+            self._correct(self._causal, beyond, n_periods)
+        self._find_energies(self._first_stiffness, swing[0], swing[1], self._moved, self.energies)
+        own, elastic = self.energies[:2].tolist()
+        self.share += self._dt / _RECENT * (own / max(elastic + own, 1e-300) - self.share)
+        return self._moved[:2]
+
+    @cached_property
+    def _find_energies(self) -> Callable[..., None]:
+        swing = self._swing
+        return entry_of(
+            find_energies, self._first_stiffness, swing, swing, self._moved, self.energies
+        )
 
     def _beyond(self, time: float) -> list[Floats | None]:
         """Motion of each sensor beyond the model's, at the step that is late."""
@@ -226,19 +263,41 @@ class Observer:
         speed = max(self._mean_speed, _SLOWEST_WIND)
         return not 1.0 / _REDESIGN < speed / max(self._designed_for, 1e-9) < _REDESIGN
 
-    def _design(self, used: tuple[int, ...]) -> None:
-        """Find the gains for the sensors in use and the present wind."""
-        self._used = used
+    def _redesign(self) -> None:
+        """Find gains for the sensors in use and the present wind, a part at each step."""
+        used = tuple(k for k, track in enumerate(self.tracks) if track.in_use)
         if not used:
+            self._used, self._designing = (), None
             return
+        if self._designing is None:
+            if used == self._used and not self._is_outdated:
+                return
+            self._designed, self._designing = used, self._in_parts(used)
+        elif used != self._designed:
+            self._designed, self._designing = used, self._in_parts(used)
+        found = next(self._designing)
+        if found is None:
+            return
+        self._designing, self._used = None, found.used
+        self._causal = Estimate(found.causal, self._causal)
+        if found.late is not None:
+            self._late_one = Estimate(found.late, self._late_one)
+        self._values = np.zeros(len(found.causal.sensed))
+        self._ahead = {}
+
+    def _in_parts(self, used: tuple[int, ...]) -> Iterator[_Design | None]:
+        """Find the gains of some sensors; None until they are found."""
         law = self._present_law()
-        sensed, noise = self._measurements(self._damped)
-        self._causal = self._renewed(self._causal, law, sensed, _CAUSAL * noise, 0)
-        if self._is_smoothed:
-            self._late_one = self._renewed(
-                self._late_one, law, sensed, _SMOOTH * noise, SMOOTHED_LAG
-            )
-        self._ahead = [law.ahead(k) for k in range(_LATEST + 1)]
+        found = [self._felt(k, self._damped) for k in used]
+        sensed = np.concatenate([rows for rows, _ in found])
+        noise = np.concatenate([each for _, each in found])
+        gains: list[SteadyFilter] = []
+        for size, lag in ((_CAUSAL, 0), (_SMOOTH, SMOOTHED_LAG))[: 1 + self._is_smoothed]:
+            for each in filter_in_parts(law, sensed, size * noise, lag):
+                yield None
+                if each is not None:
+                    gains.append(each)
+        yield _Design(used, gains[0], gains[1] if self._is_smoothed else None)
 
     def _present_law(self) -> SwayLaw:
         """Find the law of the unknown motion in the present wind, and its covariance."""
@@ -252,11 +311,6 @@ class Observer:
         self._open = stationary_covariance(law)
         return law
 
-    def _measurements(self, damping: Floats) -> tuple[Floats, Floats]:
-        """Measurements of the sensors in use by the state, (p, 3 n), and their noise."""
-        found = [self._felt(k, damping) for k in self._used]
-        return np.concatenate([rows for rows, _ in found]), np.concatenate([n for _, n in found])
-
     def _felt(self, which: int, damping: Floats) -> tuple[Floats, Floats]:
         """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""
         track, place, n = self.tracks[which], self._places[which], self.count
@@ -266,18 +320,6 @@ class Observer:
         felt = as_felt(rows, has_gravity=track.alignment.has_gravity).reshape(3, 3, -1)
         uses = list(track.uses)
         return felt[uses].reshape(3 * len(uses), -1), np.repeat(track.noise[uses], 3)
-
-    def _picked(self, which: int, row: Floats) -> Floats:
-        """Pick the measured quantities of a row (9,) of a sensor."""
-        return np.asarray(row.reshape(3, 3)[list(self.tracks[which].uses)].ravel())
-
-    def _renewed(
-        self, old: _Estimate | None, law: SwayLaw, sensed: Floats, noise: Floats, lag: int
-    ) -> _Estimate:
-        """Return an estimate with other gains that continues from an old one."""
-        state = np.zeros((3, self.count)) if old is None else old.state
-        gains = steady_filter(law, sensed, noise, lag)
-        return _Estimate(gains, state, np.zeros((max(lag, 1), len(sensed))))
 
     def _learn(self) -> None:
         """Fit stiffness and damping, one candidate a step, each time with more motion."""
@@ -311,78 +353,74 @@ class Observer:
         rows = as_felt(sensed_rows(first, stiffness, damping), has_gravity=has_gravity)
         return rows[3 * track.fitted : 3 * track.fitted + 3]
 
-    def _correct(
-        self,
-        causal: _Estimate,
-        beyond: list[Floats | None],
-        swing: tuple[Floats, ...],
-        n_periods: int,
-    ) -> Floats:
-        at, late, n = self._steps - 1 - self.late, self._late_one, self.count
+    def _correct(self, causal: Estimate, beyond: list[Floats | None], n_periods: int) -> None:
+        """Correct the estimates by the measurements of the step that is late."""
+        at, late = self._steps - 1 - self.late, self._late_one
         if at > self._done:
             self._done = at
-            values, known = self._joined(beyond)
+            unknown = self._join(beyond)
             causal.move(n_periods)
-            self._judge(causal.correct(values, known), known)
+            causal.correct(self._values, unknown)
+            self._judge(causal.sizes(), beyond)
             if late is not None:
                 late.move(n_periods)
-                late.correct(values, known)
+                late.correct(self._values, unknown)
                 self._smooth(late, at % _HISTORY)
-        moved = causal.state
-        if self.late:
-            moved = (self._ahead[self.late] * moved).sum(axis=1)
-        self._note_share(moved, swing)
-        return np.asarray(moved[:2, :n])
+        if not self.late:
+            self._moved[:] = causal.state
+            return
+        if self.late not in self._ahead:
+            self._ahead[self.late] = causal.gains.law.ahead(self.late)
+        np.multiply(self._ahead[self.late], causal.state, out=self._terms)
+        np.add.reduce(self._terms, axis=1, out=self._moved)
 
-    def _joined(self, beyond: list[Floats | None]) -> tuple[Floats, NDArray[np.bool_]]:
-        """Return the measurements of the sensors in use, (p,), and which are known."""
-        values, known = list[Floats](), list[bool]()
+    def _join(self, beyond: list[Floats | None]) -> list[slice]:
+        """Join the measurements of the sensors in use; return the rows that are not known."""
+        first, unknown = 0, []
         for k in self._used:
-            row, size = beyond[k], 3 * len(self.tracks[k].uses)
-            values.append(np.zeros(size) if row is None else self._picked(k, row))
-            known += [row is not None] * size
-        return np.concatenate(values), np.array(known)
+            track, row = self.tracks[k], beyond[k]
+            picked = track.picked
+            rows = slice(first, first + picked.stop - picked.start)
+            first = rows.stop
+            if row is None or not track.in_use:
+                unknown.append(rows)
+            else:
+                self._values[rows] = row[picked]
+        return unknown
 
-    def _judge(self, innovation: Floats, known: NDArray[np.bool_]) -> None:
+    def _judge(self, sizes: list[float], beyond: list[Floats | None]) -> None:
+        """Judge the sensors in use by their innovations."""
         first = 0
-        assert self._causal is not None
-        deviation = self._causal.gains.deviation
         for k in self._used:
             track = self.tracks[k]
-            rows = slice(first, first + 3 * len(track.uses))
-            if known[rows].all():
-                track.judge(innovation[rows], deviation[rows])
-            first = rows.stop
+            last = first + len(track.uses)
+            if beyond[k] is not None and track.in_use:
+                track.judge(max(sizes[first:last]))
+            first = last
 
     def _watch_refused(self, beyond: list[Floats | None]) -> None:
         """Judge refused sensors by the motion expected without any sensor."""
         assert self._causal is not None
         state = self._causal.state.ravel()
         for k, row in enumerate(beyond):
-            if row is None or k in self._used:
+            if row is None or self.tracks[k].in_use:
                 continue
             felt, noise = self._felt(k, self._damped)
             expected = np.einsum('ij,jk,ik->i', felt, self._open, felt)
-            missed = self._picked(k, row) - felt @ state
-            self.tracks[k].judge(missed, np.sqrt(expected + np.square(_CAUSAL * noise)))
+            missed = row[self.tracks[k].picked] - felt @ state
+            squares = np.square(missed) / (expected + np.square(_CAUSAL * noise))
+            self.tracks[k].judge(float(squares.reshape(-1, 3).mean(axis=1).max()))
 
-    def _note_share(self, moved: Floats, swing: tuple[Floats, ...]) -> None:
-        n = self.count
-        whole = swing[0][:n] + moved[0]
-        own = float(self._stiffness[:n] @ np.square(moved[0]))
-        total = float(self._stiffness[:n] @ np.square(whole)) + own
-        self.share += self._dt / _RECENT * (own / max(total, 1e-300) - self.share)
-
-    def _smooth(self, late: _Estimate, newest: int) -> None:
+    def _smooth(self, late: Estimate, newest: int) -> None:
         """Estimate the displacements of the lag ago, and keep them for the window."""
         n, lag = self.count, SMOOTHED_LAG
-        innovations = late.innovations
         self._states[newest] = late.state[0]
         then = (newest - lag) % _HISTORY
         self._smoothed[:-1] = self._smoothed[1:]
         self._smoothed[-1] = self._eta[then]
-        backward = late.gains.backward.reshape(n, -1)
-        self._smoothed[-1, :n] += self._states[then] + backward @ innovations.ravel()
+        last = self._smoothed[-1, :n]
+        last += self._states[then]
+        last += late.past_change()
 
     @property
     def smoothed(self) -> Floats:
@@ -414,11 +452,6 @@ class Observer:
         first = tips[:, :n]
         return np.sqrt(np.maximum(((first @ known) * first).sum(axis=1), 0.0))
 
-    def energy(self, eta: Floats, rate: Floats) -> float:
-        """Twice the energy of displacements and rates of the first coordinates, (count,)."""
-        stiffness = self._stiffness[: self.count]
-        return float(stiffness @ np.square(eta) + rate @ rate)
-
     def limit(self, share: float) -> None:
         """Scale the energy of the correction by a share, and count it for the sensors in use."""
         for each in (self._causal, self._late_one):
@@ -429,16 +462,15 @@ class Observer:
 
     def reset(self) -> None:
         """Forget the correction; what is known about the sensors stays."""
-        self._causal = self._late_one = None
+        self._causal = self._late_one = self._designing = None
         self._used = ()
         self._states[:] = 0.0
         self._eta[:] = 0.0
 
-    def _fade(self, n_periods: int) -> Floats:
+    def _fade(self, causal: Estimate, n_periods: int) -> None:
         decay = math.exp(-n_periods * self._dt / _FADE)
         for each in (self._causal, self._late_one):
             if each is not None:
                 each.move(n_periods)
                 each.state *= decay
-        assert self._causal is not None
-        return np.asarray(self._causal.state[:2])
+        self._moved[:] = causal.state

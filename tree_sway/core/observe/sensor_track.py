@@ -10,11 +10,14 @@ and so on, from all motion of the last ten minutes.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property
 import math
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.kernel import entry_of, kernel
 from tree_sway.core.observe.alignment import align, Alignment, GRAVITY
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.sensor_place import PlaceMotion
@@ -61,6 +64,41 @@ def as_felt(rows: Floats, *, has_gravity: bool = True) -> Floats:
     return out
 
 
+@kernel
+def find_beyond(
+    mounting: Floats, values: Floats, computed: Floats, moved: Floats, beyond: Floats
+) -> None:
+    """
+    Turn a sample into the frame of the tree, and take the model's motion off.
+
+    Parameters
+    ----------
+    mounting
+        Rotation to the frame of the tree, factors of acceleration and rate, gravity in the
+        acceleration [m/s^2], and bias, (21,).
+    values, computed
+        Sample (9,), and rows of the model (12,).
+    moved, beyond
+        The sample in the frame of the tree, and what it has beyond the model, (9,), written.
+
+    """
+    for i in range(3):
+        acceleration, rate = 0.0, 0.0
+        for j in range(3):
+            acceleration += mounting[3 * i + j] * values[j]
+            rate += mounting[3 * i + j] * values[3 + j]
+        moved[i] = mounting[9] * acceleration
+        moved[3 + i] = mounting[10] * rate
+        moved[6 + i] = values[6 + i]
+    moved[2] -= mounting[11]
+    for i in range(9):
+        beyond[i] = moved[i] - mounting[12 + i] - computed[3 + i]
+    for i in range(3):
+        # The part by tilted gravity is felt with gravity only.
+        tilted = 0.0 if mounting[11] > 0.0 else computed[3 + i]
+        beyond[i] += tilted - computed[i]
+
+
 class SensorTrack:
     """
     A sensor, what is known about it, and whether it is in use.
@@ -81,10 +119,15 @@ class SensorTrack:
         self.alignment: Alignment | None = None
         self.in_use = False
         """Whether its motion corrects the tree."""
-        self.bias = np.zeros(9)
+        self._mounting = np.zeros(21)
+        self.bias = self._mounting[12:]
         """Mean difference from the model, which no sensor can tell from its mounting, (9,)."""
         self.excess = 1.0
         """Squared innovations over those expected, a running mean [-]."""
+        self.uses: tuple[int, ...] = ()
+        """Quantities that correct the tree: 0 acceleration, 1 rate, 2 rotation."""
+        self.picked = slice(0, 0)
+        """Rows of a sample, (9,), of these."""
         self.spectrum = SensorSpectrum(frequency, dt)
         self._sensed = np.zeros((round(_MEMORY / dt), 9))
         self._computed = np.zeros((len(self._sensed), ROWS))
@@ -92,10 +135,15 @@ class SensorTrack:
         self._next_fit = round(LEARNING / dt)
         self._absent = self._agreed = 0.0
         self._is_refused = False
+        self._moved, self._beyond = np.zeros((2, 9))
+        self._fitted_rows = slice(0, 3)
 
-    @property
-    def uses(self) -> tuple[int, ...]:
-        """Quantities that correct the tree: 0 acceleration, 1 rate, 2 rotation."""
+    @cached_property
+    def _find_beyond(self) -> Callable[..., None]:
+        nine = self._moved
+        return entry_of(find_beyond, self._mounting, nine, np.zeros(ROWS), nine, nine)
+
+    def _uses(self) -> tuple[int, ...]:
         given = self.sensor.quantities
         first = tuple(k for k, name in enumerate(('acceleration', 'rate')) if name in given)
         return first if 'acceleration' in given or 'orientation' not in given else (*first, 2)
@@ -147,7 +195,7 @@ class SensorTrack:
         -------
         Floats or None
             Motion in the frame of the tree beyond the model's, (9,); None without a sample, or
-            before the mounting is known.
+            before the mounting is known. The array is reused.
 
         """
         values = self.sensor.at(time, self._dt)
@@ -158,11 +206,9 @@ class SensorTrack:
         self._learn(values, computed)
         if self.alignment is None or self.alignment.problem:
             return None
-        moved = self.alignment.motion(values)
-        model = as_felt(computed, has_gravity=self.alignment.has_gravity)
-        which = 3 * self.fitted
-        self.spectrum.add(moved[which : which + 3])
-        return np.asarray(moved - model - self.bias)
+        self._find_beyond(self._mounting, values, computed, self._moved, self._beyond)
+        self.spectrum.add(self._moved[self._fitted_rows])
+        return self._beyond
 
     def _miss(self) -> None:
         self._absent += self._dt
@@ -190,18 +236,22 @@ class SensorTrack:
             self.in_use = False
             return
         model = as_felt(computed, has_gravity=found.has_gravity).T
-        self.bias = np.asarray((found.motion(sensed) - model).mean(axis=0))
+        self.uses = self._uses()
+        self.picked = slice(3 * self.uses[0], 3 * self.uses[-1] + 3)
+        mounting = self._mounting
+        mounting[:9], mounting[9:11] = found.turn.ravel(), found.scale
+        mounting[11] = GRAVITY if found.has_gravity else 0.0
+        self._fitted_rows = slice(3 * self.fitted, 3 * self.fitted + 3)
+        self.bias[:] = (found.motion(sensed) - model).mean(axis=0)
         self.in_use = not self._is_refused
 
-    def judge(self, innovation: Floats, deviation: Floats) -> None:
+    def judge(self, size: float) -> None:
         """
-        Judge a sensor by its innovations and their standard deviations, both (k,).
+        Judge a sensor by the mean square of its innovations over that expected.
 
         One whose innovations stay far beyond those expected is refused until they are not.
         """
         share = self._dt / _AVERAGED
-        squares = np.square(innovation / deviation).reshape(-1, 3)
-        size = float(squares.mean(axis=1).max())
         self.excess += share * (min(size, 1e6) - self.excess)
         if self.excess > _DISAGREES and not self._is_refused:
             self._is_refused, self.in_use, self._agreed = True, False, 0.0

@@ -19,6 +19,7 @@ Symbols: H measurements by the state, R their noise, S their predicted covarianc
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 import math
 
@@ -117,7 +118,6 @@ class SteadyFilter:
     covariance: Floats
 
 
-@one_thread()
 def steady_filter(law: SwayLaw, sensed: Floats, noise: Floats, lag: int = 0) -> SteadyFilter:
     """
     Find the steady gains.
@@ -134,24 +134,40 @@ def steady_filter(law: SwayLaw, sensed: Floats, noise: Floats, lag: int = 0) -> 
         Number of steps by which the smoothed displacements are late.
 
     """
+    return next(each for each in filter_in_parts(law, sensed, noise, lag) if each is not None)
+
+
+def filter_in_parts(
+    law: SwayLaw, sensed: Floats, noise: Floats, lag: int = 0
+) -> Iterator[SteadyFilter | None]:
+    """
+    Find the steady gains as `steady_filter` in parts of some milliseconds.
+
+    What is yielded last are the gains, all before is None.
+    """
     step = law.matrix
     m = law.step.shape[2]
     driven = np.zeros_like(step)
     driven[2 * m :, 2 * m :] = law.driven
-    predicted = predicted_covariance(step, sensed, driven, noise)
-    cross = predicted @ sensed.T
-    innovation = sensed @ cross + np.diag(np.square(noise))
-    gain = np.linalg.solve(innovation, cross.T).T
-    left = np.eye(3 * m) - gain @ sensed
-    corrected = left @ predicted
-    closed = step @ left
+    doublings = _doublings(step, sensed, driven, noise)
+    while (predicted := next(doublings)) is None:
+        yield None
+    with one_thread():
+        cross = predicted @ sensed.T
+        innovation = sensed @ cross + np.diag(np.square(noise))
+        gain = np.linalg.solve(innovation, cross.T).T
+        left = np.eye(3 * m) - gain @ sensed
+        corrected = left @ predicted
+        closed = step @ left
     backward = np.zeros((m, lag, len(sensed)))
     onward = predicted
     for k in range(lag):
-        onward = onward @ closed.T
-        backward[:, k] = np.linalg.solve(innovation, (onward[:m] @ sensed.T).T).T
+        yield None
+        with one_thread():
+            onward = onward @ closed.T
+            backward[:, k] = np.linalg.solve(innovation, (onward[:m] @ sensed.T).T).T
     deviation = np.sqrt(np.diag(innovation))
-    return SteadyFilter(law, sensed, gain, deviation, backward, 0.5 * (corrected + corrected.T))
+    yield SteadyFilter(law, sensed, gain, deviation, backward, 0.5 * (corrected + corrected.T))
 
 
 def predicted_covariance(step: Floats, sensed: Floats, driven: Floats, noise: Floats) -> Floats:
@@ -166,33 +182,46 @@ def predicted_covariance(step: Floats, sensed: Floats, driven: Floats, noise: Fl
         Roots of the diagonal of R, (p,).
 
     """
+    doublings = _doublings(step, sensed, driven, noise)
+    while (found := next(doublings)) is None:
+        pass
+    return found
+
+
+def _doublings(
+    step: Floats, sensed: Floats, driven: Floats, noise: Floats
+) -> Iterator[Floats | None]:
+    """Yield None after each doubling of `predicted_covariance`, and P at the end."""
     onward = step.T.copy()
     seen = sensed.T @ (sensed / np.square(noise)[:, None])
     found = driven.copy()
     one = np.eye(len(step))
     for _ in range(_MOST_DOUBLINGS):
-        both = np.linalg.solve(one + seen @ found, np.hstack([onward, seen]))
-        next_onward, spread = both[:, : len(step)], both[:, len(step) :]
-        added = onward.T @ found @ next_onward
-        seen = seen + onward @ spread @ onward.T
-        seen = 0.5 * (seen + seen.T)
-        onward = onward @ next_onward
-        found = found + 0.5 * (added + added.T)
+        with one_thread():
+            both = np.linalg.solve(one + seen @ found, np.hstack([onward, seen]))
+            next_onward, spread = both[:, : len(step)], both[:, len(step) :]
+            added = onward.T @ found @ next_onward
+            seen = seen + onward @ spread @ onward.T
+            seen = 0.5 * (seen + seen.T)
+            onward = onward @ next_onward
+            found = found + 0.5 * (added + added.T)
         if np.abs(added).max() <= _ENOUGH * np.abs(found).max():
             break
-    return found
+        yield None
+    yield found
 
 
 def stationary_covariance(law: SwayLaw) -> Floats:
-    """Covariance of the state without any measurement, (3 m, 3 m), by doubling."""
-    onward = law.matrix
+    """
+    Covariance of the state without any measurement, (3 m, 3 m).
+
+    ``P = A P A' + Q`` falls apart into one equation of nine unknowns for each pair of coordinates,
+    for A couples no two of them (Horn & Johnson 1991, *Topics in Matrix Analysis*, 4.3).
+    """
     m = law.step.shape[2]
-    found = np.zeros_like(onward)
-    found[2 * m :, 2 * m :] = law.driven
-    for _ in range(_MOST_DOUBLINGS):
-        added = onward @ found @ onward.T
-        found = found + added
-        onward = onward @ onward
-        if np.abs(added).max() <= _ENOUGH * np.abs(found).max():
-            break
-    return found
+    steps = np.ascontiguousarray(np.moveaxis(law.step, 2, 0))
+    both = np.einsum('iac,jbd->ijabcd', steps, steps).reshape(m, m, 9, 9)
+    driven = np.zeros((m, m, 9, 1))
+    driven[:, :, 8, 0] = law.driven
+    pairs = np.linalg.solve(np.eye(9) - both, driven).reshape(m, m, 3, 3)
+    return np.ascontiguousarray(pairs.transpose(2, 0, 3, 1)).reshape(3 * m, 3 * m)

@@ -25,6 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.setup.one_thread import one_thread
 
 STIFFNESS_SPREAD, DAMPING_SPREAD = 0.2, 0.5
 """Standard deviations of the logarithms of stiffness and damping, before any measurement."""
@@ -125,7 +126,7 @@ def fits(
     covariance: Floats,
 ) -> Iterator[TreeFit | None]:
     """
-    Try one candidate after the other; the last thing yielded is the fit, all others None.
+    Try one candidate after the other, a sensor at a time; the fit is yielded last, before it None.
 
     Parameters
     ----------
@@ -144,10 +145,12 @@ def fits(
     for i, stiff in enumerate(_STIFFNESSES.tolist()):
         for j, damped in enumerate(_DAMPINGS.tolist()):
             law = stiff * stiffness, damped * damping + air_damping
-            table[i, j] = sum(_misfit(each, *law, forces) for each in spectra)
+            for each in spectra:
+                with one_thread():
+                    table[i, j] += _misfit(each, *law, forces)
+                yield None
             prior = (math.log(stiff) / STIFFNESS_SPREAD) ** 2
             table[i, j] += 0.5 * (prior + (math.log(damped) / DAMPING_SPREAD) ** 2)
-            yield None
     weight = np.exp(table.min() - table).sum(axis=2)
     weight /= weight.sum()
     hours = max(each.seconds for each in spectra) / 3600.0

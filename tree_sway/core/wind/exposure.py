@@ -23,7 +23,7 @@ crowns over ground [-].
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 
 import numpy as np
@@ -154,6 +154,33 @@ class Exposure:
         at_edge, decay = 0.9701 - 1.273 * ratio, 1.1127 * ratio + 0.0311
         deep = at_edge * decay**9
         return (inside + at_edge) / (inside + deep)
+
+    @property
+    def at_ten_metres(self) -> float:
+        """
+        Wind at 10 m over that at the reference height [-].
+
+        In the open it is 10 m above the ground, at the edge of a stand or inside it 10 m above
+        the displacement d of the stand, as ForestGALES states its winds (Hale et al. 2015).
+        """
+        if self.kind == 'open':
+            return math.log(STATION_HEIGHT / GRASS) / math.log(self.reference_height / GRASS)
+        profile = self.profile()
+        z0 = profile.roughness
+        top = float(profile.over_anemometer(np.array(self.height)))
+        over_top = math.log(STATION_HEIGHT / z0) / math.log((self.height - self.displacement) / z0)
+        return top * over_top
+
+    def scaled(self, height: float) -> Exposure:
+        """Return the exposure of a tree of a height [m] with a stand in proportion around it."""
+        ratio = height / self.height
+        return replace(
+            self,
+            height=height,
+            spacing=ratio * self.spacing,
+            crown_width=ratio * self.crown_width,
+            crown_depth=ratio * self.crown_depth,
+        )
 
     def profile(self, ground: float = 0.0) -> WindProfile:
         """Return the profile over the height above the ground, that is at a height in [m]."""

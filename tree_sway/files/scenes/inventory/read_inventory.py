@@ -12,6 +12,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.tree.species import Species
+from tree_sway.core.wind.exposure import EXPOSURES
 from tree_sway.errors import FormatError
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
 from tree_sway.files.scenes.inventory.inventory_file import missing_columns, SPECIES, why_missing
@@ -56,6 +57,8 @@ class Inventory:
         Whether the height is that of a grown tree of its stem.
     models
         Model of each tree; None if none is given.
+    exposures
+        Exposure of each tree to the wind, a kind of `EXPOSURES`; None if none is given.
     notes
         What was assumed, one sentence each.
 
@@ -74,6 +77,7 @@ class Inventory:
     diameter: Floats
     is_height_found: tuple[bool, ...]
     models: tuple[str | None, ...]
+    exposures: tuple[str | None, ...]
     notes: tuple[str, ...]
 
     def where(self, row: int) -> str:
@@ -120,6 +124,7 @@ def inventory_of(
     further = {each: _optional(columns, each) for each in ('z', 'yaw')}
     models = table.find('model')
     model_texts = columns.texts(models.index) if models else [''] * columns.n_rows
+    exposures = _exposures(columns)
     unused = [each for i, each in enumerate(table.columns) if i not in columns.used]
     if unused:
         columns.note(f'columns that are not used: {", ".join(unused[:20])}')
@@ -138,6 +143,7 @@ def inventory_of(
         stems[kept],
         tuple(is_found[row] for row in kept),
         tuple(model_texts[row] or None for row in kept),
+        tuple(exposures[row] for row in kept),
         tuple(columns.notes),
     )
 
@@ -149,6 +155,20 @@ def _leave_out_dead(columns: InventoryColumns) -> None:
                 columns.leave_out(
                     row, 'dead or gone', f"{columns.table.columns[index]} is '{text}'"
                 )
+
+
+def _exposures(columns: InventoryColumns) -> list[str | None]:
+    """Kinds of exposure; a text that is none is counted and left out."""
+    column = columns.table.find('exposure')
+    if column is None:
+        return [None] * columns.n_rows
+    texts = [text.strip().lower() for text in columns.texts(column.index)]
+    unknown = [text for text in texts if text and text not in EXPOSURES]
+    if unknown:
+        name, known = columns.table.columns[column.index], ', '.join(EXPOSURES)
+        first = unknown[0][:40]
+        columns.note(f"{len(unknown)} cells of {name} do not count: '{first}' is none of {known}")
+    return [text if text in EXPOSURES else None for text in texts]
 
 
 def _optional(columns: InventoryColumns, quantity: str) -> Floats:
