@@ -15,6 +15,7 @@ import pytest
 from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.commands import cli
+from tree_sway.core.growth.grow import grow
 from tree_sway.core.tree.building import tree_from_segments
 from tree_sway.files.export.tree_export import write_tree
 
@@ -206,3 +207,18 @@ def test_what_is_odd_is_reported(
     assert goldcrest['warnings'] == []
     odd = facts(capsys, 'goldcrest', '--modulus', '1e11')['warnings']
     assert [each.split(',')[0] for each in odd] == ['a modulus of 100 GPa']
+
+
+@pytest.mark.parametrize(('exposure', 'said'), [('open', 'outside'), ('stand', 'within')])
+def test_the_published_moment_of_a_spruce_is_within_the_band_or_said_to_be_outside(
+    exposure: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """20 m and 25 cm: 112 d^2 h U^2 (Hale et al. 2012) is of trees that shelter each other."""
+    tree = grow('spruce', 20.0, 0.25, rng=np.random.default_rng(0))
+    path = tmp_path / 'spruce.yaml'
+    write_tree(path, tree)
+    words = ('--species', 'spruce', '--speed', '10', '--exposure', exposure, '--count', '1')
+    found = facts(capsys, str(path), *words)
+    assert found['published_moment'] == pytest.approx(111.7 * 0.25**2 * 20.0 * 100.0, rel=0.01)
+    (note,) = (each for each in found['notes'] if 'published' in each)
+    assert f'{said} that band' in note

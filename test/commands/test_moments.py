@@ -55,8 +55,10 @@ def test_a_tree_in_wind_is_a_file_per_moment(
     low = places[0][:, 2] < 1e-3
     assert np.abs(moved[-1][low]).max() < 1e-3
     # A moment alone is that of many, to the digits of the file.
-    alone = tmp_path / 'alone.obj'
-    assert cli.main([*given[:-1], '1', '-o', str(alone)]) == 0
+    numbered, alone = tmp_path / 'alone_%d.obj', tmp_path / 'alone_0.obj'
+    capsys.readouterr()
+    assert cli.main([*given[:-1], '1', '-o', str(numbered)]) == 0
+    assert str(alone) in capsys.readouterr().out
     np.testing.assert_allclose(vertices(alone), places[2], atol=2e-3)
     text = paths[2].read_text()
     assert text.startswith('# seedling at 1.0000 s; metres, x east, y north, z up\n')

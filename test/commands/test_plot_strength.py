@@ -99,3 +99,21 @@ def test_each_tree_of_an_inventory_is_grown_by_itself_if_asked(tmp_path, capsys)
     assert heights == pytest.approx([8.0, 9.0], rel=1e-6)
     assert stems == pytest.approx([0.20, 0.24], rel=1e-3)
     assert found['trees'][1]['height'] == pytest.approx(9.0, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ('words', 'said'),
+    [
+        (['info', '--spacing', '3'], '--spacing: it would change nothing'),
+        (['info', '--speed', '9', '--spacing', '3'], 'trees in the open have no spacing'),
+        (['info', '--anemometer-height', '20'], '--anemometer-height: it would change nothing'),
+        (['plot', '--exposure', 'edge', '-o', 'x.png'], '--exposure: it would change nothing'),
+        (['simulate', '--spacing', '3', '-o', 'x.csv'], 'trees in the open have no spacing'),
+    ],
+)
+def test_an_exposure_that_would_change_nothing_is_refused(words, said, tmp_path, capsys):
+    command, *options = words
+    if '-o' in options:
+        options[-1] = str(tmp_path / options[-1])
+    assert main([command, 'test/files/data/fork.simpleforest.csv', *options]) == 2
+    assert said in capsys.readouterr().err

@@ -115,6 +115,19 @@ def test_a_viewer_grows_a_tree_of_a_species_and_a_height() -> None:
     assert starts[0] == starts[1] != starts[2]
 
 
+def test_a_tree_that_is_grown_has_the_leaves_of_a_month() -> None:
+    arguments = argparse.Namespace(tree=str(SEEDLING), leaves='on')
+    summer, autumn, winter = (
+        show.build_scene(show.Choices('birch', height=4.0, month=month), arguments)
+        for month in (7.0, 11.0, 2.0)
+    )
+    areas = [each.settings.leaf_area.sum() for each in (summer, autumn)]
+    assert 0.0 < areas[1] < 0.9 * areas[0]
+    assert not winter.settings.in_leaf
+    assert winter.settings.leaf_area is None
+    assert autumn.species.look.green == autumn.species.look.autumn != summer.species.look.green
+
+
 @pytest.mark.parametrize(
     ('tree', 'is_grown'), [('birch', True), ('goldcrest', False), ('oak.yaml', False)]
 )

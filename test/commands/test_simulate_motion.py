@@ -80,6 +80,7 @@ def test_the_motion_follows_the_recording(
         (['--motion', 'motion.csv'], '1 --motion and 0 --at'),
         (['--motion', 'motion.csv', '--at', '99'], 'the stem has no height'),
         (['--motion', 'missing.csv', '--at', '0.3'], 'missing.csv'),
+        (['--motion', 'motion.csv', '--at', '0.3', '--motion-starts', 'nan'], '--motion-starts'),
     ],
 )
 def test_mistakes_are_told_with_the_cure(
@@ -90,3 +91,14 @@ def test_mistakes_are_told_with_the_cure(
     (tmp_path / 'motion.csv').write_text('time,ax,ay,az\n0,0,0,9.8\n', encoding='utf-8')
     assert main(['simulate', 'goldcrest', *extra, '-o', 'x.csv']) == 2
     assert what in capsys.readouterr().err
+
+
+def test_motion_of_another_time_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    rows = [f'{0.02 * k:.2f},0,0,9.8' for k in range(50)]
+    (tmp_path / 'motion.csv').write_text('\n'.join(['time,ax,ay,az', *rows]), encoding='utf-8')
+    words = ['simulate', 'goldcrest', '--seconds', '1', '--motion', 'motion.csv', '--at', '0.3']
+    assert main([*words, '--motion-starts', '5000', '-o', 'x.csv']) == 0
+    assert 'samples are of 5000 to 5000.98 s, and the wind of 0 to 1 s' in capsys.readouterr().err

@@ -16,8 +16,8 @@ import pytest
 from tree_sway.cache.model_cache import MOST
 from tree_sway.commands import cli
 from tree_sway.core.model.settings import USUAL
-from tree_sway.core.strength.strength_use import ROOT_BAND, WOOD_BAND
-from tree_sway.core.tree.species import species_named
+from tree_sway.core.strength import strength_band
+from tree_sway.core.tree.species import ROOT_MOMENT, species_named
 from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
 from tree_sway.files.scenes import kind_classes
 from tree_sway.files.trees.tree_file import TREE_FORMATS
@@ -36,10 +36,17 @@ FIGURES = {
     'doc/tree_as_a_file.md': {r'`--model 20`: 20 coordinates, not (\d+)': [USUAL]},
     'doc/tutorials/study.md': {r'one model for all trees, (\d+) coordinates': [USUAL]},
     'doc/tutorials/scan_to_numbers.md': {
-        r'\((\d+) % of scatter, (\d+) % off for knots\)': [
-            round(100 * (WOOD_BAND[1] - 1)), round(100 * (1 - WOOD_BAND[0] / 0.84)),
+        r'band that holds (\d+) % of trees': [round(100 * strength_band.SHARE_WITHIN)],
+        r'\| wood \| ([\d.]+), and up to (\d+) % off for knots': [
+            strength_band.WOOD, round(100 * strength_band.KNOTS),
         ],
-        r'(\d+) to (\d+) N m of root moment': ROOT_BAND,
+        r'\| roots \| ([\d.]+) of trees of one species and size, ([\d.]+) of species': [
+            strength_band.ROOTS_OF_A_SPECIES, strength_band.ROOTS_OF_SPECIES,
+        ],
+        r'\| drag of the crown \| ([\d.]+) ': [strength_band.DRAG],
+        r'\| wind at the crown \| ([\d.]+) of the load': [strength_band.WIND],
+        r'\| leaves, in leaf \| ([\d.]+) ': [strength_band.LEAVES],
+        r'(\d+) N m of root moment': [ROOT_MOMENT],
     },
     'doc/reference.md': {r'Rows (\d+) s and more apart are means': [LEAST_INTERVAL]},
     'doc/trees.md': {

@@ -66,7 +66,7 @@ RESULTS = {
     11: r'(tip .* from rest on average.*)',
     12: r'strength used: (wood .*)',
     13: r'goldcrest.mp4: (.*)',
-    14: r'(in \d+ m/s: .*)',
+    14: r'(of \d+ m/s: .*)',
 }
 """What is reported of each task: the last that its commands say of this kind."""
 

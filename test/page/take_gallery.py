@@ -27,6 +27,7 @@ from tree_sway.commands import cli, show
 from tree_sway.page.server import PageServer, PageSettings
 from tree_sway.page.session import Choices, Session
 from tree_sway.page.wind_source import SimulatedWind
+from tree_sway.stream.controls import ControlPanel
 
 STAND = Path(__file__).parents[2] / 'config' / 'stand.yaml'
 HEIGHTS = {
@@ -38,19 +39,20 @@ AVENUE = 'x,y,species,height\n' + ''.join(
     f'{10 * row},{9 * place},lime,14\n' for place in range(10) for row in range(2)
 )
 _EVENING = "document.getElementById('theme').click();"
+_OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
 _AUTUMN = "document.getElementById('season').click();"
 
 
 @dataclass(frozen=True)
 class View:
-    """A picture: of which tree, in which quality, what is done before it is taken."""
+    """A picture: of which tree, in which quality and size [px], and what is done before it."""
 
     name: str
     tree: str
     is_full: bool = True
     script: str = ''
     is_dark: bool = False
-    is_phone: bool = False
+    size: tuple[int, int] = (1280, 800)
     is_film: bool = False
     has_cards: bool = False
 
@@ -72,7 +74,6 @@ VIEWS = (
     View('benjamina_near', 'benjamina', script='treeSway.scene.camera.zoom(0.3)'),
     View('benjamina_software', 'benjamina', is_full=False),
     View('benjamina_dark', 'benjamina', is_dark=True, has_cards=True),
-    View('benjamina_phone', 'benjamina', is_phone=True, has_cards=True),
     View('goldcrest', 'goldcrest'),
     View('oak', 'oak'),
     View('oak_autumn', 'oak', script=_EVENING + _AUTUMN),
@@ -92,6 +93,11 @@ VIEWS = (
     View('walnut_near', 'walnut', script='treeSway.scene.camera.zoom(0.35)'),
     View('walnut_far', 'walnut', script='treeSway.scene.camera.zoom(4)'),
     View('avenue', 'avenue', script='treeSway.scene.camera.set([-1.55, 0.06, 62, 5, 30, 6])'),
+    *(
+        View(f'phone_{size[0]}{name}', 'birch', size=size, script=script, has_cards=True)
+        for size in ((390, 844), (844, 390), (768, 1024))
+        for name, script in (('', _CLOSED), ('_open', _OPEN))
+    ),
     View('stand', str(STAND)),
     View('stand_software', str(STAND), is_full=False),
     View('stand_near', str(STAND), is_full=False, script='treeSway.scene.camera.zoom(0.3)'),
@@ -128,12 +134,11 @@ def take(view: View, tree: str, path: Path) -> None:
     parser = argparse.ArgumentParser()
     show.add_arguments(parser)
     arguments = parser.parse_args([tree])
-    session = Session(
-        lambda wanted: show.build_scene(wanted, arguments),
-        Choices(Path(tree).name),
-        SimulatedWind(9.0),
-    )
-    with PageServer(PageSettings(port=0), None, session.status) as server:
+    choices, wind = Choices(Path(tree).name), SimulatedWind(9.0)
+    session = Session(lambda wanted: show.build_scene(wanted, arguments), choices, wind)
+    controls = show._controls(choices, wind) if view.has_cards else ()
+    panel = ControlPanel(controls, session.apply, session.pull)
+    with PageServer(PageSettings(port=0), panel, session.status) as server:
         session.serve(server)
         try:
             asyncio.run(look(server.url, view, path))
@@ -143,7 +148,7 @@ def take(view: View, tree: str, path: Path) -> None:
 
 async def look(url: str, view: View, path: Path) -> None:
     """Open the page, wait until the tree sways, and save what is seen."""
-    width, height = (390, 844) if view.is_phone else (1280, 800)
+    width, height = view.size
     async with Browser() as browser:
         address = f'{url}?quality=full' if view.is_full else url
         await browser.open(address, width=width, height=height, dark=view.is_dark)
@@ -161,7 +166,7 @@ async def look(url: str, view: View, path: Path) -> None:
             await film(browser, path.with_suffix('.webp'))
             return
         image = Image.open(io.BytesIO(await browser.screenshot())).convert('RGB')
-        if not view.is_phone:
+        if width > WIDTH:
             image = image.resize((WIDTH, WIDTH * height // width), Image.Resampling.LANCZOS)
         image.save(path, quality=82, optimize=True)
         print(path, path.stat().st_size, await browser.run('treeSway.fps'), browser.console)

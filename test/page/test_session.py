@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 import threading
 import time
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -22,12 +22,21 @@ from tree_sway.files.trees.source import open_scene  # noqa: E402
 from tree_sway.page import wind_source  # noqa: E402
 from tree_sway.page.newest import Newest  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
-from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind  # noqa: E402
+from tree_sway.page.wind_source import blow, RecordedWind, Sample, SimulatedWind  # noqa: E402
 from tree_sway.stream.controls import ControlPanel  # noqa: E402
 from tree_sway.stream.protocol import decode_description, decode_frame, PAUSED  # noqa: E402
 
 SEEDLING = Path(__file__).parents[1] / 'files' / 'data' / 'seedling.yaml'
 DEADLINE = 30.0
+
+
+class Measured:
+    """A wind of which nobody knows what is to come."""
+
+    source: ClassVar[dict[str, object]] = {'kind': 'live'}
+
+    def between(self, since: float, until: float) -> Iterator[Sample]:
+        return iter(())
 
 
 class Sink:
@@ -217,6 +226,20 @@ def test_a_record_goes_on_from_any_of_its_times(live: tuple[Session, Sink]) -> N
     session.wind = wind
     session.apply('record_time', 7.0)
     assert session.status()['record_time'] == pytest.approx(7.0, abs=0.2)
+
+
+def test_viewers_are_told_of_gusts_to_come_that_are_known(live: tuple[Session, Sink]) -> None:
+    session, _ = live
+    session.wind = RecordedWind(np.arange(20.0), np.outer(np.arange(20.0), [0.6, 0.8, 0.0]))
+    session.apply('record_time', 2.0)
+    ahead: Any = session.status()['wind_ahead']
+    speeds = np.interp(np.arange(len(ahead['speeds'])) * ahead['every'], np.arange(20), range(20))
+    assert len(speeds) >= 10
+    np.testing.assert_allclose(ahead['speeds'], 2.0 + speeds, atol=1.3)  # samples a second apart
+    session.wind = SimulatedWind(5.0, intensity=0.0)
+    assert set(session.status()['wind_ahead']['speeds']) == {5.0}  # type: ignore[index]
+    session.wind = Measured()
+    assert 'wind_ahead' not in session.status()
 
 
 def test_damping_and_wind_are_those_in_use(live: tuple[Session, Sink]) -> None:

@@ -14,6 +14,7 @@ import pytest
 
 from tree_sway.commands import cli
 from tree_sway.core.strength.critical_wind import largest_expected, ShareCurve
+from tree_sway.core.strength.strength_band import wood_band
 from tree_sway.core.wind.exposure import Exposure, EXPOSURES
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.files.scenes.inventory.inventory_file import inventory_table
@@ -88,8 +89,9 @@ def test_a_tree_is_scaled_from_its_kind_by_its_stem_and_its_height(tmp_path: Pat
     assert rows[4]['wood_in_leaf [m/s]'] == pytest.approx(20.0 * higher, abs=0.01)
     assert 'stem by height' in rows[4]['assumed']
     low, high = rows[2]['low_80 [m/s]'], rows[2]['high_80 [m/s]']
-    assert low == pytest.approx(20.0 * math.sqrt(0.85 * (1 - 1.2816 * 0.16)), abs=0.01)
-    assert high == pytest.approx(20.0 * math.sqrt(1 + 1.2816 * 0.16), abs=0.01)
+    _, least, most = wood_band(in_leaf=True)
+    assert low == pytest.approx(20.0 / math.sqrt(most), abs=0.01)
+    assert high == pytest.approx(20.0 / math.sqrt(least), abs=0.01)
 
 
 def test_kinds_are_few_in_a_large_inventory(tmp_path: Path) -> None:
@@ -253,6 +255,7 @@ def test_an_interrupted_table_can_be_read(tmp_path: Path, monkeypatch) -> None:
         (['-o', 'risk.txt'], 'end it with .csv'),
         (['--workers', '0'], '--workers'),
         (['--spacing', '0'], '--spacing'),
+        (['--spacing', '3'], 'trees in the open have no spacing'),
         (['--scheduler', 'nowhere'], 'write tcp://host:8786'),
     ],
 )

@@ -33,6 +33,7 @@ from tree_sway.parameters.sway_parameters import SWAY
 OUTPUT_HELP = 'output file; its suffix chooses the format: .yaml, .glb'
 _TREE = 'a built-in tree (benjamina, goldcrest, broadleaf) or a tree file'
 _DRAWN = 1500
+_USUAL_SPEED = 6.0
 
 
 def add_tree_arguments(
@@ -175,8 +176,15 @@ def drawn_leaves(scene: Scene, arguments: argparse.Namespace) -> LeafClusters | 
     return scene.leaves(chosen_leaves(arguments), _DRAWN)
 
 
-def add_wind_arguments(parser: argparse.ArgumentParser, record: str = '') -> None:
-    """Add a wind record, and the speed of a simulated one; `record` is help for the first."""
+def add_wind_arguments(
+    parser: argparse.ArgumentParser, record: str = '', speed_of: str | None = None
+) -> None:
+    """
+    Add a wind record, and the speed of a simulated one.
+
+    ``record`` is help for the first, ``speed_of`` says which speed it is where none is given, if
+    the command chooses it.
+    """
     add = parser.add_argument_group('wind').add_argument
     add('--wind', metavar='FILE', help=record or 'wind recording; without it wind is simulated')
     options = (
@@ -184,8 +192,10 @@ def add_wind_arguments(parser: argparse.ArgumentParser, record: str = '') -> Non
         'yaw=1.57, direction_convention=from or rate=20; repeatable'
     )
     add('--wind-option', action='append', default=[], metavar='NAME=VALUE', help=options)
-    speed = 'mean speed of the simulated wind [m/s] (%(default)s)'
-    add('--speed', type=float, default=6.0, metavar='U', help=speed)
+    of_which = '%(default)s' if speed_of is None else speed_of
+    help_on_speed = f'mean speed of the simulated wind [m/s] ({of_which})'
+    default = _USUAL_SPEED if speed_of is None else None
+    add('--speed', type=float, default=default, metavar='U', help=help_on_speed)
 
 
 def opened_record(arguments: argparse.Namespace) -> WindRecord:
@@ -207,11 +217,14 @@ def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
 
 
 def add_sway_arguments(
-    parser: argparse.ArgumentParser, record: str = '', leaves: str | None = 'on'
+    parser: argparse.ArgumentParser,
+    record: str = '',
+    leaves: str | None = 'on',
+    speed_of: str | None = None,
 ) -> None:
     """Add a scene, a wind, a model and leaves, which are drawn by default."""
     add_tree_arguments(parser, forests=True, default='benjamina')
-    add_wind_arguments(parser, record)
+    add_wind_arguments(parser, record, speed_of)
     add_model_argument(parser)
     add_leaves_argument(parser, leaves)
 

@@ -104,7 +104,9 @@ def run(arguments: argparse.Namespace) -> int:
         species = scene.species if scene.is_one_tree else None
         leaves = drawn_leaves(scene, arguments) if suffix == '.glb' else None
         write_tree(output, scene.tree, species, leaves)
-    written = output if count == 1 else f'{paths[0]} to {paths[-1].name}, {count} moments'
+    written = str(paths[0]) if suffix == '.obj' else output
+    if count > 1:
+        written = f'{paths[0]} to {paths[-1].name}, {count} moments'
     print(what_was_written(written, scene.tree))
     return 0
 

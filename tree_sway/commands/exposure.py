@@ -10,6 +10,7 @@ from typing import Any
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.exposure import Exposure, exposure_of, EXPOSURES
+from tree_sway.errors import ParameterError
 
 
 def add_exposure_arguments(
@@ -36,11 +37,31 @@ def add_exposure_arguments(
 
 
 def chosen_exposure(arguments: argparse.Namespace, tree: Tree, species: Species) -> Exposure:
-    """Return the exposure of the arguments for a tree."""
+    """Return the exposure of the arguments for a tree; refuse a spacing of no stand."""
+    if arguments.spacing is not None and arguments.exposure == 'open':
+        refuse_spacing_in_the_open()
     return exposure_of(
         tree, species, arguments.exposure, spacing=arguments.spacing,
         anemometer_height=arguments.anemometer_height,
     )  # fmt: skip
+
+
+def refuse_spacing_in_the_open() -> None:
+    """Raise the `ParameterError` of a spacing where no tree has neighbours."""
+    cure = 'add --exposure stand or --exposure edge'
+    raise ParameterError('trees in the open have no spacing', where='--spacing', cure=cure)
+
+
+def refuse_unused_exposure(arguments: argparse.Namespace, needs: str) -> None:
+    """Refuse arguments of the exposure without the one, ``needs``, that they belong to."""
+    given = {
+        '--exposure': arguments.exposure != 'open',
+        '--spacing': arguments.spacing is not None,
+        '--anemometer-height': arguments.anemometer_height is not None,
+    }
+    for name, is_given in given.items():
+        if is_given:
+            raise ParameterError('it would change nothing', where=name, cure=f'add {needs}')
 
 
 def turbulence_of(exposure: Exposure) -> dict[str, Any]:

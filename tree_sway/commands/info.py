@@ -18,7 +18,12 @@ from tree_sway.commands.arguments import (
     chosen_leaves,
     opened_scene,
 )
-from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
+from tree_sway.commands.exposure import (
+    add_exposure_arguments,
+    chosen_exposure,
+    refuse_unused_exposure,
+    turbulence_of,
+)
 from tree_sway.commands.mode_table import mode_table
 from tree_sway.commands.progress import bar
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
@@ -27,6 +32,7 @@ from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.placed_tree import Kind, PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.setup.season import in_season
+from tree_sway.core.strength.strength_use import StrengthUse
 from tree_sway.core.tree.crown_allometry import BREAST_HEIGHT, breast_height_diameter
 from tree_sway.core.tree.plausibility import oddities, sway_oddity
 from tree_sway.core.tree.species import Species
@@ -67,7 +73,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Print the facts on the trees."""
     within('--count', arguments.count, 1, 1e6)
-    if arguments.speed is not None:
+    if arguments.speed is None:
+        refuse_unused_exposure(arguments, '--speed U')
+    else:
         SWAY['mean_speed'].checked(arguments.speed)
     scene = opened_scene(arguments)
     kinds = scene.kinds
@@ -124,11 +132,7 @@ def _kind_facts(kind: Kind, tallest: PlacedTree, arguments: argparse.Namespace) 
         )
         published = _published_moment(placed, species, arguments.speed)
         if published is not None:
-            notes.append(
-                f'largest moment at the base {used.base_moment / 1e3:.3g} kN m; that of conifers '
-                f'in stands {published / 1e3:.3g} kN m, 112 d^2 h U^2 with the hourly mean at '
-                'the top of the stand (Hale et al. 2012)'
-            )
+            notes.append(_moment_note(used, published, exposure.kind))
     frequencies = [mode['frequency'] for mode in modes]
     return {
         'name': tree.name, 'notes': notes,
@@ -157,6 +161,25 @@ def _published_moment(tree: Tree, species: Species, speed: float) -> float | Non
     if species.habit != 'conifer' or diameter is None:
         return None
     return 111.7 * diameter**2 * tree.height * speed**2
+
+
+def _moment_note(used: StrengthUse, published: float, exposure: str) -> str:
+    """Say the largest moment at the base with its band, and where the published one lies."""
+    low, high = (each / 1e3 for each in used.moment_band)
+    if low <= published / 1e3 <= high:
+        where = 'within that band'
+    elif exposure == 'stand':
+        where = 'outside that band: one of the two is wrong for this tree'
+    else:
+        where = (
+            'outside that band, as such trees shelter each other and their crowns are cut short: '
+            'with --exposure stand the tree is one of them'
+        )
+    return (
+        f'largest moment at the base {used.base_moment / 1e3:.3g} kN m ({low:.3g} to {high:.3g} '
+        f'kN m); the published one of conifers in stands is {published / 1e3:.3g} kN m, {where} '
+        '(112 d^2 h U^2 with the hourly mean at the top of the stand: Hale et al. 2012)'
+    )
 
 
 def _sums(scene: Scene, kinds: list[dict[str, Any]]) -> dict[str, Any]:

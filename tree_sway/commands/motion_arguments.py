@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 
+from tree_sway.core.checks import within
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.core.scene.simulate import PlacedMotion
 from tree_sway.core.tree.tree import Tree
@@ -21,16 +22,31 @@ def add_motion_arguments(parser: argparse.ArgumentParser) -> None:
         help='recording of a motion sensor on the real tree: CSV, or a bag with '
         'sensor_msgs/Imu; repeatable',
     )  # fmt: skip
-    add(
-        '--at', action='append', default=[], metavar='PLACE',
-        help='where that sensor sits: a height on the stem [m], as 3.2, or BRANCH:SHARE, as '
-        'b12:0.5; once for each --motion',
-    )  # fmt: skip
+    add_place_argument(parser)
     add(
         '--motion-starts', type=float, default=0.0, metavar='S',
         help='time [s] by which recordings of motion begin after that of the wind, added to '
         'their times (%(default)s)',
     )  # fmt: skip
+
+
+def add_place_argument(parser: argparse.ArgumentParser) -> None:
+    """Add ``--at``, the place of each sensor."""
+    parser.add_argument(
+        '--at', action='append', default=[], metavar='PLACE',
+        help='where that sensor sits: a height on the stem [m], as 3.2, or BRANCH:SHARE, as '
+        'b12:0.5; once for each --motion',
+    )  # fmt: skip
+
+
+def sensors_and_places(arguments: argparse.Namespace) -> list[tuple[str, str]]:
+    """Pair each ``--motion`` with its ``--at``; a `ParameterError` if one has no other."""
+    n_sensors, n_places = len(arguments.motion), len(arguments.at)
+    if n_sensors != n_places:
+        what = f'{n_sensors} --motion and {n_places} --at'
+        cure = 'give the place of each sensor: --motion SENSOR --at 3.2'
+        raise ParameterError(what, cure=cure)
+    return list(zip(arguments.motion, arguments.at, strict=True))
 
 
 def placed_motion(
@@ -49,11 +65,9 @@ def placed_motion(
         Time of the first sample of the wind in seconds after 1970; None without dates.
 
     """
-    if len(arguments.motion) != len(arguments.at):
-        what = f'{len(arguments.motion)} --motion and {len(arguments.at)} --at'
-        raise ParameterError(what, cure='give the place of each sensor: --motion FILE --at 3.2')
+    starts = within('--motion-starts', arguments.motion_starts, -1e9, 1e9, 's')
     found = []
-    for number, (path, at) in enumerate(zip(arguments.motion, arguments.at, strict=True), 1):
+    for number, (path, at) in enumerate(sensors_and_places(arguments), 1):
         with inside('--at'):
             place_on(tree, at)
         record = read_motion(path)
@@ -61,7 +75,7 @@ def placed_motion(
             PlacedMotion(
                 f'sensor {number} at {at}',
                 at,
-                record.times_after(epoch, arguments.motion_starts),
+                record.times_after(epoch, starts),
                 record.acceleration,
                 record.rate,
                 record.orientation,

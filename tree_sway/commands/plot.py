@@ -19,7 +19,12 @@ from tree_sway.commands.arguments import (
     opened_wind,
     output_path,
 )
-from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure, turbulence_of
+from tree_sway.commands.exposure import (
+    add_exposure_arguments,
+    chosen_exposure,
+    refuse_unused_exposure,
+    turbulence_of,
+)
 from tree_sway.commands.progress import bar, waiting
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.commands.swaying import swaying
@@ -42,7 +47,9 @@ _LEAVES = 3000
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_sway_arguments(parser, leaves=None)
+    add_sway_arguments(
+        parser, leaves=None, speed_of='6; 10 with --portrait, up to 30 with --strength'
+    )
     add_exact_argument(parser)
     parser.add_argument(
         '--portrait',
@@ -52,7 +59,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     strength = 'draw the fraction of the strength in use over wind speed, up to --speed (30 m/s)'
     parser.add_argument('--strength', action='store_true', help=strength)
     add_exposure_arguments(parser)
-    parser.set_defaults(speed=None)
     parser.add_argument(
         '--seconds', type=float, default=60.0, metavar='N', help='duration [s] (%(default)s)'
     )
@@ -62,6 +68,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Draw, and print the name of the picture."""
     within('--seconds', arguments.seconds, 0.0, 3600.0, 's', above=True)
+    if not arguments.strength:
+        refuse_unused_exposure(arguments, '--strength')
     if arguments.leaves is None:  # as `info` and `simulate`, so that figures of strength agree
         arguments.leaves = 'auto' if arguments.strength else 'on'
     if arguments.speed is None:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from dataclasses import replace
 import math
 from pathlib import Path
@@ -20,13 +21,15 @@ from tree_sway.commands.arguments import (
     opened_scene,
     opened_wind,
 )
+from tree_sway.commands.live_motion_arguments import add_live_motion_arguments, sensing
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
 from tree_sway.core.growth.grow import grow
-from tree_sway.core.model.settings import Settings, USUAL
+from tree_sway.core.leaves.calendar import FIRST_MONTH, is_bare, LAST_MONTH, species_in_month
+from tree_sway.core.model.settings import model_of, Settings, USUAL
 from tree_sway.core.scene.placed_tree import PlacedTree
 from tree_sway.core.scene.scene import Scene
 from tree_sway.core.scene.scene_simulator import Simulator
@@ -38,10 +41,11 @@ from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, scene_of_files
 from tree_sway.installed_models import installed_models
 from tree_sway.page.server import PageServer, PageSettings
-from tree_sway.page.session import Choices, Session
+from tree_sway.page.session import Choices, RATE, Session
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.sensors.live_wind import LiveWind
+from tree_sway.sensors.motion.motion_feed import MotionFeed
 from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET
 
 _SPACING = 1.2
@@ -80,6 +84,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument('--read-only', action='store_true', help='viewers cannot change values')
     add_sensor_argument(parser)
+    add_live_motion_arguments(parser)
     add_page_arguments(parser)
 
 
@@ -89,17 +94,28 @@ def run(arguments: argparse.Namespace) -> int:
     within('--stand', arguments.stand, 1, 1e5)
     if arguments.risk is not None:
         read_critical_winds(arguments.risk)  # what is wrong with it is said before all else
-    if arguments.sensor is None:
-        return _serve(arguments, settings, opened_wind(arguments))
-    with listening(arguments) as wind:
-        return _serve(arguments, settings, wind)
+    if arguments.motion and arguments.stand > 1:
+        what = f'motion sensors on a stand of {arguments.stand} trees'
+        raise ParameterError(what, where='--motion', cure='leave --stand out')
+    with sensing(arguments) as motion:
+        if arguments.sensor is None:
+            return _serve(arguments, settings, opened_wind(arguments), motion)
+        with listening(arguments) as wind:
+            return _serve(arguments, settings, wind, motion)
 
 
-def _serve(arguments: argparse.Namespace, settings: PageSettings, wind: WindSource) -> int:
-    """Serve the page of a wind."""
+def _serve(
+    arguments: argparse.Namespace, settings: PageSettings, wind: WindSource, motion: MotionFeed
+) -> int:
+    """Serve the page of a wind and of the sensors on the tree."""
     print(f'{arguments.tree}: starting (the first start compiles, up to a minute)', flush=True)
     choices = Choices(Path(arguments.tree).name, str(arguments.stand), str(arguments.model))
-    session = Session(lambda wanted: build_scene(wanted, arguments), choices, wind)
+    session = Session(
+        lambda wanted: build_scene(wanted, arguments, motion.places),
+        choices,
+        wind,
+        motion=motion,
+    )
     critical_winds = _critical_winds(arguments.risk, session.names)
     panel = ControlPanel()
     if not arguments.read_only:
@@ -142,8 +158,14 @@ def _critical_winds(
     return found
 
 
-def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
-    """Make the simulator of some choices."""
+def build_scene(
+    choices: Choices, arguments: argparse.Namespace, places: Mapping[str, str] | None = None
+) -> Simulator:
+    """
+    Make the simulator of some choices.
+
+    The tree that the command names follows the sensors at the places; others have none.
+    """
     is_first = choices.tree == Path(arguments.tree).name
     if is_first:
         scene = opened_scene(arguments)
@@ -155,15 +177,19 @@ def build_scene(choices: Choices, arguments: argparse.Namespace) -> Simulator:
             raise ParameterError('a stand of a forest', where='--stand', cure='name one tree')
         scene = stand(scene, count, choices.model)
     damping, in_leaf = choices.damping_ratio or None, chosen_leaves(arguments)
+    if not is_first and choices.is_grown and is_bare(species_named(choices.tree), choices.month):
+        in_leaf = False
     settings = replace(Settings(), damping_ratio=damping, in_leaf=in_leaf)
+    if places and is_first and count == 1:
+        return scene.observed(replace(settings, model=model_of(choices.model)), places, RATE)
     return scene.simulator(settings, model=choices.model)
 
 
 def _grown(choices: Choices) -> Scene:
-    """Grow a tree of a species, of the height and individual that a viewer wants."""
+    """Grow a tree of a species, of the height, individual and month that a viewer wants."""
     rng = np.random.default_rng(int(choices.individual))
     tree = grow(choices.tree, choices.height, rng=rng)
-    species = rooted(tree, species_named(choices.tree))
+    species = species_in_month(rooted(tree, species_named(choices.tree)), tree, choices.month)
     return scene_of_files([TreeFile(tree, species, tree.name).checked()])
 
 
@@ -214,6 +240,8 @@ def _controls(
     controls.append(height)
     individual = Control('individual', 'Individual', choices.individual, choices=_INDIVIDUALS)
     controls.append(individual)
+    year = 'Of a tree to grow: its leaves, also for the wind.', '', FIRST_MONTH, LAST_MONTH
+    controls.append(Control('month', 'Season', choices.month, *year))
     if is_one_tree:
         # Models and number of the trees of a stand are those of its file.
         how_many = Control('count', 'Number of trees', choices.count, choices=counts)

@@ -16,7 +16,10 @@ import threading
 import time
 
 from tree_sway.core.growth.builtin import BUILTIN_TREES
+from tree_sway.core.leaves.calendar import SUMMER
 from tree_sway.core.model.settings import Settings
+from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.core.observe.sensor_report import sensor_reports
 from tree_sway.core.scene.demand import set_demand
 from tree_sway.core.scene.run import Run
 from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
@@ -29,12 +32,16 @@ from tree_sway.files.export.gltf_tree import morphing_tree
 from tree_sway.page.newest import Newest
 from tree_sway.page.one_file import page_of_scene
 from tree_sway.page.server import PageServer
-from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, WindSource
+from tree_sway.page.wind_source import blow, RecordedWind, SimulatedWind, wind_ahead, WindSource
 from tree_sway.sensors.live_wind import LiveWind
+from tree_sway.sensors.motion.motion_feed import MotionFeed
 from tree_sway.stream.controls import Refused, Value
 from tree_sway.stream.scene_state import SceneState
 
 _LOGGER = logging.getLogger('tree_sway.page')
+RATE = 60.0
+"""Steps per second in [Hz]."""
+
 _MOST_LATE = 0.25
 _NEWEST = 0.05
 _BUSY = 0.2
@@ -60,6 +67,8 @@ class Choices:
         Height of a tree that is grown in [m].
     individual
         Which of the trees of that species and height, a whole number as text.
+    month
+        Time of the year of a tree that is grown, in months from 1: `leaf_share`.
 
     """
 
@@ -69,6 +78,7 @@ class Choices:
     damping_ratio: float = 0.0
     height: float = 12.0
     individual: str = '0'
+    month: float = SUMMER
 
     @property
     def is_grown(self) -> bool:
@@ -99,6 +109,8 @@ class Session:
         Steps per second in [Hz].
     tolerance
         Largest error that model ``auto`` allows in [m].
+    motion
+        Live sensors, which an observed tree follows.
 
     Raises
     ------
@@ -113,9 +125,11 @@ class Session:
         choices: Choices,
         wind: WindSource,
         *,
-        rate: float = 60.0,
+        rate: float = RATE,
         tolerance: float = 0.005,
+        motion: MotionFeed | None = None,
     ) -> None:
+        self._motion = MotionFeed() if motion is None else motion
         self._build, self.wind, self._rate, self._period = build, wind, rate, 1.0 / rate
         self.choices, self._tolerance = choices, tolerance
         self._scene, self._runtime = self._made(choices)
@@ -213,7 +227,30 @@ class Session:
         }
         if isinstance(self.wind, RecordedWind):
             status['record_time'] = self.wind.time(self._now)
+        if isinstance(self.wind, (RecordedWind, SimulatedWind)):
+            status['wind_ahead'] = wind_ahead(self.wind, self._now)
+        if self._motion.sensors:
+            status['motion'] = self._motion_status(simulator)
         return status
+
+    def _motion_status(self, simulator: Simulator) -> dict[str, object]:
+        """Return what the sensors tell; of a tree without them, that they are not in use."""
+        if not isinstance(simulator, ObservedTree):
+            return {'sensors': []}
+        lines = {name: each.live.problem for name, each in self._motion.sensors.items()}
+        sensors = [
+            {
+                'name': each.name,
+                'in_use': each.in_use,
+                'problem': lines.get(each.name) or each.problem,
+                'residual': round(each.residual, 2),
+                'rate': round(each.rate, 1),
+                'refused': each.refused,
+                'notes': list(each.notes),
+            }
+            for each in sensor_reports(simulator)
+        ]
+        return {'sensors': sensors, 'explained': round(simulator.explained, 3)}
 
     def written(self, suffix: str) -> bytes:
         """
@@ -243,7 +280,10 @@ class Session:
         set_demand(simulator.simulators, tolerance=self._tolerance)
         simulator.reset()
         intake = WindIntake(gate=WindGate(max_speed=FASTEST_WIND))
-        return scene, Run(simulator, self._rate, intake=intake)
+        run = Run(simulator, self._rate, intake=intake)
+        if isinstance(simulator, ObservedTree):
+            run = Run(simulator, self._rate, intake=intake, starting=simulator.set_time)
+        return scene, run
 
     def _build_wanted(self, wanted: Choices) -> None:
         """Build what is requested; viewers get the reason of a refusal or a failure."""
@@ -285,6 +325,7 @@ class Session:
             self._scene.simulator.reset()
         if not self._is_paused:
             self._ticks += 1
+            self._motion.feed(self._scene.simulator, self._now)
             blow(self._runtime, self.wind, self._ticks * self._runtime.period)
         self._steps += 1
         if has_restarted or self._steps % 2 == 0 or self._work < _BUSY * self._period:

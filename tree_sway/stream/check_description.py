@@ -124,7 +124,7 @@ def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[i
     count = np.diff(first)
     require('branch_first', count > 0)
     # Here, as it loads the compiler, which is not needed before a description.
-    from tree_sway.core.beams.shape_functions import MAX_COORDINATES
+    from tree_sway.core.beams.field_counts import MAX_COORDINATES
 
     is_stem = row == 0
     on_it = (first[parent] <= under) & (under < first[parent + 1])

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tree_sway.core.strength.critical_wind import ROOT_BAND_OF_SOILS, WOOD_BAND_80
+from tree_sway.core.strength.strength_band import root_band, wood_band
 from tree_sway.core.wind.exposure import Exposure
 from tree_sway.files.scenes.inventory.read_inventory import Inventory
 from tree_sway.files.scenes.kind_classes import kind_classes
@@ -175,9 +175,9 @@ def _winds(
     own = result.exposure.scaled(height)
     scale = _at_crown(result.exposure.scaled(result.kind.height)) / _at_crown(own)
     scale *= own.at_ten_metres
-    least, most = WOOD_BAND_80 if part == 'wood' else ROOT_BAND_OF_SOILS
-    low, middle, high = (
-        min(scale * curve.speed_of(strength / more), FASTEST) for strength in (least, 1.0, most)
+    used = (wood_band if part == 'wood' else root_band)(in_leaf=curves.in_leaf)
+    middle, high, low = (
+        min(scale * curve.speed_of(1.0 / (each * more)), FASTEST) for each in used.tolist()
     )
     return low, middle, high
 

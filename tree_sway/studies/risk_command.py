@@ -14,7 +14,7 @@ import time
 from typing import TextIO
 
 from tree_sway.commands.arguments import refuse_overwriting
-from tree_sway.commands.exposure import add_exposure_arguments
+from tree_sway.commands.exposure import add_exposure_arguments, refuse_spacing_in_the_open
 from tree_sway.commands.progress import bar
 from tree_sway.core.checks import within
 from tree_sway.errors import FormatError, ParameterError
@@ -67,6 +67,9 @@ def run(arguments: argparse.Namespace) -> int:
         refuse_overwriting(output, '--output')
     path = path_of(arguments.inventory)
     inventory = inventory_of(inventory_table(path, read_head(path)), needs_place=False)
+    is_open = {each or arguments.exposure for each in inventory.exposures} == {'open'}
+    if arguments.spacing is not None and is_open:
+        refuse_spacing_in_the_open()
     for note in inventory.notes:
         print(f'note: {note}', file=sys.stderr)
     work = risk_work(

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.core.observe.sensor_report import sensor_reports
 from tree_sway.core.scene.run import Run
 from tree_sway.errors import ParameterError
 from tree_sway_ros.process.node import TreeSwayNode
@@ -77,21 +78,24 @@ class ImuIntake:
     def statuses(self) -> list[Status]:
         """Report each sensor: in use or why not, and its counts."""
         found = []
-        for track in self._twin.observer.tracks:
-            sensor, problem = track.sensor, track.problem
-            apart, by = self._clocks_apart.get(sensor.name, (0, 0.0))
+        for each in sensor_reports(self._twin):
+            problem, counts = each.problem, each.counts
+            apart, by = self._clocks_apart.get(each.name, (0, 0.0))
             values = {
-                'accepted': sensor.counts.accepted,
-                'refused': sensor.counts.refused,
+                'place': self._twin.at[each.name],
+                'rate [Hz]': round(each.rate, 1),
+                'residual over its expected size': round(each.residual, 2),
+                'accepted': counts.accepted,
+                'refused': counts.refused,
                 'refused for their stamps': apart,
-                'silent': sensor.counts.silent,
-                'disagreed': sensor.counts.disagreed,
-                'late [s]': round(self._twin.observer.late * self._twin.period, 4),
-                'share of the motion beyond the wind': round(self._twin.observer.share, 3),
+                'silent': counts.silent,
+                'disagreed': counts.disagreed,
+                'late [s]': round(each.late, 4),
+                'share of the motion that the wind explains': round(self._twin.explained, 3),
             }
-            if apart and not sensor.counts.accepted:
+            if apart and not counts.accepted:
                 problem = f'{apart} refused: stamps differ from this clock by {by:.1f} s: '
                 problem += 'synchronise the clocks (chrony, or that of micro-ROS)'
-            text = problem or 'the tree follows it'
-            found.append(Status(f'imu {sensor.name}', WARN if problem else OK, text, values))
+            text = problem or '; '.join(('the tree follows it', *each.notes))
+            found.append(Status(f'imu {each.name}', WARN if problem else OK, text, values))
         return found

@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
+import re
 
 import pytest
 from tree_sway_lab.validation import report
@@ -17,6 +19,8 @@ from tree_sway_lab.validation.report import (
 )
 from tree_sway_lab.validation.section import Check, Effort, Section
 
+from tree_sway.core.strength import strength_band
+from tree_sway.core.tree.crown_allometry import AREA_SPREAD
 from tree_sway.errors import ParameterError
 
 
@@ -29,6 +33,15 @@ def test_sections_stand_in_order_and_are_replaced_alone() -> None:
     assert sections_of(again)['models'] == sections_of(page)['models']
     assert '| slopes | 1 | 0 |' in again
     assert again.count('# Validation') == 1
+
+
+def test_the_first_screen_has_the_spreads_of_the_program() -> None:
+    head = with_section('', 'slopes', '')
+    (budget,) = (line for line in head.splitlines() if line.startswith('| 0.02 | '))
+    cells = [float(re.match(r'[\d.]+', cell.strip()).group()) for cell in budget.split('|')[1:-1]]
+    roots = math.hypot(strength_band.ROOTS_OF_A_SPECIES, strength_band.ROOTS_OF_SPECIES)
+    found = [strength_band.WOOD, strength_band.DRAG, strength_band.LEAVES, AREA_SPREAD, roots]
+    assert cells[1:] == [*(round(each, 2) for each in found), strength_band.WIND]
 
 
 def test_every_section_has_a_module_that_measures() -> None:

@@ -12,11 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable
 from concurrent.futures import ProcessPoolExecutor
+from datetime import datetime, timezone
 from importlib import import_module
+from importlib.metadata import version
 import multiprocessing
 import os
 from pathlib import Path
 import re
+import subprocess
 from typing import Any
 
 from tree_sway.commands.progress import bar
@@ -26,19 +29,13 @@ from tree_sway_lab.validation.section import Effort, HOLDS, MISSES, Section
 
 SECTIONS = (
     'kinds', 'models', 'estimates', 'table', 'steady_sway', 'gust', 'engine', 'scans', 'still_air',
-    'leaves', 'slopes', 'conifers', 'published', 'broadleaves', 'battery', 'paper',
+    'leaves', 'slopes', 'crown_gusts', 'conifers', 'published', 'broadleaves', 'battery', 'paper',
 )  # fmt: skip
 """Names of the sections, each a module of ``sections``."""
 
 PAGE = 'validation.md'
 
-_HEAD = """# Validation
-
-What the models of this package were measured against, with the limit that each figure should keep.
-`tree-sway lab validate -o doc` measures it all again, `--only NAME` one section;
-`--full` takes more trees and longer winds. A figure beyond its limit is marked as one that misses.
-
-"""
+_HEAD = Path(__file__).with_name('first_screen.md').read_text(encoding='utf-8')
 _SECTION = re.compile(r'<!-- section: (?P<name>\w+) -->\n(?P<text>.*?)<!-- end -->\n', re.DOTALL)
 
 
@@ -93,9 +90,22 @@ def write_validation(
             section = measured(name, Effort(each, is_full, data))
             missed += [f'{name}: {check.what}' for check in section.checks if not check.holds]
             text = page.read_text(encoding='utf-8') if page.is_file() else ''
-            write_text_whole(page, with_section(text, name, section.markdown()))
+            written = section.markdown() + f'\nMeasured on {_stamp()}.\n'
+            write_text_whole(page, with_section(text, name, written))
             print(f'{name}: {sum(c.holds for c in section.checks)} of {len(section.checks)} hold')
     return missed
+
+
+def _stamp() -> str:
+    """Return today's date and the commit, or the version where there is no repository."""
+    today = datetime.now(tz=timezone.utc).date().isoformat()
+    command = ['git', 'rev-parse', '--short', 'HEAD']
+    where = Path(__file__).parent
+    try:
+        ran = subprocess.run(command, cwd=where, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):
+        return f'{today}, version {version("tree_sway_lab")}'
+    return f'{today}, commit {ran.stdout.strip()}'
 
 
 def measured(name: str, effort: Effort) -> Section:

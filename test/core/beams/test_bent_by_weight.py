@@ -11,7 +11,8 @@ from tree_sway_lab.validation.truth import FINE, SETTINGS, true_frequencies, WOO
 
 from tree_sway.core.beams import branch_model
 from tree_sway.core.beams.beam import Attachments, BranchBeam, RotationField
-from tree_sway.core.beams.shape_functions import bent_by_weight, SubtreeSums
+from tree_sway.core.beams.bent_by_weight import bent_by_weight
+from tree_sway.core.beams.subtree_sums import SubtreeSums
 from tree_sway.core.setup.reductions import TreeReductions
 
 LENGTH, DIAMETER, SHEAR_RATIO = 2.0, 0.02, 1.0 / 14.0

@@ -216,6 +216,10 @@ def test_a_bad_wind_is_refused_and_counted() -> None:
     twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={'phone': AT})
     assert twin.step((np.nan, 0.0, 0.0), DT)
     assert twin.counts.refused == 1
+    # The last wind moves the tree: what is known of the wind stays known.
+    for wind in ((4.0, 0.0, 0.0), (np.inf, 0.0, 0.0), (6.0, 0.0, 0.0)):
+        twin.step(wind, DT)
+    assert np.isfinite(twin.band()).all()
     twin.reset()
     assert not twin.rotations().any()
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway.core.beams.shape_functions import across
+from tree_sway.core.beams.shape_fields import across
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.setup.prepare import prepare

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from contextlib import closing
+import csv
 import json
 from pathlib import Path
 import sqlite3
@@ -191,6 +192,8 @@ def test_units_that_were_chosen_are_said(tmp_path: Path) -> None:
     assert 'dbh is taken as inches, by height over it' in '\n'.join(read(path).notes)
     path.write_text(CITIES['feet by diameter'][0])
     assert 'height is taken as feet, by height over diameter' in '\n'.join(read(path).notes)
+    path.write_text('x,y,species,height [parsec]\n0,0,oak,12\n')
+    assert "height [parsec]: 'parsec' is no known unit" in '\n'.join(read(path).notes)
 
 
 def test_heights_in_another_unit_say_so(tmp_path: Path) -> None:
@@ -249,6 +252,65 @@ def test_openstreetmap(tmp_path: Path) -> None:
     assert len(open_scene(path).trees) == 1
 
 
+@pytest.mark.parametrize('coordinates', [[1], [[1], 2], [10**400, 48.8]])
+def test_broken_places_of_geojson(coordinates: list[object], tmp_path: Path) -> None:
+    geometry = {'type': 'Point', 'coordinates': coordinates}
+    one = {'type': 'Feature', 'geometry': geometry, 'properties': {'art': 'Eiche', 'hoehe': 12}}
+    path = tmp_path / 'trees.geojson'
+    path.write_text(json.dumps({'type': 'FeatureCollection', 'features': [one]}))
+    with pytest.raises(FormatError, match='not GeoJSON'):
+        read(path)
+
+
+def test_one_feature_of_geojson(tmp_path: Path) -> None:
+    path = tmp_path / 'tree.geojson'
+    path.write_text(json.dumps(feature(13.4, 52.5, art='Hainbuche', hoehe=12.5)))
+    check(read(path), [('hornbeam', 12.5, None)])
+
+
+def test_openstreetmap_without_a_longitude(tmp_path: Path) -> None:
+    tags = {'natural': 'tree', 'species': 'Aesculus hippocastanum', 'height': '14'}
+    elements = [{'lat': 52.5, 'tags': tags}, {'lat': 52.5, 'lon': 13.4, 'tags': tags}]
+    path = tmp_path / 'trees.json'
+    path.write_text(json.dumps({'elements': elements}))
+    check(read(path), [('horse_chestnut', 14.0, None)])
+
+
+@pytest.mark.parametrize(
+    'cell',
+    [
+        'POINT (13.4 52.5)',
+        'SRID=4326;POINT(13.4 52.5)',
+        '<http://www.opengis.net/def/crs/OGC/1.3/CRS84> Point(13.4 52.5)',
+        '{"type": "Point", "crs": {"name": "EPSG:4326"}, "coordinates": [13.4, 52.5]}',
+    ],
+)
+def test_the_number_of_a_reference_system_is_no_place(cell: str, tmp_path: Path) -> None:
+    cells = [cell, cell.replace('13.4', '13.401')]
+    path = tmp_path / 'trees.csv'
+    with path.open('w', newline='') as file:
+        rows = [[each, 'oak', 12] for each in cells]
+        csv.writer(file).writerows([['geometry', 'species', 'height'], *rows])
+    inventory = read(path)
+    assert inventory.x == pytest.approx([0.0, 67.7], abs=0.1)
+    assert inventory.y == pytest.approx([0.0, 0.0], abs=1e-6)
+
+
+def test_one_wrong_place_leaves_the_others_in_degrees(tmp_path: Path) -> None:
+    path = tmp_path / 'trees.csv'
+    places = ['POINT (13.4 52.5)', 'POINT (1340 52.5)', 'POINT (13.401 52.5)', 'POINT (1e400 5)']
+    path.write_text('\n'.join(['geometry,species,height', *(f'{each},oak,12' for each in places)]))
+    inventory = read(path)
+    assert inventory.lines == (2, 4)
+    assert inventory.x == pytest.approx([0.0, 67.7], abs=0.1)
+
+
+def test_a_species_of_signs_alone_is_a_broadleaf(tmp_path: Path) -> None:
+    path = tmp_path / 'trees.csv'
+    path.write_text('x,y,species,height\n0,0,????,12\n9,0,oak,12\n')
+    check(read(path), [('broadleaf', 12.0, None), ('oak', 12.0, None)])
+
+
 def geopackage(path: Path, system: int, place: tuple[float, float]) -> None:
     """Write a layer of one point as GDAL does, as far as it is read."""
     geometry = b'GP\0\1' + struct.pack('<i', system) + b'\1' + struct.pack('<I2d', 1, *place)
@@ -302,6 +364,28 @@ def test_spreadsheet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__('sys').modules, 'openpyxl', None)
     with pytest.raises(MissingDependencyError, match='openpyxl'):
         open_scene(path)
+
+
+@pytest.mark.parametrize(
+    'above',
+    [
+        [],
+        [['Trees', 'of', 'the park', 'in 2024']],
+        [['surveyor', 'day'], ['A. Smith', 'Monday']],
+    ],
+)
+def test_header_of_a_spreadsheet(above: list[list[str]], tmp_path: Path) -> None:
+    openpyxl = pytest.importorskip('openpyxl', reason='the extra inventory is not installed')
+    book = openpyxl.Workbook()
+    other, sheet = book.active, book.create_sheet('trees')
+    for row in (['about', 'this', 'file'], ['written', 'by', 'hand']):
+        other.append(row)
+    for cells in [*above, ['species', 'height'], ['oak', 12], ['ash', 13.5]]:
+        sheet.append(cells)
+    path = tmp_path / 'trees.xlsx'
+    book.save(path)
+    inventory = inventory_of(inventory_table(path, read_head(path)), needs_place=False)
+    check(inventory, [('oak', 12.0, None), ('ash', 13.5, None)])
 
 
 @pytest.mark.parametrize(

@@ -28,20 +28,21 @@ from tree_sway.core.beams.beam import (
     RotationField,
     SlopeShape,
 )
-from tree_sway.core.beams.shape_functions import (
-    bent_by_weight,
-    FEWER_PAIRS,
-    FEWER_TURNS,
-    N_PAIRS,
-    N_TURNS,
-    PAIRS_OF_SMALL,
-    shaken_energies,
-    shape_fields,
-    SLENDER,
-    SMALL,
-    SubtreeSums,
-    wind_loads,
+from tree_sway.core.beams.bent_by_weight import bent_by_weight
+from tree_sway.core.beams.field_counts import (
+    BRANCH_PAIRS_OF_SMALL,
+    BRANCH_TURNS,
+    ENRICHED_PAIRS,
+    PLAIN_PAIRS,
+    PLAIN_TURNS,
+    SLENDER_BEAMS,
+    SMALL_TREE,
+    STEM_PAIRS_OF_SMALL,
+    STEM_TURNS,
 )
+from tree_sway.core.beams.shape_fields import shaken_energies, shape_fields
+from tree_sway.core.beams.subtree_sums import SubtreeSums
+from tree_sway.core.beams.wind_on_branch import wind_loads
 from tree_sway.core.tree.tree import Tree
 
 _LEFT = 1e-4
@@ -102,6 +103,41 @@ class BranchModel:
         return static / _square_frequency(beam, shape, self.mass)
 
 
+@dataclass(frozen=True)
+class _LoadedBeam:
+    """
+    A branch, or twigs that are alike, before its fields are known.
+
+    ``drag_area`` [m] and ``mass`` [kg/m] are per length at the points, (p, 5), ``loads`` those of
+    `wind_loads`.
+    """
+
+    beam: BranchBeam
+    drag_area: Floats
+    mass: Floats
+    loads: Floats
+    children: Ints
+
+    def twig(self, number: int) -> _LoadedBeam:
+        """Return one of twigs that are alike."""
+        return _LoadedBeam(
+            one_of(self.beam, number),
+            self.drag_area[number],
+            self.mass[number],
+            self.loads[number],
+            _NONE,
+        )
+
+
+@dataclass(frozen=True)
+class _AlikeTwigs:
+    """Branches without children and with as many segments, in one batch."""
+
+    branches: Ints
+    batch: _LoadedBeam
+    curvatures: Floats
+
+
 class TreeBeams:
     """
     Beams of all branches of a tree and the sums over their subtrees, shared by all models.
@@ -126,23 +162,31 @@ class TreeBeams:
     """
 
     def __init__(
-        self, tree: Tree, density: float, *, shear_ratio: float = 1.0 / 14.0,
-        speed_profile: Floats | None = None, leaf_mass: Floats | None = None,
-        leaf_area: Floats | None = None, root_compliance: float = 0.0, gravity: float = 0.0,
-    ) -> None:  # fmt: skip
+        self,
+        tree: Tree,
+        density: float,
+        *,
+        shear_ratio: float = 1.0 / 14.0,
+        speed_profile: Floats | None = None,
+        leaf_mass: Floats | None = None,
+        leaf_area: Floats | None = None,
+        root_compliance: float = 0.0,
+        gravity: float = 0.0,
+    ) -> None:
         """Make the beams and sum up the subtrees."""
         n = tree.n_branches
-        self._tree, self._density, self._shear_ratio = tree, density, shear_ratio
+        self._tree = tree
+        self._density = density
+        self._shear_ratio = shear_ratio
         self._gravity = gravity
-        slender = tree.branch_length / tree.base_diameter[tree.branch_first[:-1]]
-        self._is_small = n <= SMALL and SLENDER[0] <= slender.min() and slender.max() <= SLENDER[1]
+        self._is_small = _is_small(tree)
         self._leaf_mass = np.zeros(n) if leaf_mass is None else leaf_mass
         self._leaf_area = np.zeros(n) if leaf_area is None else leaf_area
         self._speed = np.ones(tree.n_segments) if speed_profile is None else speed_profile
-        self._bare: dict[int, tuple[BranchBeam, Floats, Floats, Ints, Floats]] = {}
-        self._twigs: list[tuple[Ints, BranchBeam, Floats, Floats, Floats]] = []
-        self._known: dict[tuple[int, ...], BranchModel] = {}
-        self._blown: dict[tuple[int, int], Floats] = {}
+        self._loaded: dict[int, _LoadedBeam] = {}
+        self._alike: list[_AlikeTwigs] = []
+        self._models: dict[tuple[int, ...], BranchModel] = {}
+        self._curvatures_by_wind: dict[tuple[int, int], Floats] = {}
         self._sums = SubtreeSums.zeros(n)
         children_of: list[list[int]] = [[] for _ in range(n)]
         for branch in range(1, n):
@@ -150,28 +194,22 @@ class TreeBeams:
         size = np.diff(tree.branch_first)
         is_twig = np.array([branch > 0 and not here for branch, here in enumerate(children_of)])
         for count in np.unique(size[is_twig]):
-            rows = np.flatnonzero(is_twig & (size == count))
-            beam, drag_area, mass, loads = self._add(rows, _NONE, 0.0)
-            curvatures = self._bent(beam, loads, _NONE)
-            self._twigs.append((rows, beam, drag_area, mass, curvatures))
-            for k, branch in enumerate(rows.tolist()):
-                bare = one_of(beam, k), drag_area[k], mass[k], _NONE, loads[k]
-                self._bare[branch], self._blown[branch, 0] = bare, curvatures[k]
-        for branch in np.flatnonzero(~is_twig)[::-1].tolist():
+            twigs = np.flatnonzero(is_twig & (size == count))
+            batch = self._load(twigs, _NONE, 0.0)
+            curvatures = self._bent_by_wind(batch, _NONE)
+            self._alike.append(_AlikeTwigs(twigs, batch, curvatures))
+            for k, branch in enumerate(twigs.tolist()):
+                self._loaded[branch] = batch.twig(k)
+                self._curvatures_by_wind[branch, 0] = curvatures[k]
+        for branch in np.flatnonzero(~is_twig)[::-1].tolist():  # children before parents
             children = np.array(children_of[branch], dtype=np.int64)
             compliance = 0.0 if branch else root_compliance
-            beam, drag_area, mass, loads = self._add(branch, children, compliance)
-            self._bare[branch] = beam, drag_area, mass, children, loads
+            self._loaded[branch] = self._load(branch, children, compliance)
 
-    def _add(
-        self, branch: int | Ints, children: Ints, root_compliance: float
-    ) -> tuple[BranchBeam, Floats, Floats, Floats]:
-        """
-        Make the beam of a branch, or of twigs that are alike, and sum up their subtrees.
-
-        Returns the beam, drag area [m] and mass [kg/m] per length, and `wind_loads`.
-        """
-        tree, foot = self._tree, self._tree.branch_first[children]
+    def _load(self, branch: int | Ints, children: Ints, root_compliance: float) -> _LoadedBeam:
+        """Make the beam of a branch, or of twigs that are alike, and sum up their subtrees."""
+        tree = self._tree
+        foot = tree.branch_first[children]
         first = np.asarray(tree.branch_first[branch])[..., None]
         here = first + np.arange(np.diff(tree.branch_first)[branch].max())
         beam = BranchBeam(
@@ -202,7 +240,7 @@ class TreeBeams:
         )
         for total, part in zip(self._sums, own, strict=True):
             total[branch] = part + total[children].sum(axis=0)
-        return beam, drag_area, mass, loads
+        return _LoadedBeam(beam, drag_area, mass, loads, children)
 
     def turns(self, modulus: float) -> Floats:
         """
@@ -211,13 +249,14 @@ class TreeBeams:
         Loads are those of uniform winds along x and y of a dynamic pressure of 1 kg/m/s^2, on
         beams without weight.
         """
-        turns = np.zeros(len(self._bare))
+        turns = np.zeros(len(self._loaded))
         bent: list[tuple[int | Ints, BranchBeam, Floats]] = [
-            (rows, beam, curvatures) for rows, beam, *_, curvatures in self._twigs
+            (each.branches, each.batch.beam, each.curvatures) for each in self._alike
         ]
-        for branch, (beam, *_, children, _) in self._bare.items():
-            if branch == 0 or len(children):
-                bent.append((branch, beam, self._curvatures(branch, len(children))))
+        for branch, loaded in self._loaded.items():
+            n_children = len(loaded.children)
+            if branch == 0 or n_children:
+                bent.append((branch, loaded.beam, self._curvatures(branch, n_children)))
         for branches, beam, curvatures in bent:
             slopes = beam.from_base(curvatures[..., :2, :])[0]
             ends = beam.integral(cross(slopes, beam.tangent[..., None, None, :]))
@@ -228,14 +267,15 @@ class TreeBeams:
     def _curvatures(self, branch: int, n_subtrees: int) -> Floats:
         """Curvatures (p, 5, 3, 3) by `wind_loads` of a branch and its first children."""
         key = branch, n_subtrees
-        if key not in self._blown:
-            beam, _, _, children, loads = self._bare[branch]
-            self._blown[key] = self._bent(beam, loads, children[:n_subtrees])
-        return self._blown[key]
+        if key not in self._curvatures_by_wind:
+            loaded = self._loaded[branch]
+            bent = self._bent_by_wind(loaded, loaded.children[:n_subtrees])
+            self._curvatures_by_wind[key] = bent
+        return self._curvatures_by_wind[key]
 
-    def _bent(self, beam: BranchBeam, loads: Floats, children: Ints) -> Floats:
-        subtrees = self._sums.select(children)
-        moments = beam.moment_in_space(loads, subtrees.force, subtrees.moment)
+    def _bent_by_wind(self, loaded: _LoadedBeam, children: Ints) -> Floats:
+        beam, subtrees = loaded.beam, self._sums.select(children)
+        moments = beam.moment_in_space(loaded.loads, subtrees.force, subtrees.moment)
         return beam.curvature_in_space(moments, self._shear_ratio)
 
     def models(
@@ -258,21 +298,34 @@ class TreeBeams:
             Models in the order of the tree's branches.
 
         """
-        none = self._sums.select(_NONE)
-        for rows, beam, drag_area, mass, curvatures in self._twigs:
-            bent = bent_by_weight(beam, mass, none, curvatures, self._shear_ratio, self._gravity)
-            shape, fields = shape_fields(beam, drag_area, mass, none, bent, self._shear_ratio)
-            for k, branch in enumerate(rows.tolist()):
-                one = self._bare[branch][0]
-                own = one_of(shape, k, beam=one)
-                both = tuple(one_of(field, k, beam=one) for field in fields)
-                model = BranchModel(one, drag_area[k], mass[k], own, both, _NONE)
-                self._known[branch, 0, 1, 0] = model
-        self._twigs = []
-        return [
-            self._model(b, len(bare[3]) if subtrees else 0, *self._richness(b, enriched))
-            for b, bare in sorted(self._bare.items())
-        ]
+        for twigs in self._alike:
+            self._model_twigs(twigs)
+        self._alike = []
+        found = []
+        for branch, loaded in sorted(self._loaded.items()):
+            n_subtrees = len(loaded.children) if subtrees else 0
+            found.append(self._model(branch, n_subtrees, *self._richness(branch, enriched)))
+        return found
+
+    def _model_twigs(self, twigs: _AlikeTwigs) -> None:
+        """Model plain twigs that are alike in one batch."""
+        batch, none = twigs.batch, self._sums.select(_NONE)
+        bent = bent_by_weight(
+            batch.beam, batch.mass, none, twigs.curvatures, self._shear_ratio, self._gravity
+        )
+        shape, fields = shape_fields(
+            batch.beam, batch.drag_area, batch.mass, none, bent, self._shear_ratio
+        )
+        for k, branch in enumerate(twigs.branches.tolist()):
+            loaded = self._loaded[branch]
+            self._models[branch, 0, PLAIN_PAIRS, PLAIN_TURNS] = BranchModel(
+                loaded.beam,
+                loaded.drag_area,
+                loaded.mass,
+                one_of(shape, k, beam=loaded.beam),
+                tuple(one_of(field, k, beam=loaded.beam) for field in fields),
+                _NONE,
+            )
 
     def enriched(self, choice: str) -> frozenset[int]:
         """
@@ -288,12 +341,15 @@ class TreeBeams:
 
         """
         parent = self._tree.branch_parent
-        choice = 'all' if choice == 'needed' and self._is_small else choice
+        if choice == 'needed' and self._is_small:
+            choice = 'all'
         if choice != 'needed':
             chosen = {
-                'none': (), 'stem': (0,), 'carriers': (0, *parent[1:].tolist()),
-                'all': range(len(parent))
-            }  # fmt: skip
+                'none': (),
+                'stem': (0,),
+                'carriers': (0, *parent[1:].tolist()),
+                'all': range(len(parent)),
+            }
             return frozenset(chosen[choice])
         heavy = np.flatnonzero(self._sums.mass[1:] > _LIGHT * self._sums.mass[0]) + 1
         if len(heavy) == 0:
@@ -306,34 +362,43 @@ class TreeBeams:
         return frozenset((0, *needed[:most].tolist()))
 
     def _shaken(self, branch: int) -> tuple[float, float]:
-        beam, _, mass, children, _ = self._bare[branch]
-        fields = self._model(branch, len(children), 1, 0).fields
-        return shaken_energies(beam, mass, self._sums.select(children), self._shear_ratio, fields)
+        loaded = self._loaded[branch]
+        plain = self._model(branch, len(loaded.children), PLAIN_PAIRS, PLAIN_TURNS)
+        subtrees = self._sums.select(loaded.children)
+        return shaken_energies(loaded.beam, loaded.mass, subtrees, self._shear_ratio, plain.fields)
 
     def _model(self, branch: int, n_subtrees: int, n_pairs: int, n_turns: int) -> BranchModel:
         """Model a branch, or take the known model."""
         key = branch, n_subtrees, n_pairs, n_turns
-        if key not in self._known:
-            beam, drag_area, mass, children, _ = self._bare[branch]
-            subtrees = self._sums.select(children[:n_subtrees])
-            curvatures = bent_by_weight(
-                beam, mass, subtrees, self._curvatures(branch, n_subtrees), self._shear_ratio,
-                self._gravity,
-            )  # fmt: skip
+        if key not in self._models:
+            loaded = self._loaded[branch]
+            beam, drag_area, mass = loaded.beam, loaded.drag_area, loaded.mass
+            subtrees = self._sums.select(loaded.children[:n_subtrees])
+            by_wind = self._curvatures(branch, n_subtrees)
+            bent = bent_by_weight(beam, mass, subtrees, by_wind, self._shear_ratio, self._gravity)
             shape, fields = shape_fields(
-                beam, drag_area, mass, subtrees, curvatures, self._shear_ratio, n_pairs, n_turns
+                beam, drag_area, mass, subtrees, bent, self._shear_ratio, n_pairs, n_turns
             )
-            self._known[key] = BranchModel(beam, drag_area, mass, shape, fields, children)
-        return self._known[key]
+            model = BranchModel(beam, drag_area, mass, shape, fields, loaded.children)
+            self._models[key] = model
+        return self._models[key]
 
     def _richness(self, branch: int, enriched: frozenset[int]) -> tuple[int, int]:
         """Return the number of pairs of a branch, and of fields of rotation about its chord."""
         if branch not in enriched:
-            return 1, 0
+            return PLAIN_PAIRS, PLAIN_TURNS
         is_stem = self._tree.branch_parent[branch] < 0
         if self._is_small:
-            return PAIRS_OF_SMALL if is_stem else FEWER_PAIRS, FEWER_TURNS
-        return N_PAIRS, N_TURNS if is_stem else FEWER_TURNS
+            return STEM_PAIRS_OF_SMALL if is_stem else BRANCH_PAIRS_OF_SMALL, BRANCH_TURNS
+        return ENRICHED_PAIRS, STEM_TURNS if is_stem else BRANCH_TURNS
+
+
+def _is_small(tree: Tree) -> bool:
+    """Whether a tree has few branches, all of them slender beams."""
+    slenderness = tree.branch_length / tree.base_diameter[tree.branch_first[:-1]]
+    least, most = SLENDER_BEAMS
+    is_slender = least <= slenderness.min() and slenderness.max() <= most
+    return bool(tree.n_branches <= SMALL_TREE and is_slender)
 
 
 def _square_frequency(beam: BranchBeam, shape: SlopeShape, mass: Floats) -> float:

@@ -27,7 +27,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Ints, Records, RecordsOf, Singles
-from tree_sway.core.beams.shape_functions import ROOMS
+from tree_sway.core.beams.field_counts import ROOMS
 from tree_sway.core.model.spherical_harmonics import N_HARMONICS
 
 WIDTH = 16

@@ -27,6 +27,7 @@ from tree_sway.core.checks import three_numbers, within
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
+from tree_sway.core.observe.explained_motion import ExplainedMotion
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
 from tree_sway.core.observe.sensor_place import place_on, tip_slopes
@@ -121,6 +122,9 @@ class ObservedTree(SwaySimulator):
                 cure='use a number of coordinates, such as 60',
             )
         self._places = {name: place_on(self.tree, where) for name, where in at.items()}
+        self.at = {name: str(where) for name, where in at.items()}
+        """Place of each sensor as it was given."""
+        self._explained = ExplainedMotion()
         self._is_smoothed, self._rate = is_smoothed, 0.0
         self.sensors: dict[str, MotionSensor] = {}
         """Sensors by their names."""
@@ -138,6 +142,7 @@ class ObservedTree(SwaySimulator):
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
         self._given: float | None = None
+        self._speed = 0.0
         self._known: TreeFit | None = None
         self._tips: Floats | None = None
         self.learns = learns
@@ -227,7 +232,8 @@ class ObservedTree(SwaySimulator):
         swing, (eta, rate), added = self._swing, self._corrected, self._added
         eta -= added[0]
         rate -= added[1]
-        if is_wind(x, y, z, self._max_wind):
+        if is_wind(x, y, z, self._max_wind):  # else the last wind moves the tree
+            self._speed = math.hypot(x, y, z)
             apart = (self._share @ self._crown.push(x, y, z, dt)).tolist()
             status = super().step((x + apart[0], y + apart[1], z + apart[2]), dt)
         else:
@@ -240,10 +246,12 @@ class ObservedTree(SwaySimulator):
         if self._records:
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
-        added[:] = self.observer.step(self.now, math.hypot(x, y, z), swing, n_periods)
+        added[:] = self.observer.step(self.now, self._speed, swing, n_periods)
         self._bound(added)
         eta += added[0]
         rate += added[1]
+        if self.observer.is_active:
+            self._explained.note(dt, self.observer.stiffness, eta, added[0])
         if self.observer.fit is not self._known:
             self._take_on(self.observer.fit)
         return status
@@ -276,7 +284,7 @@ class ObservedTree(SwaySimulator):
         self._crown.reset()
         self._added[:] = 0.0
         self.observer.reset()
-        self.now, self._given = 0.0, None
+        self.now, self._given, self._speed = 0.0, None, 0.0
         for record in self._records.values():
             record.next = 0
 
@@ -304,6 +312,15 @@ class ObservedTree(SwaySimulator):
             self._tips = slopes.reshape(-1, slopes.shape[2])
         deviation = self.observer.tip_deviation(self._tips)
         return np.asarray(_QUANTILE * deviation.reshape(-1, 3))
+
+    @property
+    def explained(self) -> float:
+        """
+        Share of the motion that the wind alone explains, 0 to 1.
+
+        It is that of the last half minute in which a sensor was in use, 1 before any was.
+        """
+        return self._explained.share
 
     @property
     def problems(self) -> list[str]:

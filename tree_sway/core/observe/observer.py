@@ -26,6 +26,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import entry_of, kernel
 from tree_sway.core.observe.disturbance import Disturbance, disturbance, TIME_CONSTANT
 from tree_sway.core.observe.estimate import Estimate
+from tree_sway.core.observe.lateness import Lateness
 from tree_sway.core.observe.sensor_place import place_motion, PlaceMotion
 from tree_sway.core.observe.sensor_track import as_felt, ROWS, sensed_rows, SensorTrack
 from tree_sway.core.observe.steady_filter import (
@@ -131,8 +132,7 @@ class Observer:
         """Number of coordinates that are corrected."""
         self._is_smoothed = is_smoothed
         self._places = [place_motion(simulator, each.sensor.place) for each in self.tracks]
-        self.late = 0
-        """Steps by which sensors are read late."""
+        self._lateness = Lateness(len(self.tracks), dt, _LATEST)
         self._computed = np.zeros((_HISTORY, len(self.tracks), ROWS))
         self._eta = np.zeros((_HISTORY, shapes.shape[1]))
         self._states = np.zeros((_HISTORY, self.count))
@@ -142,8 +142,6 @@ class Observer:
         self._used: tuple[int, ...] = ()
         self._designed_for = 0.0
         self._mean_speed = self._gustiness = 0.0
-        self.share = 0.0
-        """Energy of the correction over that of the whole motion, a running mean [-]."""
         self._causal: Estimate | None = None
         self._late_one: Estimate | None = None
         self._designing: Iterator[_Design | None] | None = None
@@ -180,6 +178,16 @@ class Observer:
         self._designed_for = 0.0
 
     @property
+    def late(self) -> int:
+        """Steps by which sensors are read late."""
+        return self._lateness.steps
+
+    @property
+    def stiffness(self) -> Floats:
+        """Stiffness of the corrected coordinates, of unit mass, in [1/s^2], (count,)."""
+        return self._first_stiffness
+
+    @property
     def is_active(self) -> bool:
         """Whether a sensor is in use."""
         return bool(self._used)
@@ -195,7 +203,7 @@ class Observer:
         time
             Time of the end of the step in [s].
         speed
-            Speed of the mean wind in [m/s].
+            Speed of the mean wind that moves the tree in [m/s], finite.
         swing
             Displacement, rate and force of each coordinate in the wind alone, (m,).
         n_periods
@@ -209,11 +217,7 @@ class Observer:
         """
         slot = self._steps % _HISTORY
         self._steps += 1
-        share = self._dt / _RECENT
-        if self._steps * self._dt < _RECENT:
-            share = 1.0 / self._steps
-        self._mean_speed += share * (speed - self._mean_speed)
-        self._gustiness += share * ((speed - self._mean_speed) ** 2 - self._gustiness)
+        self._note_wind(speed)
         m, state = len(self._stiffness), self._swing
         state[:m], state[m : 2 * m], state[2 * m :] = swing
         for k, rows in enumerate(self._rows):
@@ -230,9 +234,15 @@ class Observer:
             self._learn()
             self._correct(self._causal, beyond, n_periods)
         self._find_energies(self._first_stiffness, swing[0], swing[1], self._moved, self.energies)
-        own, elastic = self.energies[:2].tolist()
-        self.share += self._dt / _RECENT * (own / max(elastic + own, 1e-300) - self.share)
         return self._moved[:2]
+
+    def _note_wind(self, speed: float) -> None:
+        """Follow the mean speed of the wind and its deviation."""
+        share = self._dt / _RECENT
+        if self._steps * self._dt < _RECENT:
+            share = 1.0 / self._steps
+        self._mean_speed += share * (speed - self._mean_speed)
+        self._gustiness += share * ((speed - self._mean_speed) ** 2 - self._gustiness)
 
     @cached_property
     def _find_energies(self) -> Callable[..., None]:
@@ -243,19 +253,16 @@ class Observer:
 
     def _beyond(self, time: float) -> list[Floats | None]:
         """Motion of each sensor beyond the model's, at the step that is late."""
+        for k, track in enumerate(self.tracks):
+            if track.may_be_used:
+                self._lateness.note(k, time, track.sensor.newest)
+        self._lateness.settle(time)
         at = self._steps - 1 - self.late
         if at <= self._done:  # more steps late than before: nothing new
             return [None] * len(self.tracks)
         computed = self._computed[at % _HISTORY]
         when = time - self.late * self._dt
         found = [track.read(when, rows) for track, rows in zip(self.tracks, computed, strict=True)]
-        newest = [track.sensor.newest for track in self.tracks if track.in_use]
-        if (
-            newest
-            and max(newest) < when - 0.01 * self._dt
-            and time - max(newest) < _LATEST * self._dt
-        ):
-            self.late = min(self.late + 1, _LATEST)
         return found
 
     @property
@@ -357,6 +364,9 @@ class Observer:
         """Correct the estimates by the measurements of the step that is late."""
         at, late = self._steps - 1 - self.late, self._late_one
         if at > self._done:
+            # More than one step where sensors have become less late.
+            n_periods *= min(at - self._done, _LATEST)
+            skipped = range(max(self._done + 1, at - _LATEST), at)
             self._done = at
             unknown = self._join(beyond)
             causal.move(n_periods)
@@ -364,6 +374,8 @@ class Observer:
             self._judge(causal.sizes(), beyond)
             if late is not None:
                 late.move(n_periods)
+                for each in skipped:
+                    self._states[each % _HISTORY] = late.state[0]
                 late.correct(self._values, unknown)
                 self._smooth(late, at % _HISTORY)
         if not self.late:

@@ -164,12 +164,20 @@ class SensorTrack:
         return known * math.sqrt(held)
 
     @property
+    def may_be_used(self) -> bool:
+        """Whether it is in use, or its mounting is being found."""
+        return self.in_use or self.alignment is None
+
+    @property
     def problem(self) -> str:
         """Why it is not in use, and what to do; empty if it is."""
         name = self.sensor.name
         if self.in_use:
             return ''
-        if self.sensor.counts.accepted == 0:
+        counts = self.sensor.counts
+        if counts.accepted == 0 and counts.refused:
+            return f'{name}: all of {counts.refused} samples were refused: check what it sends'
+        if counts.accepted == 0:
             return f'{name}: no sample yet'
         if self.alignment is None:
             left = (self._next_fit - self._count) * self._dt

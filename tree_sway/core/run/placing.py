@@ -21,7 +21,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints, Singles
-from tree_sway.core.beams.shape_functions import MAX_COORDINATES
+from tree_sway.core.beams.field_counts import MAX_COORDINATES
 from tree_sway.core.kernel import fused, part
 from tree_sway.core.model.records import (
     Block,

@@ -189,7 +189,11 @@ class Rig:
             tree.name, simulator.model, np.arange(1, count + 1) / rate, means, chosen,
             tuple(tree.branch_names[branch] for branch in chosen), tips, moment,
             per_moment * np.stack([-moment[:, 1], moment[:, 0]], axis=1), strain, gauge.use(),
-            (*_doubts(simulator, before), *_said_by_sensors(simulator)),
+            (
+                *_doubts(simulator, before),
+                *_other_times(self.motion, count / rate),
+                *_said_by_sensors(simulator),
+            ),
         )  # fmt: skip
 
     def strength_curve(
@@ -222,6 +226,17 @@ class Rig:
         return used
 
 
+def _other_times(motion: Sequence[PlacedMotion], seconds: float) -> Iterator[str]:
+    """Report sensors whose samples are all before or after the simulated time, 0 to seconds."""
+    for each in motion:
+        if len(each.time) and not (each.time[-1] >= 0.0 and each.time[0] <= seconds):
+            first, last = float(each.time[0]), float(each.time[-1])
+            yield (
+                f'{each.name}: its samples are of {first:.6g} to {last:.6g} s, and the wind of 0 '
+                f'to {seconds:.6g} s: shift one of them'
+            )
+
+
 def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
     """Report which sensors moved the tree, and what they told, one sentence each."""
     if not isinstance(simulator, ObservedTree):
@@ -247,6 +262,8 @@ def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
 def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
     """Report what makes the motion since some counts doubtful, one sentence each."""
     now, found = simulator.counts, list[str]()
+    if simulator.n_shown == 0:
+        found.append(f"model '{simulator.model}' has no coordinates: the tree stands still")
     if now.reduced > before.reduced:
         found.append(
             'steps stayed clamped to the limit of the model, and coordinates were left out: '

@@ -8,7 +8,7 @@ its own turned frame, and the wind's force on each branch from its relative velo
 the twigs to the stem: forces and moments are summed over subtrees.
 
 **The passes are each other's transpose.** The drag does work at the very velocities that it is
-computed from, however far the tree is bent; so drag never adds energy.
+computed from, however far the tree is bent.
 """
 
 from __future__ import annotations

@@ -17,7 +17,8 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.beams.beam import cross, cross_matrix, stacked
 from tree_sway.core.beams.branch_model import BranchModel
-from tree_sway.core.beams.shape_functions import across, exposure
+from tree_sway.core.beams.shape_fields import across
+from tree_sway.core.beams.wind_on_branch import exposure
 from tree_sway.core.model.fill_records import fill_places, Places
 from tree_sway.core.model.records import branch_layout, room_for_fields
 from tree_sway.core.rotation import rotated

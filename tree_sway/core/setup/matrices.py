@@ -31,7 +31,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.beams.beam import cross, energies, many_of, products
 from tree_sway.core.beams.branch_model import BranchModel
-from tree_sway.core.beams.shape_functions import MAX_COORDINATES
+from tree_sway.core.beams.field_counts import MAX_COORDINATES
 from tree_sway.core.tree.tree import Tree
 
 

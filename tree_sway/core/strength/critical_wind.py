@@ -16,15 +16,9 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-from tree_sway.core.strength.strength_use import ROOT_BAND, ROOT_MOMENT
 
 PERIOD = 600.0
 """Time over which the mean wind and the largest load are taken [s]."""
-WOOD_BAND_80 = (0.85 * (1.0 - 1.2816 * 0.16), 1.0 + 1.2816 * 0.16)
-"""Strength of a tree's wood over its species' mean [-] of eight trees of ten: specimens scatter
-by 16 % (Wood Handbook, 2010, table 5-6), and knots take up to 15 % (Gardiner et al. 2000)."""
-ROOT_BAND_OF_SOILS = (ROOT_BAND[0] / ROOT_MOMENT, ROOT_BAND[1] / ROOT_MOMENT)
-"""Strength of roots over its mean [-], by species and soil (Byrne 2005; Nicoll et al. 2006)."""
 _EULER = 0.5772
 _LEAST_POWER, _LARGEST_POWER = 0.8, 2.5
 

@@ -3,13 +3,9 @@
 """
 The largest share of its strength that a tree has used.
 
-Wood breaks where its stress, Young's modulus times strain, reaches its modulus of rupture. Small
-clear specimens scatter by 16 % (Forest Products Laboratory, Wood Handbook, 2010, table 5-6), and
-knots reduce that of a stem by 15 % (Gardiner et al. 2000, Ecological Modelling 129, 1-23). Roots
-fail at a moment of 77 to 146 N m for each kg of the stem, by species and soil (Byrne 2005;
-winching tests of near 2,000 conifers: Nicoll et al. 2006).
-
-Bands also have the spread of the load: `LOAD_SPREADS`, and `LEAF_SPREAD` in leaf.
+Wood breaks where its stress, Young's modulus times strain, reaches its modulus of rupture; roots
+fail at `ROOT_MOMENT` for each kg of the stem. Bands hold the strength and the load
+(`strength_band`).
 
 Rot, wounds and forks, a wet or shallow soil, the stress of growth and of the tree's own weight,
 fatigue, and sheltering by neighbours are left out. It is no verdict on a tree's safety.
@@ -25,23 +21,9 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.setup.reductions import TreeReductions
+from tree_sway.core.strength.strength_band import load_band, root_band, wood_band
 from tree_sway.core.strength.wood_strain import WoodStrain
-
-WOOD_BAND = (0.85 * (1.0 - 0.16), 1.0 + 0.16)
-"""Modulus of rupture of a tree's wood over that of its species' mean [-]."""
-
-LOAD_SPREADS = {'drag': 0.25, 'wind at the crown': 0.3}
-"""
-Log-deviations of what loads a tree: drag coefficients of crowns of one species (Mayhead 1973;
-Vollsinger et al. 2005) and the wind at a crown by a profile.
-
-"""
-
-LEAF_SPREAD = 0.35
-"""Log-deviation of the leaf area of a stem: a factor of two either way (`LeafTraits`)."""
-
-ROOT_MOMENT, ROOT_BAND = 110.0, (77.0, 146.0)
-"""Strength of roots as a moment per mass of the stem, mean and band in [N m/kg]."""
+from tree_sway.core.tree.species import ROOT_MOMENT
 
 
 @dataclass(frozen=True)
@@ -52,8 +34,7 @@ class StrengthUse:
     Parameters
     ----------
     wood
-        Largest share of the modulus of rupture [-], with its lower and upper bound by `WOOD_BAND`
-        and by the spreads of the load, (3,).
+        Largest share of the modulus of rupture [-], with its lower and upper bound, (3,).
     branch, height
         Branch with that share, and its height above the base of the tree in [m].
     roots
@@ -72,6 +53,12 @@ class StrengthUse:
     roots: Floats
     in_leaf: bool = False
     base_moment: float = math.nan
+
+    @property
+    def moment_band(self) -> tuple[float, float]:
+        """Bounds of the bending moment at the base in [N m], by the spreads of the load."""
+        _, low, high = (self.base_moment * load_band(in_leaf=self.in_leaf)).tolist()
+        return low, high
 
     def plain(self) -> dict[str, Any]:
         """Return the fields as plain numbers, for JSON; ``roots`` is None in a pot."""
@@ -132,25 +119,11 @@ class StrengthGauge:
         in_leaf = bool(self._reductions.settings.in_leaf)
         wood = species.modulus * self._largest[at] / species.rupture
         roots = self._moment / capacity
-        weakest, strongest = ROOT_BAND[0] / ROOT_MOMENT, ROOT_BAND[1] / ROOT_MOMENT
         return StrengthUse(
-            wood * _band(WOOD_BAND, in_leaf),
+            wood * wood_band(in_leaf=in_leaf),
             tree.branch_names[int(self._strain.branch[at])],
             float(self._strain.height[at]),
-            roots * _band((weakest, strongest), in_leaf),
+            roots * root_band(in_leaf=in_leaf),
             in_leaf,
             self._moment,
         )
-
-
-def _band(strength: tuple[float, float], in_leaf: bool) -> Floats:
-    """
-    Return 1 and the bounds of a used share over it, (3,).
-
-    Strength has a smallest and a largest value over its mean; its logarithm and those of what
-    loads the tree are independent.
-    """
-    loads = [*LOAD_SPREADS.values(), *([LEAF_SPREAD] if in_leaf else [])]
-    load = math.hypot(*loads)
-    weak, strong = (math.hypot(load, math.log(each)) for each in strength)
-    return np.array([1.0, math.exp(-strong), math.exp(weak)])

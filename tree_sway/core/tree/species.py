@@ -108,7 +108,7 @@ def species_named(name: str) -> Species:
         raise SpeciesError(f"'{name}' is the name of a file", cure=cure)
     words = _plain(name).split()
     # A first word alone is a genus; pin oak is no pine, though that is pin in French.
-    genus = words[:1] if len(words) == 1 or len(words[0]) >= _SHORTEST_END else []
+    genus = [word for word in words[:1] if len(words) == 1 or len(word) >= _SHORTEST_END]
     for known in (' '.join(words), ' '.join(words[:2]), *genus):
         if known in _KEYS:
             return SPECIES[_KEYS[known]]
@@ -161,17 +161,24 @@ def look_of(key: str) -> Look:
     return SPECIES[key].look if key in SPECIES else Look()
 
 
+ROOT_MOMENT = 120.0
+"""
+Moment at which roots fail over the mass of the stem in [N m/kg].
+
+Conifers fall at a moment proportional to the mass of their stem (winching tests on near 2,000
+trees: Nicoll et al. 2006): of 77 N m/kg for western hemlock, 95 for redcedar, 119 for hybrid
+spruce, 146 for lodgepole pine (Byrne 2005). That broadleaves are like conifers is assumed.
+"""
+
+
 def typical_root_stiffness(stem_mass: float) -> float:
     """
     Stiffness against tilting in [N m/rad] of the roots of a tree with a stem of a mass [kg].
 
-    Conifers fall at a moment proportional to the mass of their stem (winching tests on near 2,000
-    trees: Nicoll et al. 2006), of 77 to 146 N m per kg in four species (Byrne 2005); 120 is used.
-    They tilt by a quarter of a degree at 40 % of that (280 trees: Detter, Rust & Krisans 2023,
-    Forests 14, 533). Soils differ by a factor of two. That broadleaves are like conifers is
-    assumed.
+    Trees tilt by a quarter of a degree at 40 % of the moment at which their roots fail (280 trees:
+    Detter, Rust & Krisans 2023, Forests 14, 533). Soils differ by a factor of two.
     """
-    return 0.4 * 120.0 * stem_mass / math.radians(0.25)
+    return 0.4 * ROOT_MOMENT * stem_mass / math.radians(0.25)
 
 
 def leaf_traits(key: str) -> LeafTraits:

@@ -105,7 +105,10 @@ const stream = new TreeStream(address.href, {
       panel.update(values, Boolean(refused));
     }
     status = newStatus ?? status;
-    if (newStatus) hideIdle();
+    if (newStatus) {
+      hideIdle();
+      scene.grass.gusts.foresee(sceneTime, newStatus.wind_ahead);
+    }
     if (Number.isFinite(status.record_time)) panel.update({ record_time: status.record_time });
   },
 }, { kept, byWind: query.has("solve") });
@@ -156,7 +159,7 @@ function showPanel() {
 /** Hide the controls that have no effect. */
 function hideIdle() {
   panel.hide("tolerance", !connection.description?.kinds.some(({ model }) => model === "auto"));
-  for (const name of ["height", "individual"]) panel.hide(name, !status.is_grown);
+  for (const name of ["height", "individual", "month"]) panel.hide(name, !status.is_grown);
 }
 
 /** @param {string} title @param {string} text @param {boolean} [canRetry] */

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Controls as the server describes them: sliders, choices, buttons; a refusal puts them back. */
 
-import { hasWord, windPoint, word } from "./words.js";
+import { hasWord, language, windPoint, word } from "./words.js";
 
 const SEND_EVERY = 80;
 const STEPS = 400;
@@ -29,6 +29,9 @@ const named = ({ name, description }) =>
 /** A number as people read it. @param {Control} control @param {number} value */
 function textOf({ name, unit }, value) {
   if (name === "bearing_to") return windPoint([Math.sin(value), Math.cos(value)]);
+  if (name === "month") {
+    return new Date(2001, Math.min(11, Math.floor(value) - 1), 15).toLocaleString(language(), { month: "long" });
+  }
   if (unit === "rad") return `${Math.round((value * 180) / Math.PI)}°`;
   if (unit === "m" && value < 0.1) return `${Number((1000 * value).toPrecision(2))} mm`;
   return `${Number(value.toPrecision(unit === "s" ? 4 : 2))} ${unit}`.trim();

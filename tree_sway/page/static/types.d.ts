@@ -268,6 +268,30 @@ interface Spray {
   rolls: number[];
 }
 
+/** Where grass grows, and what blows over it. */
+interface Meadow {
+  /** [m] */
+  middle: number[];
+  extent: number;
+  /** Of the trees [m]. */
+  height: number;
+  /** Of the first tree, along the wind [m]. */
+  first: number;
+  /** Of the mean wind. */
+  way: number[];
+  /** Speed of the mean wind [m/s]. */
+  mean: number;
+  /** [s] */
+  time: number;
+}
+
+/** Of cards smaller than those of a spray: their area over that of theirs, whether they lie flat. */
+interface Spread {
+  share: number;
+  isFlat: boolean;
+  random: () => number;
+}
+
 /** Shapes turned about the vertical. */
 interface Turned {
   sides: number;

@@ -25,24 +25,29 @@ def open_mqtt(address: SourceAddress) -> Source:
     that comes by itself; ``user`` and ``password_file`` log in.
     """
     topic = unquote(address.parts.path.removeprefix('/'))
-    if not address.host or not topic:
-        raise address.error('no host or topic', 'give mqtt://host/topic')
-    is_encrypted = address.scheme == 'mqtts'
     if 'field' in address.options:
         address.options.setdefault('speed', address.options['field'])
     address.text_of('field')
     read: Read = lines_of(address)
     vane = address.text_of('direction_topic')
-    transport = Mqtt(
+    transport = broker_of(address, (topic, vane) if vane else (topic,))
+    expects = 'JSON with a wind speed (say where: field=PATH), or a number'
+    return Source(transport, _WithVane(read, vane) if vane else read, topic, expects)
+
+
+def broker_of(address: SourceAddress, topics: tuple[str, ...]) -> Mqtt:
+    """Open topics of the broker of an address; a `ParameterError` without a host or a topic."""
+    if not address.host or not topics[0]:
+        raise address.error('no host or topic', 'give mqtt://host/topic')
+    is_encrypted = address.scheme == 'mqtts'
+    return Mqtt(
         address.host,
-        (topic, vane) if vane else (topic,),
+        topics,
         address.port(TLS_PORT if is_encrypted else PORT),
         address.text_of('user') or unquote(address.parts.username or ''),
         address.secret('password_file') or unquote(address.parts.password or ''),
         is_encrypted,
     )
-    expects = 'JSON with a wind speed (say where: field=PATH), or a number'
-    return Source(transport, _WithVane(read, vane) if vane else read, topic, expects)
 
 
 @dataclass

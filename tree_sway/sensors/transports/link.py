@@ -22,7 +22,8 @@ class Link(Worker):
     Connection over a transport; calls `take` with each message, in its own thread.
 
     A connection without a message for the time of `silence` [s], by default the transport's, is
-    closed and opened again, first after `first_pause` [s]. An exception of `take` breaks it too.
+    closed and opened again, first after `first_pause` [s], and after twice as long each time up to
+    `longest_pause` [s]. An exception of `take` breaks it too.
     """
 
     transport: Transport
@@ -30,6 +31,7 @@ class Link(Worker):
     log: Callable[[str], None]
     silence: float | None = None
     first_pause: float = FIRST_PAUSE
+    longest_pause: float = LONGEST_PAUSE
 
     def __post_init__(self) -> None:
         """Prepare the thread."""
@@ -87,5 +89,5 @@ class Link(Worker):
                 self.log(f'{self.transport}: {why}; trying again')
             self.is_up, self.failure = False, why
             has_data = self.messages > before
-            pause = self.first_pause if has_data else min(2.0 * pause, LONGEST_PAUSE)
+            pause = self.first_pause if has_data else min(2.0 * pause, self.longest_pause)
             self._stopping.wait(pause)

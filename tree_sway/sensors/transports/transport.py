@@ -13,7 +13,8 @@ class Message:
     """
     One message of an instrument: a line without its end, a datagram, a body of HTTP.
 
-    ``origin`` is the topic of MQTT or the path of HTTP, empty where there is neither.
+    ``origin`` is the topic of MQTT, the path of HTTP or the address that sent a datagram, empty
+    elsewhere.
     """
 
     data: bytes

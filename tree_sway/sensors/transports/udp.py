@@ -46,9 +46,10 @@ class Udp:
             link.settimeout(READ_FOR)
             while not receiver.is_over:
                 try:
-                    receiver.deliver(Message(link.recv(_LARGEST)))
+                    data, (sender, *_) = link.recvfrom(_LARGEST)
                 except TimeoutError:
                     continue
+                receiver.deliver(Message(data, sender))
 
 
 def _is_group(host: str) -> bool:

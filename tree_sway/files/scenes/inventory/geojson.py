@@ -31,7 +31,7 @@ def read_geojson(text: str, source: str) -> TextTable:
     try:
         document = json.loads(text)
         records = list(_records(document))
-    except (ValueError, RecursionError, TypeError, AttributeError) as error:
+    except (ValueError, OverflowError, RecursionError, TypeError, AttributeError) as error:
         raise FormatError(f'not GeoJSON: {error}', where=source, cure='save it again') from None
     if not records:
         raise FormatError('no features', where=source, cure='export points with properties')
@@ -43,9 +43,10 @@ def read_geojson(text: str, source: str) -> TextTable:
 def _records(document: dict[str, Any]) -> Iterator[dict[str, str]]:
     for element in document.get('elements', ()):
         tags = {f'tags.{name}': _text(each) for name, each in element.get('tags', {}).items()}
-        if 'lat' in element and tags:
+        if 'lat' in element and 'lon' in element and tags:
             yield {'latitude': _text(element['lat']), 'longitude': _text(element['lon'])} | tags
-    for feature in document.get('features', ()):
+    is_one = document.get('type') == 'Feature'
+    for feature in (document,) if is_one else document.get('features', ()):
         own = {name: _text(each) for name, each in (feature.get('properties') or {}).items()}
         corners = list(_corners((feature.get('geometry') or {}).get('coordinates'), 0))
         if corners:
@@ -63,6 +64,8 @@ def _corners(node: Any, depth: int) -> Iterator[list[float]]:
     if not isinstance(node, list) or depth > _DEEPEST or not node:
         return
     if isinstance(node[0], int | float):
+        if len(node) < 2:
+            raise ValueError(f'a place of one number, {node[0]}')
         yield [float(each) for each in node[:2]]
     else:
         for each in node:

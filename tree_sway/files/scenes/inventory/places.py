@@ -17,7 +17,8 @@ _EARTH = 6.371e6
 _FAR = 1e5
 _NUMBER = re.compile(r'-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?')
 _LATITUDE_FIRST = re.compile(r'\s*\(?\s*-?\d+(\.\d+)?\s*,\s*-?\d+(\.\d+)?\s*\)?\s*')
-_GEOMETRY = re.compile(r'POINT|"?coordinates"?', re.IGNORECASE)
+_GEOMETRY = re.compile(r'(?:POINT[\sZM]*\(|coordinates)(.*)', re.IGNORECASE | re.DOTALL)
+"""The places of a geometry, behind the number of its reference system (``SRID=4326;POINT...``)."""
 _DEGREE_DIGITS = 5
 """Digits after the point of degrees, the fifth of which is a metre; metres have fewer."""
 _STATES_SOUTH = 24.0
@@ -74,13 +75,15 @@ def _of_geometries(columns: InventoryColumns, index: int) -> Places:
     """Places of ``48.85, 2.32``, of WKT ``POINT (2.32 48.85)`` or of GeoJSON in a cell."""
     first, second = np.full(columns.n_rows, np.nan), np.full(columns.n_rows, np.nan)
     for row, cell in enumerate(columns.texts(index)):
-        found = _NUMBER.findall(cell)
         is_pair = _LATITUDE_FIRST.fullmatch(cell) is not None
-        if len(found) >= 2 and (is_pair or _GEOMETRY.search(cell)):
+        geometry = _GEOMETRY.search(cell)
+        found = _NUMBER.findall(geometry[1] if geometry else cell)
+        if len(found) >= 2 and (is_pair or geometry):
             first[row], second[row] = map(float, found[1::-1] if is_pair else found[:2])
         elif cell:
             columns.leave_out(row, 'no place', f"'{cell[:40]}' is no latitude and longitude")
-    if np.nanmax(np.abs(first), initial=0.0) > 180.0:
+    known = np.abs(first[np.isfinite(first)])
+    if len(known) and np.median(known) > 180.0:  # one cell that is wrong does not decide for all
         return _near_origin(columns, first, second)
     return _of_degrees(columns, second, first)
 
@@ -103,6 +106,8 @@ def _of_degrees(columns: InventoryColumns, north: Floats, east: Floats) -> Place
 
 def _near_origin(columns: InventoryColumns, x: Floats, y: Floats) -> Places:
     """Places less a whole number of metres if they are on a map, for single precision."""
+    is_known = np.isfinite(x) & np.isfinite(y)
+    x, y = np.where(is_known, x, np.nan), np.where(is_known, y, np.nan)
     if np.nanmax(np.abs([x, y]), initial=0.0) <= _FAR:
         return Places(x, y)
     east, north = float(np.floor(np.nanmin(x))), float(np.floor(np.nanmin(y)))

@@ -125,7 +125,7 @@ def inventory_of(
     models = table.find('model')
     model_texts = columns.texts(models.index) if models else [''] * columns.n_rows
     exposures = _exposures(columns)
-    unused = [each for i, each in enumerate(table.columns) if i not in columns.used]
+    unused = [each for i, each in enumerate(table.columns) if each and i not in columns.used]
     if unused:
         columns.note(f'columns that are not used: {", ".join(unused[:20])}')
     stems = np.full(columns.n_rows, np.nan) if diameter is None else diameter

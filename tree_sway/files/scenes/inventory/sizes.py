@@ -102,6 +102,8 @@ def heights_of(
     name = columns.table.columns[index]
     if factor is None:
         factor = 1.0
+        if unit:
+            columns.note(f"{name}: '{unit[:40]}' is no known unit")
         ratio = 0.0 if diameter is None else _slenderness(values, diameter)
         # In the United States a city's heights are in feet or in metres.
         most = _MIDDLING / math.sqrt(_FOOT) if is_in_states else _SLENDER[1]

@@ -11,16 +11,18 @@ from typing import Any
 from tree_sway.errors import FormatError, MissingDependencyError
 from tree_sway.extras import cure_of_missing
 from tree_sway.files.cell_table import table_of_cells
+from tree_sway.files.column_names import rank_of
 from tree_sway.files.table_file import TextTable
 from tree_sway.files.text_file import MAX_LINES, reason_of
 
+_QUANTITIES = ('species', 'genus', 'height', 'diameter', 'girth', 'x', 'latitude', 'place')
 _HEADER = 20
 """Rows that may stand above the header, such as a title."""
 
 
 def read_spreadsheet(path: Path) -> TextTable:
     """
-    Return the first sheet with a row of at least three names, and rows below.
+    Return the rows below the header, which names most columns of an inventory of all sheets.
 
     Raises a `FormatError` for a broken file or no such sheet, and a `MissingDependencyError`
     without openpyxl.
@@ -36,13 +38,25 @@ def read_spreadsheet(path: Path) -> TextTable:
     except Exception as error:  # of zip, of XML, of the format: openpyxl has no root of its own
         what = f'no spreadsheet that can be read: {reason_of(error)}'
         raise FormatError(what, where=str(path), cure='save it as .xlsx or .csv again') from None
-    for rows in sheets:
-        for number, cells in enumerate(rows[:_HEADER]):
-            if sum(bool(cell) for cell in cells) >= 3 and number + 1 < len(rows):
-                below = [row for row in rows[number + 1 :] if any(row)]
-                lines = [n for n, row in enumerate(rows, start=1) if n > number + 1 and any(row)]
-                return table_of_cells(cells, below, str(path), lines)
-    raise FormatError('no sheet with a header and rows', where=str(path))
+    tables = [
+        (rows, number)
+        for rows in sheets
+        for number, cells in enumerate(rows[:_HEADER])
+        if sum(map(bool, cells)) >= 2 and number + 1 < len(rows)
+    ]
+    if not tables:
+        raise FormatError('no sheet with a header and rows', where=str(path))
+    # A title, or a sheet of other things, may stand above: the header names species or sizes.
+    rows, number = max(tables, key=lambda table: _n_known(table[0][table[1]]))
+    below = [row for row in rows[number + 1 :] if any(row)]
+    lines = [n for n, row in enumerate(rows, start=1) if n > number + 1 and any(row)]
+    return table_of_cells(rows[number], below, str(path), lines)
+
+
+def _n_known(cells: list[str]) -> int:
+    """Count of the quantities of an inventory that a row names."""
+    names = [cell for cell in cells if cell]
+    return sum(any(rank_of(name, each) is not None for name in names) for each in _QUANTITIES)
 
 
 def _rows(sheet: Any) -> Any:

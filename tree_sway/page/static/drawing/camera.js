@@ -4,6 +4,8 @@
 
 /** Half of the height of the picture over how far it is away. */
 const HALF = Math.tan((16 * Math.PI) / 180);
+/** Height from which on a tree is looked up at [m]. */
+const TALL = 3;
 
 export class Camera {
   azimuth = -0.6;
@@ -34,10 +36,11 @@ export class Camera {
     const tall = high[2] - low[2];
     this._size = Math.hypot(wide, tall);
     this.azimuth = -0.6;
-    // What is much wider than high is seen from higher up.
-    this.elevation = Math.min(0.21, 0.16 + 0.01 * Math.max(0, wide / tall - 3));
+    // A tree is seen from the ground, against the sky; what is small or much wider than high from higher up.
+    const isTree = tall > TALL && wide < 2 * tall;
+    this.elevation = isTree ? -0.07 : Math.min(0.21, 0.16 + 0.01 * Math.max(0, wide / tall - 3));
     this.target = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
-    const seen = tall * Math.cos(this.elevation) + wide * Math.sin(this.elevation);
+    const seen = tall * Math.cos(this.elevation) + wide * Math.abs(Math.sin(this.elevation));
     const [left, top, right, bottom] = this.room();
     const [across, down] = [right - left, bottom - top].map((each) => Math.max(0.2, each));
     const half = 0.54 * Math.max(seen / down, wide / this.aspect / across, 0.7 * this._size);
@@ -50,7 +53,7 @@ export class Camera {
   orbit(dx, dy) {
     this.isHome = false;
     this.azimuth -= dx * 0.006;
-    this.elevation = Math.min(Math.max(this.elevation + dy * 0.005, -0.05), 1.5);
+    this.elevation = Math.min(Math.max(this.elevation + dy * 0.005, -0.12), 1.5);
   }
 
   /** @param {number} dx share of the height @param {number} dy */
@@ -79,6 +82,9 @@ export class Camera {
 
   /** @returns {Float32Array} from the scene to clip space, column by column */
   update() {
+    // It does not go below the ground.
+    const above = this.target[2] - this._box[0][2] - 0.01 * this._size;
+    this.elevation = Math.max(this.elevation, -Math.asin(Math.min(1, Math.max(-0.9, above / this.distance))));
     const { right, up, back } = this.axes();
     const [x, y, z] = this.target.map((each, c) => each + this.distance * back[c]);
     this.eye = [x, y, z];

@@ -3,6 +3,7 @@
 /** The graphics unit: the programs of shaders.glsl, vertex arrays, textures. */
 
 import { textOf } from "../files.js";
+import { PLACES } from "./gusts.js";
 
 /** Texels in a row of poses. */
 const TEXTURE_WIDTH = 1024;
@@ -14,6 +15,7 @@ const HEAD = `#version 300 es
 #define ROUND ${ROUND}
 #define LOW ${ELEVATIONS[0]}
 #define HIGH ${ELEVATIONS[1]}
+#define PLACES ${PLACES}
 `;
 
 const parts = (await textOf("drawing/shaders.glsl")).split("\n#part ").slice(1).map((part) => {
@@ -58,11 +60,11 @@ export function program(gl, name) {
   const fields = Array.from(inputs, ([, size = 1, field]) => ({ size: Number(size), at: gl.getAttribLocation(made, field) }));
   const uniforms = /** @type {Program["uniforms"]} */ ({});
   for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
-    const { name, type } = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(made, i));
+    const { name, type, size } = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(made, i));
     const at = gl.getUniformLocation(made, name);
     /** @type {Program["uniforms"]} */
     const setters = {
-      [gl.FLOAT]: (value) => gl.uniform1f(at, value),
+      [gl.FLOAT]: (value) => (size > 1 ? gl.uniform1fv(at, value) : gl.uniform1f(at, value)),
       [gl.FLOAT_VEC2]: (value) => gl.uniform2fv(at, value),
       [gl.FLOAT_VEC3]: (value) => gl.uniform3fv(at, value),
       [gl.FLOAT_VEC4]: (value) => gl.uniform4fv(at, value),

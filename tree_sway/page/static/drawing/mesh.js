@@ -11,8 +11,11 @@ import { leavesAlong } from "./textures.js";
 
 /** Least spacing of rings of bark on the screen [px], height of the picture of bark on a stem [m]. */
 const [RING_SPACING, BARK_TILE] = [6, 0.6];
-/** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then. */
-const LARGEST_CARDS = 4;
+/** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then; and how
+ * many a cluster has at most, which are smaller where they are more than the spray's own. */
+const [LARGEST_CARDS, MOST_OF_CLUSTER] = [4, 12];
+/** Radius of wood that shows the bark of the stem, over the height of the tree. */
+const BARKED = 0.005;
 
 /** The lowest and the highest corner of a box of points. @param {ArrayLike<number>[]} points */
 export const boxOf = (points) => [Math.min, Math.max].map((of) =>
@@ -72,7 +75,7 @@ export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pix
     const thick = radius[2 * from];
     const sides = thick > 4.8 * point ? 12 : thick > 2 * point ? 6 : 2;
     const corners = sides === 2 ? 2 : sides + 1;
-    const thickness = Math.min(1, thick / (0.01 * size));
+    const thickness = Math.min(1, thick / (BARKED * size));
     const around = Math.max(1, Math.round((2 * Math.PI * thick) / tile));
     let [turn, risen, drawn] = [0, 0, 0];
     for (let s = from; s <= end; s++) {
@@ -108,7 +111,7 @@ export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pix
 }
 
 /** Leaves: each cluster is up to three cards that cross each other about its shoot, and show leaves in a
- * picture. They come in a mixed order, so that any first part of them is a thinner crown. Per vertex: place
+ * picture; or smaller ones of the same area that are spread over it. They come in a mixed order, so that any first part of them is a thinner crown. Per vertex: place
  * (3), how it moves with the flutter (3), normal (3), where light comes from (3), flutter frequency and
  * phase (2), openness, tint, place in the picture (2). @param {Shape} shape @param {Int32Array} branches
  * that are drawn @param {number} cards @param {number} most cards of the whole crown, whose area fewer have
@@ -123,12 +126,15 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
   if (!carrier) return { mesh, along: 1 };
   const random = seeded();
   const mean = Array.from(sizes).reduce((sum, size) => sum + size, 0) / sizes.length;
-  const perCluster = (/** @type {number} */ all) => Math.max(1, Math.min(rolls.length, Math.floor(all / carrier.length)));
+  const perCluster = (/** @type {number} */ all, mostOf = MOST_OF_CLUSTER) =>
+    Math.max(1, Math.min(mostOf, Math.floor(all / carrier.length)));
   const each = perCluster(cards);
   const clusters = mixed(Array.from(carrier.keys()), random).slice(0, cards);
-  const whole = carrier.length * perCluster(most);
-  const larger = Math.min(LARGEST_CARDS, Math.sqrt(whole / (clusters.length * each)));
-  const along = leavesAlong(look, larger * length * mean);
+  // Their area is that of as many of full size.
+  const full = Math.min(each, rolls.length);
+  const whole = carrier.length * perCluster(most, rolls.length);
+  const larger = Math.min(LARGEST_CARDS, Math.sqrt(whole / (clusters.length * full)));
+  const along = leavesAlong(look, larger * length * mean * Math.sqrt(full / each));
   // A leaf alone has its own size, whatever the cluster has.
   const spray = along > 1 ? { ...look.spray, length: larger * length }
     : { rolls, width: Math.min(1, look.slenderness), length: Math.min(length, (1.4 * look.leaf_size) / mean) };
@@ -148,7 +154,8 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
     for (let card = 0; card < each; card++) {
       const tint = 1 + 0.16 * Math.sin(7 * phase + 2 * card);
       const first = mesh.values.length / 19;
-      for (const corner of cardCorners(spray, sizes[i], phase, card)) {
+      const spread = each > full && along > 1 ? { share: full / each, isFlat: look.has_needles && look.form !== "tufts", random } : null;
+      for (const corner of cardCorners(spray, sizes[i], phase, card, spread)) {
         const [place, swing, facing] = corner.vectors.map((each) => turned(turn, each));
         mesh.values.push(placer.slots[hung[carrier[i]]], ...place.map((each, c) => each + centre[c]), ...swing, ...facing,
           ...light, phase + 2.4 * card, open, tint, ...corner.at);
@@ -161,17 +168,21 @@ export function leafMesh({ kind, placer, rest, shade }, branches, cards, most) {
 }
 
 /** Corners of a card: place, motion with the flutter, normal, in the frame of the cluster; in the picture.
- * `tree_mesh.py` has the same for files. @param {Spray} spray @param {number} size of the cluster [m]
- * @param {number} phase of its flutter, which makes each of its own @param {number} card its number */
-function cardCorners({ length, width, rolls }, size, phase, card) {
-  const long = length * size;
-  const roll = rolls[card] + 0.3 * Math.sin(phase);
-  const yaw = 0.35 * Math.sin(phase + 2.1 * card);
+ * `tree_mesh.py` has those of full size for files. @param {Spray} spray @param {number} size of the cluster
+ * [m] @param {number} phase of its flutter, which makes each of its own @param {number} card its number
+ * @param {Spread | null} [spread] of a smaller card, somewhere in the space of those of full size */
+function cardCorners({ length, width, rolls }, size, phase, card, spread) {
+  const whole = length * size;
+  const long = whole * Math.sqrt(spread?.share ?? 1);
+  const some = () => (spread ? spread.random() - 0.5 : 0);
+  const [far, beside, above] = [some() + 0.5, some(), some()].map((each) => (spread ? each : 0));
+  const roll = rolls[card % rolls.length] + 0.3 * Math.sin(phase) + (spread?.isFlat ? 0.6 : 1.2) * some();
+  const yaw = 0.35 * Math.sin(phase + 2.1 * card) + (spread?.isFlat ? 1.2 * beside : 2 * width * some());
+  const middle = [(whole - long) * far - 0.5 * size, width * whole * beside, (spread?.isFlat ? 0.2 : 0.8) * width * whole * above];
   const around = [0, 0, Math.sin(yaw / 2), Math.cos(yaw / 2)];
   multiply(around, 0, [Math.sin(roll / 2), 0, 0, Math.cos(roll / 2)], 0, around);
   return [[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]].map(([u, v]) => {
-    const place = turned(around, [u * long, v * width * long, 0]);
-    place[0] -= 0.5 * size;
+    const place = turned(around, [u * long, v * width * long, 0]).map((each, c) => each + middle[c]);
     place[2] -= 0.1 * long * u;
     return { vectors: [place, [0, -place[2], place[1]], turned(around, [0.3 * u, 1.2 * v, 1])], at: [u, 0.5 + v] };
   });

@@ -30,5 +30,5 @@ export function propMesh(name) {
   return { values, indices };
 }
 
-/** Length of the wind's arrow: never more than a sixth of the tree. @param {number} height @param {number} speed */
-export const arrowLength = (height, speed) => 0.16 * height * Math.tanh(speed / 7);
+/** Length of the wind's arrow: never more than a quarter of the tree. @param {number} height @param {number} speed */
+export const arrowLength = (height, speed) => 0.24 * height * Math.tanh(speed / 7);

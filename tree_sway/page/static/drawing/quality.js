@@ -1,6 +1,7 @@
 // Copyright 2026 Tree Sway maintainers
 // SPDX-License-Identifier: Apache-2.0
-/** What is left out without a graphics unit: first pixels, then frames, then leaves; none grows instead. */
+/** What is left out without a graphics unit: first pixels, then frames, then grass, then leaves; none grows
+ * instead. */
 
 /** Frames per second that fewer pixels are drawn for, and those that leaves are left out for. */
 const WANTED = 55;
@@ -14,6 +15,8 @@ export class Quality {
   fineness = 1;
   /** Share of the leaves that is drawn. */
   density = 1;
+  /** Whether there is time for grass. */
+  hasGrass = true;
   _from = 0;
   _frames = 0;
   _last = 0;
@@ -31,12 +34,17 @@ export class Quality {
     if (fps < WANTED - 5 && this.fineness > COARSEST) {
       this.fineness = Math.max(COARSEST, this.fineness * Math.max(0.75, Math.sqrt(fps / WANTED)));
       this._coarsened = now;
+    } else if (fps < LEAST && this.hasGrass) {
+      this.hasGrass = false;
+      this._coarsened = now;
     } else if (fps < LEAST && hasLeaves) {
       this.density = Math.max(THINNEST, this.density * 0.85);
     } else if (fps > WANTED && this.fineness < 1 && now - this._coarsened > 8000) {
       this.fineness = Math.min(1, this.fineness * 1.06);
     } else if (fps > LEAST + 6 && this.density < 1) {
       this.density = Math.min(1, this.density * 1.05);
+    } else if (fps > LEAST + 6 && !this.hasGrass && now - this._coarsened > 8000) {
+      this.hasGrass = true;
     }
   }
 

@@ -11,6 +11,7 @@ import {
   canvasTexture, contextOf, depthTexture, discard, drawable, drawPart, pictureTexture, program, texelsOf, textureOf,
   uploadPoses, use,
 } from "./gl.js";
+import { Grass } from "./grass.js";
 import { Impostor } from "./impostors.js";
 import { barkMesh, boxOf, leafMesh, shapeOf } from "./mesh.js";
 import { arrow, arrowLength, propMesh } from "./props.js";
@@ -22,7 +23,7 @@ import { barkPicture, leafPicture } from "./textures.js";
 const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
 const CROWD = 50;
 /** Segments of all trees and cards of leaves of one, at most, and height of far trees [px]. */
-const MOST = { segments: 40000, cards: 9000, far: 90 };
+const MOST = { segments: 40000, cards: 12000, far: 90 };
 /** Without a graphics unit: of a few trees, and of a crowd. */
 const MOST_SLOW = { segments: 12000, cards: 3000, far: 150 };
 const MOST_CROWD = { ...MOST_SLOW, segments: 5000, far: 220 };
@@ -71,9 +72,10 @@ export class Scene {
     this._kinds = /** @type {DrawnKind[]} */ ([]);
     this._budget = 0;
     this._chosenFor = "";
-    const names = /** @type {const} */ (["bark", "leaf", "impostor", "solid", "shadow"]);
+    const names = /** @type {const} */ (["bark", "leaf", "impostor", "solid", "shadow", "grass"]);
     this._programs = /** @type {Record<typeof names[number], Program>} */ (
       Object.fromEntries(names.map((name) => [name, program(gl, name)])));
+    this.grass = new Grass(gl, this._programs.grass, this.isSlow);
     this._backdrop = new Backdrop(gl, this.isSlow);
     /** Of leaves, painted when they are first used. */
     this._pictures = /** @type {Map<string, WebGLTexture>} */ (new Map());
@@ -358,6 +360,7 @@ export class Scene {
     // Whether so many trees are drawn with leaves that some may be left out; far ones are pictures.
     const hasCards = !this.isCrowd || this.detail.level.filter((level) => level > 0).length > 1;
     const mayThin = this.hasLeaves && this.leavesShown && hasCards;
+    this.grass.gusts.add(time, Math.hypot(...this.wind));
     if (this.isSlow && !isPaused) this.quality.count(performance.now(), mayThin);
     this._frame++;
     const whole = { camera: own, target: null, area: [0, 0, canvas.width, canvas.height] };
@@ -381,6 +384,7 @@ export class Scene {
     gl.enable(gl.DEPTH_TEST);
     this._drawTrees(false);
     this._drawSolids(false);
+    this._drawGrass();
   }
 
   _castShadow() {
@@ -401,6 +405,18 @@ export class Scene {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     this._drawTrees(true);
     this._drawSolids(true);
+  }
+
+  /** Grass on the ground of what stands in no pot. */
+  _drawGrass() {
+    const { height, _low: low, _high: high, _time: time, _programs: { grass } } = this;
+    if (this._potSize || !this.quality.hasGrass) return;
+    const mean = Math.hypot(...this._calmWind);
+    const way = this._calmWind.map((each) => each / Math.max(mean, 1e-3));
+    const alongs = this.detail.trees.map(({ place: [x, y] }) => x * way[0] + y * way[1]);
+    const middle = [0, 1].map((c) => 0.5 * (low[c] + high[c]));
+    this._begin(grass, false);
+    this.grass.draw({ middle, extent: this._extent, height, first: Math.min(...alongs), way, mean, time });
   }
 
   /** @param {Program} used @param {boolean} isShadow @param {Record<string, any>} [own] beside the usual */
@@ -480,7 +496,7 @@ export class Scene {
       const long = arrowLength(height, speed);
       const to = this._calmWind.map((each) => each / speed);
       const at = to.map((way, c) => 0.5 * (low[c] + high[c]) - way * (0.42 * this._extent + long));
-      draw(parts.arrow, [...at, ground + 0.01 * height, long], to);
+      draw(parts.arrow, [...at, ground + 0.18 * long + 0.01 * height, long], to);
     }
   }
 

@@ -27,8 +27,7 @@ vec4 seen(vec3 p) {
 }
 float clearness(vec3 p) { float far = haze * distance(eye, p); return 1.0 / (1.0 + far + 0.5 * far * far); }
 
-#part hung seen
-// What hangs on a segment: its pose, and the scale of its tree.
+#part sunlit seen
 uniform mediump sampler2DShadow sunMap;
 // Share of the sun that reaches a point past what is some way above it, softly.
 float sunlight(vec3 p) {
@@ -38,6 +37,9 @@ float sunlight(vec3 p) {
   return 0.25 * (texture(sunMap, vec3(at.xy + vec2(soft, 0.4 * soft), low)) + texture(sunMap, vec3(at.xy + vec2(-0.4 * soft, soft), low))
     + texture(sunMap, vec3(at.xy - vec2(soft, 0.4 * soft), low)) + texture(sunMap, vec3(at.xy + vec2(0.4 * soft, -soft), low)));
 }
+
+#part hung sunlit
+// What hangs on a segment: its pose, and the scale of its tree.
 uniform highp sampler2D poses;
 uniform float start; // row of the first segment of its tree
 in float segment; // of its tree
@@ -260,6 +262,41 @@ in vec4 base;
 void main() {
   color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, base.rgb, base.a), 1.0);
 }
+
+#part grass.vertex sunlit
+in vec4 blade; // place and height over the size of the meadow, what makes it its own
+in float corner; // left, right, or 0 at the tip
+uniform vec4 field; // middle, how far it grows, height
+uniform vec4 downwind; // way of the wind, the first tree and the last place along it [m]
+uniform float gusts[PLACES];
+uniform float time;
+uniform float dimmed;
+out vec4 base;
+void main() {
+  vec2 foot = field.xy + field.z * blade.xy;
+  float tall = field.w * blade.z;
+  float own = 6.2831853 * blade.w;
+  // Fronts are not straight across the wind.
+  float cross_ = dot(foot, vec2(-downwind.y, downwind.x)) / field.z;
+  float far = dot(foot, downwind.xy) - downwind.z + 0.06 * field.z * (sin(7.0 * cross_) + sin(17.0 * cross_ + 2.0));
+  float place = (0.5 + 0.5 * clamp(far / downwind.w, -1.0, 1.0)) * float(PLACES - 1);
+  int low = min(int(place), PLACES - 2);
+  float speed = mix(gusts[low], gusts[low + 1], place - float(low));
+  float lean = 1.5 * speed / (speed + 7.0) * (1.0 + 0.12 * sin(9.0 * time + own));
+  vec3 p = vec3(foot, ground);
+  vec3 back = normalize(eye - p);
+  vec2 across = normalize(vec2(-back.y, back.x) + 1e-5) * 0.09 * field.w;
+  p.xy += corner * across;
+  if (corner == 0.0) p += tall * vec3(sin(lean) * downwind.xy + 0.25 * vec2(cos(own), sin(own)), cos(lean));
+  vec3 tint = mix(vec3(0.36, 0.46, 0.2), vec3(0.54, 0.55, 0.29), blade.w);
+  // A blade that lies down shows its pale side.
+  tint *= (corner == 0.0 ? 1.15 : 0.9) + 0.8 * max(0.0, lean - 0.66);
+  tint *= dimmed * (0.4 + 0.6 * max(light.z, 0.3) / 0.83) * mix(vec3(1.0), sun / 0.8, 0.35 * dimmed);
+  base = vec4(tint * (0.5 + 0.5 * sunlight(vec3(foot, ground))), clearness(p));
+  gl_Position = seen(p);
+}
+
+#part grass.fragment solid.fragment
 
 #part shadow.vertex
 precision highp float;

@@ -16,15 +16,15 @@ from tree_sway_lab.segments.articulated import ArticulatedTree
 
 from tree_sway.core.beams.beam import energies, RotationField
 from tree_sway.core.beams.branch_model import TreeBeams
-from tree_sway.core.beams.shape_functions import (
-    across,
-    FEWER_PAIRS,
+from tree_sway.core.beams.field_counts import (
+    BRANCH_PAIRS_OF_SMALL,
+    ENRICHED_PAIRS,
     MAX_COORDINATES,
-    N_PAIRS,
-    PAIRS_OF_SMALL,
     ROOMS,
-    SMALL,
+    SMALL_TREE,
+    STEM_PAIRS_OF_SMALL,
 )
+from tree_sway.core.beams.shape_fields import across
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.setup.matrices import reduce_tree
 from tree_sway.core.setup.modes import natural_modes
@@ -92,19 +92,19 @@ def stem_with_limbs(n_limbs):
 def test_an_enriched_branch_has_pairs_and_what_carries_turns(fork):
     models = TreeBeams(fork(), 900.0).models(subtrees=True, enriched=frozenset(range(4)))
     for model in models:
-        most = ROOMS[1] if len(model.children) > 1 else 2 * N_PAIRS + 1
-        assert 2 * N_PAIRS <= len(model.fields) <= most
+        most = ROOMS[1] if len(model.children) > 1 else 2 * ENRICHED_PAIRS + 1
+        assert 2 * ENRICHED_PAIRS <= len(model.fields) <= most
 
 
 def test_a_small_tree_of_many_segments_has_more_of_them():
     tree = stem_with_limbs(4)
     stem, *limbs = TreeBeams(tree, 900.0).models(subtrees=True, enriched=frozenset(range(5)))
-    assert 2 * PAIRS_OF_SMALL < len(stem.fields) <= MAX_COORDINATES
-    assert [len(limb.fields) for limb in limbs] == [2 * FEWER_PAIRS] * 4
-    larger = TreeBeams(stem_with_limbs(SMALL), 900.0).models(
-        subtrees=True, enriched=frozenset(range(SMALL + 1))
+    assert 2 * STEM_PAIRS_OF_SMALL < len(stem.fields) <= MAX_COORDINATES
+    assert [len(limb.fields) for limb in limbs] == [2 * BRANCH_PAIRS_OF_SMALL] * 4
+    larger = TreeBeams(stem_with_limbs(SMALL_TREE), 900.0).models(
+        subtrees=True, enriched=frozenset(range(SMALL_TREE + 1))
     )
-    assert all(2 * N_PAIRS <= len(model.fields) <= ROOMS[1] for model in larger)
+    assert all(2 * ENRICHED_PAIRS <= len(model.fields) <= ROOMS[1] for model in larger)
 
 
 @pytest.mark.parametrize('n_limbs', [2, 4, 8, 16])

@@ -1,0 +1,76 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The arguments ``--motion`` and ``--at`` of live sensors on the real tree."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, ExitStack
+import sys
+from typing import TYPE_CHECKING
+
+from tree_sway.commands.motion_arguments import add_place_argument, sensors_and_places
+from tree_sway.errors import ParameterError
+
+if TYPE_CHECKING:
+    from tree_sway.sensors.motion.live_motion import MotionSample
+    from tree_sway.sensors.motion.motion_feed import MotionFeed
+
+
+def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add ``--motion`` and ``--at``."""
+    parser.add_argument(
+        '--motion', action='append', default=[], metavar='URL',
+        help='live motion sensor on the real tree, which the tree follows: http://PHONE:8080 '
+        '(phyphox), udp:PORT or mqtt://host/topic (JSON); repeatable (doc/phone_on_a_tree.md)',
+    )  # fmt: skip
+    add_place_argument(parser)
+
+
+@contextmanager
+def sensing(
+    arguments: argparse.Namespace, heard: Callable[[str, MotionSample], None] | None = None
+) -> Iterator[MotionFeed]:
+    """
+    Listen to the sensors of ``--motion``, and end at once.
+
+    Parameters
+    ----------
+    arguments
+        Arguments of `add_live_motion_arguments`.
+    heard
+        Function called with the address of a sensor and each of its samples, from its thread.
+
+    Raises
+    ------
+    ParameterError
+        A sensor without a place, two of one name and place, or a wrong address.
+
+    """
+    from tree_sway.sensors.motion.live_motion import LiveMotion
+    from tree_sway.sensors.motion.motion_feed import MotionFeed, PlacedSensor
+    from tree_sway.sensors.motion.motion_registry import open_motion
+
+    placed = []
+    for url, at in sensors_and_places(arguments):
+        tell = None if heard is None else _of(url, heard)
+        placed.append(PlacedSensor(LiveMotion(open_motion(url), _say, heard=tell), at))
+    feed = MotionFeed(placed)
+    if len(feed.sensors) < len(placed):
+        cure = 'give each a name: udp:5006?name=stem'
+        raise ParameterError('two sensors of one name and place', where='--motion', cure=cure)
+    with ExitStack() as stack:
+        for each in placed:
+            each.live.start()
+            stack.callback(each.live.stop)
+        yield feed
+
+
+def _of(url: str, heard: Callable[[str, MotionSample], None]) -> Callable[[MotionSample], None]:
+    return lambda sample: heard(url, sample)
+
+
+def _say(text: str) -> None:
+    """Print a line of news of a sensor."""
+    print(f'motion: {text}', file=sys.stderr, flush=True)

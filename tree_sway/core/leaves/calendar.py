@@ -1,0 +1,87 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Leaves over the year, for a tree in central Europe.
+
+Oaks turn on 19 October (mean of 2011 to 2023, Deutscher Wetterdienst, phenological clock); leaves
+unfold in late April and fall within a month about early November, in round numbers. Every
+deciduous species follows this one calendar.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tree_sway.core.checks import within
+from tree_sway.core.leaves.foliage import foliage_of
+from tree_sway.core.tree.look import Color, Look
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+
+FIRST_MONTH, LAST_MONTH, SUMMER = 1.0, 13.0, 7.5
+"""Begin and end of the year, and a time when trees are in full leaf, in months from 1."""
+
+_UNFOLDING, _TURNING, _FALL = (4.6, 5.5), (9.9, 10.9), (10.5, 11.7)
+"""Begin and end of each phase, in months."""
+_BARE = 0.02
+"""Share of the leaves below which a tree is bare."""
+
+
+def leaf_share(species: Species, month: float) -> float:
+    """
+    Share of the leaves of summer that a tree bears, 0 to 1; evergreen species keep theirs.
+
+    Raises a `ParameterError` for a month outside the year.
+    """
+    within('month', month, FIRST_MONTH, LAST_MONTH)
+    if species.leaves.is_evergreen:
+        return 1.0
+    return _passed(_UNFOLDING, month) * (1.0 - _passed(_FALL, month))
+
+
+def is_bare(species: Species, month: float) -> bool:
+    """Whether a tree has no leaves to speak of."""
+    return leaf_share(species, month) < _BARE
+
+
+def species_in_month(species: Species, tree: Tree, month: float) -> Species:
+    """
+    Return the species of one tree as it is in a month.
+
+    Area, mass and colours of the leaves are those of the month, the damping lies between bare and
+    in leaf by the share of the leaves. The drag law is that of the crown in leaf, of less area.
+    """
+    share = leaf_share(species, month)
+    colored = replace(species, look=_look_in_month(species, month))
+    if share == 1.0 or is_bare(species, month):
+        return colored
+    section = 0.25 * np.pi * float(tree.base_diameter[0]) ** 2
+    whole = float(foliage_of(tree, traits=species.leaves).area.sum())
+    leaves = replace(species.leaves, area_per_section=share * whole / section)
+    bare, in_leaf = species.damping_bare, species.damping_in_leaf
+    return replace(colored, leaves=leaves, damping_in_leaf=bare + share * (in_leaf - bare))
+
+
+def _look_in_month(species: Species, month: float) -> Look:
+    """Young leaves are fresh, old ones turn."""
+    look, turned = species.look, _passed(_TURNING, month)
+    if species.leaves.is_evergreen:
+        return look
+    young = 1.0 - _passed((_UNFOLDING[0], _UNFOLDING[1] + 0.7), month)
+    green = _mixed(look.green, look.fresh, young)
+    if look.autumn is None:
+        return replace(look, green=green)
+    fresh = _mixed(look.fresh, look.autumn, turned)
+    return replace(look, green=_mixed(green, look.autumn, turned), fresh=fresh)
+
+
+def _mixed(one: Color, other: Color, share: float) -> Color:
+    red, green, blue = ((1.0 - share) * a + share * b for a, b in zip(one, other, strict=True))
+    return red, green, blue
+
+
+def _passed(phase: tuple[float, float], month: float) -> float:
+    """How far a phase is over, 0 to 1."""
+    return float(np.interp(month, phase, (0.0, 1.0)))

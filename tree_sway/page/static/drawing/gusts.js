@@ -1,0 +1,54 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** Gusts over the ground: turbulence is carried by the mean wind (Taylor 1938), so that what is felt at the
+ * trees was upwind before and is downwind later. What is to come is known of a simulated or recorded wind. */
+
+/** Places along the wind; how often and how long speeds are kept, and how long they stand for others [s]. */
+export const PLACES = 48;
+const [EVERY, KEPT] = [0.1, 30];
+const SLOTS = KEPT / EVERY;
+
+export class Gusts {
+  /** Speeds [m/s] from the farthest place upwind to the farthest downwind. */
+  speeds = new Float32Array(PLACES);
+  _past = new Float32Array(SLOTS);
+  _newest = 0;
+  /** Of the first of those to come [s]. */
+  _from = 0;
+  _spacing = 1;
+  _coming = /** @type {number[]} */ ([]);
+
+  /** Take the wind of a time. @param {number} time [s] @param {number} speed [m/s] */
+  add(time, speed) {
+    const now = Math.floor(time / EVERY);
+    if (now - this._newest > SLOTS || now < this._newest) this._newest = now - SLOTS;
+    while (this._newest < now) this._past[++this._newest % SLOTS] = speed;
+    this._past[now % SLOTS] = speed;
+  }
+
+  /** Take what is to come. @param {number} time of the first speed [s] @param {{every: number,
+   * speeds: number[]}} [ahead] spacing [s], and speeds [m/s]; none of a wind that is measured */
+  foresee(time, { every, speeds } = { every: 1, speeds: [] }) {
+    [this._from, this._spacing, this._coming] = [time, every, speeds];
+  }
+
+  /** Speed at the trees at a time; what nobody knows is the mean. @param {number} time [s]
+   * @param {number} mean [m/s] */
+  at(time, mean) {
+    const slot = Math.floor(time / EVERY);
+    if (slot <= this._newest) return slot > this._newest - SLOTS && slot >= 0 ? this._past[slot % SLOTS] : mean;
+    const place = Math.max(0, (time - this._from) / this._spacing);
+    const [low, high] = [Math.floor(place), Math.floor(place) + 1].map((i) => this._coming[i] ?? mean);
+    return low + (place % 1) * (high - low);
+  }
+
+  /** Find the speeds along the wind now. @param {number} time [s] @param {number} mean [m/s]
+   * @param {number} reach how far up and down the wind [m] */
+  spread(time, mean, reach) {
+    const slowest = Math.max(mean, 0.5);
+    for (let i = 0; i < PLACES; i++) {
+      const far = reach * ((2 * i) / (PLACES - 1) - 1);
+      this.speeds[i] = this.at(time - far / slowest, mean);
+    }
+  }
+}

@@ -1,0 +1,75 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Live sensors that an observed tree follows: their samples, on the clock of its steps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+import time
+from typing import NamedTuple
+
+from tree_sway.core.observe.observed_tree import ObservedTree
+from tree_sway.sensors.motion.live_motion import LiveMotion
+
+_NEWEST = 0.02
+_JUMP = 0.1
+"""Difference [s] from which on both clocks are compared anew: the steps were paused or late."""
+
+
+class PlacedSensor(NamedTuple):
+    """A live sensor, and its place as `place_on` takes it."""
+
+    live: LiveMotion
+    at: str
+
+
+class MotionFeed:
+    """
+    Sensors on one tree.
+
+    Parameters
+    ----------
+    sensors
+        The sensors and their places.
+
+    """
+
+    def __init__(self, sensors: Sequence[PlacedSensor] = ()) -> None:
+        self.sensors = {f'{each.live.name} at {each.at}': each for each in sensors}
+        """Sensors by their names; of two of one name and place, the last."""
+        self._ahead = math.nan
+
+    @property
+    def places(self) -> dict[str, str]:
+        """Place of each sensor, for `ObservedTree`."""
+        return {name: each.at for name, each in self.sensors.items()}
+
+    def feed(self, simulator: object, until: float) -> None:
+        """
+        Offer the samples that came to an observed tree; to any other they are of no use.
+
+        Parameters
+        ----------
+        simulator
+            The simulator that is stepped.
+        until
+            Present time of its steps in [s].
+
+        """
+        difference = until - time.monotonic()
+        if math.isnan(self._ahead) or abs(difference - self._ahead) > _JUMP:
+            self._ahead = difference
+        self._ahead += _NEWEST * (difference - self._ahead)
+        for name, each in self.sensors.items():
+            samples = each.live.drain()
+            if not isinstance(simulator, ObservedTree) or name not in simulator.sensors:
+                continue
+            for sample in samples:
+                simulator.offer(
+                    name,
+                    sample.time + self._ahead,
+                    acceleration=sample.acceleration,
+                    rate=sample.rate,
+                    orientation=sample.orientation,
+                )

@@ -1,0 +1,129 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Motion in JSON: one object per sample, or a list of them.
+
+``{"t": 12.34, "ax": 0.1, "ay": -0.2, "az": 9.8, "gx": 0.01, "gy": 0, "gz": 0}``, with any names
+that a table of motion may have, or three axes together: ``"acceleration": [0.1, -0.2, 9.8]``,
+``"linear_acceleration": {"x": 0.1, "y": -0.2, "z": 9.8}``. An orientation is ``qx``, ``qy``,
+``qz``, ``qw``, or four together. A value that is no number is kept as not a number, so that the
+sensor counts its refusal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+import math
+from typing import Any
+
+from tree_sway.files.column_names import COLUMNS, folded, MOTIONS
+from tree_sway.sensors.motion.motion_reading import MotionReading, Numbers
+from tree_sway.sensors.readers.json_path import parse_json
+from tree_sway.sensors.readers.values import number
+from tree_sway.sensors.reading import Refusal
+from tree_sway.sensors.transports.transport import Message
+
+EXPECTS = (
+    'JSON with a time and acceleration or angular rate: '
+    '{"t": 1.25, "ax": 0.1, "ay": 0, "az": 9.8, "gx": 0, "gy": 0, "gz": 0}'
+)
+_KIND = 'JSON'
+_MOST = 500
+"""Largest number of samples in one message."""
+_LONGEST, _MOST_NAMES, _DEEPEST = 40, 64, 2
+_TIMES = frozenset({*map(folded, COLUMNS['time']['names']), 'millis', 'micros'})
+_UNITS_BEHIND = ('s', 'ms', 'us', 'ns')
+_WHOLES = {
+    'acceleration': {'acceleration', 'accel', 'acc', 'linearacceleration', 'accelerometer'},
+    'rate': {'rate', 'gyro', 'gyroscope', 'angularvelocity', 'angularrate', 'rotationrate'},
+    'orientation': {'orientation', 'quaternion', 'quat', 'attitude', 'q'},
+}
+"""Names of all axes of a quantity together."""
+
+
+def read_motion_json(message: Message) -> Sequence[MotionReading | Refusal]:
+    """Read a message; nothing for one without motion."""
+    document = parse_json(message.data)
+    samples = document if isinstance(document, list) else [document]
+    if len(samples) > _MOST:
+        return [Refusal(_KIND, f'more than {_MOST} samples in a message')]
+    found = [_sample(each) for each in samples if isinstance(each, Mapping)]
+    return [each for each in found if each is not None]
+
+
+def _sample(document: Mapping[str, Any]) -> MotionReading | Refusal | None:
+    """Return the sample of an object; None without motion."""
+    parts: dict[str, dict[str, float]] = {'acceleration': {}, 'rate': {}, 'orientation': {}}
+    time: float | None = None
+    has_time = False
+    for name, value in _leaves(document):
+        place = _place(name)
+        if place == ('time', ''):
+            has_time, time = True, number(value)
+        elif place is not None:
+            known = number(value)
+            parts[place[0]][place[1]] = math.nan if known is None else known
+    acceleration, rate = (_axes(parts[name], 'xyz') for name in ('acceleration', 'rate'))
+    orientation = _axes(parts['orientation'], 'xyzw')
+    if acceleration is None and rate is None and orientation is None:
+        named = [name for name, axes in parts.items() if axes]
+        return Refusal(_KIND, f'{named[0]} without all of its axes') if named else None
+    if has_time and time is None:
+        return Refusal(_KIND, 'its time is no number')
+    return MotionReading(time, acceleration, rate, orientation)
+
+
+def _axes(found: Mapping[str, float], names: str) -> Numbers | None:
+    if any(axis not in found for axis in names):
+        return None
+    return tuple(found[axis] for axis in names)
+
+
+def _leaves(document: Mapping[str, Any], depth: int = 0) -> Iterator[tuple[str, Any]]:
+    """Yield values with their names, those of axes together with the axis behind it."""
+    for key, value in list(document.items())[:_MOST_NAMES]:
+        name = str(key)[:_LONGEST]
+        whole = _whole(name)
+        if whole and isinstance(value, list | tuple):
+            wanted = 'xyzw' if whole == 'orientation' else 'xyz'
+            if len(value) == len(wanted):
+                yield from (
+                    (f'{whole}.{axis}', each) for axis, each in zip(wanted, value, strict=True)
+                )
+        elif whole and isinstance(value, Mapping):
+            yield from ((f'{whole}.{axis}', value[axis]) for axis in 'xyzw' if axis in value)
+        elif isinstance(value, Mapping):
+            if depth < _DEEPEST:
+                yield from _leaves(value, depth + 1)
+        elif not isinstance(value, list):
+            yield name, value
+
+
+@lru_cache(4096)
+def _whole(name: str) -> str:
+    plain = folded(name)
+    return next((quantity for quantity, names in _WHOLES.items() if plain in names), '')
+
+
+@lru_cache(4096)
+def _place(name: str) -> tuple[str, str] | None:
+    """Quantity and axis of a name; None for any other."""
+    whole, dot, axis = name.partition('.')
+    if dot and whole in _WHOLES and axis in ('x', 'y', 'z', 'w'):
+        return whole, axis
+    plain = name.strip().lower().replace('gyroscope', 'gyro')
+    if folded(plain) in _TIMES or _is_time_with_unit(plain):
+        return 'time', ''
+    if len(plain) == 2 and plain[0] == 'q' and plain[1] in 'xyzw':
+        return 'orientation', plain[1]
+    for quantity in ('acceleration', 'rate'):
+        if plain[-1:] in ('x', 'y', 'z') and MOTIONS[quantity].fullmatch(plain):
+            return quantity, plain[-1]
+    return None
+
+
+def _is_time_with_unit(name: str) -> bool:
+    """Whether a name is that of a time with its unit behind, as t_ms."""
+    first, _, unit = name.rpartition('_')
+    return unit in _UNITS_BEHIND and folded(first) in _TIMES

@@ -1,0 +1,119 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+The clock of a sender, brought to that of this machine.
+
+A sender counts seconds, milliseconds, microseconds or nanoseconds from any moment. The unit is
+found from the first second of samples. The difference of both clocks is the smallest that was seen
+between the time of a sample and its arrival: the way over the network only adds to it. A minute
+later it is found again, so that clocks which drift stay together.
+"""
+
+from __future__ import annotations
+
+import math
+
+_UNITS = (1.0, 1e3, 1e6, 1e9)
+"""Ticks in a second that clocks have."""
+_ODD = 1.4
+"""Factor by which a clock may seem to be fast or slow over its first second."""
+_FIRST, _LEAST = 1.0, 5
+"""Time [s] and number of samples in which the unit is found."""
+_WINDOW = 30.0
+"""Time [s] for which the smallest difference is kept, once and once more."""
+_JUMP, _PATIENCE = 1.0, 3.0
+"""Difference [s] that is a jump, and time [s] after which the clock is taken as set anew."""
+_SLEW = 0.05
+"""Change of the difference in a second [s]: small, so that samples keep their order."""
+
+
+class SenderClock:
+    """
+    A clock that is compared by arrivals.
+
+    Parameters
+    ----------
+    ticks
+        Ticks in a second; None to find them.
+
+    """
+
+    def __init__(self, ticks: float | None = None) -> None:
+        self.ticks = ticks
+        """Ticks in a second; None until they are known."""
+        self.problem = ''
+        """Why no time can be told, and what to do; empty if it can, or not yet."""
+        self.jumps = 0
+        """Number of times that it was set anew."""
+        self._first: tuple[float, float] | None = None
+        self._count = 0
+        self._offset = self._low = self._low_before = math.inf
+        self._window_ends = -math.inf
+        self._jumped_at: float | None = None
+        self._arrival = -math.inf
+
+    def note(self, stamp: float, arrival: float) -> bool:
+        """
+        Note the newest stamp of a message and its arrival in [s]; whether `local` is known.
+
+        It is not while the unit is being found, and after a jump until it has lasted.
+        """
+        if self.ticks is None and not self._find_ticks(stamp, arrival):
+            return False
+        assert self.ticks is not None
+        difference = arrival - stamp / self.ticks
+        if math.isinf(self._offset):
+            self._begin(difference, arrival)
+        elif abs(difference - self._offset) > _JUMP:
+            return self._is_set_anew(difference, arrival)
+        self._jumped_at = None
+        self._follow(difference, arrival)
+        return True
+
+    def local(self, stamp: float) -> float:
+        """Return the time of a stamp on the clock of arrivals in [s]."""
+        assert self.ticks is not None
+        return stamp / self.ticks + self._offset
+
+    def _find_ticks(self, stamp: float, arrival: float) -> bool:
+        if self._first is None or stamp < self._first[0]:
+            self._first, self._count = (stamp, arrival), 0
+        self._count += 1
+        passed = arrival - self._first[1]
+        if passed < _FIRST or self._count < _LEAST:
+            return False
+        ratio = (stamp - self._first[0]) / passed
+        unit = min(_UNITS, key=lambda each: abs(math.log(max(ratio, 1e-300) / each)))
+        if not 1.0 / _ODD < ratio / unit < _ODD:
+            self.problem = (
+                f'its clock counts {ratio:.3g} in a second: send the time in s, ms, us or ns, or '
+                'leave it out'
+            )
+            self._first = None
+            return False
+        self.ticks, self.problem = unit, ''
+        return True
+
+    def _begin(self, difference: float, arrival: float) -> None:
+        self._offset = self._low = self._low_before = difference
+        self._window_ends, self._arrival = arrival + _WINDOW, arrival
+
+    def _is_set_anew(self, difference: float, arrival: float) -> bool:
+        if self._jumped_at is None:
+            self._jumped_at = arrival
+        if arrival - self._jumped_at < _PATIENCE:
+            return False
+        self.jumps += 1
+        self._jumped_at = None
+        self._begin(difference, arrival)
+        return True
+
+    def _follow(self, difference: float, arrival: float) -> None:
+        if arrival > self._window_ends:
+            self._low_before, self._low = self._low, difference
+            self._window_ends = arrival + _WINDOW
+        self._low = min(self._low, difference)
+        wanted = min(self._low, self._low_before) - self._offset
+        most = _SLEW * max(arrival - self._arrival, 0.0)
+        self._offset += min(max(wanted, -most), most)
+        self._arrival = arrival
