@@ -42,6 +42,13 @@ def test_a_model_of_the_laboratory_says_what_to_install(installed, model) -> Non
         Settings(model=model)
 
 
+def test_a_laboratory_without_its_entry_points_is_to_be_installed_again(installed, monkeypatch):
+    for found, words in ((None, 'is not installed; install it: '), (object(), 'install it again')):
+        monkeypatch.setattr(module, 'find_spec', {module.LABORATORY: found}.get)
+        with pytest.raises(MissingDependencyError, match=words):
+            Settings(model='full')
+
+
 def test_a_command_says_it_on_one_line(installed, capsys) -> None:
     assert main(['simulate', 'goldcrest', '--model', 'full', '-o', 'never.csv']) == 2
     said = capsys.readouterr().err

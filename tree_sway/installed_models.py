@@ -13,11 +13,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from importlib.metadata import entry_points, EntryPoint
+from importlib.util import find_spec
 from typing import Any
 
 from tree_sway.errors import MissingDependencyError
 
 GROUP = 'tree_sway.models'
+LABORATORY = 'tree_sway_lab'
 
 
 @cache
@@ -39,8 +41,12 @@ def refuse_missing_model(model: str) -> None:
         from tree_sway.extras import line_in_venv
 
         install = line_in_venv('lab') or 'pip install ./lab in the checkout'
+        fault, verb = 'is not installed', 'install it'
+        if find_spec(LABORATORY) is not None:
+            # Entry points are those of the day of the installation, even of an editable one.
+            fault, verb = 'was installed before it had this model', 'install it again'
         raise MissingDependencyError(
-            f"model '{model}' belongs to the laboratory, which is not installed",
+            f"model '{model}' belongs to the laboratory, which {fault}",
             where='model',
-            cure=f'install it: {install}; or give a number of coordinates',
+            cure=f'{verb}: {install}; or give a number of coordinates',
         )

@@ -90,7 +90,8 @@ def _carry(*given: Any) -> None:
 
 def serve(seconds: float) -> None:
     """Publish a state 60 times per second."""
-    from tree_sway.page.server import PageServer, PageSettings
+    from tree_sway.page.page_settings import PageSettings
+    from tree_sway.page.server import PageServer
     from tree_sway.stream.protocol import decode_description, encode_frame, Frame
 
     data = (VECTORS / 'description.bin').read_bytes()

@@ -23,7 +23,9 @@ from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence  # noqa: E402
 from tree_sway.errors import TransportError  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
-from tree_sway.page.server import _Client, MOST_IN_STATE, PageServer, PageSettings  # noqa: E402
+from tree_sway.page.page_client import MOST_IN_STATE, PageClient  # noqa: E402
+from tree_sway.page.page_settings import PageSettings  # noqa: E402
+from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.by_wind import ByWind, STEP  # noqa: E402
 from tree_sway.stream.client import StreamClient  # noqa: E402
 from tree_sway.stream.protocol import (  # noqa: E402
@@ -46,7 +48,7 @@ class Run:
         self.simulator: Any = open_scene('goldcrest').simulator(Settings(), model=20)
         self.state = SceneState(self.simulator)
         self.simulator.reset()
-        client, seconds = _Client(None, None), 60.0 * MINUTES  # type: ignore[arg-type]
+        client, seconds = PageClient(None, None), 60.0 * MINUTES  # type: ignore[arg-type]
         rng = np.random.default_rng(5)
         wind = simulate_turbulence(7.0, duration=seconds, rate=20.0, rng=rng)
         self.whole, self.sent = [], []
@@ -73,7 +75,7 @@ def test_a_frame_of_wind_alone_is_28_bytes(run: Run) -> None:
 
 
 def test_a_stand_of_a_thousand_trees_fits_a_thin_line() -> None:
-    client, sent = _Client(None, None), 0  # type: ignore[arg-type]
+    client, sent = PageClient(None, None), 0  # type: ignore[arg-type]
     frame = bytes(FRAME_SIZE - 2) + (20_384).to_bytes(2, 'little') + bytes(2 * 20_384)
     for step in range(2 * 60):
         client.thinned(frame, step / 60.0)  # two whole states to begin with
@@ -148,7 +150,7 @@ class Stand:
         simulator: Any = Scene(trees).simulator(Settings(model=20))
         self.state = SceneState(simulator)
         simulator.reset()
-        older, late = (_Client(None, None) for _ in range(2))  # type: ignore[arg-type]
+        older, late = (PageClient(None, None) for _ in range(2))  # type: ignore[arg-type]
         rng = np.random.default_rng(6)
         wind = simulate_turbulence(7.0, duration=self.STEPS * STEP, rate=20.0, rng=rng)
         self.frames, self.joining, self.gusts = [], [], ''

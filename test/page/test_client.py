@@ -24,7 +24,8 @@ pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 from tree_sway.core.arrays import Floats  # noqa: E402
 from tree_sway.core.model.state_basis import FULL_SCALE  # noqa: E402
 from tree_sway.errors import ParameterError, TransportError  # noqa: E402
-from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.page.page_settings import PageSettings  # noqa: E402
+from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.client import StreamClient  # noqa: E402
 from tree_sway.stream.controls import Control, ControlPanel  # noqa: E402
 from tree_sway.stream.placing import Placer  # noqa: E402

@@ -22,7 +22,8 @@ from tree_sway.commands.cli import main  # noqa: E402
 from tree_sway.core.model.settings import Settings  # noqa: E402
 from tree_sway.core.scene.scene import Scene  # noqa: E402
 from tree_sway.files.trees.source import open_scene  # noqa: E402
-from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.page.page_settings import PageSettings  # noqa: E402
+from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.page.session import Choices, Session  # noqa: E402
 from tree_sway.page.wind_source import SimulatedWind  # noqa: E402
 from tree_sway.stream.controls import ControlPanel  # noqa: E402

@@ -26,7 +26,8 @@ import pytest
 
 aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 
-from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.page.page_settings import PageSettings  # noqa: E402
+from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
     decode_frame,

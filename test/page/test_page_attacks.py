@@ -26,7 +26,8 @@ aiohttp = pytest.importorskip('aiohttp', reason='aiohttp is not installed')
 from tree_sway.errors import ParameterError  # noqa: E402
 from tree_sway.page import access, doorkeeper  # noqa: E402
 from tree_sway.page.access import make_token, read_token  # noqa: E402
-from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.page.page_settings import PageSettings  # noqa: E402
+from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.client import StreamClient  # noqa: E402
 from tree_sway.stream.controls import Control, ControlPanel  # noqa: E402
 

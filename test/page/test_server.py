@@ -22,7 +22,9 @@ from tree_sway.errors import ParameterError, TransportError  # noqa: E402
 from tree_sway.page import doorkeeper  # noqa: E402
 from tree_sway.page import server as server_module  # noqa: E402
 from tree_sway.page.access import is_loopback, refusal, require_token  # noqa: E402
-from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.page.page_client import PageClient  # noqa: E402
+from tree_sway.page.page_settings import PageSettings  # noqa: E402
+from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.controls import Control, ControlPanel  # noqa: E402
 
 DEADLINE = 60.0
@@ -254,11 +256,11 @@ def test_a_client_that_does_not_read_keeps_its_hello() -> None:
 
     with PageServer(PageSettings(port=0)) as made:
         socket = Socket()
-        client = server_module._Client(socket, None)  # type: ignore[arg-type]
-        client.hello = json.dumps({'hello': made._hello(client)})
+        client = PageClient(socket, None)  # type: ignore[arg-type]
+        client.hello = made._hello(may_control=False)
         for number in range(50):
             client.say({'status': number})
-        asyncio.run(made._send_due(client))
+        asyncio.run(client.send_due(made._published))
     assert 'hello' in socket.sent[0]
     assert socket.sent[-1] == {'status': 49}
     assert len(socket.sent) == 17

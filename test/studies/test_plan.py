@@ -10,12 +10,14 @@ import tracemalloc
 import pytest
 
 from tree_sway.cache import kernel_cache
-from tree_sway.errors import FormatError, ParameterError
+from tree_sway.errors import FormatError, ParameterError, SpeciesError
 from tree_sway.studies import plan
 from tree_sway.studies.compute import _wind
 from tree_sway.studies.plan import read_study
 
-LEAST = 'trees: [a]\nwinds: [{speed: 3}]\n'
+ONE = 'trees: [goldcrest]\n'
+LEAST = ONE + 'winds:\n- {speed: 3}\n'
+GROWN = 'trees:\n  - grow: {species: '
 
 
 @pytest.fixture
@@ -78,20 +80,28 @@ def test_and_after_the_source_of_growth_and_of_readers(study, tmp_path, monkeypa
     [
         ('trees: [goldcrest]\n', FormatError, "has no 'winds'"),
         ('trees: []\nwinds: [{speed: 3}]', FormatError, 'trees'),
-        ('trees: [a]\nwinds: [{speed: fast}]', FormatError, r'study\.yaml:2: winds\[0\]\.speed'),
-        ('trees: [a]\nwinds: [{speed: 3}]\nseconds: 0', FormatError, r'study\.yaml:3: seconds'),
-        ('trees: [a]\nwinds: [{speed: 3}]\nsettings: {wobble: 1}', ParameterError, "'wobble'"),
+        (f'{ONE}winds: [{{speed: fast}}]', FormatError, r'study\.yaml:2: winds\[0\]\.speed'),
+        (f'{ONE}winds: [{{speed: 3}}]\nseconds: 0', FormatError, r'study\.yaml:3: seconds'),
+        (f'{ONE}winds: [{{speed: 3}}]\nsettings: {{wobble: 1}}', ParameterError, "'wobble'"),
         (f'{LEAST}settings: {{model: [8, modes]}}', ParameterError, "unknown model 'modes'"),
         (f'{LEAST}settings: {{damping_ratio: strong}}', ParameterError, 'strong'),
-        ('trees: [a]\nwinds: [{file: gone.csv}]', FormatError, r'gone\.csv'),
-        ('trees: [a]\nwinds: [{seeds: 2}]', FormatError, 'a wind is a file or a speed'),
+        (f'{ONE}winds: [{{file: gone.csv}}]', FormatError, r'gone\.csv'),
+        (f'{ONE}winds: [{{seeds: 2}}]', FormatError, 'a wind is a file or a speed'),
         ('trees: [', FormatError, r'study\.yaml:'),
-        ('trees: [a]\nwinds: [{speed: 3, intensity: true}]', FormatError, "intensity is 'true'"),
+        (f'{ONE}winds: [{{speed: 3, intensity: true}}]', FormatError, "intensity is 'true'"),
         (f'{LEAST}settings: {{model: {"9" * 5000}}}', ParameterError, "unknown model '999"),
         (f'{LEAST}seconds: {"9" * 5000}', FormatError, "seconds is '999"),
-        ('trees: [a]\nwinds: [{file: "~nosuchuser/wind.csv"}]', FormatError, 'no user'),
+        (f'{ONE}winds: [{{file: "~nosuchuser/wind.csv"}}]', FormatError, 'no user'),
         (f'trees: [{"a" * 300}]\nwinds: [{{speed: 3}}]', FormatError, 'File name too long'),
-        (f'{LEAST}seconds: 86400\nrate: 10000', FormatError, 'are 8.64e\\+08 steps of a case'),
+        ('', FormatError, r'study\.yaml: empty; describe trees and winds in it'),
+        ('trees: [\ngoldcrst]\nwinds: [{speed: 3}]', FormatError, "yaml:2: .*mean 'goldcrest'"),
+        (f'winds: [{{speed: 3}}]\n{GROWN}okk, height: 5}}', SpeciesError, "yaml:3: .*mean 'oak'"),
+        (f'winds: [{{speed: 3}}]\n{GROWN}oak, height: 0}}', ParameterError, 'yaml:3: height: '),
+        (f'{LEAST}- {{speed: [3, -3]}}', ParameterError, r'yaml:4: mean_speed: -3\.0 is out'),
+        (f'{LEAST}- {{speed: 3, intensity: 40}}', ParameterError, r'yaml:4: intensity: 40\.0 is'),
+        (f'{LEAST}- {{file: canopy, scale: [1, -1]}}', FormatError, r"scale\[1\] is '-1'; give"),
+        (f'{LEAST}rate: 1001', FormatError, "rate is '1001'"),
+        (f'{LEAST}seconds: 86400\nrate: 1000', ParameterError, 'are 8.64e\\+07 steps; give at'),
     ],
 )
 def test_what_is_wrong_is_named(study, text, kind, words):
@@ -103,7 +113,7 @@ def test_what_is_wrong_is_named(study, text, kind, words):
     'text',
     [
         'trees: [{grow: {species: oak, height: [4, 8], seeds: 100000}}]\nwinds: [{speed: 3}]\n',
-        'trees: [a]\nwinds: [{speed: [3, 4], intensity: [0.1, 0.2], seeds: 100000}]\n',
+        'trees: [goldcrest]\nwinds: [{speed: [3, 4], intensity: [0.1, 0.2], seeds: 100000}]\n',
         LEAST + 'settings:\n' + ''.join(
             f'  {name}: [{", ".join(f"{0.01 * k:.2f}" for k in range(1, 25))}]\n'
             for name in ('damping_ratio', 'crown_coherence', 'gravity', 'stiffness_factor')

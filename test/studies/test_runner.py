@@ -15,11 +15,13 @@ import threading
 import time
 from urllib.request import urlopen
 
+import numpy as np
 import pytest
 
 from tree_sway.commands import cli
 from tree_sway.core.model.settings import USUAL
-from tree_sway.errors import FormatError, TreeSwayError
+from tree_sway.errors import FormatError, ParameterError, TreeSwayError
+from tree_sway.files.wind.record import WindRecord
 from tree_sway.studies import cluster, runner
 from tree_sway.studies.cluster import delayed_interrupt
 from tree_sway.studies.compute import compute
@@ -102,6 +104,24 @@ def test_trees_of_any_size_are_on_one_model():
         rows.append(compute(case))
     assert len({row['segments'] for row in rows}) == 3
     assert {row['model'] for row in rows} == {str(USUAL)}
+
+
+def test_a_row_says_how_long_its_record_is_and_what_is_doubtful_about_it():
+    wind = WindRecord(np.arange(3.0), np.full((3, 3), 1.0), 'three')
+    record = {'file': 'three.csv', 'scale': 1.0}
+    still = compute(Case({'name': 'goldcrest'}, record, {'model': 0}, seconds=60.0), wind=wind)
+    assert still['length [s]'] == pytest.approx(2.0)
+    assert 'the tree stands still' in still['notes']
+    moved = compute(Case({'name': 'goldcrest'}, record, {'model': 4}, seconds=1.0), wind=wind)
+    assert moved['length [s]'] == 1.0
+    assert moved['notes'] == ''
+
+
+def test_a_scale_whose_wind_would_be_dropped_is_refused():
+    wind = WindRecord(np.arange(3.0), np.full((3, 3), 1.0), 'three')
+    case = Case({'name': 'goldcrest'}, {'file': 'three.csv', 'scale': 200.0}, {'model': 0})
+    with pytest.raises(ParameterError, match=r'scale: 200\.0 is out of range; use 0 to 86\.6'):
+        compute(case, wind=wind)
 
 
 def test_the_time_is_estimated_before_anything_is_computed(tmp_path, capsys, monkeypatch):

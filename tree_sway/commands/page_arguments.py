@@ -11,7 +11,8 @@ from urllib.parse import urlencode
 
 from tree_sway.core.checks import within
 from tree_sway.page.access import make_token, read_token
-from tree_sway.page.server import PageServer, PageSettings
+from tree_sway.page.page_settings import PageSettings
+from tree_sway.page.server import PageServer
 
 _PORT = 8765
 

@@ -15,15 +15,11 @@ import webbrowser
 
 import numpy as np
 
-from tree_sway.commands.arguments import (
-    add_sway_arguments,
-    chosen_leaves,
-    opened_scene,
-    opened_wind,
-)
+from tree_sway.commands.arguments import chosen_leaves, opened_scene
 from tree_sway.commands.live_motion_arguments import add_live_motion_arguments, sensing
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
+from tree_sway.commands.wind_arguments import add_sway_arguments, opened_wind, refuse_unused_wind
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
@@ -40,7 +36,8 @@ from tree_sway.files.scenes.critical_winds import read_critical_winds
 from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, scene_of_files
 from tree_sway.installed_models import installed_models
-from tree_sway.page.server import PageServer, PageSettings
+from tree_sway.page.page_settings import PageSettings
+from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, RATE, Session
 from tree_sway.page.wind_source import RecordedWind, SimulatedWind, WindSource
 from tree_sway.parameters.sway_parameters import SWAY
@@ -92,6 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Serve the page until the time is over or Ctrl-C."""
     settings = page_settings(arguments)
     within('--stand', arguments.stand, 1, 1e5)
+    refuse_unused_wind(arguments)
     if arguments.risk is not None:
         read_critical_winds(arguments.risk)  # what is wrong with it is said before all else
     if arguments.motion and arguments.stand > 1:

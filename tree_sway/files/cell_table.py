@@ -18,9 +18,16 @@ def table_of_cells(
     source: str,
     numbers: Sequence[int] | None = None,
     units: Sequence[str] = (),
+    row_name: str = 'line',
 ) -> TextTable:
-    """Return a table from the cells of its rows; ``numbers`` are those of their lines."""
+    """
+    Return a table from the cells of its rows.
+
+    ``numbers`` count the rows in the file, where one is called ``row_name``.
+    """
     texts = [_BETWEEN.join(row) for row in rows]
     lines = range(1, len(texts) + 1) if numbers is None else numbers
     split = partial(str.split, sep=_BETWEEN)
-    return TextTable(tuple(columns), lines, texts, split, source, units=tuple(units))
+    return TextTable(
+        tuple(columns), lines, texts, split, source, units=tuple(units), row_name=row_name
+    )

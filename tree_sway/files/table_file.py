@@ -50,7 +50,7 @@ class TextTable:
     A table whose columns have names: number and text of each line, and its separator.
 
     ``header_line`` and ``unit_line`` are the lines of names and units; ``units`` are those of the
-    columns, if they are in a separate row.
+    columns, if they are in a separate row. ``row_name`` is the name of a row in messages.
     """
 
     columns: tuple[str, ...]
@@ -61,6 +61,7 @@ class TextTable:
     header_line: int = 1
     unit_line: int = 1
     units: tuple[str, ...] = ()
+    row_name: str = 'line'
 
     def where(self, row: int | None = None) -> str:
         """File and line of a row, or of the header."""

@@ -70,9 +70,11 @@ class YamlDocument:
         return f'{self.source}:{_node_at(self.root, path).start_mark.line + 1}'
 
 
-def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
+def read_yaml(
+    text: str, source: str, schema: Schema, expected: str = 'a tree or a forest'
+) -> YamlDocument:
     """
-    Read the one document of a YAML text.
+    Read the one document of a YAML text; ``expected`` is what an empty one should describe.
 
     Raises
     ------
@@ -82,7 +84,7 @@ def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
 
     """
     if not text.strip():
-        raise FormatError('empty', where=source, cure='describe a tree or a forest in it')
+        raise FormatError('empty', where=source, cure=f'describe {expected} in it')
     try:
         _refuse_unsafe(text, source)
         root = yaml.compose(text, Loader=_LOADER)
@@ -93,7 +95,7 @@ def read_yaml(text: str, source: str, schema: Schema) -> YamlDocument:
     except yaml.YAMLError as error:
         raise FormatError(f'not YAML: {str(error).splitlines()[0]}', where=source) from None
     if root is None:
-        raise FormatError('no document', where=source, cure='describe a tree or a forest in it')
+        raise FormatError('no document', where=source, cure=f'describe {expected} in it')
     document = YamlDocument(_value(root, schema, schema, source), source, root, schema)
     _check(document)
     return document

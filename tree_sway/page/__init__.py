@@ -3,6 +3,7 @@
 """
 The browser page and its server.
 
-`server` sends a stream to any number of browsers, `session` is a live tree without ROS.
+`server` sends a stream to any number of browsers: `guard` checks their requests, `page_client` is
+one of them, `published` what they are sent. `session` is a live tree without ROS.
 ``static/`` has the page: our own ES modules, without external ones.
 """

@@ -11,9 +11,11 @@ import json
 import numpy as np
 
 from tree_sway.core.arrays import Floats
+from tree_sway.core.checks import within
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.tree.species import species_named
+from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.files.models.disk_cache import use_disk_cache
 from tree_sway.files.trees.imported_tree import TreeFile
@@ -51,7 +53,7 @@ def compute(case: Case, *, tree: TreeFile | None = None, wind: WindRecord | None
     record = rig.run(_wind(case, wind), rate=case.rate, seconds=case.seconds)
     row: Plain = {**_prefixed('tree', case.tree), **_prefixed('wind', case.wind), **case.settings}
     row |= {
-        'length [s]': case.seconds, 'branches': rig.tree.n_branches,
+        'length [s]': len(record.time) / case.rate, 'branches': rig.tree.n_branches,
         'segments': rig.tree.n_segments, 'height [m]': rig.tree.height,
         'model': record.model, 'frequency [Hz]': frequency,
         'wind_mean [m/s]': float(np.linalg.norm(record.wind.mean(axis=0))),
@@ -61,6 +63,7 @@ def compute(case: Case, *, tree: TreeFile | None = None, wind: WindRecord | None
     row |= _summary('base_moment', 'N m', record.base_moment)
     row['strain_largest [-]'] = float(np.abs(record.base_strain).max())
     row |= _used('wood', record.strength.wood) | _used('roots', record.strength.roots)
+    row['notes'] = '; '.join(record.notes)
     return row
 
 
@@ -92,12 +95,21 @@ def _tree(asked: Plain) -> TreeFile:
 def _wind(case: Case, record: WindRecord | None = None) -> WindRecord | Floats:
     if 'file' in case.wind:
         record = read_wind(case.wind['file']) if record is None else record
-        return replace(record, velocity=case.wind['scale'] * record.velocity)
+        scale = case.wind['scale']
+        _refuse_too_fast(record, scale)
+        return replace(record, velocity=scale * record.velocity)
     rng = np.random.default_rng(case.wind['seed'])
     return simulate_turbulence(
         case.wind['speed'], rate=case.rate, duration=case.seconds, rng=rng,
         intensity=case.wind['intensity'],
     )  # fmt: skip
+
+
+def _refuse_too_fast(record: WindRecord, scale: float) -> None:
+    """Raise a `ParameterError` for a scale that makes samples too fast, which would be dropped."""
+    fastest = float(np.linalg.norm(record.velocity, axis=1).max())
+    if fastest <= FASTEST_WIND < scale * fastest:
+        within('scale', scale, 0.0, FASTEST_WIND / fastest)
 
 
 def _used(part: str, share: Floats) -> Plain:

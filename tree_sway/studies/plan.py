@@ -22,11 +22,13 @@ from typing import Any
 
 from tree_sway.cache.kernel_cache import ROOT, source_digest
 from tree_sway.core.model.settings import Settings
-from tree_sway.errors import FormatError, nearest, ParameterError
+from tree_sway.core.scene.simulate import refuse_too_many_steps
+from tree_sway.errors import FormatError, inside, nearest, ParameterError
 from tree_sway.files.text_file import is_file, path_of, read_bytes, read_text
 from tree_sway.files.wind.wind_file import EXAMPLES
 from tree_sway.files.yaml_document import read_yaml
 from tree_sway.studies.cluster import ROOMS
+from tree_sway.studies.refuse_impossible import listed, refuse_impossible
 
 Plain = dict[str, Any]
 
@@ -35,8 +37,6 @@ _ARRAYS = {'leaf_mass', 'leaf_area', 'profile'}
 
 MAX_CASES = 100_000
 """Largest number of cases of a study, which are all planned before the first is computed."""
-MAX_STEPS = 6_000_000
-"""Largest number of steps of a case, all of which are in the memory."""
 
 
 @dataclass(frozen=True)
@@ -92,23 +92,20 @@ def read_study(path: str | Path) -> list[Case]:
     ------
     FormatError
         A file that cannot be read, is not YAML, does not match the schema, or has more than
-        `MAX_CASES` cases or `MAX_STEPS` steps of a case.
-    ParameterError
-        An unknown setting, or a wrong value.
+        `MAX_CASES` cases.
+    TreeSwayError
+        An unknown setting, species or tree, a wrong value, or too many steps of a case.
 
     """
     path = path_of(path)
     schema = json.loads(
         files('tree_sway.studies').joinpath('study_schema.json').read_text('utf-8')
     )
-    document = read_yaml(read_text(path), str(path), schema)
+    document = read_yaml(read_text(path), str(path), schema, 'trees and winds')
     study = document.values
-    for number, wind in enumerate(study['winds']):
-        if ('file' in wind) == ('speed' in wind):
-            where = document.where('winds', number)
-            raise FormatError('a wind is a file or a speed', where=where, cure='give one of them')
     common = {key: study[key] for key in ('seconds', 'rate') if key in study}
     _refuse_large(study, Case({}, {}, **common), str(path))
+    refuse_impossible(document, path.parent)
     varied = _settings(study.get('settings', {}), path)
     code = ''.join(source_digest(ROOT / room) for room in ROOMS).encode()
     cases = []
@@ -131,13 +128,13 @@ def _content(file: str | None) -> bytes:
 
 
 def _refuse_large(study: Plain, case: Case, where: str) -> None:
-    """Raise a `FormatError` for too many cases, or too many steps of one, before any is made."""
+    """Refuse too many cases, or too many steps of one, before any is made."""
     trees = winds = 0
     for entry in study['trees']:
         trees += 1 if isinstance(entry, str) else _count(entry['grow'], 'species', 'height')
     for entry in study['winds']:
         winds += _count(entry, 'speed', 'intensity', 'scale')
-    settings = math.prod(len(_listed(value)) for value in study.get('settings', {}).values())
+    settings = math.prod(len(listed(value)) for value in study.get('settings', {}).values())
     count = trees * winds * settings
     if count > MAX_CASES:
         raise FormatError(
@@ -145,18 +142,13 @@ def _refuse_large(study: Plain, case: Case, where: str) -> None:
             where=where,
             cure=f'give at most {MAX_CASES} cases in a study',
         )
-    steps = case.seconds * case.rate
-    if steps > MAX_STEPS:
-        raise FormatError(
-            f'{case.seconds:g} s at {case.rate:g} Hz are {steps:.3g} steps of a case',
-            where=where,
-            cure=f'give at most {MAX_STEPS} steps, such as a day at 60 Hz',
-        )
+    with inside(where):
+        refuse_too_many_steps(case.seconds * case.rate, case.rate)
 
 
 def _count(entry: Plain, *names: str) -> int:
     """Count the combinations of the values of an entry, with its seeds."""
-    lengths = (len(_listed(entry[name])) for name in names if name in entry)
+    lengths = (len(listed(entry[name])) for name in names if name in entry)
     return math.prod(lengths) * int(entry.get('seeds', 1))
 
 
@@ -169,7 +161,7 @@ def _trees(entries: list[Any], folder: Path) -> list[Plain]:
         else:
             grow = entry['grow']
             rows = itertools.product(
-                _listed(grow['species']), _listed(grow['height']), range(grow.get('seeds', 1))
+                listed(grow['species']), listed(grow['height']), range(grow.get('seeds', 1))
             )
             found += [{'species': s, 'height': float(h), 'seed': k} for s, h, k in rows]
     return found
@@ -182,10 +174,10 @@ def _winds(entries: list[Plain], folder: Path) -> list[Plain]:
             beside = folder / path_of(entry['file'])
             is_built_in = entry['file'] in EXAMPLES and not is_file(beside)
             path = entry['file'] if is_built_in else str(beside)
-            found += [{'file': path, 'scale': float(s)} for s in _listed(entry.get('scale', 1.0))]
+            found += [{'file': path, 'scale': float(s)} for s in listed(entry.get('scale', 1.0))]
         else:
             rows = itertools.product(
-                _listed(entry['speed']), _listed(entry.get('intensity', 0.2)),
+                listed(entry['speed']), listed(entry.get('intensity', 0.2)),
                 range(entry.get('seeds', 1)),
             )  # fmt: skip
             found += [{'speed': float(u), 'intensity': float(i), 'seed': k} for u, i, k in rows]
@@ -201,7 +193,7 @@ def _settings(varied: Plain, path: Path) -> list[Plain]:
             where=f'{path}: settings',
             cure=nearest(unknown[0], known) or f'use one of: {", ".join(sorted(known))}',
         )
-    combinations = itertools.product(*map(_listed, varied.values()))
+    combinations = itertools.product(*map(listed, varied.values()))
     found = [dict(zip(varied, values, strict=True)) for values in combinations]
     for each in found:
         try:
@@ -210,7 +202,3 @@ def _settings(varied: Plain, path: Path) -> list[Plain]:
             where = f'{path}: settings'
             raise ParameterError(f'{each}: {error}', where=where, cure='give numbers') from None
     return found
-
-
-def _listed(value: Any) -> list[Any]:
-    return value if isinstance(value, list) else [value]

@@ -17,7 +17,8 @@ from std_srvs.srv import SetBool, Trigger
 
 from tree_sway.errors import FormatError, ParameterError
 from tree_sway.page.access import read_token, require_token
-from tree_sway.page.server import PageServer, PageSettings
+from tree_sway.page.page_settings import PageSettings
+from tree_sway.page.server import PageServer
 from tree_sway.parameters.sway_parameters import SWAY
 from tree_sway.stream.controls import Control, ControlPanel, PAUSE_AND_RESET, Refused
 from tree_sway.stream.protocol import decode_description, Description, encode_state

@@ -34,7 +34,8 @@ def test_a_smoothed_motion_is_compared_with_the_truth_of_its_time() -> None:
 
 def test_a_band_holds_its_share_of_normal_errors() -> None:
     wrong = np.random.default_rng(5).normal(0.0, 0.2, (20_000, 2, 3))
-    band = np.full_like(wrong, 1.2816 * 0.2)
+    half = np.full_like(wrong, 1.2816 * 0.2)
+    band = np.stack([-half, half], axis=1)
     assert _held(wrong, np.zeros_like(wrong), band) == pytest.approx(0.8, abs=0.01)
 
 

@@ -13,7 +13,8 @@ import statistics
 
 from tree_sway.commands import show
 from tree_sway.errors import ParameterError
-from tree_sway.page.server import PageServer, PageSettings
+from tree_sway.page.page_settings import PageSettings
+from tree_sway.page.server import PageServer
 from tree_sway.page.session import Choices, Session
 from tree_sway.page.wind_source import SimulatedWind
 from tree_sway_lab.bench.measured import Measured

@@ -19,7 +19,8 @@ from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.tree.species import SPECIES
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import ParameterError
-from tree_sway.page.server import PageServer, PageSettings
+from tree_sway.page.page_settings import PageSettings
+from tree_sway.page.server import PageServer
 from tree_sway_lab.browser import Browser, chromium
 
 _PIXELS = 256
@@ -27,7 +28,7 @@ _COLORS = 64
 _HEIGHT = 15.0
 """Height of the tree whose sprays are painted [m]."""
 
-_PATTERNS = ('furrows', 'plates', 'smooth', 'dashes', 'flakes')
+_PATTERNS = ('furrows', 'plates', 'scales', 'smooth', 'dashes', 'flakes')
 _PAINT = """(async (looks, patterns, pixels) => {
   const { href } = new URL('static/drawing/textures.js', location.href);
   const { barkPicture, leafPicture, leavesAlong } = await import(href);

@@ -111,7 +111,12 @@ def twin_score(
 ) -> Score:
     """Score a tree that sensors at some places correct."""
     twin = ObservedTree(
-        tree, species, in_leaf=in_leaf, at={each: each for each in places}, is_smoothed=True
+        tree,
+        species,
+        in_leaf=in_leaf,
+        at={each: each for each in places},
+        is_smoothed=True,
+        has_band=True,
     )
     rng = np.random.default_rng(seed)
     for name in places:
@@ -120,7 +125,8 @@ def twin_score(
         motion = sensor.measured(true.poses[name], DT, rng)
         twin.replay(name, motion.time, acceleration=motion.acceleration, rate=motion.rate)
     block = np.empty((tree.n_segments, 7))
-    tips, smoothed, bands = (np.empty_like(true.tips) for _ in range(3))
+    tips, smoothed = np.empty_like(true.tips), np.empty_like(true.tips)
+    bands = np.empty((len(tips), 2, *tips.shape[1:]))
     spent = np.empty(len(tips))
     for k, each in enumerate(true.wind):
         began = time.perf_counter()
@@ -158,8 +164,8 @@ def _compared(tips: Floats, true: Floats, late: int) -> tuple[float, float, floa
 
 
 def _held(tips: Floats, true: Floats, bands: Floats) -> float:
-    """Share of the time that bands hold the horizontal motion of the tips about its mean."""
+    """Share of the time that bands (n, 2, b, 3) about tips hold the true ones, east and north."""
     first = round(_TRUSTED * len(tips))
-    wrong = (tips - true)[first:]
-    wrong = np.abs(wrong - wrong.mean(axis=0))
-    return float((wrong[..., :2] <= bands[first:, :, :2]).mean())
+    beyond = (true - tips)[first:, :, :2]
+    low, high = np.moveaxis(bands[first:, ..., :2], 1, 0)
+    return float(((low <= beyond) & (beyond <= high)).mean())

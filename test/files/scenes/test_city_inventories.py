@@ -7,6 +7,7 @@ from __future__ import annotations
 from contextlib import closing
 import csv
 import json
+import math
 from pathlib import Path
 import sqlite3
 import struct
@@ -252,13 +253,37 @@ def test_openstreetmap(tmp_path: Path) -> None:
     assert len(open_scene(path).trees) == 1
 
 
-@pytest.mark.parametrize('coordinates', [[1], [[1], 2], [10**400, 48.8]])
-def test_broken_places_of_geojson(coordinates: list[object], tmp_path: Path) -> None:
-    geometry = {'type': 'Point', 'coordinates': coordinates}
-    one = {'type': 'Feature', 'geometry': geometry, 'properties': {'art': 'Eiche', 'hoehe': 12}}
+@pytest.mark.parametrize(
+    'broken',
+    [
+        *(
+            {'geometry': {'type': 'Point', 'coordinates': coordinates}}
+            for coordinates in ([1], [[1], 2], [10**400, 48.8], [1, 'x'], [math.nan, 1], 'x', {})
+        ),
+        *({'geometry': geometry} for geometry in ([], 'x', None)),
+        {'properties': []},
+        {'properties': 'x', 'geometry': None},
+    ],
+)  # fmt: skip
+def test_a_broken_feature_of_geojson_alone_is_left_out(
+    broken: dict[str, object], tmp_path: Path
+) -> None:
+    good = [feature(13.4 + 1e-4 * k, 52.5, art='Eiche', hoehe=12) for k in range(2)]
     path = tmp_path / 'trees.geojson'
+    features = [good[0], good[0] | broken, good[1]]
+    path.write_text(json.dumps({'type': 'FeatureCollection', 'features': features}))
+    inventory = read(path)
+    assert len(inventory.names) == 2
+    assert any('1 row is left out' in note and 'feature 2: ' in note for note in inventory.notes)
+    path.write_text(json.dumps({'type': 'FeatureCollection', 'features': [good[0], 'x', None]}))
+    assert len(read(path).names) == 1
+
+
+def test_geojson_without_any_place_says_so(tmp_path: Path) -> None:
+    path = tmp_path / 'trees.geojson'
+    one = feature(1, 2, art='Eiche', hoehe=12) | {'geometry': {'coordinates': [1]}}
     path.write_text(json.dumps({'type': 'FeatureCollection', 'features': [one]}))
-    with pytest.raises(FormatError, match='not GeoJSON'):
+    with pytest.raises(FormatError, match='no feature has a place; give each'):
         read(path)
 
 

@@ -20,7 +20,8 @@ import pytest
 pytest.importorskip('rclpy', reason='ROS 2 is not installed')
 
 from tree_sway.commands.cli import main  # noqa: E402
-from tree_sway.page.server import PageServer, PageSettings  # noqa: E402
+from tree_sway.page.page_settings import PageSettings  # noqa: E402
+from tree_sway.page.server import PageServer  # noqa: E402
 from tree_sway.stream.protocol import (  # noqa: E402
     decode_description,
     encode_state,

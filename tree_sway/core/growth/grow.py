@@ -75,10 +75,7 @@ def grow(
     wood = species_named(species)
     species = wood.key
     kind = wood.habit
-    low, high = _HEIGHTS[kind]
-    if not low <= height <= high:
-        what = f"height {height:g} m is out of range for the habit '{kind}'"
-        raise ParameterError(what, where='height', cure=f'give {low:g} to {high:g} m')
+    refuse_height(wood, height)
     usual = height / _slenderness(kind, species, height)
     if diameter is None:
         diameter = usual
@@ -99,6 +96,14 @@ def grow(
         generator = grow_goldcrest if species == 'goldcrest' else grow_benjamina
         tree = generator(rng, height, diameter, species)
     return replace(tree, name=name or species)
+
+
+def refuse_height(wood: Species, height: float) -> None:
+    """Raise a `ParameterError` for a height [m] that `grow` does not give a species."""
+    low, high = _HEIGHTS[wood.habit]
+    if not low <= height <= high:
+        what = f"height {height:g} m is out of range for the habit '{wood.habit}'"
+        raise ParameterError(what, where='height', cure=f'give {low:g} to {high:g} m')
 
 
 def _slenderness(kind: str, species: str, height: float) -> float:

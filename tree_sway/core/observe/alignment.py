@@ -82,6 +82,7 @@ def align(
     with_gravity: Floats,
     without: Floats,
     reference: Floats | None = None,
+    window: int = 1,
 ) -> Alignment:
     """
     Find the mounting of a sensor.
@@ -97,8 +98,12 @@ def align(
         The same of one whose acceleration has no gravity.
     reference
         Orientation from which the rotations are counted, x y z w; None without.
+    window
+        Number of steps over which motions are averaged before they are compared: the model knows
+        the sway of the tree, not the gusts of a limb, which are faster.
 
     """
+    raw, sensed = sensed, averaged(sensed, window)
     notes = list[str]()
     finite = np.isfinite(sensed).all(axis=0).reshape(3, 3)
     measures: NDArray[np.bool_] = np.all(finite, axis=1)
@@ -107,7 +112,7 @@ def align(
     turn = np.eye(3)
     if measures[0]:
         scale[0], has_gravity, problem = _gravity_of(sensed[:, :3], notes)
-    model = (with_gravity if has_gravity else without).copy()
+    model = averaged(with_gravity if has_gravity else without, window)
     if measures[1]:
         scale[1] = _rate_unit(sensed[:, 3:6], model[:, 3:6], notes)
     scaled = sensed.copy()
@@ -139,8 +144,16 @@ def align(
             f'its motion resembles that of the tree by {likeness:.2f} only: check place, clock '
             'and wind, or wait for more wind'
         )
-    noise = noise_of(moved)
+    noise = noise_of(found.motion(raw))
     return Alignment(turn, scale, has_gravity, likeness, noise, problem, tuple(notes))
+
+
+def averaged(rows: Floats, window: int) -> Floats:
+    """Average rows (n, k) over a number of them, (n - window + 1, k)."""
+    if window <= 1:
+        return rows.copy()
+    sums = np.cumsum(np.vstack([np.zeros(rows.shape[1]), rows]), axis=0)
+    return np.asarray((sums[window:] - sums[:-window]) / window)
 
 
 def _gravity_of(acceleration: Floats, notes: list[str]) -> tuple[float, bool, str]:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 TIME_CONSTANT = 0.6
 """Time in [s] after which an unknown force has decayed to 1/e."""
 
-_GUST = 0.15
+GUST = 0.15
 """Standard deviation of the unknown wind of a limb over the mean wind [-]."""
 
 _SHARED = 0.1
@@ -55,12 +55,15 @@ class Disturbance:
     """
     Unknown forces on the first coordinates of a model in a mean wind.
 
-    ``covariance`` is of the modal forces, (m, m); ``air_damping`` the damping of each coordinate
-    by the mean wind in [1/s], (m,).
+    ``covariance`` is of the modal forces, (m, m), and ``gusts`` its part by unknown gusts;
+    ``air_damping`` the damping of each coordinate by the mean wind in [1/s], (m,), and ``speed``
+    that wind in [m/s].
     """
 
     covariance: Floats
+    gusts: Floats
     air_damping: Floats
+    speed: float
 
 
 def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
@@ -89,10 +92,11 @@ def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturban
     for axis, share in enumerate((1.0, 1.0, _LIFT)):
         covariance += share * by_limb[:, axis].T @ shared @ by_limb[:, axis]
         covariance += share * _SHARED * np.outer(whole[axis], whole[axis])
-    covariance *= (_GUST * speed) ** 2
-    gusts = np.square(_GUST * speed * whole).sum(axis=0)
+    covariance *= (GUST * speed) ** 2
+    by_gusts = covariance.copy()
+    gusts = np.square(GUST * speed * whole).sum(axis=0)
     _add_wood(covariance, gusts, simulator, air_damping)
-    return Disturbance(covariance, air_damping)
+    return Disturbance(covariance, by_gusts, air_damping, speed)
 
 
 def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:

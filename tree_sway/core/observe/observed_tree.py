@@ -13,7 +13,7 @@ each limb are for the sensors to tell.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 import math
@@ -28,6 +28,7 @@ from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with
 from tree_sway.core.observe.disturbance import crown_slope
 from tree_sway.core.observe.explained_motion import ExplainedMotion
+from tree_sway.core.observe.members import Members, uncertainty_of
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.observer import Observer
 from tree_sway.core.observe.sensor_place import place_on, tip_slopes
@@ -48,9 +49,6 @@ _STORM = 36.0
 
 _KNOWN_AHEAD = 0.5
 """Time in [s] by which samples of records are known ahead of a step."""
-
-_QUANTILE = 1.2816
-"""Standard deviations within which 80 % of a normal distribution lie."""
 
 _DYNAMIC = 4.0
 """Energy of the motion in a storm over that of the static deflection."""
@@ -81,6 +79,8 @@ class ObservedTree(SwaySimulator):
         Whether the smoothed state is kept too (`smoothed`).
     learns
         Whether stiffness and damping follow the sensors.
+    has_band
+        Whether it also says how sure it is (`band`).
 
     Raises
     ------
@@ -105,6 +105,7 @@ class ObservedTree(SwaySimulator):
         rate: float = 60.0,
         is_smoothed: bool = False,
         learns: bool = True,
+        has_band: bool = False,
         cache: ModelCache | None = PREPARED,
         plain: bool = False,
         **changes: Any,
@@ -125,7 +126,7 @@ class ObservedTree(SwaySimulator):
         self.at = {name: str(where) for name, where in at.items()}
         """Place of each sensor as it was given."""
         self._explained = ExplainedMotion()
-        self._is_smoothed, self._rate = is_smoothed, 0.0
+        self._is_smoothed, self._has_band, self._rate = is_smoothed, has_band, 0.0
         self.sensors: dict[str, MotionSensor] = {}
         """Sensors by their names."""
         self._records: dict[str, _Record] = {}
@@ -142,7 +143,7 @@ class ObservedTree(SwaySimulator):
         self.now = 0.0
         """Time of the end of the last step in [s], on the clock of the sensors."""
         self._given: float | None = None
-        self._speed = 0.0
+        self._last_wind = (0.0, 0.0, 0.0)
         self._known: TreeFit | None = None
         self._tips: Floats | None = None
         self.learns = learns
@@ -162,6 +163,11 @@ class ObservedTree(SwaySimulator):
         tracks = [SensorTrack(each, frequency, 1.0 / rate) for each in self.sensors.values()]
         self.observer = Observer(self, tracks, 1.0 / rate, is_smoothed=self._is_smoothed)
         """What the sensors tell."""
+        self.members: Members | None = None
+        """Trees that the real one might be; None without a band."""
+        if self._has_band:
+            spreads = uncertainty_of(in_leaf=bool(self.settings.in_leaf))
+            self.members = Members(self.observer, 1.0 / rate, spreads)
 
     @property
     def period(self) -> float:
@@ -233,7 +239,7 @@ class ObservedTree(SwaySimulator):
         eta -= added[0]
         rate -= added[1]
         if is_wind(x, y, z, self._max_wind):  # else the last wind moves the tree
-            self._speed = math.hypot(x, y, z)
+            self._last_wind = x, y, z
             apart = (self._share @ self._crown.push(x, y, z, dt)).tolist()
             status = super().step((x + apart[0], y + apart[1], z + apart[2]), dt)
         else:
@@ -246,8 +252,11 @@ class ObservedTree(SwaySimulator):
         if self._records:
             self._offer_records(self.now + _KNOWN_AHEAD)
         n_periods = max(round(dt * self._rate), 1)
-        added[:] = self.observer.step(self.now, self._speed, swing, n_periods)
+        speed = math.hypot(*self._last_wind)
+        added[:] = self.observer.step(self.now, speed, swing, n_periods)
         self._bound(added)
+        if self.members is not None:
+            self.members.step(swing, self._last_wind[:2])
         eta += added[0]
         rate += added[1]
         if self.observer.is_active:
@@ -261,6 +270,12 @@ class ObservedTree(SwaySimulator):
         self._known = fit
         if fit is None or not self.learns:
             return
+        if self.members is not None:
+            known = self.members.spreads
+            self.members.spreads = known._replace(
+                stiffness=min(fit.stiffness_error, known.stiffness),
+                damping=min(fit.damping_error, known.damping),
+            )
         ratio = min(fit.damping * self.models[0].damping_ratio, 1.0)
         with suppress(ParameterError):  # a tree that would buckle stays as it is
             self.tune(stiffness_factor=fit.stiffness, damping_ratio=ratio)
@@ -284,7 +299,10 @@ class ObservedTree(SwaySimulator):
         self._crown.reset()
         self._added[:] = 0.0
         self.observer.reset()
-        self.now, self._given, self._speed = 0.0, None, 0.0
+        if self.members is not None:
+            self.members.reset()
+        self.now, self._given = 0.0, None
+        self._last_wind = (0.0, 0.0, 0.0)
         for record in self._records.values():
             record.next = 0
 
@@ -300,18 +318,59 @@ class ObservedTree(SwaySimulator):
         """Key rotations in [rad] of `LATE_STEPS` ago by what was measured since, (N,)."""
         return np.asarray(self._bank.oscillators.shapes @ self.observer.smoothed)
 
-    def band(self) -> Floats:
+    def band(self, branches: Sequence[int] | None = None) -> Floats:
         """
-        Half the width of the band that holds 80 % of the true motion of each tip [m], (b, 3).
+        Where the real tips are for 80 % of the time, beyond those of the corrected motion.
 
-        It comes from the covariance of the correction, or of the unknown forces where no sensor is
-        in use, and from how large the innovations have been of late.
+        Parameters
+        ----------
+        branches
+            Branches whose tips are asked for; all if None.
+
+        Returns
+        -------
+        Floats
+            Lower and upper bound of each tip's displacement less that of this tree in [m],
+            (2, k, 3).
+
+        Raises
+        ------
+        ParameterError
+            A tree made without a band.
+
         """
+        members = self._members_with_band()
         if self._tips is None:
-            slopes = tip_slopes(self)
-            self._tips = slopes.reshape(-1, slopes.shape[2])
-        deviation = self.observer.tip_deviation(self._tips)
-        return np.asarray(_QUANTILE * deviation.reshape(-1, 3))
+            self._tips = tip_slopes(self)
+        return members.band(self._tips if branches is None else self._tips[list(branches)])
+
+    def load_band(self, per_rotation: Floats) -> Floats:
+        """
+        Where the real load of the wood is for 80 % of the time, beyond that of this tree.
+
+        Parameters
+        ----------
+        per_rotation
+            Load per unit of the first key rotations, (k, ...), such as `moment_per_rotation`.
+
+        Returns
+        -------
+        Floats
+            Lower and upper bound less the load of this tree, in its unit, (2, ...).
+
+        """
+        members = self._members_with_band()
+        shapes = self._bank.oscillators.shapes[: len(per_rotation), : self.observer.count]
+        readout = np.tensordot(per_rotation, shapes, axes=(0, 0))
+        # Stiffer wood bears more at the same bend.
+        bent = readout @ (self._corrected[0][:, None] + members.errors)
+        return members.band(readout, (members.stiffness - 1.0) * bent)
+
+    def _members_with_band(self) -> Members:
+        if self.members is None:
+            cure = 'make it with has_band=True'
+            raise ParameterError('a tree without a band', where=self.tree.name, cure=cure)
+        return self.members
 
     @property
     def explained(self) -> float:

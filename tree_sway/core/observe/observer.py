@@ -64,9 +64,10 @@ LATE_STEPS = SMOOTHED_LAG + len(_WINDOW) // 2
 
 
 class _Design(NamedTuple):
-    """Gains for the sensors in use: numbers of those, at once, and of the smoother if any."""
+    """Numbers of sensors, their noise (p,), and gains: at once, and of the smoother if any."""
 
     used: tuple[int, ...]
+    noise: Floats
     causal: SteadyFilter
     late: SteadyFilter | None
 
@@ -141,7 +142,7 @@ class Observer:
         self._done = -1
         self._used: tuple[int, ...] = ()
         self._designed_for = 0.0
-        self._mean_speed = self._gustiness = 0.0
+        self._mean_speed = 0.0
         self._causal: Estimate | None = None
         self._late_one: Estimate | None = None
         self._designing: Iterator[_Design | None] | None = None
@@ -152,8 +153,11 @@ class Observer:
         self.fit: TreeFit | None = None
         """Stiffness and damping by the sensors, over those of the model as it was made."""
         self._made = (0.0 * shapes[0], 0.0 * shapes[0])
-        self._open = np.zeros((3 * self.count, 3 * self.count))
-        self._damped = np.zeros(self.count)
+        self._open: Floats | None = None
+        self.damped = np.zeros(self.count)
+        """Damping of the coordinates that are corrected, by wood and air, [1/s], (count,)."""
+        self.noise = np.zeros(0)
+        """Standard deviation of the noise of the measurements in use, (p,)."""
         self._ahead: dict[int, Floats] = {}
         self._moved = np.zeros((3, self.count))
         self._terms = np.zeros((3, 3, self.count))
@@ -163,16 +167,17 @@ class Observer:
         self._swing = np.zeros(3 * shapes.shape[1])
         with one_thread():
             self.refresh()
-        self._made = (self._stiffness, self._damping)
+        self._made = (self._stiffness, self.damping)
 
     def refresh(self) -> None:
         """Read stiffness and damping of the model again, after a change."""
         tunable = self._simulator.banks[0].oscillators.tunable
         self._stiffness = np.array(tunable.stiffness) / tunable.inertia
-        self._damping = np.array(tunable.damping) / tunable.inertia
+        self.damping = np.array(tunable.damping) / tunable.inertia
+        """Damping of each by the wood [1/s], (m,)."""
         self._first_stiffness = self._stiffness[: self.count].copy()
         self._rows = [
-            np.ascontiguousarray(sensed_rows(each, self._stiffness, self._damping))
+            np.ascontiguousarray(sensed_rows(each, self._stiffness, self.damping))
             for each in self._places
         ]
         self._designed_for = 0.0
@@ -184,7 +189,7 @@ class Observer:
 
     @property
     def stiffness(self) -> Floats:
-        """Stiffness of the corrected coordinates, of unit mass, in [1/s^2], (count,)."""
+        """Stiffness of the coordinates that are corrected [1/s^2], (count,)."""
         return self._first_stiffness
 
     @property
@@ -237,12 +242,11 @@ class Observer:
         return self._moved[:2]
 
     def _note_wind(self, speed: float) -> None:
-        """Follow the mean speed of the wind and its deviation."""
+        """Follow the mean speed of the wind [m/s]."""
         share = self._dt / _RECENT
         if self._steps * self._dt < _RECENT:
             share = 1.0 / self._steps
         self._mean_speed += share * (speed - self._mean_speed)
-        self._gustiness += share * ((speed - self._mean_speed) ** 2 - self._gustiness)
 
     @cached_property
     def _find_energies(self) -> Callable[..., None]:
@@ -285,7 +289,7 @@ class Observer:
         found = next(self._designing)
         if found is None:
             return
-        self._designing, self._used = None, found.used
+        self._designing, self._used, self.noise = None, found.used, found.noise
         self._causal = Estimate(found.causal, self._causal)
         if found.late is not None:
             self._late_one = Estimate(found.late, self._late_one)
@@ -295,7 +299,7 @@ class Observer:
     def _in_parts(self, used: tuple[int, ...]) -> Iterator[_Design | None]:
         """Find the gains of some sensors; None until they are found."""
         law = self._present_law()
-        found = [self._felt(k, self._damped) for k in used]
+        found = [self._felt(k, self.damped) for k in used]
         sensed = np.concatenate([rows for rows, _ in found])
         noise = np.concatenate([each for _, each in found])
         gains: list[SteadyFilter] = []
@@ -304,19 +308,32 @@ class Observer:
                 yield None
                 if each is not None:
                     gains.append(each)
-        yield _Design(used, gains[0], gains[1] if self._is_smoothed else None)
+        yield _Design(used, noise, gains[0], gains[1] if self._is_smoothed else None)
 
     def _present_law(self) -> SwayLaw:
         """Find the law of the unknown motion in the present wind, and its covariance."""
         speed = max(self._mean_speed, _SLOWEST_WIND)
         self._designed_for, n = speed, self.count
         unknown = self._unknown = disturbance(self._simulator, speed, n)
-        self._damped = self._damping[:n] + unknown.air_damping
+        self.damped = self.damping[:n] + unknown.air_damping
         law = sway_law(
-            self._stiffness[:n], self._damped, unknown.covariance, TIME_CONSTANT, self._dt
+            self._stiffness[:n], self.damped, unknown.covariance, TIME_CONSTANT, self._dt
         )
-        self._open = stationary_covariance(law)
+        self._open = None
         return law
+
+    @property
+    def unknown(self) -> Disturbance:
+        """What the wind does not tell, in the present wind."""
+        if self._unknown is None or (not self._used and self._is_outdated):
+            self._present_law()
+        assert self._unknown is not None
+        return self._unknown
+
+    @property
+    def gains(self) -> SteadyFilter | None:
+        """Gains of the correction at once; None before any."""
+        return None if self._causal is None else self._causal.gains
 
     def _felt(self, which: int, damping: Floats) -> tuple[Floats, Floats]:
         """Return the measurements of a sensor by the state, (k, 3 n), and their noise, (k,)."""
@@ -417,7 +434,9 @@ class Observer:
         for k, row in enumerate(beyond):
             if row is None or self.tracks[k].in_use:
                 continue
-            felt, noise = self._felt(k, self._damped)
+            if self._open is None:
+                self._open = stationary_covariance(self._causal.gains.law)
+            felt, noise = self._felt(k, self.damped)
             expected = np.einsum('ij,jk,ik->i', felt, self._open, felt)
             missed = row[self.tracks[k].picked] - felt @ state
             squares = np.square(missed) / (expected + np.square(_CAUSAL * noise))
@@ -438,31 +457,6 @@ class Observer:
     def smoothed(self) -> Floats:
         """Displacements of `LATE_STEPS` ago by what has been measured since, (m,)."""
         return np.asarray(_WINDOW @ self._smoothed)
-
-    def tip_deviation(self, tips: Floats) -> Floats:
-        """
-        Find the standard deviation of tips whose motion by each coordinate is known.
-
-        Parameters
-        ----------
-        tips
-            Displacement per unit of each coordinate in [m], (k, m).
-
-        Returns
-        -------
-        Floats
-            Standard deviations in [m], (k,).
-
-        """
-        n = self.count
-        if self._used and self._causal is not None:
-            known = self._causal.gains.covariance[:n, :n]
-        else:
-            if self._is_outdated:
-                self._present_law()
-            known = self._open[:n, :n]
-        first = tips[:, :n]
-        return np.sqrt(np.maximum(((first @ known) * first).sum(axis=1), 0.0))
 
     def limit(self, share: float) -> None:
         """Scale the energy of the correction by a share, and count it for the sensors in use."""

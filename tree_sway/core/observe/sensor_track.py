@@ -29,6 +29,9 @@ LEARNING = 20.0
 _LATER, _MEMORY = 1.4, 600.0
 _ABSENT_AFTER, _TRUSTED_AGAIN = 1.0, 5.0
 _AVERAGED = 2.0
+_COMPARED = 1.0
+"""Periods of the first sway over which motions are averaged to find a mounting."""
+
 _DISAGREES, _AGREES = 16.0, 4.0
 _FLOOR = np.array([0.03, 0.004, 0.002])
 """Least noise of acceleration [m/s^2], rate [rad/s] and rotation [rad]."""
@@ -132,6 +135,7 @@ class SensorTrack:
         self._sensed = np.zeros((round(_MEMORY / dt), 9))
         self._computed = np.zeros((len(self._sensed), ROWS))
         self._count = 0
+        self._window = max(round(_COMPARED / (frequency * dt)), 1)
         self._next_fit = round(LEARNING / dt)
         self._absent = self._agreed = 0.0
         self._is_refused = False
@@ -238,7 +242,7 @@ class SensorTrack:
         n = min(self._count, len(self._sensed))
         sensed, computed = self._sensed[:n], self._computed[:n].T
         upright, free = (as_felt(computed, has_gravity=each).T for each in (True, False))
-        found = align(sensed, upright, free, self.sensor.reference)
+        found = align(sensed, upright, free, self.sensor.reference, self._window)
         self.alignment = found
         if found.problem:
             self.in_use = False

@@ -35,6 +35,8 @@ from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
+MAX_STEPS = 6_000_000
+"""Largest number of steps, all of which are in the memory: more than a day at 60 Hz."""
 _CHUNK = 4096
 """Number of samples of a record that are plain numbers at a time."""
 
@@ -76,6 +78,7 @@ def simulate(
     branches: Sequence[int] | None = None,
     settings: Settings | None = None,
     motion: Sequence[PlacedMotion] = (),
+    band: bool = False,
     **changes: Any,
 ) -> SwayRecord:
     """
@@ -99,6 +102,8 @@ def simulate(
     motion
         Records of motion sensors on the real tree, which the motion then follows
         (`ObservedTree`).
+    band
+        Whether to find where the real tree is for 80 % of the time, too (`ObservedTree.band`).
 
     Returns
     -------
@@ -114,7 +119,7 @@ def simulate(
         A tree that buckles.
 
     """
-    rig = Rig(tree, settings, motion=motion, **changes)
+    rig = Rig(tree, settings, motion=motion, band=band, **changes)
     return rig.run(wind, rate=rate, seconds=seconds, branches=branches)
 
 
@@ -129,6 +134,7 @@ class Rig:
         *,
         tolerance: float = 0.005,
         cache: ModelCache | None = PREPARED,
+        band: bool = False,
         **changes: Any,
     ) -> None:
         """Reduce the tree, once for the simulator and for its strain."""
@@ -137,9 +143,11 @@ class Rig:
         self.tree, self.reductions = bare, TreeReductions(bare, species, solved(chosen))
         self.motion = motion
         self.simulator: SwaySimulator
-        if motion:
+        if motion or band:
             places = {each.name: each.at for each in motion}
-            self.simulator = ObservedTree(tree, settings=chosen, at=places, cache=cache)
+            self.simulator = ObservedTree(
+                tree, settings=chosen, at=places, cache=cache, has_band=band
+            )
         else:
             auto = {'tolerance': tolerance} if chosen.model == 'auto' else {}
             self.simulator = simulator_of(self.reductions, cache=cache, **auto)
@@ -168,6 +176,7 @@ class Rig:
         before = replace(simulator.counts)
         gauge, per_rotation = StrengthGauge(self.reductions), moment_per_rotation(self.reductions)
         poses, rows = np.empty((tree.n_segments, 7)), list[tuple[Floats, ...]]()
+        bands = list[tuple[Floats, Floats]]()
         rest = tips_of_poses(tree, simulator.place(), chosen)
 
         def measure(end: int, mean: Floats) -> None:
@@ -175,11 +184,15 @@ class Rig:
             rotations = simulator.rotations()
             moment = rotations[: len(per_rotation)] @ per_rotation
             rows.append((mean, tips, moment, gauge.read(rotations, moment)[chosen]))
+            if isinstance(simulator, ObservedTree) and simulator.members is not None:
+                load = simulator.load_band(per_rotation)
+                bands.append((tips + simulator.band(chosen.tolist()), moment + load))
 
         count, steps = _steps(simulator, wind, within('rate', rate, 1.0, 10_000.0, 'Hz'), measure)
         if seconds is not None:
             within('seconds', seconds, 0.0, 1e9, 's', above=True)
             count = min(count, max(round(seconds * rate), 1))
+        refuse_too_many_steps(count, rate)
         for _ in itertools.islice(steps, count):
             pass
         means, tips, moment, strain = (np.array(column) for column in zip(*rows, strict=True))
@@ -194,6 +207,7 @@ class Rig:
                 *_other_times(self.motion, count / rate),
                 *_said_by_sensors(simulator),
             ),
+            *(np.array(column) for column in zip(*bands, strict=True)),
         )  # fmt: skip
 
     def strength_curve(
@@ -297,14 +311,24 @@ def moment_per_rotation(reductions: TreeReductions) -> Floats:
     return np.array(found)
 
 
+def refuse_too_many_steps(count: float, rate: float) -> None:
+    """Raise a `ParameterError` for more than `MAX_STEPS` steps at a rate in [Hz]."""
+    if count > MAX_STEPS:
+        raise ParameterError(
+            f'{count / rate:g} s at {rate:g} Hz are {count:.3g} steps',
+            cure=f'give at most {MAX_STEPS} steps, such as a day at 60 Hz',
+        )
+
+
 def _steps(
     simulator: SwaySimulator, wind: WindSamples | ArrayLike, rate: float,
     measure: Callable[[int, Floats], None],
 ) -> tuple[int, Iterator[None]]:  # fmt: skip
     """Return the number of steps in a wind, and an iterator over them."""
     if isinstance(wind, WindSamples):
-        duration = float(wind.time[-1] - wind.time[0]) if len(wind.time) else 0.0
-        count, what = int(duration * rate + 1e-6), f'a wind record of {duration:g} s'
+        duration = float(wind.time[-1]) - float(wind.time[0]) if len(wind.time) else 0.0
+        count = int(min(duration * rate + 1e-6, 1e15))
+        what = f'a wind record of {duration:g} s'
         steps = _through_record(simulator, wind, rate, measure)
     else:
         try:

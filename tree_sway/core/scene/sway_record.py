@@ -50,6 +50,9 @@ class SwayRecord:
     notes
         Doubts about the motion, one sentence each: steps that were clamped, coordinates that were
         left out, restarts.
+    tip_band, moment_band
+        Bounds within which the real tree is for 80 % of the time, lower and upper, of ``tips``,
+        (t, 2, k, 3), and of ``base_moment``, (t, 2, 3); None where they were not asked for.
 
     """
 
@@ -65,14 +68,20 @@ class SwayRecord:
     strain: Floats
     strength: StrengthUse
     notes: tuple[str, ...] = ()
+    tip_band: Floats | None = None
+    moment_band: Floats | None = None
 
     def columns(self) -> dict[str, Floats]:
         """Return every column, (t,), under its name with its unit, such as ``time [s]``."""
         vectors = [('wind', 'm/s', self.wind), ('moment', 'N m', self.base_moment)]
-        tips = np.moveaxis(self.tips, 1, 0)
-        vectors += [
-            (f'{name} tip', 'm', tip) for name, tip in zip(self.branch_names, tips, strict=True)
-        ]
+        for k, name in enumerate(self.branch_names):
+            vectors.append((f'{name} tip', 'm', self.tips[:, k]))
+        for i, end in enumerate(('low', 'high')):
+            if self.moment_band is not None:
+                vectors.append((f'moment {end}', 'N m', self.moment_band[:, i]))
+            if self.tip_band is not None:
+                for k, name in enumerate(self.branch_names):
+                    vectors.append((f'{name} tip {end}', 'm', self.tip_band[:, i, k]))
         found = {'time [s]': self.time}
         for name, unit, rows in vectors:
             found |= {f'{name}_{axis} [{unit}]': rows[:, i] for i, axis in enumerate('xyz')}

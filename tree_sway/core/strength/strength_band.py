@@ -26,18 +26,13 @@ import math
 import numpy as np
 
 from tree_sway.core.arrays import Floats
-
-SHARE_WITHIN = 0.8
-"""Share of trees within the band [-]."""
+from tree_sway.core.model.load_spreads import DRAG, LEAVES, WIND
 
 WOOD, KNOTS = 0.16, 0.15
 """Log-deviation of clear wood, and the largest part of its strength that knots take [-]."""
 
 ROOTS_OF_A_SPECIES, ROOTS_OF_SPECIES = 0.33, 0.27
 """Log-deviations of the strength of roots, of trees of one species and size, and of species."""
-
-DRAG, LEAVES, WIND = 0.25, 0.35, 0.3
-"""Log-deviations of the load by drag coefficient, leaf area and wind at the crown [-]."""
 
 _DEVIATIONS = 1.2816
 """Standard deviations on both sides of the mean that hold `SHARE_WITHIN` of a normal variable."""

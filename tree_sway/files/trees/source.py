@@ -72,15 +72,20 @@ def open_tree(
         return built_in.of_species(wood(built_in.species)).checked()
     path = path_of(text)
     if not path.exists():
-        guess = nearest(text, BUILTIN_TREES)
-        if text in species_keys():
-            guess = f'it is a species: tree-sway grow {text} --height 10 -o {text}.yaml;'
-        cure = f'{guess} give a file, or one of {", ".join(BUILTIN_TREES)}'.lstrip()
-        raise FormatError(f"no tree '{text}'", cure=cure)
+        raise unknown_tree(text)
     head = read_head(path) if path.is_file() else None
     if head is not None:
         _refuse_several_trees(path, head)
     return read_tree(path, head=head, wood=wood, **options).checked()
+
+
+def unknown_tree(name: str) -> FormatError:
+    """Return the error for a name that is neither that of a built-in tree nor that of a file."""
+    guess = nearest(name, BUILTIN_TREES)
+    if name in species_keys():
+        guess = f'it is a species: tree-sway grow {name} --height 10 -o {name}.yaml;'
+    cure = f'{guess} give a file, or one of {", ".join(BUILTIN_TREES)}'.lstrip()
+    return FormatError(f"no tree '{name}'", cure=cure)
 
 
 def _refuse_several_trees(path: Path, head: str) -> None:

@@ -46,7 +46,8 @@ class InventoryColumns:
         self.is_kept[row] = False
         self._reasons[reason] += 1
         if not self._first:
-            self._first = f'line {self.table.numbers[row]}: {detail or reason}'
+            number = self.table.numbers[row]
+            self._first = f'{self.table.row_name} {number}: {detail or reason}'
 
     def why_left_out(self) -> str:
         """Return how many rows were left out, why, and the first; empty without one."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 import json
+import math
 from typing import Any
 
 from tree_sway.errors import FormatError
@@ -18,6 +19,8 @@ from tree_sway.files.cell_table import table_of_cells
 from tree_sway.files.table_file import TextTable
 
 _DEEPEST = 6
+_PLACES = ('latitude', 'longitude', 'x', 'y', 'lat', 'lon')
+"""Properties that a geometry replaces."""
 
 
 def looks_like_geojson(head: str) -> bool:
@@ -27,37 +30,61 @@ def looks_like_geojson(head: str) -> bool:
 
 
 def read_geojson(text: str, source: str) -> TextTable:
-    """Return a table of the features; a `FormatError` for broken JSON or none."""
+    """
+    Return a table of the features; one whose place is broken has none.
+
+    Raises a `FormatError` for broken JSON, no features, or no feature with a place.
+    """
     try:
-        document = json.loads(text)
-        records = list(_records(document))
-    except (ValueError, OverflowError, RecursionError, TypeError, AttributeError) as error:
+        document = _object(json.loads(text))
+    except (ValueError, RecursionError) as error:
         raise FormatError(f'not GeoJSON: {error}', where=source, cure='save it again') from None
+    records = [*_elements(document), *_features(document)]
     if not records:
         raise FormatError('no features', where=source, cure='export points with properties')
     names = list(dict.fromkeys(name for record in records for name in record))
+    if not {'x', 'longitude'} & {*names}:
+        cure = 'give each feature a geometry with coordinates of two numbers'
+        raise FormatError('no feature has a place', where=source, cure=cure)
     rows = [[record.get(name, '') for name in names] for record in records]
-    return table_of_cells(names, rows, source)
+    return table_of_cells(names, rows, source, row_name='feature')
 
 
-def _records(document: dict[str, Any]) -> Iterator[dict[str, str]]:
-    for element in document.get('elements', ()):
-        tags = {f'tags.{name}': _text(each) for name, each in element.get('tags', {}).items()}
+def _elements(document: dict[str, Any]) -> Iterator[dict[str, str]]:
+    """Yield the cells of each element of OpenStreetMap that has a place and tags."""
+    for element in map(_object, _list(document.get('elements'))):
+        tags = _object(element.get('tags'))
         if 'lat' in element and 'lon' in element and tags:
-            yield {'latitude': _text(element['lat']), 'longitude': _text(element['lon'])} | tags
+            place = {'latitude': _text(element['lat']), 'longitude': _text(element['lon'])}
+            yield place | {f'tags.{name}': _text(each) for name, each in tags.items()}
+
+
+def _features(document: dict[str, Any]) -> Iterator[dict[str, str]]:
+    """Yield the cells of each feature."""
     is_one = document.get('type') == 'Feature'
-    for feature in (document,) if is_one else document.get('features', ()):
-        own = {name: _text(each) for name, each in (feature.get('properties') or {}).items()}
-        corners = list(_corners((feature.get('geometry') or {}).get('coordinates'), 0))
-        if corners:
-            x = sum(corner[0] for corner in corners) / len(corners)
-            y = sum(corner[1] for corner in corners) / len(corners)
-            is_degrees = abs(x) <= 360.0 and abs(y) <= 90.0
-            names = ('longitude', 'latitude') if is_degrees else ('x', 'y')
-            taken = ('latitude', 'longitude', 'x', 'y', 'lat', 'lon')
-            own = {name: each for name, each in own.items() if name.lower() not in taken}
-            own |= {names[0]: repr(x), names[1]: repr(y)}
-        yield own
+    for feature in map(_object, [document] if is_one else _list(document.get('features'))):
+        properties = _object(feature.get('properties'))
+        place = _place(_object(feature.get('geometry')).get('coordinates'))
+        taken = _PLACES if place else ()
+        cells = {name: each for name, each in properties.items() if name.lower() not in taken}
+        yield {name: _text(each) for name, each in cells.items()} | place
+
+
+def _place(coordinates: Any) -> dict[str, str]:
+    """Cells of the mean of the corners; none if there are none, or one is broken."""
+    try:
+        corners = list(_corners(coordinates, 0))
+    except (ValueError, TypeError, OverflowError):
+        return {}
+    if not corners:
+        return {}
+    x = sum(corner[0] for corner in corners) / len(corners)
+    y = sum(corner[1] for corner in corners) / len(corners)
+    if not math.isfinite(x + y):
+        return {}
+    is_degrees = abs(x) <= 360.0 and abs(y) <= 90.0
+    names = ('longitude', 'latitude') if is_degrees else ('x', 'y')
+    return {names[0]: repr(x), names[1]: repr(y)}
 
 
 def _corners(node: Any, depth: int) -> Iterator[list[float]]:
@@ -70,6 +97,16 @@ def _corners(node: Any, depth: int) -> Iterator[list[float]]:
     else:
         for each in node:
             yield from _corners(each, depth + 1)
+
+
+def _object(value: Any) -> dict[str, Any]:
+    """Return an object of JSON; an empty one in place of any other value."""
+    return value if isinstance(value, dict) else {}
+
+
+def _list(value: Any) -> list[Any]:
+    """Return a list of JSON; an empty one in place of any other value."""
+    return value if isinstance(value, list) else []
 
 
 def _text(cell: Any) -> str:

@@ -1,0 +1,257 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+How sure the motion is: 64 trees that the real one might be, in winds that its limbs might have.
+
+Each member differs from the model by its wood, its damping, its drag area and the gusts that its
+limbs meet, each drawn from the spread of its source:
+
+- Wood: Young's modulus of clear wood of one species varies by 22 % (Forest Products Laboratory,
+  Wood Handbook, 2010, table 5-6).
+- Damping: its logarithm by 0.5; 0.01 to 0.08 among bare stems (Moore & Maguire 2005) is +-2 of it.
+- Drag and leaf area: `load_spreads`.
+- Gusts: a share of each reaches the crown at once (`USUAL_COHERENCE`), and so do those that last
+  much longer than `TIME_CONSTANT`. The rest has the variance that the measured wind has above that
+  frequency, but meets limb by limb, correlated as in `disturbance`.
+
+A member is an oscillator for each of the first coordinates, driven by the forces on the model and
+those of its gusts::
+
+    x'' + (z s^1/2 c + a d) x' + s k x = a (F + d q') + g
+
+k, c stiffness and damping of the wood, d damping by the air, F force on the model, q its motion;
+s, z, a the member's stiffness, damping and drag over the model's, g the force of its gusts.
+
+Each member is a tree that might stand there. With sensors, its own would tell the filter something
+else: the filter runs on the simulated measurement of each, and the band is what remains between
+the members and what the filter makes of them (the ensemble of Evensen 2003, Ocean Dynamics 53,
+343-367, under fixed gains).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, TYPE_CHECKING
+
+import numpy as np
+from scipy.special import ndtri
+
+from tree_sway.core.arrays import Floats
+from tree_sway.core.model.load_spreads import DRAG, LEAVES, SHARE_WITHIN
+from tree_sway.core.observe.disturbance import GUST, TIME_CONSTANT
+from tree_sway.core.oscillators.propagator import propagator
+from tree_sway.core.wind.crown_wind import USUAL_COHERENCE
+
+if TYPE_CHECKING:
+    from tree_sway.core.observe.observer import Observer
+
+N_MEMBERS = 64
+"""Number of trees that the real one might be."""
+
+WOOD_SPREAD, DAMPING_SPREAD = 0.22, 0.5
+"""Log-deviations of Young's modulus within a species, and of damping among trees."""
+
+_LEAST_FAST = 0.04
+"""
+Least deviation of fast gusts over the mean wind [-], where an anemometer averages them away: a
+sixth of the variance of a turbulence of 0.1, the least over open land.
+"""
+
+_AVERAGED = 30.0
+_BIAS_TIME = 60.0
+
+
+class Uncertainty(NamedTuple):
+    """Log-deviations of a tree's stiffness, damping and drag area over the model's."""
+
+    stiffness: float = WOOD_SPREAD
+    damping: float = DAMPING_SPREAD
+    drag: float = DRAG
+
+
+def uncertainty_of(*, in_leaf: bool) -> Uncertainty:
+    """Return the spreads of a tree of which nothing has been measured."""
+    leaf = LEAVES if in_leaf else 0.0
+    return Uncertainty(drag=math.hypot(DRAG, leaf))
+
+
+class Members:
+    """
+    Trees that the real one might be.
+
+    Parameters
+    ----------
+    observer
+        The observer of the model.
+    dt
+        Time step in [s].
+    spreads
+        How far they differ from the model.
+
+    """
+
+    def __init__(self, observer: Observer, dt: float, spreads: Uncertainty) -> None:
+        self._observer, self._dt = observer, dt
+        self.spreads = spreads
+        n = self._count = observer.count
+        self._rng = np.random.default_rng(0)
+        strata = ndtri((np.arange(N_MEMBERS) + 0.5) / N_MEMBERS)
+        self._drawn = np.stack([self._rng.permutation(strata) for _ in range(3)])
+        self.motion = np.zeros((2, n, N_MEMBERS))
+        """Displacement and rate of each, (2, n, e)."""
+        self._gust, self._force, self._away = np.zeros((3, n, N_MEMBERS))
+        self._next = np.zeros((2, n, N_MEMBERS))
+        self._terms = np.zeros((3, n, N_MEMBERS))
+        self._felt = np.zeros((3, n, N_MEMBERS))
+        self._estimate = np.zeros((3, n, N_MEMBERS))
+        self._moved = np.zeros((3, 3, n, N_MEMBERS))
+        self._bias = np.zeros((0, N_MEMBERS))
+        self._slow: tuple[float, float] = (0.0, 0.0)
+        self._fast = 0.0
+        self._steps = self._measured = 0
+        self._filled_for: tuple[object, object, object] = (None, None, None)
+        self.stiffness = np.ones(N_MEMBERS)
+        """Stiffness of each over the model's, (e,)."""
+        self.errors = np.zeros((n, N_MEMBERS))
+        """Displacement of each beyond what the filter makes of it, (n, e)."""
+
+    def _fill(self) -> None:
+        """Find the law of each member in the present wind."""
+        observer, n = self._observer, self._count
+        unknown, spreads = observer.unknown, self.spreads
+        factors = np.exp(np.array(spreads)[:, None] * self._drawn)
+        self.stiffness, loss, self._drag = factors
+        stiffness = np.outer(observer.stiffness, self.stiffness)
+        damping = np.outer(observer.damping[:n], loss * np.sqrt(self.stiffness))
+        self._air = unknown.air_damping[:, None]
+        damping += self._air * self._drag
+        c = propagator(np.ones(stiffness.size), damping.ravel(), stiffness.ravel(), self._dt)
+        parts = [c[:, 0], c[:, 1], c[:, 2] + c[:, 3], c[:, 4], c[:, 5], c[:, 6] + c[:, 7]]
+        self._step = np.stack(parts).reshape(2, 3, n, N_MEMBERS)
+        self._stiff, self._damp = stiffness, damping
+        values, vectors = np.linalg.eigh(unknown.gusts)
+        kept = values > 1e-4 * values[-1]
+        self._decay = math.exp(-self._dt / TIME_CONSTANT)
+        driven = math.sqrt(1.0 - self._decay**2)
+        self._gusts = driven * vectors[:, kept] * np.sqrt(values[kept])
+        self._noise = np.zeros((self._gusts.shape[1], N_MEMBERS))
+        self._unit = unknown.speed * GUST
+
+    def step(self, swing: tuple[Floats, ...], wind: tuple[float, float]) -> None:
+        """
+        Move every member by a step, and find what the filter makes of it.
+
+        Parameters
+        ----------
+        swing
+            Displacement, rate and force of each coordinate in the wind alone, (m,).
+        wind
+            Horizontal wind over the step [m/s].
+
+        """
+        observer, n = self._observer, self._count
+        eta, rate, force = (each[:n, None] for each in swing)
+        present = (observer.unknown, observer.stiffness, self.spreads)
+        if any(now is not then for now, then in zip(present, self._filled_for, strict=True)):
+            self._fill()
+            self._filled_for = present
+        if not self._steps:
+            self.motion[0], self.motion[1] = eta, rate
+            self._slow, self._steps = wind, 1
+            self.errors[:] = 0.0
+            return
+        self._steps += 1
+        self._blow(*wind)
+        total, x, v = self._force, self.motion[0], self.motion[1]
+        np.multiply(force + self._air * rate, self._drag, out=total)
+        total += self._gust
+        for to, by in zip(self._next, self._step, strict=True):
+            np.multiply(by[0], x, out=to)
+            to += np.multiply(by[1], v, out=self._away)
+            to += np.multiply(by[2], total, out=self._away)
+        self.motion, self._next = self._next, self.motion
+        if observer.is_active:
+            self._filter(eta, rate, force)
+        else:
+            self._estimate[:] = 0.0
+            self._measured = 0
+            np.subtract(self.motion[0], eta, out=self.errors)
+
+    def _blow(self, x: float, y: float) -> None:
+        """Move the forces of the gusts that are not known, in a wind [m/s]."""
+        share = 1.0 - self._decay
+        slow_x, slow_y = self._slow
+        slow_x, slow_y = slow_x + share * (x - slow_x), slow_y + share * (y - slow_y)
+        self._slow = slow_x, slow_y
+        fast = 0.5 * ((x - slow_x) ** 2 + (y - slow_y) ** 2)
+        self._fast += max(self._dt / _AVERAGED, 1.0 / self._steps) * (fast - self._fast)
+        deviation = max(math.sqrt(self._fast), _LEAST_FAST * math.hypot(slow_x, slow_y))
+        size = (1.0 - USUAL_COHERENCE) * deviation / self._unit
+        self._rng.standard_normal(out=self._noise)
+        self._gust *= self._decay
+        np.dot(self._gusts, self._noise, out=self._away)
+        self._away *= size
+        self._gust += self._away
+
+    def _filter(self, eta: Floats, rate: Floats, force: Floats) -> None:
+        """Correct the estimate of each member by the simulated measurement of its motion."""
+        n, gains = self._count, self._observer.gains
+        assert gains is not None
+        estimate, felt = self._estimate, self._felt
+        stiffness = self._observer.stiffness[:, None]
+        damping = self._observer.damping[:n, None]
+        np.multiply(gains.law.step[..., None], estimate, out=self._moved)
+        np.add.reduce(self._moved, axis=1, out=estimate)
+        np.subtract(self.motion[0], eta, out=felt[0])
+        np.subtract(self.motion[1], rate, out=felt[1])
+        # The force by which the rows of a sensor give the difference of both accelerations.
+        np.multiply(self._stiff, self.motion[0], out=self._away)
+        np.subtract(self._force, self._away, out=felt[2])
+        felt[2] -= np.multiply(self._damp, self.motion[1], out=self._away)
+        felt[2] -= force - damping * rate - stiffness * eta
+        felt[2] += stiffness * felt[0] + self._observer.damped[:, None] * felt[1]
+        told = gains.sensed @ felt.reshape(3 * n, -1)
+        if len(self._bias) != len(told):
+            self._bias, self._measured = np.zeros_like(told), 0
+        self._measured += 1
+        share = max(self._dt / _BIAS_TIME, 1.0 / self._measured)
+        self._bias += share * (told - self._bias)
+        told -= self._bias
+        told += self._observer.noise[:, None] * self._rng.standard_normal(told.shape)
+        told -= gains.sensed @ estimate.reshape(3 * n, -1)
+        estimate += (gains.gain @ told).reshape(estimate.shape)
+        np.subtract(felt[0], estimate[0], out=self.errors)
+
+    def band(self, readout: Floats, scale: Floats | None = None) -> Floats:
+        """
+        Find where 80 % of the members are.
+
+        Parameters
+        ----------
+        readout
+            What is read by each coordinate, (..., m).
+        scale
+            Further differences of the members to add, (..., e).
+
+        Returns
+        -------
+        Floats
+            Lower and upper bound of what is beyond the corrected motion, (2, ...).
+
+        """
+        found = readout[..., : self._count] @ self.errors
+        if scale is not None:
+            found = found + scale
+        found.sort(axis=-1)
+        rank = 0.5 * (1.0 - SHARE_WITHIN) * (N_MEMBERS + 1) - 1.0
+        low, share = int(rank), rank - int(rank)
+        ends = []
+        for first, second in ((low, low + 1), (-low - 1, -low - 2)):
+            ends.append((1.0 - share) * found[..., first] + share * found[..., second])
+        return np.stack(ends)
+
+    def reset(self) -> None:
+        """Begin anew from the motion of the model."""
+        self._steps = self._measured = 0
+        self._estimate[:] = 0.0
+        self._gust[:] = 0.0

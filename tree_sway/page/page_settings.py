@@ -1,0 +1,60 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Settings of the page's server: its address, and who may see and change the scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+import ssl
+
+
+@dataclass(frozen=True)
+class PageSettings:
+    """
+    Address of the page and its access.
+
+    Parameters
+    ----------
+    address, port
+        Address to bind to; 0 is a free port.
+    token, token_file
+        Token of clients, or a file with it; needed for any address except this machine's own.
+    certificate, private_key
+        PEM files for TLS; none if empty.
+    max_clients
+        Largest number of pages.
+    origins
+        Other origins, as ``https://example.org``, whose pages may follow the stream.
+
+    """
+
+    address: str = '127.0.0.1'
+    port: int = 8765
+    token: str = field(default='', repr=False)
+    token_file: str = ''
+    certificate: str = ''
+    private_key: str = ''
+    max_clients: int = 64
+    origins: tuple[str, ...] = ()
+
+    def url(self, port: int) -> str:
+        """Return the address for a browser, without the token, of a server bound to a port."""
+        scheme = 'https' if self.certificate else 'http'
+        host = f'[{self.address}]' if ':' in self.address else self.address
+        return f'{scheme}://{host}:{port}/'
+
+    def tls(self) -> ssl.SSLContext | None:
+        """
+        Return the context of encrypted connections; None without a certificate.
+
+        Raises
+        ------
+        OSError
+            Files that cannot be read, or are no certificate and key.
+
+        """
+        if not self.certificate:
+            return None
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        context.load_cert_chain(self.certificate, self.private_key or None)
+        return context
