@@ -24,6 +24,7 @@ from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, open_tree
 from tree_sway.files.trees.tree_options import same
 from tree_sway.files.trees.yaml.tree_yaml import is_species_file, read_species
+from tree_sway.files.whole_file import refuse_unwritable
 
 OUTPUT_HELP = 'output file; its suffix chooses the format: .yaml, .glb'
 _TREE = 'a built-in tree (benjamina, goldcrest, broadleaf) or a tree file'
@@ -193,9 +194,15 @@ def add_output_arguments(parser: argparse.ArgumentParser, what: str) -> None:
 
 
 def output_path(arguments: argparse.Namespace) -> str:
-    """File to write; a `ParameterError` if it exists and ``--force`` is not given."""
+    """
+    File to write.
+
+    Raises a `ParameterError` if it exists and ``--force`` is not given, and a `FormatError` if it
+    cannot be written, before any work for it.
+    """
     if not arguments.force:
         refuse_overwriting(arguments.output, '--output')
+    refuse_unwritable(arguments.output)
     return str(arguments.output)
 
 

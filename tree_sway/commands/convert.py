@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
     suffix = Path(output).suffix.lower()
     if suffix not in _FORMATS:
         names = ', '.join('.xml (MJCF)' if each == '.xml' else each for each in _FORMATS)
-        what = f"cannot write '{Path(output).suffix}'"
+        what = f"cannot write '{Path(output).suffix}'" if suffix else 'a name without a suffix'
         raise FormatError(what, where=output, cure=f'use {names}')
     if arguments.at is not None and suffix != '.obj':
         cure = 'write .obj files'

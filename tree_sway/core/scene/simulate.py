@@ -326,7 +326,7 @@ def _steps(
 ) -> tuple[int, Iterator[None]]:  # fmt: skip
     """Return the number of steps in a wind, and an iterator over them."""
     if isinstance(wind, WindSamples):
-        duration = float(wind.time[-1] - wind.time[0]) if len(wind.time) else 0.0
+        duration = float(wind.time[-1]) - float(wind.time[0]) if len(wind.time) else 0.0
         count = int(min(duration * rate + 1e-6, 1e15))
         what = f'a wind record of {duration:g} s'
         steps = _through_record(simulator, wind, rate, measure)
