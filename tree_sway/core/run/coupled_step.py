@@ -18,6 +18,10 @@ positive definite:
 
 with a the mean acceleration without f, and u0 that of the last step: the drag is implicit by the
 damping B of the air, for F was found at the rates which the last step's force predicts.
+
+A force s that is at right angles to the motion v in the middle, as the centrifugal, would lengthen
+v if it were constant. It turns with the motion instead, as ``G (v0 + v1) / 2`` with the
+antisymmetric ``G = s r' - r s'``, ``r = M v / (v' M v)``, so that ``G v = s``, and does no work.
 """
 
 from __future__ import annotations
@@ -82,8 +86,9 @@ class CoupledStep:
         return _moved(self._whole, eta, rate, force)
 
     def force(
-        self, wanted: Floats, eta: Floats, rate: Floats, last: Floats, change: Floats, drag: Floats
-    ) -> Floats:
+        self, wanted: Floats, eta: Floats, rate: Floats, last: Floats, change: Floats,
+        drag: Floats, across: tuple[Floats, Floats],
+    ) -> Floats:  # fmt: skip
         """
         Find the constant force of the step, (m,).
 
@@ -97,6 +102,8 @@ class CoupledStep:
             Inertia of the leading coordinates beyond their own, M - 1, (q, q).
         drag
             Damping B by the air [1/s], (m, m).
+        across
+            Force s at right angles to the motion, and r, (q,) both.
 
         """
         whole, rows = self._whole, self._rows
@@ -106,11 +113,19 @@ class CoupledStep:
         free = (whole[3] * eta + (whole[4] - 1.0) * rate)[rows] / self.length
         right = self._stretch * wanted[rows] - inertia @ free
         right += damping @ (self._per_force * last[rows])
+        steered = rate[rows] + 0.5 * self.length * free
+        turning, along = (each[rows] for each in across)
+        right += turning * (along @ steered) - along * (turning @ steered)
         matrix = inertia + damping
         matrix.flat[:: len(matrix) + 1] += self._own
-        _, accelerations, failed = _solve(matrix, right, lower=1, overwrite_a=1)
+        _, solved, failed = _solve(matrix, np.stack([right, turning, along], 1), lower=1)
         if not failed:
-            found[rows] = accelerations / self._per_force
+            # Woodbury's formula for the matrix less h G / 2, of rank two.
+            h, sides = 0.5 * self.length, np.stack([along, turning])
+            by_turning, by_along = solved[:, 1], solved[:, 2]
+            columns = np.stack([-h * by_turning, h * by_along], 1)
+            share = np.linalg.solve(np.eye(2) + sides @ columns, sides @ solved[:, 0])
+            found[rows] = (solved[:, 0] - columns @ share) / self._per_force
         return np.asarray(found)
 
 

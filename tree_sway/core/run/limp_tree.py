@@ -176,11 +176,10 @@ class LimpStep(WindBasisBank):
         by_wind = per_speed_squared * (self._by_coordinate @ moments)
         wanted = instance['wanted'][:m]
         wanted[:] = by_wind
-        leading = wanted[: len(pose.change)]
-        leading += pose.weight
-        leading -= pose.centrifugal(rotations, here, middle_rate, rotation_rates)
+        wanted[: len(pose.change)] += pose.weight
+        across = pose.centrifugal(rotations, here, middle_rate, rotation_rates)
         drag = per_speed_squared * math.sqrt(float(wind @ wind)) * self._drag
-        found = law.force(wanted, eta, rate, force, pose.change, drag)
+        found = law.force(wanted, eta, rate, force, pose.change, drag, across)
         moved, faster = law.end(eta, rate, found)
 
         bent = self._by_key @ moved

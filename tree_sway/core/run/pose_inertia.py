@@ -146,9 +146,9 @@ class PoseInertia:
 
     def centrifugal(
         self, rotations: Floats, here: Floats, rate: Floats, rotation_rates: Floats
-    ) -> Floats:
+    ) -> tuple[Floats, Floats]:
         """
-        Find ``J' m (dJ/dt) q'`` but for what does work on the motion, (q,).
+        Find ``-J' m (dJ/dt) q'`` but for what does work on the motion.
 
         Parameters
         ----------
@@ -157,19 +157,26 @@ class PoseInertia:
         rate, rotation_rates
             Rates of the coordinates (m,), and of the key rotations (N,).
 
+        Returns
+        -------
+        tuple
+            The force, and the momentum over twice the kinetic energy, both (q,).
+
         """
         fastest = float(np.abs(rotation_rates).max(initial=0.0))
         energy = self.kinetic_energy(rate)
         if not (fastest > 0.0 and energy > 0.0):
-            return np.zeros(len(self.change))
+            still = np.zeros(len(self.change))
+            return still, still
         step = _MOTION_TURN / fastest
         along = step * rotation_rates
         bend = self._middles.fill(rotations + along, self._room)
         bend += self._middles.fill(rotations - along, self._other)
         bend -= here
         bend -= here
-        force = self.columns @ bend / step**2
+        force = self.columns @ bend
+        force /= -(step**2)
         leading = rate[: len(self.change)]
-        momentum = leading + self.change @ leading
-        force -= (force @ leading) / energy * momentum
-        return np.asarray(force)
+        momentum = (leading + self.change @ leading) / energy
+        force -= (force @ leading) * momentum
+        return force, momentum
