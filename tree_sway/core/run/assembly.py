@@ -40,6 +40,9 @@ def bank_of(model: SwayModel, *, plain: bool = False) -> Bank:
     blocks = block_records(branches, segments)
     bank = Bank(oscillators, branches, segments, blocks, model.mass, plain)
     if model.is_limp:
+        from tree_sway.core.run.limp_tree import LimpStep
+
+        assert isinstance(oscillators, LimpStep)
         oscillators.begin(model, bank)
     return bank
 

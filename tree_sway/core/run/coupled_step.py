@@ -60,9 +60,7 @@ class CoupledStep:
 
     """
 
-    def __init__(
-        self, modal: ModalCoordinates, half: Floats, leading: int, length: float
-    ) -> None:
+    def __init__(self, modal: ModalCoordinates, half: Floats, leading: int, length: float) -> None:
         self.length = length
         self._half, self._whole = half.copy(), modal.whole.T[[0, 1, 2, 4, 5, 6]]
         self._whole[[2, 5]] += modal.whole.T[[3, 7]]

@@ -45,7 +45,7 @@ LONGEST_STEP, MOST_TURN = 0.04, 1.0
 PAUSE = 1.0
 """Time [s] that the table steps after a step that would have turned a branch too far."""
 
-SLACK = 0.02
+SLACK = 0.05
 """
 Share of the energy that the tree may gain of what it has lost: that of a motion without damping
 rises and falls by the error of a step.

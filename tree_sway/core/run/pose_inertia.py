@@ -39,6 +39,7 @@ renewals of a column.
 _COLUMN_TURN, _MOTION_TURN = 1e-5, 1e-2
 """Largest key rotation [rad] of the differences for a column, and along the motion."""
 
+
 class PoseInertia:
     """
     Inertia of a tree at its pose, relative to that at rest.

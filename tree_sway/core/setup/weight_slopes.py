@@ -3,14 +3,14 @@
 """
 How the force of the weight changes as a tree leaves its rest, by the kinematics of its pose.
 
-The potential of the weight is ``V = -sum m g . p``, with p the middles of the segments. Its second
-derivative needs no places: each chord c, turned by small rotations ``w_i`` one after another, moves
-all the mass beyond it, whose weight is G, by its own second derivative
+The potential of the weight is ``V = -sum m g . p``, with p the middles of the segments. Its
+second derivative needs no places: each chord c, turned by small rotations ``w_i`` one after
+another, moves all the mass beyond it, whose weight is G, by its own second derivative
 
     c_ik = (w_i x (w_k x c) + w_k x (w_i x c) + o_ik x c) / 2.
 
-Rotations do not commute, so o_ik is the sum of the cross products of each rotation from the root on
-with those before it.
+Rotations do not commute, so o_ik is the sum of the cross products of each rotation from the root
+on with those before it.
 """
 
 from __future__ import annotations
