@@ -15,9 +15,9 @@ const [RING_SPACING, BARK_TILE] = [6, 0.6];
 const ROOTS = 5;
 /** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then; and how
  * many a cluster has at most, which are smaller where they are more than the spray's own. */
-const [LARGEST_CARDS, MOST_OF_CLUSTER, MOST_TUFTS] = [4, 24, 7];
+const [LARGEST_CARDS, MOST_OF_CLUSTER, MOST_TUFTS] = [4, 24, 14];
 /** Length of a small card over that of one of full size, by how many there are, and the least of it. */
-const [SMALLER, LEAST_CARD] = [0.62, 0.17];
+const [SMALLER, LEAST_CARD] = [0.57, 0.17];
 /** Area of leaves that are drawn one by one over that of the cluster; and how much of its card a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** Different small cards. */

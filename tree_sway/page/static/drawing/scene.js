@@ -41,7 +41,7 @@ const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
 const PAINTED = 260;
 /** Light that leathery leaves of evergreens throw back like a mirror. */
-const GLOSS = 0.5;
+const GLOSS = 0.2;
 /** Rows that no branch has. */
 const NONE = [-2, -2];
 /** Of a tree in its own colours. */
