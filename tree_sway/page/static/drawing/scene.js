@@ -29,7 +29,7 @@ const MOST = { segments: 40000, cards: 36000, all: 160000, near: 700, far: 90 };
 const MOST_MANY = { ...MOST, cards: 16000 };
 /** Without a graphics unit: of a few trees, and of a crowd. */
 const MOST_SLOW = { segments: 12000, cards: 3000, all: 15000, near: 400, far: 150 };
-const MOST_CROWD = { ...MOST_SLOW, segments: 5000, all: 8000, far: 220 };
+const MOST_CROWD = { ...MOST_SLOW, segments: 5000, cards: 1800, all: 8000, far: 220 };
 /** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
 const CHOOSE_EVERY = 6;
 /** A branch is near that is within this angle of where one points [rad]. */
