@@ -300,7 +300,7 @@ export class Scene {
     return {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
       skin: { barkColor, twigColor, relief: [1, pictures.get(relief)], footColor: foot.color, footHeight: foot.height },
-      foliage: { leaves: [2, pictures.get(name)], gloss: look.autumn || look.has_needles ? 0.05 : GLOSS },
+      foliage: { leaves: [2, pictures.get(name)], gloss: look.autumn || look.has_needles ? 0 : GLOSS },
     };
   }
 
