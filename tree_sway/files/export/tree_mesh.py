@@ -93,7 +93,7 @@ def leaf_mesh(leaves: LeafClusters, spray: Spray, cards: int = 2) -> TreeMesh:
     """
     Return cards for each cluster of leaves, to be shown with a picture of its spray.
 
-    They are those of the page (``static/drawing/mesh.js``), up to as many of each cluster as are
+    They are those of the page (``static/drawing/foliage.js``), up to as many of each cluster as are
     given. Texture coordinates run along the shoot, and across from one side to the other.
     """
     turns = Rotation.from_quat(leaves.orientation[:, [1, 2, 3, 0]])
