@@ -140,7 +140,7 @@ def arguments_given(configurations):
 
 
 def misspelled(configurations):
-    """Return a warning for each unknown argument that is near a known one, which launch ignores."""
+    """Return warnings for unknown arguments near a known one: launch itself ignores them."""
     known = [name for name, _, _ in ARGUMENTS]
     warnings = []
     for name in configurations:
