@@ -11,18 +11,23 @@ import { leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
 /** Least spacing of rings of bark on the screen [px], height of the picture of bark on a stem [m]. */
 const [RING_SPACING, BARK_TILE] = [6, 0.6];
-/** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then; and how
- * many a cluster has at most, which are smaller where they are more than the spray's own. */
-const [LARGEST_CARDS, MOST_OF_CLUSTER, MOST_TUFTS] = [4, 24, 7];
+/** Roots that spread from the foot of a stem. */
+const ROOTS = 5;
+/** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then. */
+const LARGEST_CARDS = 4;
+/** Tufts over the cards that others have, which are smaller. */
+const TUFTS = 0.6;
 /** Length of a small card over that of one of full size, by how many there are, and the least of it. */
-const [SMALLER, LEAST_CARD] = [0.62, 0.17];
+const [SMALLER, LEAST_CARD] = [0.57, 0.08];
 /** Area of leaves that are drawn one by one over that of the cluster; and how much of its card a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** Different small cards. */
 const VARIETY = 200;
-/** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the shares of the
- * cards of a cluster at the end of a branch, and along thin wood without clusters. */
-const [THIN, END_SHARE, BARE_SHARE] = [1.6, 0.3, 0.4];
+/** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the size of what is
+ * drawn there over that of a cluster, and at most [m]. */
+const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
+/** Height up to which no small card is drawn [m]. */
+const BROWSED = 1.6;
 /** Numbers of a corner of a card. */
 const PER_LEAF = 19;
 const ORIGIN = [0, 0, 0];
@@ -105,12 +110,16 @@ export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pix
       // At a joint both segments agree on the thickness: no steps in the bark.
       const joined = s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : thick;
       let r = Math.max(isLast ? radius[2 * segment + 1] : joined, 0.56 * pixel);
-      if (parents[branch] < 0) r *= 1 + 0.9 * Math.exp(-risen / (2.5 * thick));
+      // The foot of the stem spreads into roots.
+      const foot = parents[branch] < 0 ? Math.exp(-risen / (2.5 * thick)) : 0;
+      r *= 1 + 0.9 * foot;
       const { open } = shade(rest.subarray(STRIDE * segment, STRIDE * segment + 3));
       const up = (risen * around) / (2 * Math.PI * thick);
       for (let k = 0; k < corners; k++) {
         const angle = (2 * Math.PI * k) / sides - turn;
-        const ring = sides === 2 ? [k ? -r : r, 0, thickness - 2] : [r * Math.cos(angle), r * Math.sin(angle), thickness];
+        const round = r * (1 + 0.2 * foot * Math.cos(ROOTS * angle));
+        const ring = sides === 2 ? [k ? -r : r, 0, thickness - 2]
+          : [round * Math.cos(angle), round * Math.sin(angle), thickness];
         values.push(placer.slots[segment], isLast ? length[segment] : 0, ...ring, (around * k) / sides, up, open);
       }
       if (s === from) continue;
@@ -143,8 +152,8 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
   if (isSpread) shoots.push(...bareShoots(kind, rest, branches, mean));
   const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
   const hung = hungOn(kind, branches);
-  // No leaf is in the ground; those of what is potted may hang lower.
-  const lowest = look.is_potted ? -Infinity : rest[2] + 0.02 * (high[2] - rest[2]);
+  // No leaf is in the ground, nor where animals browse; those of what is potted may hang lower.
+  const lowest = look.is_potted ? -Infinity : rest[2] + Math.min(BROWSED, 0.1 * (high[2] - rest[2]));
   const numbers = shoots.map(({ share }) => Math.ceil(share * each));
   const values = new Float32Array(4 * PER_LEAF * numbers.reduce((sum, number) => sum + number, 0));
   let written = 0;
@@ -161,7 +170,7 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
       const tint = 1 + 0.16 * Math.sin(7 * phase + 2 * card);
       const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, phase, card);
       const end = inFrame(axes, corners[2].place, size, at);
-      if (end[2] < lowest) continue;
+      if (isSpread && end[2] < lowest) continue;
       const { open, towards } = shade(end);
       const from = turned(back, towards);
       for (const { place, swing, normal, u, v } of corners) {
@@ -210,8 +219,10 @@ function bareShoots({ arrays }, rest, branches, mean) {
   const frequency = arrays.leaf_frequency[0];
   /** @type {Shoot[]} */
   const shoots = [];
-  /** @param {number} segment @param {number} along [m] @param {number} size @param {number} share */
-  const add = (segment, along, size, share) => {
+  const size = Math.min(BARE_SIZE * mean, LARGEST_BARE);
+  const share = (size / mean) ** 2;
+  /** @param {number} segment @param {number} along [m] */
+  const add = (segment, along) => {
     const o = STRIDE * segment;
     const frame = Array.from(rest.subarray(o + 4, o + 8));
     const at = turned(frame, [along, 0, 0]).map((each, c) => each + rest[o + c]);
@@ -220,11 +231,11 @@ function bareShoots({ arrays }, rest, branches, mean) {
   for (const branch of branches) {
     const end = first[branch + 1] - 1;
     // A dead stub stays bare.
-    if (length[end] > 0.5 * mean || leafy.has(end)) add(end, length[end] - 0.3 * mean, 0.6 * mean, END_SHARE);
+    if (length[end] > size || leafy.has(end)) add(end, length[end] - 0.5 * size);
     for (let segment = first[branch]; segment < end; segment++) {
       if (leafy.has(segment) || radius[2 * segment] > THIN * thickest) continue;
-      const count = Math.ceil(length[segment] / mean);
-      for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count, 0.7 * mean, BARE_SHARE);
+      const count = Math.ceil(length[segment] / (1.5 * size));
+      for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
     }
   }
   return shoots;
@@ -235,14 +246,13 @@ function bareShoots({ arrays }, rest, branches, mean) {
  * @param {number} clusters how many there are @param {number} cards of the level @param {number} most */
 function cardsOf(look, mean, clusters, cards, most) {
   const { rolls, length, width } = look.spray;
-  const perCluster = (/** @type {number} */ all, /** @type {number} */ mostOf) =>
-    Math.max(1, Math.min(mostOf, Math.floor(all / clusters)));
-  const each = perCluster(cards, look.form === "tufts" ? MOST_TUFTS : MOST_OF_CLUSTER);
+  const perCluster = (/** @type {number} */ all) => Math.max(1, Math.floor(all / clusters));
+  const each = perCluster(look.form === "tufts" && cards > rolls.length * clusters ? TUFTS * cards : cards);
   const leaf = wholeLeaf(look);
   const alone = { rolls, width: pictureWidth(look, 1), length: Math.min(length, (1.4 * leaf) / mean) };
   if (each <= rolls.length) {
     // Their area is that of as many of full size.
-    const whole = clusters * perCluster(most, rolls.length);
+    const whole = clusters * Math.min(rolls.length, perCluster(most));
     const larger = Math.min(LARGEST_CARDS, Math.sqrt(whole / (Math.min(clusters, cards) * each)));
     const along = leavesAlong(look, larger * length * mean);
     return { each, along, spray: along > 1 ? { rolls, width, length: larger * length } : alone, isSpread: false };
