@@ -486,7 +486,10 @@ def test_the_head_names_the_live_wind_its_speed_and_its_age(
 def test_trees_are_coloured_by_a_storm(live: Live, browser_class: Any) -> None:
     """Goldcrest's band is 20 to 30 m/s: a storm is below, within or above it."""
     server = PageServer(
-        PageSettings(), ControlPanel(), live.session.status, critical_winds={'goldcrest': (20, 30)}
+        PageSettings(port=0),
+        ControlPanel(),
+        live.session.status,
+        critical_winds={'goldcrest': (20, 30)},
     )
 
     async def look() -> None:
@@ -522,6 +525,32 @@ def test_trees_are_coloured_by_a_storm(live: Live, browser_class: Any) -> None:
             asyncio.run(look())
         finally:
             live.session.serve(live.server)
+
+
+@pytest.mark.parametrize(
+    ('motion', 'text'),
+    [
+        (None, ''),
+        ({'sensors': []}, 'Sensors: not on this tree'),
+        ({'explained': 0.624, 'sensors': [
+            {'name': 'phyphox at 3.2', 'in_use': True, 'problem': '', 'rate': 99.6,
+             'residual': 0.251, 'notes': ['acceleration in g']},
+            {'name': 'limb at b12:0.5', 'in_use': False, 'problem': 'silent for 7 s'}]},
+         'phyphox at 3.2: followed, 100 Hz, residual 0.25; acceleration in g\n'
+         'limb at b12:0.5: silent for 7 s\nThe wind alone explains 62 % of the motion'),
+        ({'explained': 1.0, 'sensors': [
+            {'name': 'phyphox at 3.2', 'in_use': False,
+             'problem': 'phyphox at 3.2: no sample yet'}]},
+         'phyphox at 3.2: no sample yet'),
+    ],
+)  # fmt: skip
+def test_the_head_names_the_sensors_on_the_tree(visit: Visit, motion: Any, text: str) -> None:
+    async def script(browser: Browser) -> None:
+        described = 'undefined' if motion is None else json.dumps(motion)
+        said = f"import('/static/words.js').then((m) => m.motionSensors({described}))"
+        assert await browser.run(said) == text
+
+    visit(script)
 
 
 def test_text_contrasts_with_its_ground(visit: Visit) -> None:

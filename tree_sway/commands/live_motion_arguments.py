@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, ExitStack
 import sys
 from typing import TYPE_CHECKING
@@ -22,7 +22,7 @@ def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
     """Add ``--motion`` and ``--at``."""
     parser.add_argument(
         '--motion', action='append', default=[], metavar='URL',
-        help='live motion sensor on the real tree, which the tree follows: http://PHONE:8080 '
+        help='live motion sensor on the real tree: http://PHONE:8080 '
         '(phyphox), udp:PORT or mqtt://host/topic (JSON); repeatable (doc/phone_on_a_tree.md)',
     )  # fmt: skip
     add_place_argument(parser)
@@ -30,7 +30,7 @@ def add_live_motion_arguments(parser: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def sensing(
-    arguments: argparse.Namespace, heard: Callable[[str, MotionSample], None] | None = None
+    arguments: argparse.Namespace, heard: Sequence[Callable[[MotionSample], None]] = ()
 ) -> Iterator[MotionFeed]:
     """
     Listen to the sensors of ``--motion``, and end at once.
@@ -40,7 +40,7 @@ def sensing(
     arguments
         Arguments of `add_live_motion_arguments`.
     heard
-        Function called with the address of a sensor and each of its samples, from its thread.
+        For each sensor, a function called with each of its samples, from its thread.
 
     Raises
     ------
@@ -53,8 +53,8 @@ def sensing(
     from tree_sway.sensors.motion.motion_registry import open_motion
 
     placed = []
-    for url, at in sensors_and_places(arguments):
-        tell = None if heard is None else _of(url, heard)
+    for number, (url, at) in enumerate(sensors_and_places(arguments)):
+        tell = heard[number] if heard else None
         placed.append(PlacedSensor(LiveMotion(open_motion(url), _say, heard=tell), at))
     feed = MotionFeed(placed)
     if len(feed.sensors) < len(placed):
@@ -65,10 +65,6 @@ def sensing(
             each.live.start()
             stack.callback(each.live.stop)
         yield feed
-
-
-def _of(url: str, heard: Callable[[str, MotionSample], None]) -> Callable[[MotionSample], None]:
-    return lambda sample: heard(url, sample)
 
 
 def _say(text: str) -> None:

@@ -31,9 +31,9 @@ _PATIENCE = 90.0
 """Longest wait for the first wind of a source [s]: a garden station sends once in a minute."""
 
 
-def add_sensor_argument(parser: argparse.ArgumentParser) -> None:
-    """Add ``--sensor``."""
-    parser.add_argument('--sensor', metavar='SOURCE', help=HELP)
+def add_sensor_argument(parser: argparse.ArgumentParser, *others: str) -> None:
+    """Add ``--sensor``, and other names of it."""
+    parser.add_argument('--sensor', *others, metavar='SOURCE', help=HELP)
 
 
 def say(text: str) -> None:

@@ -1,15 +1,17 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-``tree-sway record``: the wind of a live source as a table, or a running tree of ROS as a bag.
+``tree-sway record``: live wind as a table, wind and motion of a tree, or a running tree as a bag.
 
-The first needs no ROS.
+Only the last needs ROS.
 """
 
 from __future__ import annotations
 
 import argparse
 
+from tree_sway.commands.live_motion_arguments import add_live_motion_arguments
+from tree_sway.commands.record_tree import record_tree
 from tree_sway.commands.record_wind import record_wind
 from tree_sway.commands.sensor_arguments import add_sensor_argument
 from tree_sway.extras import refuse_missing
@@ -20,8 +22,13 @@ from tree_sway_ros.commands.duration import add_seconds, seconds_of
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add('-o', '--output', required=True, metavar='FILE', help='wind.csv, or the folder of a bag')
-    add_sensor_argument(parser)
+    add(
+        '-o', '--output', required=True, metavar='FILE',
+        help='wind.csv, the folder of a record with motion, or that of a bag',
+    )  # fmt: skip
+    add_sensor_argument(parser, '--wind')
+    add_live_motion_arguments(parser)
+    add('--tree', metavar='TREE', help='the real tree, for a record with motion: file or name')
     add('--force', action='store_true', help='write over an existing table')
     add('--format', choices=FORMATS, default=FORMATS[0], help='format of the bag (%(default)s)')
     add('--namespace', default='', help="namespace of the tree's nodes")
@@ -32,6 +39,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Record until the time is over or Ctrl-C."""
     seconds = seconds_of(arguments)
+    if arguments.motion:
+        return record_tree(arguments, seconds)
     if arguments.sensor is not None:
         return record_wind(arguments, seconds)
     refuse_missing(['rclpy', 'rosbags'], 'record ...')

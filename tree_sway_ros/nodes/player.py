@@ -4,13 +4,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from tree_sway.errors import ParameterError
 from tree_sway.files.reader_options import reader_options
 from tree_sway.files.wind.wind_file import read_wind
+from tree_sway_ros.nodes.recorded_imu import RecordedImu
 from tree_sway_ros.process.node import TreeSwayNode
-from tree_sway_ros.process.topics import CLOCK, WIND
+from tree_sway_ros.process.topics import CLOCK, IMU, WIND
 from tree_sway_ros.reports.diagnostics import OK, Status
 from tree_sway_ros.timing.playback import is_ros_time, Playback
 from tree_sway_ros.wire.wind_messages import clock_message, WindWriter
@@ -31,6 +33,12 @@ class PlayerNode(TreeSwayNode):
         for note in self._record.notes:
             self.get_logger().info(note)
         self._ticks: Any = self.publisher(CLOCK) if has_clock else None
+        self._motion = RecordedImu(self.values['file'], self.values['imu'], self._record.epoch)
+        self._imu = [
+            self.publisher(replace(IMU, name=topic), is_replay=has_clock)
+            for topic in self._motion.topics
+        ]
+        self._rows = self._motion.joined(self._record.time)
         epoch = self._record.epoch
         if has_clock and not is_ros_time(epoch, self._record.time):
             self.get_logger().warning(
@@ -39,7 +47,7 @@ class PlayerNode(TreeSwayNode):
             )
             epoch = None
         self._playback = Playback(
-            self._record.time, self._publish,
+            self._rows.time, self._publish,
             may_start=lambda: self._wind.get_subscription_count() > 0, on_end=self._end,
             on_error=self.fail, start_at=self.values['start'], epoch=epoch, has_clock=has_clock,
             **self.values('rate', 'loop'),
@@ -53,8 +61,12 @@ class PlayerNode(TreeSwayNode):
     def _publish(self, row: int, stamp: int) -> None:
         if row < 0:
             self._ticks.publish(clock_message(stamp))
+            return
+        source, sample = int(self._rows.source[row]), int(self._rows.sample[row])
+        if source < 0:
+            self._wind.publish(self._writer.message(stamp, self._record.velocity[sample]))
         else:
-            self._wind.publish(self._writer.message(stamp, self._record.velocity[row]))
+            self._imu[source].publish(self._motion.message(source, sample, stamp))
 
     def _end(self) -> None:
         self.get_logger().info('the record has ended')

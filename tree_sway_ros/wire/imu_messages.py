@@ -10,8 +10,11 @@ with -1 is not measured; a covariance of zeros is unknown.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 import math
 from typing import Any, NamedTuple
+
+from sensor_msgs.msg import Imu
 
 _SECOND = 1_000_000_000
 
@@ -53,6 +56,28 @@ def motion_from_message(message: Any) -> ImuSample:
         quaternion if is_turned else None,
         (_deviation(parts[0][1]), _deviation(parts[1][1]), _deviation(stated)),
     )
+
+
+def imu_message(
+    stamp: int,
+    acceleration: Sequence[float] | None,
+    rate: Sequence[float] | None,
+    orientation: Sequence[float] | None,
+) -> Any:
+    """Make a message of a stamp [ns]; covariances of what is None begin with -1, others are 0."""
+    message = Imu()
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, _SECOND)
+    for values, part, covariance, names in (
+        (acceleration, message.linear_acceleration, message.linear_acceleration_covariance, 'xyz'),
+        (rate, message.angular_velocity, message.angular_velocity_covariance, 'xyz'),
+        (orientation, message.orientation, message.orientation_covariance, 'xyzw'),
+    ):
+        if values is None:
+            covariance[0] = -1.0
+            continue
+        for name, value in zip(names, values, strict=True):
+            setattr(part, name, float(value))
+    return message
 
 
 def _deviation(covariance: Any) -> float:

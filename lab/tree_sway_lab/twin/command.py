@@ -10,6 +10,8 @@ the time that the band of 80 % holds the tips, and the time of a step, median an
 The part of the record in which mountings are found is not scored. Rows beside them: ``model``, the
 simulator as it is without sensors, and ``U^2``, the square of the wind, low-passed at the first
 frequency of the model, with the gains that are best for each tip.
+
+``tree-sway lab twin RECORD`` scores a record of a real tree instead, as `record_score` says.
 """
 
 from __future__ import annotations
@@ -19,6 +21,9 @@ import sys
 
 from tree_sway.commands.ending import Ending
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.files.motion.tree_record import is_tree_record, read_tree_record
+from tree_sway_lab.twin.record_score import score_record
+from tree_sway_lab.twin.sway_comparison import BANDS
 from tree_sway_lab.twin.trial import plain_score, Score, squared_score, twin_score
 from tree_sway_lab.twin.true_tree import Circumstances, sensor_places, tree_called, true_motion
 
@@ -35,6 +40,10 @@ _HEAD = (
     'us 99 %',
     'notes',
 )
+_RECORD_HEAD = (
+    *('record', 'held out', 'quantity', 'motion', 'r', 'lag', 'error', 'rms'),
+    *(f'to {high:g} f1' for _, high in BANDS),
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         'tree',
         nargs='*',
         default=['straight', 'spruce 8'],
-        help='kind of the laboratory, or species, height and seed, as "oak 9 4" (%(default)s)',
+        help='kind of the laboratory, or species, height and seed, as "oak 9 4"; or the folder of '
+        'a record of wind and motion, as tree-sway record writes it (%(default)s)',
     )
     add('--in-leaf', action='store_true', help='in leaf; bare without it')
     add('--sensors', type=int, nargs='+', default=[0, 1, 2, 4], help='numbers (%(default)s)')
@@ -66,11 +76,39 @@ def run(arguments: argparse.Namespace) -> int:
     """Score every tree with every number of sensors."""
     names = ('wood', 'damping', 'coherence', 'upwind', 'speed', 'seconds', 'seed')
     around = Circumstances(**{name: getattr(arguments, name) for name in names})
-    print(','.join(_HEAD))
+    records = [name for name in arguments.tree if is_tree_record(name)]
+    made_up = [name for name in arguments.tree if name not in records]
     with Ending():
-        for name in arguments.tree:
+        if records:
+            print(','.join(_RECORD_HEAD))
+        for name in records:
+            _print_record(name)
+        if made_up:
+            print(','.join(_HEAD))
+        for name in made_up:
             _try(name, around, arguments)
     return 0
+
+
+def _print_record(name: str) -> None:
+    record = read_tree_record(name)
+    for held in score_record(record):
+        if held.problem:
+            print(f'note: {name}, {held.at}: {held.problem}', file=sys.stderr)
+        for motion, score in held.rows.items():
+            figures = [score.error, score.rms, *score.bands]
+            row = [
+                record.folder.name,
+                held.at,
+                held.quantity,
+                motion,
+                f'{score.r:.3f}',
+                f'{score.lag:.2f}',
+            ]
+            print(','.join([*row, *(f'{each:.3f}' for each in figures)]))
+        sys.stdout.flush()
+    if record.sway:
+        print(f'note: {name}: its sway is scored by tree-sway lab score', file=sys.stderr)
 
 
 def _try(name: str, around: Circumstances, arguments: argparse.Namespace) -> None:

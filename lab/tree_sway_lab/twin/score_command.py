@@ -17,24 +17,22 @@ from pathlib import Path
 import sys
 
 import numpy as np
-from scipy.signal import lfilter
 
 from tree_sway.commands.arguments import (
     add_leaves_argument,
     add_model_argument,
     add_tree_arguments,
-    add_wind_arguments,
     chosen_leaves,
-    opened_record,
     opened_tree,
 )
 from tree_sway.commands.motion_arguments import add_motion_arguments, placed_motion
+from tree_sway.commands.wind_arguments import add_wind_arguments, opened_record
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.simulate import simulate
 from tree_sway.errors import nearest, ParameterError
 from tree_sway.files.wind.sway_table import read_csv_sway
-from tree_sway_lab.twin.sway_comparison import BANDS, compare_sway, SwayComparison
+from tree_sway_lab.twin.sway_comparison import BANDS, compare_sway, low_passed, SwayComparison
 
 _RATE = 60.0
 _LEAST = 30.0
@@ -96,7 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
     def scored(computed: Floats) -> SwayComparison:
         return compare_sway(computed, measured, rate, frequency)
 
-    squared = _at(grid, alone.time, _low_passed(alone.wind, frequency))
+    squared = _at(grid, alone.time, low_passed(alone.wind, frequency, _RATE))
     inputs = np.column_stack([np.ones(len(grid)), squared])
     fitted = inputs @ np.linalg.lstsq(inputs, measured, rcond=None)[0]
     print(
@@ -125,13 +123,6 @@ def _measured_sway(arguments: argparse.Namespace) -> tuple[Floats, Floats]:
 def _at(times: Floats, known: Floats, values: Floats) -> Floats:
     """Interpolate columns at times, (n, k)."""
     return np.stack([np.interp(times, known, column) for column in values.T], axis=1)
-
-
-def _low_passed(wind: Floats, frequency: float) -> Floats:
-    """Wind times its speed, both horizontal, low-passed at a frequency [Hz], (n, 2)."""
-    keep = float(np.exp(-2.0 * np.pi * frequency / _RATE))
-    squared = np.linalg.norm(wind, axis=1, keepdims=True) * wind[:, :2]
-    return np.asarray(lfilter([1.0 - keep], [1.0, -keep], squared, axis=0))
 
 
 def _print(name: str, score: SwayComparison) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import welch
+from scipy.signal import lfilter, welch
 
 from tree_sway.core.arrays import Floats
 
@@ -78,6 +78,28 @@ def compare_sway(
         float(np.sqrt(np.square(found).mean())) / size,
         _band_ratios(found, wanted, rate, frequency),
     )
+
+
+def low_passed(wind: Floats, frequency: float, rate: float) -> Floats:
+    """
+    Low-pass the square of a wind, along it, at a frequency.
+
+    Parameters
+    ----------
+    wind
+        Wind at equal steps in [m/s], (n, 3).
+    frequency, rate
+        The frequency, and the samples per second, in [Hz].
+
+    Returns
+    -------
+    Floats
+        Wind times its speed, both horizontal, in [m^2/s^2], (n, 2).
+
+    """
+    keep = float(np.exp(-2.0 * np.pi * frequency / rate))
+    squared = np.linalg.norm(wind, axis=1, keepdims=True) * wind[:, :2]
+    return np.asarray(lfilter([1.0 - keep], [1.0, -keep], squared, axis=0))
 
 
 def _correlation(found: Floats, wanted: Floats, lag: int) -> float:

@@ -61,7 +61,7 @@ READ = {
 REFUSED = {
     'FIA, by codes and azimuths': (
         'CN,TREE,SPCD,DIA,HT,AZIMUTH,DIST\n1,1,131,9.6,55,120,10.2\n',
-        'the place .* and none for the species among',
+        'the place .* among',
     ),
     'lidR, tree tops without species': (
         'treeID,X,Y,Z\n1,273364.5,5274361.0,18.2\n',

@@ -153,7 +153,7 @@ def test_degrees_in_x_and_y_are_said(tmp_path: Path) -> None:
         ),
         (
             'CN,PLOT,SUBP,TREE,AZIMUTH,DIST,SPCD,DIA,HT\n1,10,1,1,45,12.3,131,8.1,55\n',
-            'no column for the place (x and y, or latitude and longitude) and none for the',
+            'no column for the place (x and y, or latitude and longitude)',
         ),
         ('Name;Straße;Baujahr\na;b;1990\n', 'no column of an inventory'),
     ],

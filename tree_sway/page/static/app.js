@@ -11,7 +11,7 @@ import { element, made, Panel } from "./panel.js";
 import { distance } from "./quaternions.js";
 import { Risk } from "./risk.js";
 import { QUANTITIES, Trace, unitOf } from "./trace.js";
-import { language, setLanguage, windFrom, windSource, word } from "./words.js";
+import { language, motionSensors, setLanguage, windFrom, windSource, word } from "./words.js";
 
 /** Age of the newest state from which on it is behind, and time until numbers are written again [ms]. */
 const [BEHIND, FACTS_EVERY] = [1000, 400];
@@ -194,6 +194,7 @@ function showFacts() {
     latency: Number.isFinite(latency) ? `${latency.toFixed(0)} + ${playout.delay.toFixed(0)} ms` : "–",
     "wind-now": `${Math.hypot(...playout.wind).toFixed(1)} m/s ${windFrom(playout.wind)}`,
     source: windSource(status.wind),
+    sensors: motionSensors(status.motion),
     gust: word("gust", mean.toFixed(1), greatest.toFixed(1)),
     ...(status.model && status.trees === 1 && { model: modelName(status.model) }),
     ...(status.rate && { rate: `${status.rate.toFixed(0)} Hz, ${(status.work_us / 1000).toFixed(2)} ms` }),
@@ -214,8 +215,11 @@ function room() {
   }
   const isWall = form.height > 0.3 * height || (form.height > 0 && height < 560);
   const top = !isWall && form.height > 0.12 * height ? form.bottom / height : 0;
-  const most = [isWall ? form.left / width : 1, tools.height ? tools.top / height : 1];
-  return [Math.max(head.right, lines.right) / width, top, ...most];
+  const right = isWall ? form.left : width;
+  const left = Math.max(head.right, lines.right);
+  // On a tablet there is more room between the two cards on the left than beside them.
+  if (right - left < 0.35 * width) return [0, head.bottom / height, right / width, (lines.height ? lines.top : height) / height];
+  return [left / width, top, right / width, tools.height ? tools.top / height : 1];
 }
 
 /** See all of the scene between the cards, unless somebody looks at something of it. */

@@ -170,6 +170,8 @@ export function checkMessage(message) {
   need(mean.length === 3 && [sequence, ...mean, ...delay, ...wind].every(Number.isFinite), "gusts");
   need(isFinite(pong), "pong");
   need(isObject(status) && isObject(status.wind ?? {}), "status");
+  const { sensors = [] } = status.motion ?? {};
+  need(Array.isArray(sensors) && sensors.every(isObject), "status.motion");
   need(isObject(values), "values");
   need(refused === undefined || typeof refused?.reason === "string", "refused");
   const controls = hello === undefined ? [] : hello?.controls;

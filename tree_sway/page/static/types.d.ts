@@ -165,6 +165,28 @@ interface Mesh {
   indices: number[];
 }
 
+/** A motion sensor on the real tree. */
+interface SensorStatus {
+  /** With its place. */
+  name?: string;
+  /** Whether the tree follows it. */
+  in_use?: boolean;
+  /** Why not, and what to do. */
+  problem?: string;
+  /** What remains between it and the tree, over what is expected. */
+  residual?: number;
+  /** Samples per second [Hz]. */
+  rate?: number;
+  /** What was recognised, such as a unit. */
+  notes?: string[];
+}
+
+/** Motion sensors, and the share of the motion that the wind alone explains. */
+interface MotionStatus {
+  sensors?: SensorStatus[];
+  explained?: number;
+}
+
 /** What the wind is, and for a live one its newest reading. */
 interface WindStatus {
   kind?: string;
@@ -248,8 +270,8 @@ interface Look {
   autumn: number[] | null;
   bark: number[];
   twig: number[];
-  bark_pattern: "furrows" | "plates" | "smooth" | "dashes" | "flakes";
-  form: "ovate" | "pointed" | "lobed" | "palmate" | "compound" | "needles" | "tufts" | "fronds";
+  bark_pattern: "furrows" | "plates" | "smooth" | "dashes" | "flakes" | "scales";
+  form: "ovate" | "pointed" | "lobed" | "palmate" | "compound" | "digitate" | "needles" | "tufts" | "fronds";
   /** Width of a leaf over its length. */
   slenderness: number;
   /** Of a leaf or a leaflet, or of a shoot with its needles [m]. */
@@ -285,11 +307,18 @@ interface Meadow {
   time: number;
 }
 
-/** Of cards smaller than those of a spray: their area over that of theirs, whether they lie flat. */
-interface Spread {
+/** Where leaves grow: a cluster, or what is drawn as one. */
+interface Shoot {
+  segment: number;
+  /** Middle and frame (x y z w) at rest, in the frame of the tree; [m]. */
+  at: number[];
+  frame: number[];
+  size: number;
+  /** Of the flutter [rad], [Hz]. */
+  phase: number;
+  frequency: number;
+  /** Of the cards of a cluster. */
   share: number;
-  isFlat: boolean;
-  random: () => number;
 }
 
 /** Shapes turned about the vertical. */

@@ -74,3 +74,21 @@ export function windSource(source = {}) {
   if (kind === "live") return liveSource(source);
   return hasWord(`wind_${kind}`) ? word(`wind_${kind}`) : "";
 }
+
+/** What motion sensors on the real tree tell, a line for each. @param {MotionStatus} [motion] of a status */
+export function motionSensors(motion) {
+  const { sensors, explained } = motion ?? {};
+  if (!Array.isArray(sensors)) return "";
+  if (!sensors.length) return word("sensor_elsewhere");
+  const lines = sensors.slice(0, 8).map(({ name = "", in_use, problem = "", rate, residual, notes = [] }) => {
+    if (in_use && !problem) {
+      const followed = word("sensor_followed", name, Number(rate).toFixed(0), Number(residual).toFixed(2));
+      return [followed, ...notes].join("; ").slice(0, 200);
+    }
+    const told = String(problem).slice(0, 200);
+    return told.startsWith(name) ? told : `${name}: ${told}`;
+  });
+  const isFollowed = sensors.some(({ in_use }) => in_use);
+  if (isFollowed && Number.isFinite(explained)) lines.push(word("wind_explains", Math.round(100 * Number(explained))));
+  return lines.join("\n");
+}

@@ -1,39 +1,45 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Places of the trees of an inventory: on a map in metres, in degrees, or as a geometry."""
+"""Places of the trees of an inventory: on a map in metres, in degrees, or as geometries."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 import math
-import re
 
 import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
+from tree_sway.files.scenes.inventory.geometry_cell import point_of_cell
+from tree_sway.files.scenes.inventory.united_states import are_in_states
+from tree_sway.files.table_file import Column
 
-_EARTH = 6.371e6
+_EARTH_RADIUS = 6.371e6
+"""Mean radius of the Earth [m]."""
+
 _FAR = 1e5
-_NUMBER = re.compile(r'-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?')
-_LATITUDE_FIRST = re.compile(r'\s*\(?\s*-?\d+(\.\d+)?\s*,\s*-?\d+(\.\d+)?\s*\)?\s*')
-_GEOMETRY = re.compile(r'(?:POINT[\sZM]*\(|coordinates)(.*)', re.IGNORECASE | re.DOTALL)
-"""The places of a geometry, behind the number of its reference system (``SRID=4326;POINT...``)."""
+"""Coordinates beyond which a map's origin is moved to the trees [m]."""
+
+_MOST_LONGITUDE, _MOST_LATITUDE = 180.0, 90.0
+
 _DEGREE_DIGITS = 5
 """Digits after the point of degrees, the fifth of which is a metre; metres have fewer."""
-_STATES_SOUTH = 24.0
-_STATES_NORTH = np.array([
-    (-125.0, 49.0), (-95.2, 49.0), (-89.6, 48.0), (-84.6, 46.5), (-83.0, 45.5), (-82.5, 43.0),
-    (-82.0, 41.9), (-79.0, 42.8), (-78.9, 43.5), (-76.5, 44.1), (-75.0, 45.0), (-71.5, 45.0),
-    (-70.3, 46.2), (-69.2, 47.4), (-67.8, 47.1), (-66.9, 44.8),
-])  # fmt: skip
-"""Longitude and latitude along the northern border of the United States, from west to east [deg],
-roughly; foresters there measure in inches and feet, those of Canada in metres."""
 
 
 @dataclass(frozen=True)
 class Places:
-    """East and north of each tree [m], NaN without a place; ``is_in_states`` if all are there."""
+    """
+    Places of trees.
+
+    Parameters
+    ----------
+    x, y
+        East and north of each tree [m], (n,); NaN without a place.
+    is_in_states
+        Whether all are in the United States.
+
+    """
 
     x: Floats
     y: Floats
@@ -42,74 +48,86 @@ class Places:
 
 def places_of(columns: InventoryColumns) -> Places | None:
     """Return the places of all rows; None without columns of them."""
-    pair = columns.find('latitude', 'longitude')
-    if pair is not None:
-        north, east = (columns.numbers(column.index)[0] for column in pair)
-        return _of_degrees(columns, north, east)
-    on_map = columns.find('x', 'y')
-    if on_map is not None:
-        x, y = (columns.numbers(column.index)[0] * column.factor for column in on_map)
-        if all(
-            _has_degrees(columns, each.index, most)
-            for each, most in zip(on_map, (180, 90), strict=True)
-        ):
-            names = ' and '.join(columns.table.columns[each.index] for each in on_map)
-            columns.note(f'{names} are taken as longitude and latitude, by their many digits')
-            return _of_degrees(columns, y, x)
-        return _near_origin(columns, x, y)
-    geometry = columns.table.find('place')
-    return None if geometry is None else _of_geometries(columns, geometry.index)
+    by_degrees = columns.find('latitude', 'longitude')
+    if by_degrees is not None:
+        latitude, longitude = (columns.numbers(each.index)[0] for each in by_degrees)
+        return _of_degrees(columns, latitude, longitude)
+    by_metres = columns.find('x', 'y')
+    if by_metres is not None:
+        return _of_map(columns, by_metres[0], by_metres[1])
+    by_geometry = columns.table.find('place')
+    if by_geometry is not None:
+        return _of_geometries(columns, by_geometry.index)
+    return None
+
+
+def _of_map(columns: InventoryColumns, east: Column, north: Column) -> Places:
+    """Read columns of x and y, which may be degrees for all that."""
+    x, _ = columns.numbers(east.index)
+    y, _ = columns.numbers(north.index)
+    if _has_degrees(columns, east.index, _MOST_LONGITUDE) and _has_degrees(
+        columns, north.index, _MOST_LATITUDE
+    ):
+        names = f'{columns.table.columns[east.index]} and {columns.table.columns[north.index]}'
+        columns.note(f'{names} are taken as longitude and latitude, by their many digits')
+        return _of_degrees(columns, y, x)
+    return _near_origin(columns, x * east.factor, y * north.factor)
 
 
 def _has_degrees(columns: InventoryColumns, index: int, most: float) -> bool:
     """Whether a column has degrees: within their range, with digits that metres need not have."""
-    values, unit = columns.numbers(index)
+    values, unit_in_cells = columns.numbers(index)
+    if unit_in_cells or columns.table.unit_of(index, 'x'):
+        return False
     known = np.abs(values[np.isfinite(values)])
-    if unit or columns.table.unit_of(index, 'x') or not len(known) or known.max() > most:
+    if not len(known) or known.max() > most:
         return False
     digits = [len(cell.partition('.')[2].strip()) for cell in columns.texts(index) if cell]
     return float(np.median(digits)) >= _DEGREE_DIGITS
 
 
 def _of_geometries(columns: InventoryColumns, index: int) -> Places:
-    """Places of ``48.85, 2.32``, of WKT ``POINT (2.32 48.85)`` or of GeoJSON in a cell."""
-    first, second = np.full(columns.n_rows, np.nan), np.full(columns.n_rows, np.nan)
+    """Read a column of points, in degrees or in metres by the size of most."""
+    east = np.full(columns.n_rows, np.nan)
+    north = np.full(columns.n_rows, np.nan)
     for row, cell in enumerate(columns.texts(index)):
-        is_pair = _LATITUDE_FIRST.fullmatch(cell) is not None
-        geometry = _GEOMETRY.search(cell)
-        found = _NUMBER.findall(geometry[1] if geometry else cell)
-        if len(found) >= 2 and (is_pair or geometry):
-            first[row], second[row] = map(float, found[1::-1] if is_pair else found[:2])
+        point = point_of_cell(cell)
+        if point is not None:
+            east[row] = point.east
+            north[row] = point.north
         elif cell:
             columns.leave_out(row, 'no place', f"'{cell[:40]}' is no latitude and longitude")
-    known = np.abs(first[np.isfinite(first)])
-    if len(known) and np.median(known) > 180.0:  # one cell that is wrong does not decide for all
-        return _near_origin(columns, first, second)
-    return _of_degrees(columns, second, first)
+    known = np.abs(east[np.isfinite(east)])
+    is_in_metres = len(known) > 0 and float(np.median(known)) > _MOST_LONGITUDE
+    if is_in_metres:
+        return _near_origin(columns, east, north)
+    return _of_degrees(columns, north, east)
 
 
-def _of_degrees(columns: InventoryColumns, north: Floats, east: Floats) -> Places:
-    """East and north of the first tree, on a sphere."""
-    good = (np.abs(north) <= 90.0) & (np.abs(east) <= 360.0)
-    if not good.any():
-        return Places(np.full(len(north), np.nan), np.full(len(north), np.nan))
-    first = int(np.argmax(good))
+def _of_degrees(columns: InventoryColumns, latitude: Floats, longitude: Floats) -> Places:
+    """Turn degrees into metres east and north of the first tree, on a sphere."""
+    is_known = (np.abs(latitude) <= 90.0) & (np.abs(longitude) <= 360.0)
+    if not is_known.any():
+        nowhere = np.full(len(latitude), np.nan)
+        return Places(nowhere, nowhere)
     columns.note('east and north are counted from the first tree')
-    shrink = math.cos(math.radians(north[first]))
-    x = _EARTH * shrink * np.radians(np.where(good, east - east[first], np.nan))
-    y = _EARTH * np.radians(np.where(good, north - north[first], np.nan))
-    west_to_east, border_north = _STATES_NORTH.T
-    border = np.interp(east, west_to_east, border_north, left=-90.0, right=-90.0)
-    is_in_states = (north > _STATES_SOUTH) & (north < border)
-    return Places(x, y, bool(is_in_states[good].all()))
+    first = int(np.argmax(is_known))
+    parallel_radius = _EARTH_RADIUS * math.cos(math.radians(latitude[first]))
+    x = parallel_radius * np.radians(longitude - longitude[first])
+    y = _EARTH_RADIUS * np.radians(latitude - latitude[first])
+    is_in_states = bool(are_in_states(latitude, longitude)[is_known].all())
+    return Places(np.where(is_known, x, np.nan), np.where(is_known, y, np.nan), is_in_states)
 
 
 def _near_origin(columns: InventoryColumns, x: Floats, y: Floats) -> Places:
-    """Places less a whole number of metres if they are on a map, for single precision."""
+    """Move places on a map by whole metres to near the origin, for single precision."""
     is_known = np.isfinite(x) & np.isfinite(y)
-    x, y = np.where(is_known, x, np.nan), np.where(is_known, y, np.nan)
-    if np.nanmax(np.abs([x, y]), initial=0.0) <= _FAR:
+    x = np.where(is_known, x, np.nan)
+    y = np.where(is_known, y, np.nan)
+    farthest = np.nanmax(np.abs([x, y]), initial=0.0)
+    if farthest <= _FAR:
         return Places(x, y)
-    east, north = float(np.floor(np.nanmin(x))), float(np.floor(np.nanmin(y)))
+    east = float(np.floor(np.nanmin(x)))
+    north = float(np.floor(np.nanmin(y)))
     columns.note(f'moved by {-east:.0f}, {-north:.0f} m to be near the origin')
     return Places(x - east, y - north)

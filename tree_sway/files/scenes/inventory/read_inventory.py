@@ -107,7 +107,7 @@ def inventory_of(
     zero = np.zeros(columns.n_rows)
     places = Places(zero, zero) if found is None else found
     _leave_out_dead(columns)
-    names, wood = species_of_rows(columns, given)
+    names, wood = species_of_rows(columns, given, is_in_states=places.is_in_states)
     keys = [wood[each].key if each in wood else each for each in names]
     diameter = diameters_of(columns, places.is_in_states)
     height = heights_of(columns, diameter, places.is_in_states)

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from tree_sway.core.tree.species import Species, species_like, species_named
 from tree_sway.errors import SpeciesError
 from tree_sway.files.scenes.inventory.columns import InventoryColumns
+from tree_sway.files.scenes.inventory.species_codes import has_codes, list_of, name_of, TITLES
 
 UNKNOWN = 'broadleaf'
 """Name of a tree without one."""
@@ -17,15 +18,19 @@ _MOST_NOTES = 20
 
 
 def species_of_rows(
-    columns: InventoryColumns, given: Mapping[str, object]
+    columns: InventoryColumns, given: Mapping[str, object], *, is_in_states: bool = False
 ) -> tuple[list[str], dict[str, Species]]:
     """
     Return the name of each row's species, and the species of each name.
 
     Of several columns the first with a name that is known counts, Latin ones first; genus and
-    epithet in two columns are joined. Names in ``given`` are left as they are.
+    epithet in two columns are joined. Names in ``given`` are left as they are. Codes are read by
+    `species_codes`, for which it counts whether all trees are in the United States.
     """
-    tables = [columns.texts(index) for index in columns.find_all('species')]
+    tables = [
+        _decoded(columns, index, given, is_in_states=is_in_states)
+        for index in columns.find_all('species')
+    ]
     genus, epithet = columns.table.find('genus'), columns.table.find('epithet')
     if genus is not None:
         first = columns.texts(genus.index)
@@ -46,6 +51,25 @@ def species_of_rows(
         notes.append(f'{note} ({count} {"tree" if count == 1 else "trees"})' if note else '')
     columns.note(*[note for note in notes if note][:_MOST_NOTES])
     return names, known
+
+
+def _decoded(
+    columns: InventoryColumns, index: int, given: Mapping[str, object], *, is_in_states: bool
+) -> list[str]:
+    """Cells of a column, with the names of species in place of codes of a known list."""
+    cells = columns.texts(index)
+    if not has_codes(cells) or any(cell in given for cell in cells):
+        return cells
+    column = columns.table.columns[index]
+    found = list_of(column, cells, is_in_states=is_in_states)
+    if found is None:
+        columns.note(
+            f'{column} has codes of an unknown list: name the column SPCD for those of FIA, '
+            'code_tree_species for those of ICP Forests'
+        )
+        return cells
+    columns.note(f'{column} is taken as codes of {TITLES[found]}')
+    return [name_of(cell, found) or cell for cell in cells]
 
 
 def _joined(genus: str, epithet: str) -> str:

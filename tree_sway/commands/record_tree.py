@@ -1,0 +1,150 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+Wind and motion of a real tree as one record, without ROS (`tree_sway.files.motion.tree_record`).
+
+All times are dates of this machine. Each row is on the disk when the next one comes, and the sheet
+is there from the start: a record that breaks off can be read.
+"""
+
+from __future__ import annotations
+
+import argparse
+from datetime import datetime, timezone
+from pathlib import Path
+import sys
+import threading
+import time
+from typing import TYPE_CHECKING
+
+from tree_sway.commands.live_motion_arguments import sensing
+from tree_sway.commands.record_wind import WindTable
+from tree_sway.commands.row_file import RowFile
+from tree_sway.commands.sensor_arguments import listening
+from tree_sway.core.observe.sensor_place import place_on
+from tree_sway.errors import inside, ParameterError, TransportError
+from tree_sway.files.export.tree_export import write_tree
+from tree_sway.files.motion.tree_record import RecordedSensor, TreeRecord, write_tree_record
+from tree_sway.files.trees.source import open_tree
+
+if TYPE_CHECKING:
+    from tree_sway.sensors.motion.live_motion import MotionSample
+
+_LOOK = 0.1
+_COLUMNS = {
+    'acceleration': ('ax', 'ay', 'az'),
+    'rate': ('gx', 'gy', 'gz'),
+    'orientation': ('qx', 'qy', 'qz', 'qw'),
+}
+"""Columns of each quantity."""
+
+
+def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
+    """
+    Record ``--sensor`` and ``--motion`` into the folder ``--output``, or until Ctrl-C.
+
+    Raises
+    ------
+    ParameterError
+        No wind, no tree, a place that it does not have, or a folder with something in it.
+    FormatError
+        A disk that is full.
+    TransportError
+        No wind or no motion came.
+
+    """
+    folder = Path(arguments.output)
+    if arguments.sensor is None:
+        raise ParameterError('motion without wind', cure='give its source: --wind tempest')
+    if arguments.tree is None:
+        cure = 'give its file or name: --tree oak.yaml'
+        raise ParameterError('motion without the tree that it is of', where='--tree', cure=cure)
+    if folder.suffix or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
+        what = f"'{folder}' is no new folder"
+        raise ParameterError(what, where='--output', cure='name a folder that is not there yet')
+    opened = open_tree(arguments.tree)
+    for at in arguments.at:
+        with inside('--at'):
+            place_on(opened.tree, at)
+    tables = [MotionTable() for _ in arguments.motion]
+    pause, end = threading.Event(), time.monotonic() + seconds
+    with sensing(arguments, heard=[each.take for each in tables]) as feed:
+        folder.mkdir(parents=True, exist_ok=True)
+        write_tree(folder / 'tree.yaml', opened)
+        placed = [
+            RecordedSensor(f'motion_{number}.csv', each.at, each.live.name)
+            for number, each in enumerate(feed.sensors.values(), 1)
+        ]
+        sheet = TreeRecord(folder, 'tree.yaml', 'wind.csv', placed, wind_source=arguments.sensor)
+        write_tree_record(sheet)
+        for table, sensor in zip(tables, placed, strict=True):
+            table.rows = RowFile(folder / sensor.file)
+        wind_table = WindTable(folder / 'wind.csv')
+        with listening(arguments, heard=wind_table.take) as wind:
+            wind_table.wind = wind
+            try:
+                while time.monotonic() < end and not _has_failed(wind_table, tables):
+                    pause.wait(min(_LOOK, max(end - time.monotonic(), 0.0)))
+            except KeyboardInterrupt:
+                pass
+            wind_problem = wind.problem
+        problems = [each.live.problem for each in feed.sensors.values()]
+    wind_table.close()
+    for table in tables:
+        table.close()
+    came = [
+        (sensor, table.count) for sensor, table in zip(placed, tables, strict=True) if table.count
+    ]
+    heard = [sensor for sensor, _ in came]
+    write_tree_record(sheet._replace(motion=heard, wind_source=wind.name))
+    for sensor, problem in zip(placed, problems, strict=True):
+        if problem:
+            print(f'note: {sensor.source} at {sensor.at}: {problem}', file=sys.stderr)
+    if not wind_table.count:
+        raise TransportError(wind_problem or 'no wind came', where='--sensor')
+    if not came:
+        raise TransportError('; '.join(problems) or 'no motion came', where='--motion')
+    rows = ', '.join(f'{count} samples of {each.source} at {each.at}' for each, count in came)
+    print(f'{folder}: {wind_table.count} rows of wind of {wind.name}, {rows}')
+    return 0
+
+
+def _has_failed(wind: WindTable, motion: list[MotionTable]) -> bool:
+    """Whether a row could not be written, as the disk is full."""
+    return bool(wind.rows.failure) or any(each.rows and each.rows.failure for each in motion)
+
+
+class MotionTable:
+    """Table of a motion sensor; its first sample decides on the columns."""
+
+    def __init__(self) -> None:
+        self.rows: RowFile | None = None
+        """The file; None while its folder is being made."""
+        self._ahead = time.time() - time.monotonic()
+        self._names: tuple[str, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """Number of rows on the disk."""
+        return self.rows.count if self.rows else 0
+
+    def take(self, sample: MotionSample) -> None:
+        """Write a sample; called by the sensor's thread."""
+        if self.rows is None:
+            return
+        if not self._names:
+            self._names = tuple(name for name in _COLUMNS if getattr(sample, name) is not None)
+        columns = [column for name in self._names for column in _COLUMNS[name]]
+        stamp = datetime.fromtimestamp(sample.time + self._ahead, timezone.utc)
+        date = stamp.isoformat(timespec='microseconds').replace('+00:00', 'Z')
+        cells = [
+            f'{value:.9g}'
+            for name in self._names
+            for value in (getattr(sample, name) or [float('nan')] * len(_COLUMNS[name]))
+        ]
+        self.rows.write(['time', *columns], [date, *cells])
+
+    def close(self) -> None:
+        """Close the file; a `FormatError` if a row could not be written."""
+        if self.rows is not None:
+            self.rows.close()
