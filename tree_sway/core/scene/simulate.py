@@ -276,12 +276,12 @@ def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
 def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
     """Report what makes the motion since some counts doubtful, one sentence each."""
     now, found = simulator.counts, list[str]()
-    if simulator.n_shown == 0:
+    if simulator.banks[0].n_shown == 0:
         found.append(f"model '{simulator.model}' has no coordinates: the tree stands still")
     if now.reduced > before.reduced:
         found.append(
             'steps stayed clamped to the limit of the model, and coordinates were left out: '
-            f"{simulator.n_shown} moved at the end; compare with model 'full'"
+            f"{simulator.banks[0].n_shown} moved at the end; compare with model 'full'"
         )
     elif now.clamped > before.clamped:
         n_steps = now.steps - before.steps

@@ -11,6 +11,8 @@ import { leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 
 /** Least spacing of rings of bark on the screen [px], height of the picture of bark on a stem [m]. */
 const [RING_SPACING, BARK_TILE] = [6, 0.6];
+/** Roots that spread from the foot of a stem. */
+const ROOTS = 5;
 /** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then; and how
  * many a cluster has at most, which are smaller where they are more than the spray's own. */
 const [LARGEST_CARDS, MOST_OF_CLUSTER, MOST_TUFTS] = [4, 24, 7];
@@ -23,6 +25,8 @@ const VARIETY = 200;
 /** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the shares of the
  * cards of a cluster at the end of a branch, and along thin wood without clusters. */
 const [THIN, END_SHARE, BARE_SHARE] = [1.6, 0.3, 0.4];
+/** Height up to which no small card is drawn [m]. */
+const BROWSED = 1.6;
 /** Numbers of a corner of a card. */
 const PER_LEAF = 19;
 const ORIGIN = [0, 0, 0];
@@ -105,12 +109,16 @@ export function barkMesh({ kind, placer, rest, low, high, shade }, branches, pix
       // At a joint both segments agree on the thickness: no steps in the bark.
       const joined = s > from ? 0.5 * (radius[2 * s] + radius[2 * s - 1]) : thick;
       let r = Math.max(isLast ? radius[2 * segment + 1] : joined, 0.56 * pixel);
-      if (parents[branch] < 0) r *= 1 + 0.9 * Math.exp(-risen / (2.5 * thick));
+      // The foot of the stem spreads into roots.
+      const foot = parents[branch] < 0 ? Math.exp(-risen / (2.5 * thick)) : 0;
+      r *= 1 + 0.9 * foot;
       const { open } = shade(rest.subarray(STRIDE * segment, STRIDE * segment + 3));
       const up = (risen * around) / (2 * Math.PI * thick);
       for (let k = 0; k < corners; k++) {
         const angle = (2 * Math.PI * k) / sides - turn;
-        const ring = sides === 2 ? [k ? -r : r, 0, thickness - 2] : [r * Math.cos(angle), r * Math.sin(angle), thickness];
+        const round = r * (1 + 0.2 * foot * Math.cos(ROOTS * angle));
+        const ring = sides === 2 ? [k ? -r : r, 0, thickness - 2]
+          : [round * Math.cos(angle), round * Math.sin(angle), thickness];
         values.push(placer.slots[segment], isLast ? length[segment] : 0, ...ring, (around * k) / sides, up, open);
       }
       if (s === from) continue;
@@ -143,8 +151,8 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
   if (isSpread) shoots.push(...bareShoots(kind, rest, branches, mean));
   const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
   const hung = hungOn(kind, branches);
-  // No leaf is in the ground; those of what is potted may hang lower.
-  const lowest = look.is_potted ? -Infinity : rest[2] + 0.02 * (high[2] - rest[2]);
+  // No leaf is in the ground, nor where animals browse; those of what is potted may hang lower.
+  const lowest = look.is_potted ? -Infinity : rest[2] + Math.min(BROWSED, 0.1 * (high[2] - rest[2]));
   const numbers = shoots.map(({ share }) => Math.ceil(share * each));
   const values = new Float32Array(4 * PER_LEAF * numbers.reduce((sum, number) => sum + number, 0));
   let written = 0;
@@ -161,7 +169,7 @@ export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, m
       const tint = 1 + 0.16 * Math.sin(7 * phase + 2 * card);
       const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, phase, card);
       const end = inFrame(axes, corners[2].place, size, at);
-      if (end[2] < lowest) continue;
+      if (isSpread && end[2] < lowest) continue;
       const { open, towards } = shade(end);
       const from = turned(back, towards);
       for (const { place, swing, normal, u, v } of corners) {

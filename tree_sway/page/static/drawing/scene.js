@@ -25,6 +25,8 @@ const CROWD = 50;
 /** Segments of a tree and cards of its leaves, and both of all trees, at most; and the heights of a tree that
  * has all of its cards and of one that is a picture [px]. */
 const MOST = { segments: 40000, cards: 36000, all: 160000, near: 700, far: 90 };
+/** Of a crowd, whose kinds take memory. */
+const MOST_MANY = { ...MOST, cards: 16000 };
 /** Without a graphics unit: of a few trees, and of a crowd. */
 const MOST_SLOW = { segments: 12000, cards: 3000, all: 15000, near: 400, far: 150 };
 const MOST_CROWD = { ...MOST_SLOW, segments: 5000, all: 8000, far: 220 };
@@ -132,7 +134,8 @@ export class Scene {
   describe(description) {
     const { kinds, trees } = description;
     const isSame = this.description?.name === description.name;
-    const most = !this.isSlow ? MOST : trees.length > CROWD ? MOST_CROWD : MOST_SLOW;
+    const [many, few] = this.isSlow ? [MOST_CROWD, MOST_SLOW] : [MOST_MANY, MOST];
+    const most = trees.length > CROWD ? many : few;
     for (const { impostor, bark, leaf } of this._levels) {
       impostor?.free();
       for (const part of [bark, leaf]) discard(this.gl, part);

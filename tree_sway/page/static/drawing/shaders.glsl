@@ -133,6 +133,9 @@ void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
   vec3 rough = texture(relief, at * vec2(1.0, 0.5)).rgb;
+  // Ridges have a bright and a dark side.
+  float slope = rough.r - texture(relief, (at + vec2(0.03, 0.01)) * vec2(1.0, 0.5)).r;
+  n = normalize(n + tone.x * slope * normalize(vec3(-n.y, n.x, 1e-3)));
   float up = high / max(footHeight, 1e-4) + 0.7 * (noise(at * vec2(5.0, 1.5)) - 0.5);
   vec3 own = mix(footColor, barkColor, smoothstep(0.75, 1.1, up));
   vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);

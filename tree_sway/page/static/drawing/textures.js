@@ -182,15 +182,16 @@ class Brush {
     for (let x = 0.06; x < 0.9 * reach; x += Math.max(0.05, 0.62 * unit), side = -side) {
       const lean = side * (0.7 + 0.35 * random());
       const room = Math.min(this.outline(x / reach), this.half - 0.1 * unit) / Math.abs(Math.sin(lean));
-      const long = (0.8 + 0.2 * random()) * Math.min(room, 0.7) - 0.75 * unit;
+      const long = (0.45 + 0.55 * random()) * Math.min(room, 0.7) - 0.75 * unit;
       if (long > 0.25 * unit) twigs.push([x, 0, lean, long]);
     }
     for (const [x, y, turn, long] of twigs) this.at(x, y, turn, 1, () => this.line(long, 0.05 * leaf + 0.002, css(look.twig, 0.8)));
-    const step = (look.form in IN_LEAFLETS ? 0.26 : 0.42) * unit;
+    // Large leaves begin at the foot of the shoot, else the picture has few.
+    const [step, begin] = (look.form in IN_LEAFLETS ? [0.2, 0.08] : [0.5, 0.5]).map((each) => each * unit);
     for (let layer = 0; layer < LAYERS; layer++) {
       const light = 0.55 + (0.5 * layer) / (LAYERS - 1);
       for (const [x, y, turn, long] of twigs) {
-        for (let far = (turn ? 0.2 : 0.5) * unit + step * (layer / LAYERS); far < long; far += step) {
+        for (let far = (turn ? 0.2 * unit : begin) + step * (layer / LAYERS); far < long; far += step) {
           side = -side;
           const lean = turn + side * (look.slenderness < 0.3 ? 0.25 + 0.3 * random() : 0.45 + 0.7 * random());
           const [cx, cy] = [x + far * Math.cos(turn), y + far * Math.sin(turn)];
