@@ -13,18 +13,19 @@ import { leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
 const [RING_SPACING, BARK_TILE] = [6, 0.6];
 /** Roots that spread from the foot of a stem. */
 const ROOTS = 5;
-/** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then; and how
- * many a cluster has at most, which are smaller where they are more than the spray's own. */
-const [LARGEST_CARDS, MOST_OF_CLUSTER, MOST_TUFTS] = [4, 24, 7];
+/** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then. */
+const LARGEST_CARDS = 4;
+/** Tufts over the cards that others have, which are smaller. */
+const TUFTS = 0.6;
 /** Length of a small card over that of one of full size, by how many there are, and the least of it. */
-const [SMALLER, LEAST_CARD] = [0.62, 0.17];
+const [SMALLER, LEAST_CARD] = [0.57, 0.08];
 /** Area of leaves that are drawn one by one over that of the cluster; and how much of its card a leaf fills. */
 const [FULLNESS, FILLED] = [3.2, 0.55];
 /** Different small cards. */
 const VARIETY = 200;
-/** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the shares of the
- * cards of a cluster at the end of a branch, and along thin wood without clusters. */
-const [THIN, END_SHARE, BARE_SHARE] = [1.6, 0.3, 0.4];
+/** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the size of what is
+ * drawn there over that of a cluster, and at most [m]. */
+const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
 /** Height up to which no small card is drawn [m]. */
 const BROWSED = 1.6;
 /** Numbers of a corner of a card. */
@@ -218,8 +219,10 @@ function bareShoots({ arrays }, rest, branches, mean) {
   const frequency = arrays.leaf_frequency[0];
   /** @type {Shoot[]} */
   const shoots = [];
-  /** @param {number} segment @param {number} along [m] @param {number} size @param {number} share */
-  const add = (segment, along, size, share) => {
+  const size = Math.min(BARE_SIZE * mean, LARGEST_BARE);
+  const share = (size / mean) ** 2;
+  /** @param {number} segment @param {number} along [m] */
+  const add = (segment, along) => {
     const o = STRIDE * segment;
     const frame = Array.from(rest.subarray(o + 4, o + 8));
     const at = turned(frame, [along, 0, 0]).map((each, c) => each + rest[o + c]);
@@ -228,11 +231,11 @@ function bareShoots({ arrays }, rest, branches, mean) {
   for (const branch of branches) {
     const end = first[branch + 1] - 1;
     // A dead stub stays bare.
-    if (length[end] > 0.5 * mean || leafy.has(end)) add(end, length[end] - 0.3 * mean, 0.6 * mean, END_SHARE);
+    if (length[end] > size || leafy.has(end)) add(end, length[end] - 0.5 * size);
     for (let segment = first[branch]; segment < end; segment++) {
       if (leafy.has(segment) || radius[2 * segment] > THIN * thickest) continue;
-      const count = Math.ceil(length[segment] / mean);
-      for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count, 0.7 * mean, BARE_SHARE);
+      const count = Math.ceil(length[segment] / (1.5 * size));
+      for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
     }
   }
   return shoots;
@@ -243,14 +246,13 @@ function bareShoots({ arrays }, rest, branches, mean) {
  * @param {number} clusters how many there are @param {number} cards of the level @param {number} most */
 function cardsOf(look, mean, clusters, cards, most) {
   const { rolls, length, width } = look.spray;
-  const perCluster = (/** @type {number} */ all, /** @type {number} */ mostOf) =>
-    Math.max(1, Math.min(mostOf, Math.floor(all / clusters)));
-  const each = perCluster(cards, look.form === "tufts" ? MOST_TUFTS : MOST_OF_CLUSTER);
+  const perCluster = (/** @type {number} */ all) => Math.max(1, Math.floor(all / clusters));
+  const each = perCluster(look.form === "tufts" && cards > rolls.length * clusters ? TUFTS * cards : cards);
   const leaf = wholeLeaf(look);
   const alone = { rolls, width: pictureWidth(look, 1), length: Math.min(length, (1.4 * leaf) / mean) };
   if (each <= rolls.length) {
     // Their area is that of as many of full size.
-    const whole = clusters * perCluster(most, rolls.length);
+    const whole = clusters * Math.min(rolls.length, perCluster(most));
     const larger = Math.min(LARGEST_CARDS, Math.sqrt(whole / (Math.min(clusters, cards) * each)));
     const along = leavesAlong(look, larger * length * mean);
     return { each, along, spray: along > 1 ? { rolls, width, length: larger * length } : alone, isSpread: false };
