@@ -44,6 +44,9 @@ AVENUE = 'x,y,species,height\n' + ''.join(
 )
 _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
+_CLOSE, _ASIDE = (
+    f'treeSway.scene.camera.{so};' for so in ('zoom(0.94)', 'azimuth += 2.2')
+)  # fmt: skip
 _AUTUMN = "document.getElementById('season').click();"
 
 
@@ -75,25 +78,25 @@ FILM, EVERY, FILM_WIDTH = 5.0, 0.1, 640
 """Length of a film and time between its pictures [s], and its width [px]."""
 
 VIEWS = (
-    View('benjamina', 'benjamina', size=SQUARE),
+    View('benjamina', 'benjamina', script=_CLOSE, size=SQUARE),
     View('benjamina_near', 'benjamina', script='treeSway.scene.camera.zoom(0.3)'),
     View('benjamina_software', 'benjamina', is_full=False),
     View('benjamina_dark', 'benjamina', is_dark=True, has_cards=True),
     View('goldcrest', 'goldcrest'),
-    View('oak', 'oak', size=SQUARE),
+    View('oak', 'oak', script=_CLOSE, size=SQUARE),
     View('oak_autumn', 'oak', script=_EVENING + _AUTUMN),
-    View('birch', 'birch', size=SQUARE),
-    View('spruce', 'spruce', size=SQUARE),
+    View('birch', 'birch', script=_CLOSE, size=SQUARE),
+    View('spruce', 'spruce', script=_CLOSE, size=SQUARE),
     View('spruce_software', 'spruce', is_full=False),
-    View('fir', 'fir', size=SQUARE),
-    View('pine', 'pine', size=SQUARE),
+    View('fir', 'fir', script=_CLOSE, size=SQUARE),
+    View('pine', 'pine', script=_CLOSE, size=SQUARE),
     View('pine_near', 'pine', script='treeSway.scene.camera.zoom(0.35)'),
-    View('lime', 'lime', size=SQUARE),
-    View('beech', 'beech', size=SQUARE),
-    View('horse_chestnut', 'horse_chestnut', size=SQUARE),
-    View('willow', 'willow', size=SQUARE),
+    View('lime', 'lime', script=_CLOSE, size=SQUARE),
+    View('beech', 'beech', script=_CLOSE + _ASIDE, size=SQUARE),
+    View('horse_chestnut', 'horse_chestnut', script=_CLOSE, size=SQUARE),
+    View('willow', 'willow', script=_CLOSE, size=SQUARE),
     View('willow_sways', 'willow', is_film=True),
-    View('walnut', 'walnut', size=SQUARE),
+    View('walnut', 'walnut', script=_CLOSE, size=SQUARE),
     View('walnut_software', 'walnut', is_full=False),
     View('walnut_near', 'walnut', script='treeSway.scene.camera.zoom(0.35)'),
     View('walnut_far', 'walnut', script='treeSway.scene.camera.zoom(4)'),
@@ -103,7 +106,7 @@ VIEWS = (
         for size in ((390, 844), (844, 390), (768, 1024))
         for name, script in (('', _CLOSED), ('_open', _OPEN))
     ),
-    View('stand', str(STAND), script='treeSway.scene.camera.set([-0.9, 0.16, 80, 200, 30, 9])'),
+    View('stand', str(STAND), script='treeSway.scene.camera.set([-0.9, 0.13, 120, 190, 40, 10])'),
     View('stand_software', str(STAND), is_full=False),
     View('stand_near', str(STAND), is_full=False, script='treeSway.scene.camera.zoom(0.3)'),
 )

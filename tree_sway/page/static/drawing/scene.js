@@ -13,7 +13,8 @@ import {
 } from "./gl.js";
 import { Grass } from "./grass.js";
 import { Impostor } from "./impostors.js";
-import { barkMesh, boxOf, leafMesh, shapeOf } from "./mesh.js";
+import { leafMesh } from "./foliage.js";
+import { barkMesh, boxOf, shapeOf } from "./mesh.js";
 import { arrow, arrowLength, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
 import { feet, lookOf } from "./looks.js";
@@ -29,7 +30,7 @@ const MOST = { segments: 40000, cards: 36000, all: 160000, near: 700, far: 90 };
 const MOST_MANY = { ...MOST, cards: 16000 };
 /** Without a graphics unit: of a few trees, and of a crowd. */
 const MOST_SLOW = { segments: 12000, cards: 3000, all: 15000, near: 400, far: 150 };
-const MOST_CROWD = { ...MOST_SLOW, segments: 5000, all: 8000, far: 220 };
+const MOST_CROWD = { ...MOST_SLOW, segments: 5000, cards: 1800, all: 8000, far: 220 };
 /** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
 const CHOOSE_EVERY = 6;
 /** A branch is near that is within this angle of where one points [rad]. */
@@ -41,7 +42,7 @@ const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
 const PAINTED = 260;
 /** Light that leathery leaves of evergreens throw back like a mirror. */
-const GLOSS = 0.5;
+const GLOSS = 0.2;
 /** Rows that no branch has. */
 const NONE = [-2, -2];
 /** Of a tree in its own colours. */
@@ -300,7 +301,7 @@ export class Scene {
     return {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
       skin: { barkColor, twigColor, relief: [1, pictures.get(relief)], footColor: foot.color, footHeight: foot.height },
-      foliage: { leaves: [2, pictures.get(name)], gloss: look.autumn || look.has_needles ? 0.05 : GLOSS },
+      foliage: { leaves: [2, pictures.get(name)], gloss: look.autumn || look.has_needles ? 0 : GLOSS },
     };
   }
 

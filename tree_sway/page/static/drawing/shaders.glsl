@@ -133,11 +133,16 @@ void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
   vec3 rough = texture(relief, at * vec2(1.0, 0.5)).rgb;
-  // Ridges have a bright and a dark side.
-  float slope = rough.r - texture(relief, (at + vec2(0.03, 0.01)) * vec2(1.0, 0.5)).r;
-  n = normalize(n + tone.x * slope * normalize(vec3(-n.y, n.x, 1e-3)));
-  float up = high / max(footHeight, 1e-4) + 0.7 * (noise(at * vec2(5.0, 1.5)) - 0.5);
-  vec3 own = mix(footColor, barkColor, smoothstep(0.75, 1.1, up));
+  if (tone.x > 0.4) {
+    // Ridges of thick wood have a bright and a dark side.
+    float slope = rough.r - texture(relief, (at + vec2(0.03, 0.01)) * vec2(1.0, 0.5)).r;
+    n = normalize(n + tone.x * slope * normalize(vec3(-n.y, n.x, 1e-3)));
+  }
+  vec3 own = barkColor;
+  if (footHeight > 0.0) {
+    float up = high / footHeight + 0.7 * (noise(at * vec2(5.0, 1.5)) - 0.5);
+    own = mix(footColor, barkColor, smoothstep(0.75, 1.1, up));
+  }
   vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
   float open = 0.5 + 0.5 * tone.y;
@@ -190,7 +195,7 @@ void main() {
   vec3 direct = sun * sunny * (0.22 + 0.85 * max(across, 0.0) + through);
   // No two leaves have the same green.
   vec3 hue = 1.0 + vec3(0.09, 0.0, -0.09) * sin(5.0 * flutter.y);
-  shine = gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0);
+  if (gloss > 0.0) shine = gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0);
   lit.rgb = hue * flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : up + direct);
   lit.a = clearness(p);
 }
