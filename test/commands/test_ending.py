@@ -90,3 +90,8 @@ def test_without_a_signal_the_handlers_are_as_before():
     with Ending() as ending:
         ending.look()
     assert [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)] == before
+
+
+def test_the_command_line_is_ready_for_ctrl_c_before_numpy_is_loaded():
+    code = "import sys, tree_sway.commands.cli; sys.exit('numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, '-c', code]).returncode == 0

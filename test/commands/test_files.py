@@ -198,3 +198,17 @@ def test_what_was_made_of_a_station_is_said(
     notes = capsys.readouterr().err
     assert 'turbulence is simulated about them by their gusts, seed 0' in notes
     assert "1 rows refused; line 8: speed is 'x'" in notes
+
+
+@pytest.mark.parametrize('command', ['simulate', 'convert', 'plot', 'render', 'grow', 'calibrate'])
+def test_where_nothing_can_be_written_is_said_before_any_work(command, tmp_path, capsys):
+    suffix = {'simulate': '.csv', 'plot': '.png', 'render': '.gif'}.get(command, '.yaml')
+    path = tmp_path / 'nowhere' / f'out{suffix}'
+    needed = {'grow': ['--height', '3'], 'calibrate': ['--frequency', '3']}.get(command, [])
+    assert cli.main([command, 'no such tree', *needed, '-o', str(path)]) == 2
+    assert 'cannot be written: no such folder; give an existing' in capsys.readouterr().err
+
+
+def test_a_name_without_a_suffix_is_called_so(tmp_path, capsys):
+    assert cli.main(['convert', 'goldcrest', '-o', str(tmp_path / 'tree')]) == 2
+    assert 'a name without a suffix; use .yaml' in capsys.readouterr().err

@@ -23,7 +23,7 @@ from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
 from tree_sway.files.scenes import kind_classes
 from tree_sway.files.trees.tree_file import TREE_FORMATS
 from tree_sway.files.wind.wind_file import WIND_FORMATS
-from tree_sway.page import server
+from tree_sway.page import page_client, server
 from tree_sway.stream import check_description, client, playout, protocol
 
 pages = SimpleNamespace(**runpy.run_path(str(Path(__file__).with_name('test_pages.py'))))
@@ -68,18 +68,22 @@ FIGURES = {
             check_description.MOST_SEGMENTS, check_description.MOST_POSES / 1e6,
             check_description.MOST_COORDINATES,
         ],
-        r'frames per second that it takes, ([\d.]+) to (\d+)': [server.SLOWEST, server.FASTEST],
+        r'frames per second that it takes, ([\d.]+) to (\d+)': [
+            page_client.SLOWEST, page_client.FASTEST,
+        ],
         r'let (\d+) kB be on their way, (\d+) to (\d+) frames': [
             client._ON_THE_WAY / 1e3, client._LEAST_CREDIT, client._MOST_CREDIT,
         ],
-        r'every (\d+) s up to (\d+) coordinates': [server.STATE_PERIOD, server.MOST_IN_STATE],
+        r'every (\d+) s up to (\d+) coordinates': [
+            page_client.STATE_PERIOD, page_client.MOST_IN_STATE,
+        ],
         r'made again after ([\d.]+) s, then 1, 2, up to (\d+)': [
             client._SHORTEST_WAIT, client._LONGEST_WAIT,
         ],
         r'blends over ([\d.]+) s after a gap': [playout._BLEND],
         r'in units of ([\d.]+) m/s': [protocol.WIND_UNIT],
         r'Messages above (\d+) kB': [server.LARGEST_MESSAGE / 1024],
-        r'not reading for (\d+) s': [server._SEND_TIMEOUT],
+        r'not reading for (\d+) s': [page_client._SEND_TIMEOUT],
         r'A frame of the wind alone has M = 0 and is (\d+) bytes': [protocol.FRAME_SIZE],
     },
 }  # fmt: skip

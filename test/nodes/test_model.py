@@ -102,7 +102,7 @@ def test_a_wind_outside_of_the_table_and_one_that_is_refused_are_counted(
 ):
     nodes = compose(solver={'tree': tree_file, 'model': '20'})
     wind = observer.publisher(WIND_FILTERED)
-    bank = nodes['solver'].simulator.bank.oscillators
+    bank = nodes['solver'].simulator.banks[0].oscillators
     stamp = observer.node.get_clock().now
 
     def said(name, count):

@@ -176,7 +176,7 @@ def test_a_drag_on_the_page_pulls_the_tree(compose, observer, statuses, tree_fil
                 await asyncio.sleep(0.05)
             reset, foot = threading.Event(), {**pull, 'segment': 0}
             solver.simulator.reset = reset.set
-            while 0 not in solver.simulator.touch.pushes:
+            while 0 not in solver.simulator.pushed[0].pushes:
                 assert time.monotonic() < end
                 await ws.send_json({'pull': foot})
                 await ws.send_json({'pull': pull})

@@ -11,7 +11,7 @@ import { arrowLength } from "../../tree_sway/page/static/drawing/props.js";
 import { Quality } from "../../tree_sway/page/static/drawing/quality.js";
 import { crownShade } from "../../tree_sway/page/static/drawing/shade.js";
 import { average, lookOf } from "../../tree_sway/page/static/drawing/looks.js";
-import { leavesAlong } from "../../tree_sway/page/static/drawing/textures.js";
+import { leavesAlong, pictureWidth, wholeLeaf } from "../../tree_sway/page/static/drawing/textures.js";
 import { Placer } from "../../tree_sway/page/static/placing.js";
 import { decodeDescription } from "../../tree_sway/page/static/protocol.js";
 
@@ -57,7 +57,7 @@ test("what is placed of a tree stands where the whole tree has it", () => {
 function crowd() {
   const reached = Int32Array.from({ length: 1001 }, (_, i) => 2 * i);
   const slots = Int32Array.from({ length: 2000 }, (_, i) => i);
-  const levels = levelsOf({ reached, slots, order: slots.slice(0, 1000) }, 30, { segments: 8000, cards: 3000, far: 40 });
+  const levels = levelsOf({ reached, slots, order: slots.slice(0, 1000) }, 30, { segments: 8000, cards: 3000, near: 400, far: 40 });
   const trees = Array.from({ length: 1000 }, (_, i) => ({
     kind: 0,
     height: 1,
@@ -139,8 +139,36 @@ test("few cards are larger and show more leaves, none of which is twice its own 
   assert.ok(areas.slice(1, 3).every((area) => area > 0.3 * areas[0] && area < 1.5 * areas[0]));
 });
 
+test("many cards are small, and no branch ends without leaves", () => {
+  const { leaf_segment: clusters, leaf_size: sizes, branch_first: first, segment_length: length } = kind.arrays;
+  const mean = sizes.reduce((sum, size) => sum + size, 0) / sizes.length;
+  const { mesh } = leafMesh(shape, placer.order, 24 * clusters.length, 24 * clusters.length);
+  const { mesh: coarse } = leafMesh(shape, placer.order, 3 * clusters.length, 24 * clusters.length);
+  assert.ok(mesh.indices.length > 1.5 * coarse.indices.length);
+  assert.ok(edges(mesh, 0)[0] < 0.8 * edges(coarse, 0)[0]);
+  const at = new Map();
+  for (let v = 0; v < mesh.values.length; v += 19) {
+    const [slot, ...place] = mesh.values.slice(v, v + 4);
+    at.set(slot, [...(at.get(slot) ?? []), place]);
+  }
+  for (let branch = 0; branch < kind.nBranches; branch++) {
+    const end = first[branch + 1] - 1;
+    if (length[end] < mean) continue;
+    const near = at.get(placer.slots[end])?.map(([x, y, z]) => Math.hypot(x - length[end], y, z)) ?? [];
+    assert.ok(Math.min(...near) < 1.5 * mean, `branch ${branch}`);
+  }
+});
+
+test("a leaf with leaflets is a picture of its own, as large as it is", () => {
+  const walnut = { ...average, form: "compound", leaf_size: 0.1 };
+  assert.equal(wholeLeaf(average), average.leaf_size);
+  assert.ok(wholeLeaf(walnut) > 0.3);
+  assert.ok(pictureWidth(walnut, 1) > walnut.slenderness);
+  assert.equal(pictureWidth(walnut, 5), walnut.spray.width);
+});
+
 test("a picture of a large card shows small leaves, whatever the species", () => {
-  for (const form of ["ovate", "compound", "needles", "tufts", "fronds", "of no species"]) {
+  for (const form of ["ovate", "compound", "digitate", "needles", "tufts", "fronds", "of no species"]) {
     const look = { ...average, form, has_needles: ["needles", "tufts", "fronds"].includes(form) };
     const { leaf_size: size } = look;
     for (const card of [size, 3 * size, 8 * size, 30 * size]) {

@@ -35,12 +35,18 @@ HEIGHTS = {
     'oak': 18, 'birch': 16, 'spruce': 22, 'fir': 22, 'pine': 20, 'lime': 14, 'beech': 20,
     'horse_chestnut': 15, 'willow': 12, 'walnut': 8,
 }  # fmt: skip
-WIDTH = 960
+SQUARE = 1000, 1000
+"""Size of the picture of one tree [px]."""
+LARGE, SMALLER = 960, 0.75
+"""Width from which a picture is saved smaller than it was taken [px], and by how much."""
 AVENUE = 'x,y,species,height\n' + ''.join(
     f'{10 * row},{9 * place},lime,14\n' for place in range(10) for row in range(2)
 )
 _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
+_CLOSE, _ASIDE = (
+    f'treeSway.scene.camera.{so};' for so in ('zoom(0.84)', 'azimuth += 2.2')
+)  # fmt: skip
 _AUTUMN = "document.getElementById('season').click();"
 
 
@@ -60,9 +66,10 @@ class View:
 
 _BARE = """
 for (const each of document.querySelectorAll('.card, #tools')) each.style.display = 'none';
+treeSway.scene.hasArrow = false;
 treeSway.scene.camera.home();
 """
-"""Hides the instruments, and fits the tree into the whole picture."""
+"""Hides the instruments and the arrow of the wind, and fits the tree into the whole picture."""
 
 SETTLING = 15.0
 """Until a page without a graphics unit has chosen what it leaves out [s]."""
@@ -71,25 +78,25 @@ FILM, EVERY, FILM_WIDTH = 5.0, 0.1, 640
 """Length of a film and time between its pictures [s], and its width [px]."""
 
 VIEWS = (
-    View('benjamina', 'benjamina'),
+    View('benjamina', 'benjamina', script=_CLOSE, size=SQUARE),
     View('benjamina_near', 'benjamina', script='treeSway.scene.camera.zoom(0.3)'),
     View('benjamina_software', 'benjamina', is_full=False),
     View('benjamina_dark', 'benjamina', is_dark=True, has_cards=True),
     View('goldcrest', 'goldcrest'),
-    View('oak', 'oak'),
+    View('oak', 'oak', script=_CLOSE, size=SQUARE),
     View('oak_autumn', 'oak', script=_EVENING + _AUTUMN),
-    View('birch', 'birch'),
-    View('spruce', 'spruce'),
+    View('birch', 'birch', script=_CLOSE, size=SQUARE),
+    View('spruce', 'spruce', script=_CLOSE, size=SQUARE),
     View('spruce_software', 'spruce', is_full=False),
-    View('fir', 'fir'),
-    View('pine', 'pine'),
+    View('fir', 'fir', script=_CLOSE, size=SQUARE),
+    View('pine', 'pine', script=_CLOSE, size=SQUARE),
     View('pine_near', 'pine', script='treeSway.scene.camera.zoom(0.35)'),
-    View('lime', 'lime'),
-    View('beech', 'beech'),
-    View('horse_chestnut', 'horse_chestnut'),
-    View('willow', 'willow'),
+    View('lime', 'lime', script=_CLOSE, size=SQUARE),
+    View('beech', 'beech', script=_CLOSE + _ASIDE, size=SQUARE),
+    View('horse_chestnut', 'horse_chestnut', script=_CLOSE, size=SQUARE),
+    View('willow', 'willow', script=_CLOSE, size=SQUARE),
     View('willow_sways', 'willow', is_film=True),
-    View('walnut', 'walnut'),
+    View('walnut', 'walnut', script=_CLOSE, size=SQUARE),
     View('walnut_software', 'walnut', is_full=False),
     View('walnut_near', 'walnut', script='treeSway.scene.camera.zoom(0.35)'),
     View('walnut_far', 'walnut', script='treeSway.scene.camera.zoom(4)'),
@@ -99,7 +106,7 @@ VIEWS = (
         for size in ((390, 844), (844, 390), (768, 1024))
         for name, script in (('', _CLOSED), ('_open', _OPEN))
     ),
-    View('stand', str(STAND)),
+    View('stand', str(STAND), script='treeSway.scene.camera.set([-0.9, 0.13, 120, 190, 40, 10])'),
     View('stand_software', str(STAND), is_full=False),
     View('stand_near', str(STAND), is_full=False, script='treeSway.scene.camera.zoom(0.3)'),
 )
@@ -167,8 +174,9 @@ async def look(url: str, view: View, path: Path) -> None:
             await film(browser, path.with_suffix('.webp'))
             return
         image = Image.open(io.BytesIO(await browser.screenshot())).convert('RGB')
-        if width > WIDTH:
-            image = image.resize((WIDTH, WIDTH * height // width), Image.Resampling.LANCZOS)
+        if width > LARGE:
+            size = round(SMALLER * width), round(SMALLER * height)
+            image = image.resize(size, Image.Resampling.LANCZOS)
         image.save(path, quality=82, optimize=True)
         print(path, path.stat().st_size, await browser.run('treeSway.fps'), browser.console)
 

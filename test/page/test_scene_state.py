@@ -66,7 +66,7 @@ def tall() -> tuple[SceneState, list[bytes], list[Any]]:
     tree = grow('broadleaf', 8.0, rng=np.random.default_rng(0))
     simulator = make_simulator(tree, species_named(tree.species), model=12)
     state = SceneState(simulator)
-    keys = simulator.bank.branches['coordinate']
+    keys = simulator.banks[0].branches['coordinate']
     assert (np.diff(keys) < 0).any()  # key segments in another order than their coordinates
     return state, *swayed(simulator, state, 7.0)
 
@@ -271,10 +271,16 @@ def test_a_basis_is_found_while_the_scene_is_stepped_and_tuned() -> None:
     gently_tuned(undisturbed, lambda: True)
     # Both have reached the same goal.
     np.testing.assert_allclose(
-        scene._time_steps['whole'], undisturbed._time_steps['whole'], rtol=1e-12, atol=1e-15
+        scene._shared._time_steps['whole'],
+        undisturbed._shared._time_steps['whole'],
+        rtol=1e-12,
+        atol=1e-15,
     )
     np.testing.assert_allclose(
-        scene._time_steps['half'], undisturbed._time_steps['half'], rtol=1e-12, atol=1e-15
+        scene._shared._time_steps['half'],
+        undisturbed._shared._time_steps['half'],
+        rtol=1e-12,
+        atol=1e-15,
     )
 
 
@@ -282,4 +288,4 @@ def test_a_running_scene_has_the_same_description_and_steps_none_of_its_models()
     scene = pair_of_trees()
     at_rest = SceneState(pair_of_trees()).description
     assert SceneState(scene).description == at_rest
-    assert [model.counts.steps for model, _, _ in scene.shared] == [0]
+    assert [group.simulator.counts.steps for group in scene.groups] == [0]

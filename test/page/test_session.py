@@ -245,7 +245,7 @@ def test_viewers_are_told_of_gusts_to_come_that_are_known(live: tuple[Session, S
 def test_damping_and_wind_are_those_in_use(live: tuple[Session, Sink]) -> None:
     session, sink = live
     own = session.values()['damping_ratio']
-    assert own == session._scene.kinds[0].simulator.prepared.damping_ratio > 0.0
+    assert own == session._scene.kinds[0].simulator.models[0].damping_ratio > 0.0
     assert session.choices.damping_ratio == 0.0
     session.apply('damping_ratio', 0.25)
     until(lambda: len(sink.descriptions) == 2)

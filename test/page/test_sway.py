@@ -128,9 +128,10 @@ def clamped() -> Simulator:
     kinds = bench_tree(), open_scene(str(SCAN / 'fork.treeqsm24.txt')).trees[0].tree
     trees = [PlacedTree(f'tree {i}', kinds[i % 2], x=9.0 * i) for i in range(3)]
     simulator = Scene(trees, 'row').simulator(Settings(), model=20)
-    model = simulator.shared[0][0]
-    model.prepared = replace(model.prepared, most_energy=1e-4 * model.prepared.most_energy)
-    simulator._tables['most_energy'][0] *= 1e-4
+    model = simulator.groups[0].simulator
+    (prepared,) = model.models
+    model.models = (replace(prepared, most_energy=1e-4 * prepared.most_energy),)
+    simulator._shared._tables['most_energy'][0] *= 1e-4
     return simulator
 
 
@@ -151,7 +152,7 @@ def test_a_receiver_in_python_leaves_coordinates_out_when_the_simulator_does(
         received.step(wind)
         reduced.append((clamped.counts.reduced, received.reduced))
         left_out = received.instances['left_out']
-        assert np.array_equal(left_out, clamped._instances['left_out'])
+        assert np.array_equal(left_out, clamped._shared._instances['left_out'])
     assert max(reduced)[0] > 0
     received.correct(received.state() + 0.01)
     for instance in received.instances:
@@ -196,7 +197,7 @@ def test_what_the_factors_leave_out_is_not_seen(tmp_path: Path) -> None:
     for wind in gusty(600):
         simulator.step(wind, DT)
         received.step(wind)
-        eta = simulator.memory()[1][0, :20]
+        eta = simulator.banks[0].oscillators.memory()[0][0, :20]
         farthest = max(farthest, float(np.abs(eta).max()))
         left_out = max(left_out, float(np.abs(received.coordinates(0) - eta).max()))
     assert left_out <= 1e-3 * farthest

@@ -101,7 +101,7 @@ def test_and_after_the_source_of_growth_and_of_readers(study, tmp_path, monkeypa
         (f'{LEAST}- {{speed: 3, intensity: 40}}', ParameterError, r'yaml:4: intensity: 40\.0 is'),
         (f'{LEAST}- {{file: canopy, scale: [1, -1]}}', FormatError, r"scale\[1\] is '-1'; give"),
         (f'{LEAST}rate: 1001', FormatError, "rate is '1001'"),
-        (f'{LEAST}seconds: 86400\nrate: 1000', FormatError, 'are 8.64e\\+07 steps of a case'),
+        (f'{LEAST}seconds: 86400\nrate: 1000', ParameterError, 'are 8.64e\\+07 steps; give at'),
     ],
 )
 def test_what_is_wrong_is_named(study, text, kind, words):

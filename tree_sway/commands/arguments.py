@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments that commands share: TREE, its wood and leaves, the wind, the model, the output."""
+"""Arguments that commands share: TREE, its wood and leaves, the model, the output."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import argparse
 from collections.abc import Callable
 import dataclasses
 from pathlib import Path
-import sys
 from typing import Any
 
 from tree_sway.commands.progress import waiting
@@ -25,15 +24,11 @@ from tree_sway.files.trees.imported_tree import TreeFile
 from tree_sway.files.trees.source import open_scene, open_tree
 from tree_sway.files.trees.tree_options import same
 from tree_sway.files.trees.yaml.tree_yaml import is_species_file, read_species
-from tree_sway.files.wind.record import WindRecord
-from tree_sway.files.wind.wind_file import read_wind
-from tree_sway.page.wind_source import RecordedWind, SimulatedWind
-from tree_sway.parameters.sway_parameters import SWAY
+from tree_sway.files.whole_file import refuse_unwritable
 
 OUTPUT_HELP = 'output file; its suffix chooses the format: .yaml, .glb'
 _TREE = 'a built-in tree (benjamina, goldcrest, broadleaf) or a tree file'
 _DRAWN = 1500
-_USUAL_SPEED = 6.0
 
 
 def add_tree_arguments(
@@ -176,57 +171,9 @@ def drawn_leaves(scene: Scene, arguments: argparse.Namespace) -> LeafClusters | 
     return scene.leaves(chosen_leaves(arguments), _DRAWN)
 
 
-def add_wind_arguments(
-    parser: argparse.ArgumentParser, record: str = '', speed_of: str | None = None
-) -> None:
-    """
-    Add a wind record, and the speed of a simulated one.
-
-    ``record`` is help for the first, ``speed_of`` says which speed it is where none is given, if
-    the command chooses it.
-    """
-    add = parser.add_argument_group('wind').add_argument
-    add('--wind', metavar='FILE', help=record or 'wind recording; without it wind is simulated')
-    options = (
-        'option of its reader, such as speed_unit=km/h, direction=270, topic=/mast/wind, '
-        'yaw=1.57, direction_convention=from or rate=20; repeatable'
-    )
-    add('--wind-option', action='append', default=[], metavar='NAME=VALUE', help=options)
-    of_which = '%(default)s' if speed_of is None else speed_of
-    help_on_speed = f'mean speed of the simulated wind [m/s] ({of_which})'
-    default = _USUAL_SPEED if speed_of is None else None
-    add('--speed', type=float, default=default, metavar='U', help=help_on_speed)
-
-
-def opened_record(arguments: argparse.Namespace) -> WindRecord:
-    """Read the record of the arguments; print assumptions and refused rows."""
-    options: dict[str, Any] = {**reader_options(arguments.wind_option)}
-    record = read_wind(arguments.wind, **options)
-    refused = f'{record.refused} rows refused; {record.first_refused}' if record.refused else ''
-    for note in filter(None, (*record.notes, refused)):
-        print(f'note: {note}', file=sys.stderr)
-    return record
-
-
-def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
-    """Open the record of the arguments, repeated, or simulated wind of their speed."""
-    if arguments.wind is not None:
-        record = opened_record(arguments)
-        return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
-    return SimulatedWind(SWAY['mean_speed'].checked(arguments.speed))
-
-
-def add_sway_arguments(
-    parser: argparse.ArgumentParser,
-    record: str = '',
-    leaves: str | None = 'on',
-    speed_of: str | None = None,
-) -> None:
-    """Add a scene, a wind, a model and leaves, which are drawn by default."""
-    add_tree_arguments(parser, forests=True, default='benjamina')
-    add_wind_arguments(parser, record, speed_of)
-    add_model_argument(parser)
-    add_leaves_argument(parser, leaves)
+def refuse_unused(option: str, needs: str) -> None:
+    """Raise the `ParameterError` of an option without the one that it belongs to."""
+    raise ParameterError('it would change nothing', where=option, cure=f'add {needs}')
 
 
 def add_model_argument(parser: argparse.ArgumentParser) -> None:
@@ -247,9 +194,15 @@ def add_output_arguments(parser: argparse.ArgumentParser, what: str) -> None:
 
 
 def output_path(arguments: argparse.Namespace) -> str:
-    """File to write; a `ParameterError` if it exists and ``--force`` is not given."""
+    """
+    File to write.
+
+    Raises a `ParameterError` if it exists and ``--force`` is not given, and a `FormatError` if it
+    cannot be written, before any work for it.
+    """
     if not arguments.force:
         refuse_overwriting(arguments.output, '--output')
+    refuse_unwritable(arguments.output)
     return str(arguments.output)
 
 

@@ -25,7 +25,6 @@ import warnings
 from tree_sway.commands.command import Command, commands_beside
 from tree_sway.errors import nearest, shown, TreeSwayError
 from tree_sway.extras import cure_of_missing, line_in_venv, refuse_missing
-from tree_sway.files.models.disk_cache import use_disk_cache
 
 COMMANDS = commands_beside(__file__)
 
@@ -82,7 +81,8 @@ def _main(given: list[str]) -> int:
         quiet = contextlib.redirect_stderr(io.StringIO()) if arguments.quiet else None
         with quiet or contextlib.nullcontext():
             refuse_missing(table[arguments.command].needs.split(), shlex.join(given))
-            use_disk_cache()
+            # Imported here, as numpy takes long enough for a Ctrl-C, which is then no traceback.
+            importlib.import_module('tree_sway.files.models.disk_cache').use_disk_cache()
             code = int(_module(table[arguments.command]).run(arguments))
             if sys.stdout is not None:
                 sys.stdout.flush()  # a full disk is reported here, not while Python ends

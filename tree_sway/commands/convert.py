@@ -15,17 +15,17 @@ from tree_sway.commands.arguments import (
     add_model_argument,
     add_output_arguments,
     add_tree_arguments,
-    add_wind_arguments,
     chosen_leaves,
     drawn_leaves,
     opened_scene,
-    opened_wind,
     OUTPUT_HELP,
     output_path,
+    refuse_unused,
     what_was_written,
 )
 from tree_sway.commands.moments import at_moments, moments_of, numbered_paths
 from tree_sway.commands.progress import waiting
+from tree_sway.commands.wind_arguments import add_wind_arguments, opened_wind, refuse_unused_wind
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator, solved
@@ -75,11 +75,14 @@ def run(arguments: argparse.Namespace) -> int:
     suffix = Path(output).suffix.lower()
     if suffix not in _FORMATS:
         names = ', '.join('.xml (MJCF)' if each == '.xml' else each for each in _FORMATS)
-        what = f"cannot write '{Path(output).suffix}'"
+        what = f"cannot write '{Path(output).suffix}'" if suffix else 'a name without a suffix'
         raise FormatError(what, where=output, cure=f'use {names}')
     if arguments.at is not None and suffix != '.obj':
         cure = 'write .obj files'
         raise ParameterError(f"'{output}' is of no moment", where='--at', cure=cure)
+    refuse_unused_wind(arguments)
+    if arguments.at is None and (arguments.wind is not None or arguments.speed is not None):
+        refuse_unused('--speed' if arguments.wind is None else '--wind', '--at SECONDS')
     if arguments.sway is not None and suffix != '.glb':
         raise ParameterError(f"'{output}' cannot sway", where='--sway', cure='write a .glb file')
     if arguments.leaves is None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from tree_sway.commands.arguments import refuse_unused
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.exposure import Exposure, exposure_of, EXPOSURES
@@ -61,7 +62,7 @@ def refuse_unused_exposure(arguments: argparse.Namespace, needs: str) -> None:
     }
     for name, is_given in given.items():
         if is_given:
-            raise ParameterError('it would change nothing', where=name, cure=f'add {needs}')
+            refuse_unused(name, needs)
 
 
 def turbulence_of(exposure: Exposure) -> dict[str, Any]:

@@ -13,10 +13,8 @@ import numpy as np
 from tree_sway.commands.arguments import (
     add_exact_argument,
     add_output_arguments,
-    add_sway_arguments,
     chosen_leaves,
     opened_scene,
-    opened_wind,
     output_path,
 )
 from tree_sway.commands.exposure import (
@@ -28,6 +26,12 @@ from tree_sway.commands.exposure import (
 from tree_sway.commands.progress import bar, waiting
 from tree_sway.commands.strength import strength_rig, tallest_of_kinds
 from tree_sway.commands.swaying import swaying
+from tree_sway.commands.wind_arguments import (
+    add_sway_arguments,
+    opened_wind,
+    refuse_unused_wind,
+    simulated_speed,
+)
 from tree_sway.core.checks import within
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.scene.scene import Scene
@@ -72,8 +76,11 @@ def run(arguments: argparse.Namespace) -> int:
         refuse_unused_exposure(arguments, '--strength')
     if arguments.leaves is None:  # as `info` and `simulate`, so that figures of strength agree
         arguments.leaves = 'auto' if arguments.strength else 'on'
-    if arguments.speed is None:
-        arguments.speed = 30.0 if arguments.strength else 10.0 if arguments.portrait else 6.0
+    refuse_unused_wind(arguments)
+    if arguments.wind is not None and (arguments.strength or arguments.portrait):
+        drawing = '--strength' if arguments.strength else '--portrait'
+        cure = f'give --speed, or leave {drawing} out'
+        raise ParameterError(f'{drawing} draws no recording', where='--wind', cure=cure)
     output = output_path(arguments)
     if rows := _rows_of_study(arguments.tree):
         try:
@@ -105,7 +112,7 @@ def _rows_of_study(path: str) -> list[dict[str, str]]:
 
 def _portrait(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     simulator = _simulator(scene, arguments)
-    wind = np.array([arguments.speed, 0.0, 0.0])
+    wind = np.array([simulated_speed(arguments, 10.0), 0.0, 0.0])
     for _ in bar(range(round(_SETTLING / _SETTLING_STEP)), 'settling in the wind'):
         simulator.step(wind, _SETTLING_STEP)
     picture_in_wind(
@@ -125,7 +132,8 @@ def _simulator(scene: Scene, arguments: argparse.Namespace) -> Simulator:
 def _strength(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     """Draw the strength that the tallest tree of each kind uses over wind speed; print it."""
     tallest = tallest_of_kinds(scene)
-    speeds, used = np.linspace(0.0, SWAY['mean_speed'].checked(arguments.speed), 7)[1:], {}
+    fastest = SWAY['mean_speed'].checked(simulated_speed(arguments, 30.0))
+    speeds, used = np.linspace(0.0, fastest, 7)[1:], {}
     for each in bar(tallest.values(), 'loading trees'):
         placed = each.placed()
         exposure = chosen_exposure(arguments, placed, each.species)
@@ -145,7 +153,7 @@ def _motion(scene: Scene, arguments: argparse.Namespace, output: str) -> None:
     if isinstance(wind, RecordedWind):
         source, seconds = Path(arguments.wind).name, min(seconds, wind.length)
     else:
-        source = f'simulated westerly, mean {arguments.speed:g} m/s'
+        source = f'simulated westerly, mean {simulated_speed(arguments):g} m/s'
     if seconds < 2.0 / _RATE:
         raise ParameterError('the wind is too short', where=source, cure='give a longer one')
     simulator = _simulator(scene, arguments)

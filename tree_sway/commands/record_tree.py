@@ -10,16 +10,16 @@ is there from the start: a record that breaks off can be read.
 from __future__ import annotations
 
 import argparse
-import csv
 from datetime import datetime, timezone
 from pathlib import Path
 import sys
 import threading
 import time
-from typing import TextIO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 from tree_sway.commands.live_motion_arguments import sensing
 from tree_sway.commands.record_wind import WindTable
+from tree_sway.commands.row_file import RowFile
 from tree_sway.commands.sensor_arguments import listening
 from tree_sway.core.observe.sensor_place import place_on
 from tree_sway.errors import inside, ParameterError, TransportError
@@ -47,6 +47,8 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
     ------
     ParameterError
         No wind, no tree, a place that it does not have, or a folder with something in it.
+    FormatError
+        A disk that is full.
     TransportError
         No wind or no motion came.
 
@@ -76,18 +78,18 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
         sheet = TreeRecord(folder, 'tree.yaml', 'wind.csv', placed, wind_source=arguments.sensor)
         write_tree_record(sheet)
         for table, sensor in zip(tables, placed, strict=True):
-            table.path = folder / sensor.file
-        with (folder / 'wind.csv').open('w', encoding='utf-8', newline='') as file:
-            wind_table = WindTable(file)
-            with listening(arguments, heard=wind_table.take) as wind:
-                wind_table.wind = wind
-                try:
-                    while time.monotonic() < end:
-                        pause.wait(min(_LOOK, max(end - time.monotonic(), 0.0)))
-                except KeyboardInterrupt:
-                    pass
-            wind_table.close()
+            table.rows = RowFile(folder / sensor.file)
+        wind_table = WindTable(folder / 'wind.csv')
+        with listening(arguments, heard=wind_table.take) as wind:
+            wind_table.wind = wind
+            try:
+                while time.monotonic() < end and not _has_failed(wind_table, tables):
+                    pause.wait(min(_LOOK, max(end - time.monotonic(), 0.0)))
+            except KeyboardInterrupt:
+                pass
+            wind_problem = wind.problem
         problems = [each.live.problem for each in feed.sensors.values()]
+    wind_table.close()
     for table in tables:
         table.close()
     came = [
@@ -99,7 +101,7 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
         if problem:
             print(f'note: {sensor.source} at {sensor.at}: {problem}', file=sys.stderr)
     if not wind_table.count:
-        raise TransportError(wind.problem or 'no wind came', where='--sensor')
+        raise TransportError(wind_problem or 'no wind came', where='--sensor')
     if not came:
         raise TransportError('; '.join(problems) or 'no motion came', where='--motion')
     rows = ', '.join(f'{count} samples of {each.source} at {each.at}' for each, count in came)
@@ -107,25 +109,32 @@ def record_tree(arguments: argparse.Namespace, seconds: float) -> int:
     return 0
 
 
+def _has_failed(wind: WindTable, motion: list[MotionTable]) -> bool:
+    """Whether a row could not be written, as the disk is full."""
+    return bool(wind.rows.failure) or any(each.rows and each.rows.failure for each in motion)
+
+
 class MotionTable:
     """Table of a motion sensor; its first sample decides on the columns."""
 
     def __init__(self) -> None:
-        self.path = Path()
-        self.count = 0
+        self.rows: RowFile | None = None
+        """The file; None while its folder is being made."""
         self._ahead = time.time() - time.monotonic()
-        self._file: TextIO | None = None
         self._names: tuple[str, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """Number of rows on the disk."""
+        return self.rows.count if self.rows else 0
 
     def take(self, sample: MotionSample) -> None:
         """Write a sample; called by the sensor's thread."""
-        if not self.path.name:
-            return  # the folder is being made
-        if self._file is None:
+        if self.rows is None:
+            return
+        if not self._names:
             self._names = tuple(name for name in _COLUMNS if getattr(sample, name) is not None)
-            self._file = self.path.open('w', encoding='utf-8', newline='')
-            columns = [column for name in self._names for column in _COLUMNS[name]]
-            csv.writer(self._file, lineterminator='\n').writerow(['time', *columns])
+        columns = [column for name in self._names for column in _COLUMNS[name]]
         stamp = datetime.fromtimestamp(sample.time + self._ahead, timezone.utc)
         date = stamp.isoformat(timespec='microseconds').replace('+00:00', 'Z')
         cells = [
@@ -133,11 +142,9 @@ class MotionTable:
             for name in self._names
             for value in (getattr(sample, name) or [float('nan')] * len(_COLUMNS[name]))
         ]
-        csv.writer(self._file, lineterminator='\n').writerow([date, *cells])
-        self.count += 1
-        self._file.flush()
+        self.rows.write(['time', *columns], [date, *cells])
 
     def close(self) -> None:
-        """Close the file."""
-        if self._file is not None:
-            self._file.close()
+        """Close the file; a `FormatError` if a row could not be written."""
+        if self.rows is not None:
+            self.rows.close()

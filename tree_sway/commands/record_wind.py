@@ -10,18 +10,18 @@ blows gusts about them. Each row is on the disk when the next one comes.
 from __future__ import annotations
 
 import argparse
-import csv
 from datetime import datetime, timezone
 import math
 from pathlib import Path
 import threading
 import time
-from typing import TextIO
 
 from tree_sway.commands.arguments import refuse_overwriting
+from tree_sway.commands.row_file import RowFile
 from tree_sway.commands.sensor_arguments import listening
 from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
 from tree_sway.errors import ParameterError, TransportError
+from tree_sway.files.whole_file import refuse_unwritable
 from tree_sway.sensors.live_wind import LiveWind
 from tree_sway.sensors.reading import WindReading
 
@@ -39,6 +39,8 @@ def record_wind(arguments: argparse.Namespace, seconds: float) -> int:
     ------
     ParameterError
         Another suffix than ``.csv``, a file that exists, or a wrong address.
+    FormatError
+        A file that cannot be written, or a disk that is full.
     TransportError
         No wind came.
 
@@ -48,20 +50,20 @@ def record_wind(arguments: argparse.Namespace, seconds: float) -> int:
         raise ParameterError(f"'{path}' is no table", where='--output', cure='name it wind.csv')
     if not arguments.force:
         refuse_overwriting(path, '--output')
+    refuse_unwritable(path)
     pause, end = threading.Event(), time.monotonic() + seconds
-    with path.open('w', encoding='utf-8', newline='') as file:
-        table = WindTable(file)
-        with listening(arguments, heard=table.take) as wind:
-            table.wind = wind
-            try:
-                while time.monotonic() < end:
-                    pause.wait(min(_LOOK, max(end - time.monotonic(), 0.0)))
-            except KeyboardInterrupt:
-                pass
-        table.close()
+    table = WindTable(path)
+    with listening(arguments, heard=table.take) as wind:
+        table.wind = wind
+        try:
+            while time.monotonic() < end and not table.rows.failure:
+                pause.wait(min(_LOOK, max(end - time.monotonic(), 0.0)))
+        except KeyboardInterrupt:
+            pass
+        problem = wind.problem
+    table.close()
     if not table.count:
-        path.unlink()
-        raise TransportError(wind.problem or 'no wind came', where='--sensor')
+        raise TransportError(problem or 'no wind came', where='--sensor')
     print(f'{path}: {table.count} {"means" if table.is_of_means else "samples"} of {wind.name}')
     return 0
 
@@ -69,13 +71,17 @@ def record_wind(arguments: argparse.Namespace, seconds: float) -> int:
 class WindTable:
     """Table of readings; the second one decides whether they are means."""
 
-    def __init__(self, file: TextIO) -> None:
-        self.count = 0
+    def __init__(self, path: Path) -> None:
+        self.rows = RowFile(path)
         self.is_of_means = False
         self.wind: LiveWind | None = None
-        self._file, self._writer = file, csv.writer(file, lineterminator='\n')
         self._first: tuple[float, WindReading] | None = None
         self._before: WindReading | None = None
+
+    @property
+    def count(self) -> int:
+        """Number of rows on the disk."""
+        return self.rows.count
 
     def take(self, reading: WindReading) -> None:
         """Write a reading; called by the source's thread."""
@@ -91,15 +97,15 @@ class WindTable:
         self._write(row)
 
     def close(self) -> None:
-        """Write a single reading."""
+        """Write a single reading; a `FormatError` if a row could not be written."""
         if self._first is not None:
             self._begin(self._first)
+        self.rows.close()
 
     def _begin(self, first: tuple[float, WindReading]) -> None:
         self._first = None
         assert self.wind is not None
         self.is_of_means = self.wind.interval >= LEAST_INTERVAL
-        self._writer.writerow(MEANS if self.is_of_means else INSTANTS)
         self._write(first)
 
     def _write(self, row: tuple[float, WindReading]) -> None:
@@ -113,6 +119,5 @@ class WindTable:
             cells = [f'{reading.speed:.3f}', degrees, gust]
         else:
             cells = [f'{value:.3f}' for value in reading.velocity(self.wind.bearing)]
-        self._writer.writerow([date.replace('+00:00', 'Z'), *cells])
-        self._file.flush()
-        self.count += 1
+        header = MEANS if self.is_of_means else INSTANTS
+        self.rows.write(header, [date.replace('+00:00', 'Z'), *cells])

@@ -15,15 +15,11 @@ import webbrowser
 
 import numpy as np
 
-from tree_sway.commands.arguments import (
-    add_sway_arguments,
-    chosen_leaves,
-    opened_scene,
-    opened_wind,
-)
+from tree_sway.commands.arguments import chosen_leaves, opened_scene
 from tree_sway.commands.live_motion_arguments import add_live_motion_arguments, sensing
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.commands.sensor_arguments import add_sensor_argument, listening
+from tree_sway.commands.wind_arguments import add_sway_arguments, opened_wind, refuse_unused_wind
 from tree_sway.core.checks import within
 from tree_sway.core.fidelity.estimate import DIAL
 from tree_sway.core.growth.builtin import BUILTIN_TREES
@@ -93,6 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Serve the page until the time is over or Ctrl-C."""
     settings = page_settings(arguments)
     within('--stand', arguments.stand, 1, 1e5)
+    refuse_unused_wind(arguments)
     if arguments.risk is not None:
         read_critical_winds(arguments.risk)  # what is wrong with it is said before all else
     if arguments.motion and arguments.stand > 1:

@@ -15,9 +15,7 @@ from tree_sway.commands.arguments import (
     add_model_argument,
     add_output_arguments,
     add_tree_arguments,
-    add_wind_arguments,
     chosen_leaves,
-    opened_record,
     opened_tree,
     output_path,
 )
@@ -25,7 +23,13 @@ from tree_sway.commands.exposure import add_exposure_arguments, chosen_exposure,
 from tree_sway.commands.motion_arguments import add_motion_arguments, placed_motion
 from tree_sway.commands.progress import waiting
 from tree_sway.commands.sensor_arguments import add_sensor_argument, live_record
-from tree_sway.core.scene.simulate import simulate, WindSamples
+from tree_sway.commands.wind_arguments import (
+    add_wind_arguments,
+    opened_record,
+    refuse_unused_wind,
+    simulated_speed,
+)
+from tree_sway.core.scene.simulate import refuse_too_many_steps, simulate, WindSamples
 from tree_sway.core.wind.exposure import Exposure
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import nearest, ParameterError
@@ -54,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         '--band', action='store_true',
         help='also write within which bounds the tips and the moment of the real tree are for '
-        '80 % of the time, by the spreads of wood, damping, drag, leaves and gusts',
+        '80 %% of the time, by the spreads of wood, damping, drag, leaves and gusts',
     )  # fmt: skip
     add_output_arguments(parser, 'table to write: .csv, .parquet or .json')
 
@@ -63,6 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Simulate the tree and write its motion."""
     output = Path(output_path(arguments))
     refuse_no_table(output)
+    refuse_unused_wind(arguments)
     tree_file = opened_tree(arguments)
     names = tree_file.tree.branch_names
     for name in arguments.branch:
@@ -96,8 +101,9 @@ def _wind(arguments: argparse.Namespace, exposure: Exposure) -> WindSamples | np
         return live_record(arguments, arguments.seconds or 60.0)
     if arguments.wind is None:
         rng, seconds = np.random.default_rng(0), arguments.seconds or 60.0
+        refuse_too_many_steps(seconds * arguments.rate, arguments.rate)
         return simulate_turbulence(
-            arguments.speed, rate=arguments.rate, duration=seconds, rng=rng,
+            simulated_speed(arguments), rate=arguments.rate, duration=seconds, rng=rng,
             **turbulence_of(exposure),
         )  # fmt: skip
     return opened_record(arguments)

@@ -20,21 +20,31 @@ _SMALL = 1e-6
 def quaternions_of(vectors: Floats) -> Floats:
     """Return the unit quaternions of rotation vectors in [rad]."""
     half = 0.5 * np.linalg.norm(vectors, axis=1)[:, None]
-    return np.hstack([np.cos(half), 0.5 * np.sinc(half / np.pi) * vectors])
+    quaternions = np.empty((len(vectors), 4))
+    quaternions[:, :1] = np.cos(half)
+    quaternions[:, 1:] = 0.5 * np.sinc(half / np.pi) * vectors
+    return quaternions
 
 
 def cross(a: Floats, b: Floats) -> Floats:
     """Cross products of vectors."""
     ax, ay, az = a.T
     bx, by, bz = b.T
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
+    # Three times as fast as to stack the components, and most of the time of a small tree.
+    product = np.empty((len(a), 3))
+    np.subtract(ay * bz, az * by, out=product[:, 0])
+    np.subtract(az * bx, ax * bz, out=product[:, 1])
+    np.subtract(ax * by, ay * bx, out=product[:, 2])
+    return product
 
 
 def quaternion_product(a: Floats, b: Floats) -> Floats:
     """Return the quaternions of b followed by a."""
-    scalar = a[:, :1] * b[:, :1] - (a[:, 1:] * b[:, 1:]).sum(axis=1, keepdims=True)
-    vector = a[:, :1] * b[:, 1:] + b[:, :1] * a[:, 1:] + cross(a[:, 1:], b[:, 1:])
-    return np.hstack([scalar, vector])
+    product = np.empty((len(a), 4))
+    product[:, 0] = a[:, 0] * b[:, 0] - np.einsum('bi,bi->b', a[:, 1:], b[:, 1:])
+    vector = a[:, :1] * b[:, 1:] + b[:, :1] * a[:, 1:]
+    np.add(vector, cross(a[:, 1:], b[:, 1:]), out=product[:, 1:])
+    return product
 
 
 def quaternion_rotated(q: Floats, vectors: Floats) -> Floats:
@@ -45,10 +55,10 @@ def quaternion_rotated(q: Floats, vectors: Floats) -> Floats:
 
 def turned_by(rotations: Floats, vectors: Floats) -> Floats:
     """Turn vectors (n, 3) by rotation vectors [rad], (n, 3), as `rotation.turned`."""
-    t = np.square(rotations).sum(axis=1, keepdims=True)
+    t = np.einsum('bi,bi->b', rotations, rotations)[:, None]
     half = (0.5 + t * (1.0 / 24.0 + t * (1.0 / 240.0 + t * (17.0 / 40320.0)))) * rotations
-    square = np.square(half).sum(axis=1, keepdims=True)
-    along = (half * vectors).sum(axis=1, keepdims=True)
+    square = np.einsum('bi,bi->b', half, half)[:, None]
+    along = np.einsum('bi,bi->b', half, vectors)[:, None]
     turned = (1.0 - square) * vectors + 2.0 * along * half + 2.0 * cross(half, vectors)
     return np.asarray(turned / (1.0 + square))
 

@@ -6,11 +6,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+import os
 from pathlib import Path
 from uuid import uuid4
 
 from tree_sway.errors import FormatError
 from tree_sway.files.text_file import path_of
+
+_CURE = 'give an existing folder that you may write to, with room for the file'
+
+
+def refuse_unwritable(path: str | Path) -> None:
+    """Raise a `FormatError` for a file that `whole_file` cannot write, before work for it."""
+    target = path_of(path).resolve()
+    if target.is_dir():
+        raise FormatError('a folder', where=str(path), cure='name a file to write')
+    why = ''
+    if not target.parent.is_dir():
+        why = 'no such folder'
+    elif not os.access(target.parent, os.W_OK) and (target.is_file() or not target.exists()):
+        why = 'no permission'
+    if why:
+        raise FormatError(f'cannot be written: {why}', where=str(path), cure=_CURE)
 
 
 @contextmanager
@@ -41,7 +58,7 @@ def whole_file(path: str | Path) -> Iterator[Path]:
         raise FormatError(
             f'cannot be written: {error.strerror or error}',
             where=str(path),
-            cure='give an existing folder that you may write to, with room for the file',
+            cure=_CURE,
         ) from error
     finally:
         if partial is not None:

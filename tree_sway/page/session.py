@@ -210,7 +210,7 @@ class Session:
 
     def values(self) -> dict[str, Value]:
         """Return the choices as they are shown: the damping ratio in use, not 0 for the usual."""
-        damping = self._scene.kinds[0].simulator.prepared.damping_ratio
+        damping = self._scene.kinds[0].simulator.models[0].damping_ratio
         return {**vars(self.choices), 'damping_ratio': damping}
 
     def status(self) -> dict[str, object]:

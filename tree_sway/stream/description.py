@@ -66,7 +66,7 @@ def describe_scene(
     for number, kind in enumerate(kinds):
         places[kind.numbers], kind_of[kind.numbers] = kind.places, number
         own, tree = _branches(kind.simulator), kind.simulator.tree
-        wood = kind.simulator.species
+        wood = kind.simulator.models[0].species
         own['basis_matrix'] = _float32(kind.basis.matrix)
         own['basis_scale'] = _float32(kind.basis.scale)
         clusters = leaves[number] if leaves else None
@@ -104,7 +104,7 @@ def describe_scene(
 
 def _branches(simulator: SwaySimulator) -> dict[str, Array]:
     """Arrays of one kind for placing its branches by key rotations."""
-    tree, branches, segments = simulator.tree, _in_order(simulator), simulator.bank.segments
+    tree, branches, segments = simulator.tree, _in_order(simulator), simulator.banks[0].segments
     keys, sizes = branches['n_coordinates'], branches['end'] - branches['first']
     base_turn, own_turn = np.full((2, len(branches)), NO_ROW, dtype=np.int32)
     turns: list[Floats] = [np.zeros((0, 3))]
@@ -156,7 +156,7 @@ def _in_order(simulator: SwaySimulator) -> Records:
 
     A branch that is cut is several, and the children of its first piece come before the second.
     """
-    branches = simulator.bank.branches
+    branches = simulator.banks[0].branches
     order = np.argsort(branches['first'])
     ordered, place = branches[order], np.argsort(order)
     ordered['parent'] = np.where(ordered['parent'] < 0, -1, place[ordered['parent']])

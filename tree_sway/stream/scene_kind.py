@@ -8,15 +8,12 @@ A tree that is solved by itself is a separate kind.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
-from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.model.state_basis import StateBasis
-from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
+from tree_sway.core.run.simulator import Motion, SwaySimulator
+from tree_sway.core.run.simulator_basis import basis_of
+from tree_sway.core.scene.scene_simulator import Simulator
 
 Place = tuple[float, float, float, float, float]
 """Place of a tree: x, y, z [m], rotation about the vertical [rad], scale."""
@@ -42,35 +39,18 @@ class SceneKind:
 
     simulator: SwaySimulator
     basis: StateBasis
-    coordinates: Callable[[], Floats]
+    coordinates: Motion
     numbers: list[int]
     places: list[Place]
 
 
 def scene_kinds(simulator: Simulator) -> list[SceneKind]:
     """Return the kinds of the trees of a simulator, of one tree or of a scene."""
-    if not isinstance(simulator, SceneSimulator):
-        return [_alone(0, each) for each in simulator.simulators]
-    kinds, trees = [], simulator.scene.trees
-    for model, bank, numbers in simulator.shared:
-        basis = model.basis
-        per_shape = bank.all_shapes @ basis.projection.T
-
-        def found(numbers: Ints = numbers, per_shape: Floats = per_shape) -> Floats:
-            return np.asarray(simulator.shares(numbers) @ per_shape)
-
-        where = [trees[number] for number in numbers.tolist()]
-        places = [(tree.x, tree.y, tree.z, tree.yaw, tree.scale) for tree in where]
-        kinds.append(SceneKind(model, basis, found, numbers.tolist(), places))
-    return kinds + [_alone(t, each) for t, each in simulator.own.items()]
-
-
-def _alone(number: int, simulator: SwaySimulator) -> SceneKind:
-    """Return the kind of a single tree, described at its place."""
-    basis = simulator.basis
-    x, y, z = simulator.tree.start[0].tolist()
-
-    def found() -> Floats:
-        return np.asarray(basis.projection @ simulator.bank.oscillators.rotations())[None]
-
-    return SceneKind(simulator, basis, found, [number], [(x, y, z, 0.0, 1.0)])
+    kinds = []
+    places = simulator.places
+    for group in simulator.groups:
+        basis = basis_of(group.simulator)
+        where = [(x, y, z, yaw, scale) for x, y, z, yaw, scale in places[group.numbers].tolist()]
+        coordinates = group.in_basis(basis)
+        kinds.append(SceneKind(group.simulator, basis, coordinates, group.numbers.tolist(), where))
+    return kinds

@@ -10,7 +10,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import leaf_clusters, LeafClusters
-from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.core.setup.season import is_in_leaf
 from tree_sway.stream.description import describe_scene
 from tree_sway.stream.protocol import (
@@ -56,15 +56,12 @@ class SceneState:
     ) -> None:
         self.simulator = simulator
         self.kinds = scene_kinds(simulator)
-        if isinstance(simulator, SceneSimulator):
-            self.names, name = simulator.names, simulator.scene.name
-        else:
-            self.names, name = (simulator.tree.name,), simulator.tree.name
+        self.names = simulator.names
         self._lay_out()
         count = FULLY_LEAVED * n_leaves // max(FULLY_LEAVED, len(self.kinds))
         self.leaves = [_leaves(kind, count) for kind in self.kinds]
         self.description = describe_scene(
-            name, self.kinds, self.names, frame_id=frame_id, leaves=self.leaves
+            simulator.name, self.kinds, self.names, frame_id=frame_id, leaves=self.leaves
         )
         self._described = decode_description(self.description)
         self.identity = self._described.identity
@@ -112,11 +109,10 @@ class SceneState:
         for kind, rows in zip(self.kinds, self._rows, strict=True):
             whole[rows] = kind.coordinates()
         parts = [whole]
-        for number, one in self.simulator.pushed.items():
+        for number, touch in self.simulator.pushed.items():
             own = whole[sum(self._sizes[:number]) :][: self._sizes[number]]
             before = sum(map(len, self._matrices[:number])), 0.0
-            if one.touch is not None:
-                parts += [(one.touch.beyond(self._matrices[number] @ own) + before).ravel()]
+            parts += [(touch.beyond(self._matrices[number] @ own) + before).ravel()]
         return np.concatenate(parts)
 
     def frame(
@@ -152,8 +148,8 @@ class SceneState:
 def _leaves(kind: SceneKind, count: int) -> LeafClusters | None:
     """Clusters of leaves of a kind; None without leaves."""
     simulator = kind.simulator
-    if not count or not is_in_leaf(simulator.species, simulator.settings.in_leaf):
+    if not count or not is_in_leaf(simulator.models[0].species, simulator.settings.in_leaf):
         return None
-    rng, species = np.random.default_rng(0), simulator.species
+    rng, species = np.random.default_rng(0), simulator.models[0].species
     traits, look = species.leaves, species.look
     return leaf_clusters(simulator.tree, rng, count=count, traits=traits, look=look)

@@ -9,7 +9,7 @@ import numpy as np
 from tree_sway.core.model.exported_table import exported_table, rounded
 from tree_sway.core.model.settings import USUAL
 from tree_sway.core.run.table_model import WindBasisBank
-from tree_sway.core.scene.scene_simulator import SceneSimulator, Simulator
+from tree_sway.core.scene.scene_simulator import Simulator
 from tree_sway.errors import ParameterError, TreeSwayError
 from tree_sway.stream.check_description import Array
 from tree_sway.stream.protocol import encode_description, TABLES
@@ -27,7 +27,7 @@ def why_no_tables(kinds: list[SceneKind]) -> TreeSwayError | None:
         if model.settings.crown_coherence < 1.0:
             what = 'a crown whose limbs meet gusts one after another has no table to solve it by'
             return ParameterError(what, where='crown_coherence', cure='set it to 1')
-        if isinstance(model.bank.oscillators, WindBasisBank):
+        if isinstance(model.banks[0].oscillators, WindBasisBank):
             continue
         what = f"model '{model.model}' has no table to solve it by"
         cure = f'give a number of coordinates, such as {USUAL}'
@@ -46,9 +46,9 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
     entries, arrays = [], dict[str, Array]()
     for number, kind in enumerate(kinds):
         model = kind.simulator
-        bank = model.bank.oscillators
+        bank = model.banks[0].oscillators
         assert isinstance(bank, WindBasisBank)
-        numbers, own = exported_table(model.prepared, bank.modal.damping)
+        numbers, own = exported_table(model.models[0], bank.modal.damping)
         state = bank.all_shapes @ kind.basis.projection.T
         # Motion of a correction of the coordinates with the least energy.
         root = np.sqrt(bank.modal.stiffness)
@@ -59,15 +59,13 @@ def tables_of(simulator: Simulator, kinds: list[SceneKind], identity: str) -> by
             # To a share of 0.002, so that files are smaller.
             own[f'{part}_compliance'] = rounded(exact, 16)
         arrays |= {f'{number}/{name}': array for name, array in own.items()}
-        entries.append({**numbers, 'drag_law': list(model.drag_law)})
-    count = sum(len(kind.numbers) for kind in kinds)
-    arrays['tree_speed'] = np.ones(count, dtype=np.float32)
+        entries.append({**numbers, 'drag_law': list(model.models[0].drag_law)})
+    arrays['tree_speed'] = simulator.speeds.astype(np.float32)
     header: dict[str, object] = {'format': 'tree_sway tables', 'description': identity}
     header |= {'kinds': entries, 'anemometer': None, 'convection_ratio': 1.0}
-    if isinstance(simulator, SceneSimulator):
-        arrays['tree_speed'][:] = simulator.speeds
-        ratio = simulator.scene.convection_ratio
-        anemometer = simulator.scene.anemometer
-        header['anemometer'] = None if anemometer is None else np.asarray(anemometer).tolist()
+    gusts = simulator.gusts
+    if gusts is not None:
+        header['anemometer'] = None if gusts.anemometer is None else gusts.anemometer.tolist()
+        ratio = gusts.convection_ratio
         header['convection_ratio'] = ratio if np.isfinite(ratio) else None
     return encode_description(header, arrays, TABLES)

@@ -22,7 +22,8 @@ from typing import Any
 
 from tree_sway.cache.kernel_cache import ROOT, source_digest
 from tree_sway.core.model.settings import Settings
-from tree_sway.errors import FormatError, nearest, ParameterError
+from tree_sway.core.scene.simulate import refuse_too_many_steps
+from tree_sway.errors import FormatError, inside, nearest, ParameterError
 from tree_sway.files.text_file import is_file, path_of, read_bytes, read_text
 from tree_sway.files.wind.wind_file import EXAMPLES
 from tree_sway.files.yaml_document import read_yaml
@@ -36,8 +37,6 @@ _ARRAYS = {'leaf_mass', 'leaf_area', 'profile'}
 
 MAX_CASES = 100_000
 """Largest number of cases of a study, which are all planned before the first is computed."""
-MAX_STEPS = 6_000_000
-"""Largest number of steps of a case, all of which are in the memory."""
 
 
 @dataclass(frozen=True)
@@ -93,9 +92,9 @@ def read_study(path: str | Path) -> list[Case]:
     ------
     FormatError
         A file that cannot be read, is not YAML, does not match the schema, or has more than
-        `MAX_CASES` cases or `MAX_STEPS` steps of a case.
-    ParameterError
-        An unknown setting, or a wrong value.
+        `MAX_CASES` cases.
+    TreeSwayError
+        An unknown setting, species or tree, a wrong value, or too many steps of a case.
 
     """
     path = path_of(path)
@@ -129,7 +128,7 @@ def _content(file: str | None) -> bytes:
 
 
 def _refuse_large(study: Plain, case: Case, where: str) -> None:
-    """Raise a `FormatError` for too many cases, or too many steps of one, before any is made."""
+    """Refuse too many cases, or too many steps of one, before any is made."""
     trees = winds = 0
     for entry in study['trees']:
         trees += 1 if isinstance(entry, str) else _count(entry['grow'], 'species', 'height')
@@ -143,13 +142,8 @@ def _refuse_large(study: Plain, case: Case, where: str) -> None:
             where=where,
             cure=f'give at most {MAX_CASES} cases in a study',
         )
-    steps = case.seconds * case.rate
-    if steps > MAX_STEPS:
-        raise FormatError(
-            f'{case.seconds:g} s at {case.rate:g} Hz are {steps:.3g} steps of a case',
-            where=where,
-            cure=f'give at most {MAX_STEPS} steps, such as a day at 60 Hz',
-        )
+    with inside(where):
+        refuse_too_many_steps(case.seconds * case.rate, case.rate)
 
 
 def _count(entry: Plain, *names: str) -> int:

@@ -11,17 +11,17 @@ import io
 from pathlib import Path
 import sys
 import time
-from typing import TextIO
 
 from tree_sway.commands.arguments import refuse_overwriting
 from tree_sway.commands.exposure import add_exposure_arguments, refuse_spacing_in_the_open
 from tree_sway.commands.progress import bar
+from tree_sway.commands.row_file import RowFile
 from tree_sway.core.checks import within
-from tree_sway.errors import FormatError, ParameterError
+from tree_sway.errors import ParameterError
 from tree_sway.files.scenes.inventory.inventory_file import inventory_table
 from tree_sway.files.scenes.inventory.read_inventory import inventory_of
 from tree_sway.files.text_file import path_of, read_head
-from tree_sway.files.whole_file import write_text_whole
+from tree_sway.files.whole_file import refuse_unwritable, write_text_whole
 from tree_sway.studies.cluster import refuse_wrong_address
 from tree_sway.studies.command import add_scheduler_argument
 from tree_sway.studies.risk import risk_rows, risk_work, RiskWork, Row
@@ -65,6 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise ParameterError(f"'{output}' is no table", where='--output', cure='end it with .csv')
     if not arguments.force:
         refuse_overwriting(output, '--output')
+    refuse_unwritable(output)
     path = path_of(arguments.inventory)
     inventory = inventory_of(inventory_table(path, read_head(path)), needs_place=False)
     is_open = {each or arguments.exposure for each in inventory.exposures} == {'open'}
@@ -81,11 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
         file=sys.stderr, flush=True,
     )  # fmt: skip
     began = time.monotonic()
-    try:
-        with output.open('w', encoding='utf-8', newline='') as file:
-            rows = _written(file, work, workers, arguments.scheduler)
-    except OSError as error:
-        raise FormatError(f'cannot be written: {error.strerror}', where=str(output)) from None
+    rows = _written(output, work, workers, arguments.scheduler)
     _sort(output, rows)
     n_failed = sum(row['critical_wind_10m [m/s]'] is None for row in rows)
     failed = f', {n_failed} of them without a wind (column assumed)' if n_failed else ''
@@ -93,18 +90,18 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _written(file: TextIO, work: RiskWork, workers: int, scheduler: str | None) -> list[Row]:
+def _written(output: Path, work: RiskWork, workers: int, scheduler: str | None) -> list[Row]:
     """Write rows as their kinds are done, so that an interrupted table can be read."""
-    rows = list[Row]()
-    writer: csv.DictWriter[str] | None = None
+    rows, file = list[Row](), RowFile(output)
     results = _each_tree(work, workers, scheduler)
-    for _, row in zip(bar(range(len(work.inventory.names)), 'trees'), results, strict=True):
-        if writer is None:
-            writer = csv.DictWriter(file, list(row), lineterminator='\n')
-            writer.writeheader()
-        writer.writerow(row)
-        file.flush()
-        rows.append(row)
+    try:
+        for _, row in zip(bar(range(len(work.inventory.names)), 'trees'), results, strict=True):
+            file.write(list(row), list(row.values()))
+            rows.append(row)
+            if file.failure:
+                break
+    finally:
+        file.close()
     return rows
 
 

@@ -15,12 +15,16 @@ import sys
 import tempfile
 import webbrowser
 
-from tree_sway.commands.arguments import add_sway_arguments, opened_scene
+from tree_sway.commands.arguments import opened_scene
 from tree_sway.commands.ending import Ending, LONGEST
 from tree_sway.commands.page_arguments import add_page_arguments, page_settings, print_address
 from tree_sway.commands.sensor_arguments import add_sensor_argument
+from tree_sway.commands.wind_arguments import (
+    add_sway_arguments,
+    refuse_unused_wind,
+    simulated_speed,
+)
 from tree_sway.core.scene.scene import Scene
-from tree_sway.errors import ParameterError
 from tree_sway.files.export.tree_export import write_tree
 from tree_sway.parameters.parameter import Value
 from tree_sway_ros.commands.duration import add_seconds, seconds_of
@@ -54,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the demo until its time is over, the record ends, or Ctrl-C."""
     seconds = seconds_of(arguments)
+    refuse_unused_wind(arguments)
     scene = opened_scene(arguments)
     for warning in scene.warnings:
         print(f'warning: {warning}', file=sys.stderr)
@@ -117,11 +122,10 @@ def _nodes(arguments: argparse.Namespace, tree: str) -> dict[str, dict[str, Valu
     if arguments.gravity == 'off':
         solver['gravity'] = 0.0
     if arguments.sensor is not None:
-        if arguments.wind is not None:
-            raise ParameterError('both --sensor and --wind', cure='give one of the two')
         return {'sensor': {'address': arguments.sensor}, 'wind': {}, 'solver': solver}
     if arguments.wind is None:
-        return {'anemometer': {'mean_speed': arguments.speed}, 'wind': {}, 'solver': solver}
+        anemometer: dict[str, Value] = {'mean_speed': simulated_speed(arguments)}
+        return {'anemometer': anemometer, 'wind': {}, 'solver': solver}
     player = {
         'file': arguments.wind,
         'reader_options': ' '.join(arguments.wind_option),

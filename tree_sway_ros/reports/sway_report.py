@@ -133,7 +133,7 @@ def _model(simulator: Simulator) -> Status:
     trees = simulator.simulators
     if trees != (simulator,):
         values |= {f'model of {each.tree.name}': each.model for each in trees}
-    outside = sum(each.bank.oscillators.n_outside for each in trees)
+    outside = sum(each.banks[0].oscillators.n_outside for each in trees)
     values['steps outside of the wind basis'] = outside
     adaptive = adaptive_among(trees)
     if not adaptive:

@@ -101,8 +101,8 @@ def test_let_go_it_swings_and_decays_as_every_segment_solved(name):
         for _ in range(1200):
             sims[0].push(segment, force, 1.0)
             sims[0].step((0.0, 0.0, 0.0), DT)
-        x, _ = sims[0].motion()
-        sims[1].take_over(x, np.zeros(len(x)))
+        x, _ = sims[0].banks[0].oscillators.motion()
+        sims[1].banks[0].oscillators.take_over(x, np.zeros(len(x)))
         swing = []
         for _ in range(len(whole)):
             sims[1].step((0.0, 0.0, 0.0), DT)

@@ -101,11 +101,12 @@ def errors(simulators: Sequence[SwaySimulator]) -> list[Measured]:
     for simulator in bar(simulators, 'against full'):
         tree = simulator.tree
         try:
-            other = make_simulator(tree, simulator.species, simulator.settings, model='full')
+            species = simulator.models[0].species
+            other = make_simulator(tree, species, simulator.settings, model='full')
         except ParameterError:  # more coordinates than `full` takes
             continue
         for speed in _SPEEDS:
-            bank, winds = simulator.bank.oscillators, gusts_and_turns(speed)
+            bank, winds = simulator.banks[0].oscillators, gusts_and_turns(speed)
             assert isinstance(bank, WindBasisBank)
             before = bank.n_outside
             error = against(simulator, other, winds)
@@ -145,7 +146,7 @@ def gusts_and_turns(speed: float, seconds: float = _SECONDS, seed: int = 5) -> F
 
 
 def _run(simulator: SwaySimulator, winds: Floats) -> None:
-    bank = simulator.bank.oscillators
+    bank = simulator.banks[0].oscillators
     assert isinstance(bank, WindBasisBank)
     _many(bank.record, bank.time_step, bank.instance, winds)
 

@@ -28,7 +28,7 @@ _COLORS = 64
 _HEIGHT = 15.0
 """Height of the tree whose sprays are painted [m]."""
 
-_PATTERNS = ('furrows', 'plates', 'smooth', 'dashes', 'flakes')
+_PATTERNS = ('furrows', 'plates', 'scales', 'smooth', 'dashes', 'flakes')
 _PAINT = """(async (looks, patterns, pixels) => {
   const { href } = new URL('static/drawing/textures.js', location.href);
   const { barkPicture, leafPicture, leavesAlong } = await import(href);

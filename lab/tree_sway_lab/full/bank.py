@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property, partial
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -47,6 +48,62 @@ TURNS = 10
 MOST_TURN = 1.0
 """Largest rotation of a branch on its parent in a step, in [rad]."""
 
+NOT_FINITE = -1
+"""Result of a step after which the motion is not finite."""
+
+
+class Motion(NamedTuple):
+    """The state of all coordinates; views of the memory of a `FullBank`."""
+
+    eta: Floats
+    """Modal coordinates, (m,)."""
+    rate: Floats
+    force: Floats
+    """Force on each in the last step, (m,)."""
+    middle: Floats
+    """Coordinates in the middle of the step, (m,)."""
+    middle_rate: Floats
+
+
+class Keys(NamedTuple):
+    """Key rotations of the branches; views of the memory of a `FullBank`."""
+
+    moment: Floats
+    """Moment on each in the last step in [N m], (N,)."""
+    rotation: Floats
+    """In [rad], (N,)."""
+    rate: Floats
+
+
+class Law(NamedTuple):
+    """Constants of a step."""
+
+    shapes: Floats
+    """Key rotations per unit of each coordinate, (m, N)."""
+    momentum: Floats
+    """Coordinates by key rotations, (m, N)."""
+    limit: Floats
+    """Moment at which the load on each key rotation is clamped in [N m], (N,)."""
+    whole: Floats
+    """Propagator of a step, (m, 8)."""
+    half: Floats
+    """Propagator of half a step, (m, 8)."""
+    springs: Floats
+    """Stiffness and damping of the coordinates, then memory of `_add_inertia`, (5 + q, m)."""
+    inertia_slopes: Floats
+    """Change of the mass matrix by the first coordinates, (q, q, q)."""
+    fastest: Floats
+    """Largest rate of a branch on its parent in [rad/s], (1,)."""
+
+
+class Air(NamedTuple):
+    """The mean wind of a step in [m/s], and its `drag_law.pressure` in [kg/m^3]."""
+
+    x: float
+    y: float
+    z: float
+    per_speed_squared: float
+
 
 class FullBank(Branchwise, ModalCoordinates):
     """Oscillators of the coordinates of a tree, loaded branch by branch."""
@@ -60,9 +117,11 @@ class FullBank(Branchwise, ModalCoordinates):
         self.loads = load_records(branches)
         """Records of `load_layout`."""
         self.modal = np.zeros((5, m))
+        self._motion = Motion(*self.modal)
         self.swing = tuple(self.modal[:3])
         """Displacement, rate and force of each mode, (m,)."""
         self.state = np.zeros((3, n))
+        self._keys = Keys(*self.state)
         self._fastest = np.zeros(1)
         self._tried = np.zeros((2 + 2 * MOST_TRIALS, n))
 
@@ -80,22 +139,24 @@ class FullBank(Branchwise, ModalCoordinates):
         """
         Advance one step under a mean wind [m/s], with `drag_law.pressure` in [kg/m^3].
 
-        Returns how many loads were clamped to their limit, -1 if the motion is not finite.
+        Returns how many loads were clamped to their limit, `NOT_FINITE` if the motion is not
+        finite.
         """
-        return int(self._compiled(wx, wy, wz, per_speed_squared))
+        return int(self._compiled(Air(wx, wy, wz, per_speed_squared)))
 
     @cached_property
-    def _compiled(self) -> Callable[..., int]:
-        arrays = (
-            self.branches, self.work, self.loads, self.modal, self.state, self.by_coordinate,
-            self.limit, self.whole, self.half, self._tried, self.momentum, self._fastest,
-            self.inertia_slopes, self._springs,
+    def _compiled(self) -> Callable[[Air], int]:
+        law = Law(
+            self.by_coordinate, self.momentum, self.limit, self.whole, self.half, self._springs,
+            self.inertia_slopes, self._fastest,
         )  # fmt: skip
-        return partial(entry_of(_advance, *arrays, 0.0, 0.0, 0.0, 0.0), *arrays)
+        records = self.branches, self.work, self.loads
+        arrays = *records, self._motion, self._keys, law, self._tried
+        return partial(entry_of(_advance, *arrays, Air(0.0, 0.0, 0.0, 0.0)), *arrays)
 
     @cached_property
     def _compiled_expand(self) -> Callable[[], None]:
-        arrays = self.by_coordinate, self.modal, self.state
+        arrays = self.by_coordinate, self._motion.eta, self._keys.rotation
         return partial(entry_of(_expand, *arrays), *arrays)
 
     def memory(self) -> tuple[Floats, ...]:
@@ -125,53 +186,65 @@ class FullBank(Branchwise, ModalCoordinates):
 
 
 @fused
-def _expand(shapes: Floats, modal: Floats, state: Floats) -> None:
-    """Expand modes to key rotations."""
-    eta, x = modal[0], state[1]
-    for i in range(len(x)):
-        x[i] = 0.0
-    for k in range(len(eta)):
-        for i in range(len(x)):
-            x[i] += shapes[k, i] * eta[k]
+def _expand(shapes: Floats, amounts: Floats, rotations: Floats) -> None:
+    """Sum shapes by amounts, (m,), to key rotations or their rates, (N,)."""
+    for i in range(len(rotations)):
+        rotations[i] = 0.0
+    for k in range(len(amounts)):
+        for i in range(len(rotations)):
+            rotations[i] += shapes[k, i] * amounts[k]
 
 
 @part
-def _to_middle(modal: Floats, state: Floats, shapes: Floats, half: Floats) -> None:
-    """Key rotations and rates at the middle of the step, under the last step's load."""
-    eta, rate, force = modal[0], modal[1], modal[2]
-    middle_eta, middle_rate, x, v = modal[3], modal[4], state[1], state[2]
+def _to_middle(motion: Motion, keys: Keys, law: Law) -> None:
+    """Find key rotations and rates at the middle of the step, under the last step's load."""
+    eta, rate, force = motion.eta, motion.rate, motion.force
     for k in range(len(eta)):
-        h = half[k]
-        middle_eta[k] = h[0] * eta[k] + h[1] * rate[k] + (h[2] + h[3]) * force[k]
-        middle_rate[k] = h[4] * eta[k] + h[5] * rate[k] + (h[6] + h[7]) * force[k]
-    _expand_both(shapes, middle_eta, middle_rate, x, v)
+        half = law.half[k]
+        by_force = (half[2] + half[3]) * force[k]
+        rate_by_force = (half[6] + half[7]) * force[k]
+        motion.middle[k] = half[0] * eta[k] + half[1] * rate[k] + by_force
+        motion.middle_rate[k] = half[4] * eta[k] + half[5] * rate[k] + rate_by_force
+    _expand_both(law.shapes, motion.middle, motion.middle_rate, keys)
 
 
 @part
-def _expand_both(shapes: Floats, eta: Floats, rate: Floats, x: Floats, v: Floats) -> None:
+def _expand_both(shapes: Floats, eta: Floats, rate: Floats, keys: Keys) -> None:
     """Expand modes and their rates to key rotations and their rates."""
-    for i in range(len(x)):
-        x[i], v[i] = 0.0, 0.0
+    for i in range(len(keys.rotation)):
+        keys.rotation[i], keys.rate[i] = 0.0, 0.0
     for k in range(len(eta)):
-        for i in range(len(x)):
-            x[i] += shapes[k, i] * eta[k]
-            v[i] += shapes[k, i] * rate[k]
+        for i in range(len(keys.rotation)):
+            keys.rotation[i] += shapes[k, i] * eta[k]
+            keys.rate[i] += shapes[k, i] * rate[k]
 
 
 @fused
 def _advance(
-    branches: Branches, work: Works, loads: Loads, modal: Floats, state: Floats, shapes: Floats,
-    limit: Floats, whole: Floats, half: Floats, trials: Floats, momentum: Floats, fastest: Floats,
-    inertia_slopes: Floats, springs: Floats,
-    wx: float, wy: float, wz: float, per_speed_squared: float,
-) -> int:  # fmt: skip
-    eta, rate, force = modal[0], modal[1], modal[2]
-    moment, x, v = state[0], state[1], state[2]
+    branches: Branches,
+    work: Works,
+    loads: Loads,
+    motion: Motion,
+    keys: Keys,
+    law: Law,
+    trials: Floats,
+    air: Air,
+) -> int:
+    """
+    Advance one step; returns how many loads were clamped, or `NOT_FINITE`.
+
+    The load is iterated until it is that of the motion which it makes: rows of ``trials`` are
+    those of `_try_next`.
+    """
+    moment, limit = keys.moment, law.limit
     residual, found = trials[0], trials[3]
-    trial, clamped, total = 0, 0, 0.0
+    trial = 0
     while True:
-        _to_middle(modal, state, shapes, half)
-        wind_moments(branches, work, loads, x, v, found, wx, wy, wz, per_speed_squared)
+        _to_middle(motion, keys, law)
+        wind_moments(
+            branches, work, loads, keys.rotation, keys.rate, found,
+            air.x, air.y, air.z, air.per_speed_squared,
+        )  # fmt: skip
         most = 0.0
         for i in range(len(moment)):
             residual[i] = LOAD_MAX * (found[i] - moment[i]) / limit[i]
@@ -183,79 +256,100 @@ def _advance(
         for i in range(len(moment)):
             moment[i] += trials[2, i] * limit[i] / LOAD_MAX
             moment[i] = min(max(moment[i], -limit[i]), limit[i])
-        for k in range(len(eta)):
-            force[k] = 0.0
-            for i in range(len(moment)):
-                force[k] += shapes[k, i] * moment[i]
+        _project_load(motion, keys, law)
+    n_clamped = 0
     for i in range(len(moment)):
         if most <= ENOUGH:
             moment[i] = found[i]
-        clamped += not abs(found[i]) <= limit[i]
-    for k in range(len(eta)):
-        load = 0.0
-        for i in range(len(moment)):
-            load += shapes[k, i] * moment[i]
-        force[k] = load
-    _add_inertia(modal, inertia_slopes, springs)
-    for k in range(len(eta)):
-        c, old, load = whole[k], eta[k], force[k]
-        eta[k] = c[0] * old + c[1] * rate[k] + (c[2] + c[3]) * load
-        rate[k] = c[4] * old + c[5] * rate[k] + (c[6] + c[7]) * load
-        total += 0.0 * eta[k] + 0.0 * rate[k]
-    if total != 0.0:
-        return -1
-    for i in range(len(x)):
-        if not (abs(x[i]) <= FARTHEST and abs(v[i]) <= fastest[0]):
-            _clamp(modal, state, shapes, momentum, fastest[0])
-            return clamped + 1
-    return clamped
+        n_clamped += not abs(found[i]) <= limit[i]
+    _project_load(motion, keys, law)
+    _add_inertia(motion, law)
+    _to_end(motion, law)
+    if not _is_finite(motion):
+        return NOT_FINITE
+    for i in range(len(keys.rotation)):
+        is_near = abs(keys.rotation[i]) <= FARTHEST
+        if not (is_near and abs(keys.rate[i]) <= law.fastest[0]):
+            _clamp(motion, keys, law)
+            return n_clamped + 1
+    return n_clamped
 
 
 @part
-def _add_inertia(modal: Floats, slopes: Floats, springs: Floats) -> None:
+def _project_load(motion: Motion, keys: Keys, law: Law) -> None:
+    """Project the moments on key rotations on the coordinates: ``f = Phi^T Q``."""
+    for k in range(len(motion.force)):
+        load = 0.0
+        for i in range(len(keys.moment)):
+            load += law.shapes[k, i] * keys.moment[i]
+        motion.force[k] = load
+
+
+@part
+def _to_end(motion: Motion, law: Law) -> None:
+    """Move every coordinate exactly, over a step under its force."""
+    eta, rate = motion.eta, motion.rate
+    for k in range(len(eta)):
+        whole, before, load = law.whole[k], eta[k], motion.force[k]
+        eta[k] = whole[0] * before + whole[1] * rate[k] + (whole[2] + whole[3]) * load
+        rate[k] = whole[4] * before + whole[5] * rate[k] + (whole[6] + whole[7]) * load
+
+
+@part
+def _is_finite(motion: Motion) -> bool:
+    """Whether all coordinates and rates are finite."""
+    n_finite = 0
+    for k in range(len(motion.eta)):
+        n_finite += math.isfinite(motion.eta[k]) and math.isfinite(motion.rate[k])
+    return n_finite == len(motion.eta)
+
+
+@part
+def _add_inertia(motion: Motion, law: Law) -> None:
     """
     Add to the forces on leading coordinates what the inertia of the bent tree changes.
 
-    It is that of the middle of the step.
-
-    Rows of ``springs`` are stiffness and damping; accelerations and the change of the inertia are
-    written.
+    It is that of the middle of the step. Of the accelerations a, free ones a0 and the change C of
+    the mass matrix, ``a = a0 - C a`` is iterated.
     """
-    eta, rate, force, q, square = modal[3], modal[4], modal[2], len(slopes), 0.0
-    free, new, before, change = springs[2], springs[3], springs[4], springs[5:]
-    for i in range(q):
-        free[i] = force[i] - springs[0, i] * eta[i] - springs[1, i] * rate[i]
+    slopes, force = law.inertia_slopes, motion.force
+    stiffness, damping = law.springs[0], law.springs[1]
+    free, new, before, change = law.springs[2], law.springs[3], law.springs[4], law.springs[5:]
+    count, square = len(slopes), 0.0
+    for i in range(count):
+        free[i] = force[i] - stiffness[i] * motion.middle[i] - damping[i] * motion.middle_rate[i]
         new[i] = free[i]
-        for j in range(q):
+        for j in range(count):
             change[i, j] = 0.0
-            for k in range(q):
-                change[i, j] += slopes[i, j, k] * eta[k]
+            for k in range(count):
+                change[i, j] += slopes[i, j, k] * motion.middle[k]
             square += change[i, j] * change[i, j]
     scale = min(1.0, MOST_CHANGE / math.sqrt(max(square, 1e-300)))
     for _ in range(TURNS):
-        for i in range(q):
+        for i in range(count):
             before[i] = new[i]
-        for i in range(q):
+        for i in range(count):
             new[i] = free[i]
-            for j in range(q):
+            for j in range(count):
                 new[i] -= scale * change[i, j] * before[j]
-    for i in range(q):
+    for i in range(count):
         force[i] += new[i] - free[i]
 
 
 @part
-def _clamp(modal: Floats, state: Floats, shapes: Floats, momentum: Floats, fastest: float) -> None:
+def _clamp(motion: Motion, keys: Keys, law: Law) -> None:
     """Clamp rotations and rates of branches to the limits of a step."""
-    eta, rate, x, v = modal[0], modal[1], state[1], state[2]
-    _expand_both(shapes, eta, rate, x, v)
+    fastest = law.fastest[0]
+    eta, rate, x, v = motion.eta, motion.rate, keys.rotation, keys.rate
+    _expand_both(law.shapes, eta, rate, keys)
     for i in range(len(x)):
         x[i] = min(max(x[i], -FARTHEST), FARTHEST)
         v[i] = min(max(v[i], -fastest), fastest)
     for k in range(len(eta)):
         eta[k], rate[k] = 0.0, 0.0
         for i in range(len(x)):
-            eta[k] += momentum[k, i] * x[i]
-            rate[k] += momentum[k, i] * v[i]
+            eta[k] += law.momentum[k, i] * x[i]
+            rate[k] += law.momentum[k, i] * v[i]
 
 
 @part

@@ -22,12 +22,11 @@ from tree_sway.commands.arguments import (
     add_leaves_argument,
     add_model_argument,
     add_tree_arguments,
-    add_wind_arguments,
     chosen_leaves,
-    opened_record,
     opened_tree,
 )
 from tree_sway.commands.motion_arguments import add_motion_arguments, placed_motion
+from tree_sway.commands.wind_arguments import add_wind_arguments, opened_record
 from tree_sway.core.arrays import Floats
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.scene.simulate import simulate

@@ -118,7 +118,7 @@ def test_a_change_reaches_what_sways_and_what_is_estimated(changes):
     for wind in turbulent(5.0, 3.0):
         sim.step(wind, DT), plain.step(wind, DT)
     assert sim.place() == pytest.approx(plain.place(), abs=1e-12)
-    tunable = sim.bank.oscillators.tunable
+    tunable = sim.banks[0].oscillators.tunable
     assert sim._estimator._stiffness == pytest.approx(tunable.stiffness)
     assert sim._estimator._own_damping == pytest.approx(tunable.damping)
 
@@ -126,7 +126,7 @@ def test_a_change_reaches_what_sways_and_what_is_estimated(changes):
 def test_a_motion_that_is_not_finite_is_counted_and_goes_on_from_rest():
     sim = adaptive(0.005)
     sim.step((5.0, 0.0, 0.0), DT)
-    sim.bank.oscillators.instance['eta'][:] = np.nan
+    sim.banks[0].oscillators.instance['eta'][:] = np.nan
     assert sim.step((5.0, 0.0, 0.0), DT) & RESTARTED
     assert sim.counts.restarted == 1
     assert np.isfinite(sim.place()).all()

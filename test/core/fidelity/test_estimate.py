@@ -26,7 +26,7 @@ def sim():
 
 @pytest.fixture(scope='module')
 def estimator(sim):
-    return ErrorEstimator(sim.tree, sim.bank, sim.drag_law)
+    return ErrorEstimator(sim.tree, sim.banks[0], sim.models[0].drag_law)
 
 
 def turbulent(speed, seed):
@@ -47,7 +47,7 @@ def test_fewer_coordinates_never_err_by_more_than_is_said(sim, estimator, way):
     wind = turbulent(7.0, 1) @ turn
     climate = WindClimate.of_samples(wind, 60.0)
     said = {e.n_coordinates: e.error for e in estimator.estimates(climate)}
-    oscillators, m = sim.bank.oscillators, sim.bank.oscillators.shapes.shape[1]
+    oscillators, m = sim.banks[0].oscillators, sim.banks[0].oscillators.shapes.shape[1]
     found = {}
     for k in (*estimator.dial[1:-1], m):
         sim.reset()
@@ -101,6 +101,6 @@ def test_estimates_are_those_of_the_tree_as_it_is_tuned():
 
 def test_a_branch_by_itself_costs_less_than_the_load_on_every_branch():
     few, all_of_them = (
-        frame_cost(make_simulator(bench_tree(), model=model).bank) for model in (6, 'full')
+        frame_cost(make_simulator(bench_tree(), model=model).banks[0]) for model in (6, 'full')
     )
     assert few < all_of_them

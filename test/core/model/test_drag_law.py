@@ -147,9 +147,9 @@ def test_a_branch_in_still_air_is_damped_as_its_pieces_are(model, stem):
     psi = (6.0 * s**2 - 4.0 * s**3 + s**4) / 3.0
     drag_of_pieces = DENSITY_AND_DRAG * width * np.trapezoid(psi**3, s)
     inertia = wood.density * np.pi / 4.0 * width**2 * np.trapezoid(psi**2, s)
-    x, v = sim.motion()
+    x, v = sim.banks[0].oscillators.motion()
     x[0] = 0.1
-    sim.take_over(x, v)
+    sim.banks[0].oscillators.take_over(x, v)
     rate = 2000
     per_cycle = rate / sim.frequencies(1)[0]
     tip = []

@@ -30,7 +30,7 @@ def swayed(spreads: Uncertainty) -> tuple[ObservedTree, Floats, Floats]:
     twin = ObservedTree(TREE, SPECIES, in_leaf=False, at={}, has_band=True, crown_coherence=1.0)
     assert twin.members is not None
     twin.members.spreads = spreads
-    shape = twin.bank.oscillators.shapes[0, : twin.observer.count]
+    shape = twin.banks[0].oscillators.shapes[0, : twin.observer.count]
     own, others = [], []
     for each in WIND:
         twin.step(each, DT)

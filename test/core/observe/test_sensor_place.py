@@ -63,7 +63,7 @@ def test_the_motion_of_a_place_is_that_of_its_pose() -> None:
     motion = place_motion(sim, place)
     eta = 1e-3 * np.random.default_rng(1).normal(size=12) / np.arange(1, 13)
     rest = sim.place_rotations(0.0 * sim.rotations())
-    moved = sim.place_rotations(np.ascontiguousarray(sim.bank.oscillators.shapes @ eta))
+    moved = sim.place_rotations(np.ascontiguousarray(sim.banks[0].oscillators.shapes @ eta))
     rows = slice(place.segment, place.segment + 1)
     away = place.along * TREE.length[place.segment]
     shift = ends_of_poses(moved[rows], [away])[1] - ends_of_poses(rest[rows], [away])[1]

@@ -20,8 +20,8 @@ WIND = (9.0, 1.0, 0.0)
 
 def clamp_always(simulator, number=0):
     """Make a table in which no energy is allowed, as of a tree that swings up by itself."""
-    tables = getattr(simulator, '_tables', None)
-    record = simulator.bank.oscillators.record if tables is None else tables
+    shared = getattr(simulator, '_shared', None)
+    record = simulator.banks[0].oscillators.record if shared is None else shared._tables
     record['most_energy'][number] = 1e-12
 
 
@@ -44,7 +44,7 @@ def test_numbers_end_at_the_fewest():
 @pytest.mark.parametrize('model', [12, 'auto'])
 def test_it_shows_fewer_coordinates_until_it_is_reset(fork, model):
     sim = make_simulator(fork(), model=model)
-    most = sim.bank.oscillators.shapes.shape[1]
+    most = sim.banks[0].oscillators.shapes.shape[1]
     clamp_always(sim)
     for _ in range(round(0.9 / DT)):
         assert sim.step(WIND, DT) == LOAD_CLAMPED
@@ -52,16 +52,16 @@ def test_it_shows_fewer_coordinates_until_it_is_reset(fork, model):
     for _ in range(round(0.2 / DT)):
         sim.step(WIND, DT)
     assert sim.counts.reduced == 1
-    assert sim.n_shown <= fewer(most)
+    assert sim.banks[0].n_shown <= fewer(most)
     if model == 'auto':
-        assert sim.choice.n_coordinates <= sim.n_shown
+        assert sim.choice.n_coordinates <= sim.banks[0].n_shown
         assert sim.review().n_coordinates <= fewer(most)
-    state, shown = sim.state(), sim.n_shown
+    state, shown = sim.state(), sim.banks[0].n_shown
     sim.reset()
-    assert sim.n_shown > shown or model == 'auto'
+    assert sim.banks[0].n_shown > shown or model == 'auto'
     assert sim.counts.reduced == 1
     sim.set_state(state)
-    assert sim.n_shown == shown
+    assert sim.banks[0].n_shown == shown
     if model == 'auto':
         assert sim.review().n_coordinates <= fewer(most)
 
@@ -76,7 +76,7 @@ def test_a_storm_beyond_the_table_and_a_pull_take_no_coordinates(fork):
         sim.push(0, (5.0, 0.0, 0.0), 1.0)
         sim.step(WIND, DT)
     assert sim.counts.reduced == 0
-    assert sim.n_shown == sim.bank.oscillators.shapes.shape[1]
+    assert sim.banks[0].n_shown == sim.banks[0].oscillators.shapes.shape[1]
 
 
 def test_a_tree_of_a_scene_shows_fewer_and_the_others_do_not(fork):
@@ -84,16 +84,16 @@ def test_a_tree_of_a_scene_shows_fewer_and_the_others_do_not(fork):
     other = fork(2)
     scene = Scene([PlacedTree('a', tree), PlacedTree('b', tree, 3.0), PlacedTree('c', other, 6.0)])
     sim = scene.simulator(model=12)
-    kind = int(sim._placed['kind'][2])
+    kind = int(sim._shared.placements['kind'][2])
     clamp_always(sim, kind)
     for _ in range(90):
         assert sim.step(WIND, DT) == LOAD_CLAMPED
-    shown = sim._numbers.tolist()
+    shown = sim._shared._counted.tolist()
     assert shown[:2] == [12, 12]
-    assert shown[2] == fewer(min(12, sim._banks[kind].shapes.shape[1]))
+    assert shown[2] == fewer(min(12, sim.banks[kind].oscillators.shapes.shape[1]))
     assert sim.counts.reduced == 1
     sim.reset()
-    assert sim._numbers.tolist() == [12, 12, 12]
+    assert sim._shared._counted.tolist() == [12, 12, 12]
 
 
 def test_a_simulation_says_so(fork, monkeypatch):

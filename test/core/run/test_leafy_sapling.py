@@ -72,7 +72,7 @@ def sway(sim, speed, seconds=12.0):
 @pytest.mark.parametrize('speed', [3.0, 8.0, 12.0, 16.0])
 def test_the_default_sways_as_all_coordinates_with_the_load_of_every_branch(sapling, speed):
     usual, full = simulator(sapling, 60), simulator(sapling, 'full')
-    assert usual.bank.oscillators.shapes.shape[1] < 60  # its stiffest are in the table
+    assert usual.banks[0].oscillators.shapes.shape[1] < 60  # its stiffest are in the table
     shown, right = sway(usual, speed), sway(full, speed)
     assert usual.counts.clamped == usual.counts.restarted == 0
     error = np.linalg.norm(shown - right) / np.linalg.norm(right)
@@ -81,14 +81,14 @@ def test_the_default_sways_as_all_coordinates_with_the_load_of_every_branch(sapl
 
 @pytest.mark.parametrize('dt', [1.0 / 240.0, 1.0 / 60.0, 1.0 / 25.0, 0.2])
 def test_the_rate_at_the_middle_of_a_step_follows_the_force(sapling, dt):
-    bank = simulator(sapling, 60).bank.oscillators
+    bank = simulator(sapling, 60).banks[0].oscillators
     bank.set_step(dt)
     m = len(bank.modal.stiffness)
     assert (bank.time_step['half'][0, 5, :m] > 0.0).all()
 
 
 def test_a_coordinate_that_is_resolved_gets_to_the_middle_exactly(sapling):
-    bank = simulator(sapling, 12).bank.oscillators
+    bank = simulator(sapling, 12).banks[0].oscillators
     bank.modal.set_time_step(1e-3)
     fill_time_step(bank.time_step[0], propagators_of(bank.modal), 1e-3)
     m, exact = len(bank.modal.stiffness), bank.modal.half.T

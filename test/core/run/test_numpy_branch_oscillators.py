@@ -109,7 +109,7 @@ def test_a_state_of_one_is_taken_by_the_other(tree, model):
 
 @pytest.mark.compiled
 def test_moments_of_even_winds_are_those_that_a_tree_at_rest_bears():
-    load = WindMoments(make_simulator(bench_tree(), model=12).bank.branches)
+    load = WindMoments(make_simulator(bench_tree(), model=12).banks[0].branches)
     moments, still = load.at_rest(np.eye(3), np.eye(load.n)), np.zeros(load.n)
     for wind, moment in zip(np.eye(3), moments, strict=True):
         assert moment == pytest.approx(load(still, still, wind), rel=1e-9, abs=1e-12)

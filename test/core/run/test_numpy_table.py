@@ -31,7 +31,7 @@ def pair():
     """Return the oscillators of a tree on its table, compiled, and in numpy on the same table."""
     from tree_sway.core.run.numpy_table import NumpyTableBank
 
-    bank = make_simulator(bench_tree(), model=60).bank.oscillators
+    bank = make_simulator(bench_tree(), model=60).banks[0].oscillators
     return bank, NumpyTableBank(bank.modal, bank.table)
 
 
@@ -130,7 +130,7 @@ def test_a_step_of_a_stand_in_numpy_is_that_of_the_kernel(pair):
 @pytest.mark.parametrize('name', ['bench', 'benjamina'])
 def test_a_tree_that_is_turned_and_scaled_is_placed_as_by_the_kernel(name):
     tree = bench_tree() if name == 'bench' else builtin_tree(name)
-    bank = make_simulator(tree, model=12).bank
+    bank = make_simulator(tree, model=12).banks[0]
     rng = np.random.default_rng(3)
     rotations = rng.normal(0.0, 0.1, int(bank.branches['n_coordinates'].sum()))
     origin, turned = np.array([4.0, -2.0, 1.0]), (np.cos(0.6), np.sin(0.6), 1.7)

@@ -213,7 +213,8 @@ def test_a_twist_turns_children_and_leaves_the_stem(sketch):
     tree = drawn.tree()
     doll = Puppet(tree, enrich='stem')
     x = np.zeros(doll.n)
-    per_key = doll.bank.branches[1]['twist'][: doll.bank.branches[0]['n_coordinates'], 3:]
+    stem, side = doll.bank.branches[:2]
+    per_key = side['twist'][: stem['n_coordinates'], 3:]
     last = int(np.argmax(np.abs(per_key[:, 2])))
     assert per_key[last, :2] == pytest.approx(0.0, abs=1e-9)
     x[last] = 0.5 / per_key[last, 2]

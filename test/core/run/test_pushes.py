@@ -55,7 +55,7 @@ def test_moments_are_the_derivatives_of_places(tree, name, along):
     if name == 'palm':  # whose branches are cut, as of the other the stem alone
         tree = kind_called('palm')
     sim = make_simulator(tree, WOOD, model='full')
-    assert (len(sim.bank.branches) > tree.n_branches + 1) == (name == 'palm')
+    assert (len(sim.banks[0].branches) > tree.n_branches + 1) == (name == 'palm')
     for _ in range(90):
         sim.step((14.0, 5.0, 1.0), DT)
     x = 5.0 * sim.rotations()
@@ -63,7 +63,7 @@ def test_moments_are_the_derivatives_of_places(tree, name, along):
     assert np.abs(x).max() > 0.05  # it is bent
     rng = np.random.default_rng(3)
     for segment in (outer_segment(tree), 1, tree.n_segments - 1):
-        touch, force = Touch(tree, sim.bank), rng.normal(size=3)
+        touch, force = Touch(tree, sim.banks[0]), rng.normal(size=3)
         touch.add(segment, force, 1.0, along)
         push = touch.pushes[segment]
         touch._renew(push, push.place(poses), tree.start[0], x.copy())
@@ -102,7 +102,7 @@ def test_a_pull_moves_a_tree_further_than_any_wind_may():
         for sim in (table, truth):
             sim.push(segment, force, 1.0)
             sim.step(CALM, DT)
-    record, instance = table.bank.oscillators.record[0], table.bank.oscillators.instance[0]
+    record, instance = table.banks[0].oscillators.record[0], table.banks[0].oscillators.instance[0]
     assert record['stiffness'] @ instance['eta'] ** 2 > record['most_energy']
     there = moved(truth, segment)
     assert np.linalg.norm(moved(table, segment) - there) < 0.05 * np.linalg.norm(there)
@@ -245,7 +245,7 @@ def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
     sim = open_scene(name).simulator(Settings(damping_ratio=0.5), model=60)
     tree, state = sim.tree, SceneState(sim)
     described = decode_description(state.description)
-    reductions = TreeReductions(sim.tree, sim.species, sim.settings)
+    reductions = TreeReductions(sim.tree, sim.models[0].species, sim.settings)
     factors, n_rotations = reductions.with_subtrees.reduction.factors, len(sim.rotations())
     lengths = np.add.reduceat(tree.length, tree.branch_first[:-1])
     limbs = np.flatnonzero(tree.branch_parent == 0)
@@ -253,7 +253,7 @@ def test_a_limb_gives_way_as_with_all_coordinates_and_is_shown_so(name):
     errors = []
     for branch in longest:
         first, end = tree.branch_first[branch : branch + 2]
-        touch = Touch(tree, sim.bank)
+        touch = Touch(tree, sim.banks[0])
         segment = int(first + round(0.7 * (end - first - 1)))
         touch.add(segment, (1.0, 0.0, 0.0), 1.0, 0.0)
         push, x = touch.pushes[segment], np.zeros(n_rotations)

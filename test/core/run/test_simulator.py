@@ -165,8 +165,8 @@ def test_static_deflection_is_the_beams(stem, model, taper):
         return quad(lambda s: (s - x) * (1 - taper * s), x, 1)[0]
 
     unit = quad(lambda x: moment(x) * (1 - x) / (1 - taper * x) ** 4, 0, 1)[0]
-    load = 0.5 * 1.225 * sim.species.bare_drag_coefficient * wind**2 * base
-    tip = unit * load * length**4 / (sim.species.modulus * np.pi / 64 * base**4)
+    load = 0.5 * 1.225 * sim.models[0].species.bare_drag_coefficient * wind**2 * base
+    tip = unit * load * length**4 / (sim.models[0].species.modulus * np.pi / 64 * base**4)
     assert sim.tip_displacement[0] == pytest.approx(tip, rel=2e-3)
     assert abs(sim.tip_displacement[1]) < 1e-9
 

@@ -12,7 +12,7 @@ from tree_sway_lab.bench.sizes import against, gusts_and_turns
 from tree_sway_lab.example_trees import branch_order
 
 from tree_sway.core.growth.builtin import builtin_tree
-from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.drag_law import pressure
 from tree_sway.core.model.records import N_AZIMUTHS
 from tree_sway.core.run.simulator import WIND_REFUSED
 from tree_sway.core.scene.make import make_simulator
@@ -108,7 +108,7 @@ def test_a_steep_wind_is_in_the_table(wind):
     one, other = (make_simulator(crooked(1), model=m) for m in (60, 'full'))
     for _ in range(600):
         one.step(wind, DT), other.step(wind, DT)
-    assert one.bank.oscillators.n_outside == 0
+    assert one.banks[0].oscillators.n_outside == 0
     rest = one.place_rotations(np.zeros_like(one.rotations()))[:, :3]
     moved = np.linalg.norm(other.place()[:, :3] - rest, axis=1).max()
     assert np.linalg.norm(one.place()[:, :3] - other.place()[:, :3], axis=1).max() <= 0.08 * moved
@@ -141,7 +141,7 @@ def test_a_gentle_wind_from_any_elevation_is_in_the_table(fork):
         turn = 0.05 * k
         wind = [0.1 * np.cos(turn), 0.1 * np.sin(turn), 0.6 * (-1.0) ** (k // 50)]
         one.step(wind, DT), other.step(wind, DT)
-    assert one.bank.oscillators.n_outside == 0
+    assert one.banks[0].oscillators.n_outside == 0
     rest = one.tree.start
     gap, moved = one.place()[:, :3] - other.place()[:, :3], other.place()[:, :3] - rest
     assert np.abs(gap).max() < 0.05 * np.abs(moved).max()
@@ -173,8 +173,8 @@ def test_a_storm_beyond_the_table_is_clamped_and_flings_no_tip(seed, most):
     """
     sim = make_simulator(crooked(seed), model=60)
     moved = moves(sim, 1.8 * gusty(35.0))
-    assert sim.bank.oscillators.n_outside > 0
-    assert sim.counts.clamped == sim.bank.oscillators.n_outside
+    assert sim.banks[0].oscillators.n_outside > 0
+    assert sim.counts.clamped == sim.banks[0].oscillators.n_outside
     assert moved < most
     for _ in range(3000):
         sim.step((0.0, 0.0, 0.0), DT)
@@ -195,8 +195,8 @@ def test_a_gale_moves_a_tree_as_all_coordinates_do(seed):
 @pytest.mark.parametrize('seed', marked([1, 2, 4, 7, 11], 1, 4))
 def test_steady_storms_find_a_tree_at_rest_from_every_azimuth(seed):
     """Where a branch flips over, too: the pose beside it is no rest, and its slopes fling it."""
-    bank = make_simulator(crooked(seed), model=60).bank.oscillators
-    table, law = bank.record[0], DragLaw(*make_simulator(crooked(seed), model=3).drag_law)
+    bank = make_simulator(crooked(seed), model=60).banks[0].oscillators
+    table, law = bank.record[0], make_simulator(crooked(seed), model=3).models[0].drag_law
     moments = WindMoments(bank.branches)
     still = np.zeros(len(bank.modal.shapes))
     for azimuth in range(0, N_AZIMUTHS, 2):
@@ -229,18 +229,18 @@ def test_the_base_moment_is_that_of_all_coordinates():
 def test_a_step_works_on_as_much_whatever_the_size():
     sizes = set()
     for tree in (crooked(1, n_branches=20), crooked(1)):
-        bank = make_simulator(tree, model=60).bank.oscillators
+        bank = make_simulator(tree, model=60).banks[0].oscillators
         sizes.add((bank.record.nbytes, bank.time_step.nbytes, bank.instance.nbytes))
     assert len(sizes) == 1
 
 
 def test_a_step_in_one_call_is_that_of_its_parts(fork):
     sim, parts = (make_simulator(fork(), model=60) for _ in range(2))
-    bank = parts.bank.oscillators
+    bank = parts.banks[0].oscillators
     for wind in gusty(4.0)[:240]:
         assert sim.step(wind, DT) == 0
         bank.set_step(DT)
-        bank.advance(*wind, pressure(float(np.linalg.norm(wind)), *parts.drag_law))
+        bank.advance(*wind, pressure(float(np.linalg.norm(wind)), *parts.models[0].drag_law))
     assert np.abs(sim.rotations()).max() > 1e-3
     assert sim.rotations() == pytest.approx(bank.rotations(), rel=1e-9, abs=1e-12)
     assert sim.place() == pytest.approx(sim.place_rotations(sim.rotations()), abs=1e-12)

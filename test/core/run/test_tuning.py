@@ -85,10 +85,10 @@ def test_steps_of_varying_length_take_a_change_as_equal_ones_do(tree, is_scene):
 def test_a_refused_step_does_not_advance_a_change(tree, bad):
     sim = make_simulator(tree, WOOD, model=12)
     sim.tune(stiffness_factor=2.0)
-    before = sim.bank.oscillators.tunable.stiffness.copy()
+    before = sim.banks[0].oscillators.tunable.stiffness.copy()
     with pytest.raises(ParameterError, match='time step'):
         sim.step(BREEZE, bad)
-    assert (sim.bank.oscillators.tunable.stiffness == before).all()
+    assert (sim.banks[0].oscillators.tunable.stiffness == before).all()
 
 
 @pytest.mark.parametrize('model', ['branch', 12])

@@ -85,4 +85,5 @@ def test_a_prepared_model_has_its_own_settings(stem):
 def test_the_model_is_that_of_the_settings(stem):
     assert make_simulator(stem, WOOD, Settings(model='branch')).model == 'branch'
     assert make_simulator(stem, WOOD, Settings(model='branch'), model=12).model == '12'
-    assert make_simulator(replace(stem, species='oak')).species is species_named('oak')
+    (model,) = make_simulator(replace(stem, species='oak')).models
+    assert model.species is species_named('oak')

@@ -126,7 +126,7 @@ def test_each_tree_may_have_a_species_and_a_model_of_its_own(stem):
     ]
     forest = swaying(trees, model='branch')
     assert forest.model == 'branch'
-    assert [sim.species.key for sim in forest.simulators] == ['broadleaf', 'oak']
+    assert [sim.models[0].species.key for sim in forest.simulators] == ['broadleaf', 'oak']
 
 
 @pytest.mark.parametrize('bad', [(np.nan, 0, 0), (np.inf, 0, 0), (1e300, 0, 0), (500.0, 0, 0)])

@@ -85,7 +85,7 @@ def test_a_turned_tree_in_a_turned_wind_is_the_same_tree_turned(kinds):
 def test_a_scaled_tree_sways_as_one_that_is_calibrated_at_its_size(kinds):
     bare = Settings(gravity=0.0)
     stand = swaying([PlacedTree('big', kinds['fork'], scale=1.8)], **vars(bare), **EVEN)
-    alone = make_simulator(stand.scene.trees[0].placed(), settings=bare, model=60)
+    alone = make_simulator(stand._scene.trees[0].placed(), settings=bare, model=60)
     rest = alone.place()[:, :3].copy()
     for wind in winds(240):
         stand.step(wind, DT)
@@ -173,7 +173,7 @@ def test_a_wind_that_is_none_is_refused_and_the_old_one_kept(kinds, wind):
 def test_a_motion_that_is_not_finite_goes_on_from_rest(kinds):
     stand = swaying([PlacedTree('a', kinds['fork']), PlacedTree('b', kinds['fork'], x=2.0)])
     stand.step((3.0, 0.0, 0.0), DT)
-    stand._instances['eta'][0] = np.nan
+    stand._shared._instances['eta'][0] = np.nan
     assert stand.step((3.0, 0.0, 0.0), DT) & RESTARTED
     assert np.isfinite(stand.place()).all()
     assert stand.counts.restarted == 1

@@ -96,6 +96,10 @@ def test_a_second_wind_finds_the_tree_as_the_first_did(fork, model):
     assert np.array_equal(again.base_moment, alone.base_moment)
 
 
+def record_until(end, start=0.0):
+    return SimpleNamespace(time=np.array([start, end]), velocity=np.ones((2, 3)))
+
+
 @pytest.mark.parametrize(
     ('wind', 'changes', 'words'),
     [
@@ -107,6 +111,9 @@ def test_a_second_wind_finds_the_tree_as_the_first_did(fork, model):
         (STEADY, {'seconds': -1.0}, 'seconds: -1.0 is out of range'),
         (STEADY, {'branches': [7]}, 'branch 7'),
         (STEADY, {'model': 'best'}, "unknown model 'best'"),
+        (record_until(2e5), {}, r'200000 s at 60 Hz are 1\.2e\+07 steps; give at most'),
+        (record_until(1e300), {}, 'steps; give at most'),
+        (record_until(1.7e308, -1.7e308), {}, 'steps; give at most'),
     ],
 )
 def test_what_cannot_be_simulated_is_refused(stem, wind, changes, words):

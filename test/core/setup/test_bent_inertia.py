@@ -13,7 +13,7 @@ from tree_sway.core.tree.segment_frame import ends_of_poses
 
 def slopes_of(sim):
     """Slopes of the inertia, whether the tree has a table or, without the compiler, none."""
-    bank = sim.bank.oscillators
+    bank = sim.banks[0].oscillators
     return (bank if hasattr(bank, 'inertia_slopes') else bank.modal).inertia_slopes
 
 
@@ -28,7 +28,7 @@ def inertia(sim, shapes, at, count):
         (middles(sim, shapes @ (at + h)) - middles(sim, shapes @ (at - h))) / (2.0 * h.max())
         for h in np.diag(step)[:count]
     ]).reshape(count, -1)  # fmt: skip
-    mass = np.repeat(sim.species.density * sim.tree.volume, 3)
+    mass = np.repeat(sim.models[0].species.density * sim.tree.volume, 3)
     return (moved * mass) @ moved.T
 
 
@@ -36,7 +36,7 @@ def inertia(sim, shapes, at, count):
 def test_the_inertia_is_that_of_the_kinetic_energy(name, fork):
     tree = fork() if name == 'fork' else kind_called(name)
     sim = make_simulator(tree, model='full', in_leaf=False, cache=None)
-    shapes, slopes = sim.bank.oscillators.shapes, sim.bank.oscillators.inertia_slopes
+    shapes, slopes = sim.banks[0].oscillators.shapes, sim.banks[0].oscillators.inertia_slopes
     count = len(slopes)
     assert count == 12
     expected = np.empty_like(slopes)

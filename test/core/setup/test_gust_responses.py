@@ -26,7 +26,7 @@ def spire():
 @pytest.fixture(scope='module')
 def reduced(spire):
     """Return its reductions."""
-    return TreeReductions(spire.tree, spire.species, spire.settings)
+    return TreeReductions(spire.tree, spire.models[0].species, spire.settings)
 
 
 @pytest.mark.parametrize('azimuth', [0.3, 2.0])

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.compiled
 def bent():
     """Return the loads of a crooked tree, some of its modes, and a pose far from rest."""
     simulator = make_simulator(kind_called('crooked 8'), model=12)
-    modal = simulator.bank.oscillators.modal
+    modal = simulator.banks[0].oscillators.modal
     load = WindMoments(modal.branches)
     rng = np.random.default_rng(2)
     return load, modal.shapes, 0.03 * rng.normal(size=load.n)

@@ -15,6 +15,7 @@ from tree_sway_lab.bench.bench_tree import bench_tree
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.model.state_basis import FULL_SCALE
+from tree_sway.core.run.simulator_basis import basis_of
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.leaning_responses import leaning_responses, N_FREQUENCIES
 from tree_sway.core.setup.stream_basis import COUNTS, LEFT_OUT, principal_components
@@ -29,7 +30,7 @@ DT = 1.0 / 60.0
 def with_basis(name):
     """Make a tree that sways, and its basis; once."""
     sim = make_simulator(builtin_tree(name), model=60)
-    return sim, sim.basis
+    return sim, basis_of(sim)
 
 
 @pytest.fixture
@@ -94,7 +95,7 @@ def test_what_is_beyond_full_scale_is_held(basis):
 
 
 def test_forces_on_tips_do_the_work_that_moments_do(fork):
-    joints = make_simulator(fork(), model='full', enrich='all').joints
+    joints = make_simulator(fork(), model='full', enrich='all').banks[0].branches
     rng = np.random.default_rng(3)
     x = rng.normal(size=(int(joints['n_coordinates'].sum()), 4))
     forces = rng.normal(size=(len(joints), 3, 5))
@@ -126,7 +127,7 @@ def test_motions_that_are_too_many_for_a_frame_take_the_most_that_it_has():
 @pytest.mark.parametrize('model', ['branch', 'full', 'auto', 12])
 def test_the_motion_of_every_model_is_streamed(model):
     sim = make_simulator(bench_tree(), model=model)
-    gap, motion = gaps(sim, sim.basis, 9.0)
+    gap, motion = gaps(sim, basis_of(sim), 9.0)
     assert np.sqrt(np.square(gap).mean()) < 0.01 * np.sqrt(np.square(motion).sum(axis=2).mean())
 
 
@@ -139,10 +140,12 @@ def test_gusts_move_a_leaning_tree_as_they_do_when_it_is_stepped(what, component
     """Small gusts of one frequency on a steady wind of 13 m/s, stepped until they repeat."""
     speed, azimuth = 13.0, 4  # of 24: 60 degrees
     sim = make_simulator(bench_tree(), model=12)
-    bank = sim.bank.oscillators
+    bank = sim.banks[0].oscillators
     stiffness, damping = bank.modal.stiffness, bank.modal.damping
     leaning = next(
-        leaning_responses(sim.prepared.arrays(), stiffness, damping, sim.drag_law, (speed,))
+        leaning_responses(
+            sim.models[0].arrays(), stiffness, damping, sim.models[0].drag_law, (speed,)
+        )
     )
     slowest, fastest = np.sqrt([stiffness.min(), stiffness.max()])
     swept = np.geomspace(slowest / 1.5, 1.5 * fastest, N_FREQUENCIES)
@@ -170,7 +173,7 @@ def test_gusts_move_a_leaning_tree_as_they_do_when_it_is_stepped(what, component
 
 
 def test_a_tree_without_motion_has_a_basis(fork):
-    basis = make_simulator(fork(), model=0).basis
+    basis = basis_of(make_simulator(fork(), model=0))
     assert (basis.rotations(basis.coordinates(np.zeros(len(basis.matrix)))) == 0.0).all()
 
 
@@ -178,17 +181,18 @@ def test_the_simulator_is_left_as_it_was(fork):
     sim = make_simulator(fork(), model='branch')
     sim.step((4.0, 1.0, 0.0), DT)
     before = sim.state().values.tobytes()
-    assert sim.basis.n_coordinates > 0
+    assert basis_of(sim).n_coordinates > 0
     assert sim.state().values.tobytes() == before
 
 
 PROGRAM = """
 import hashlib
 import numpy as np
+from tree_sway.core.run.simulator_basis import basis_of
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.scene.make import make_simulator
 sim = make_simulator(builtin_tree("goldcrest"), model=60)
-basis = sim.basis
+basis = basis_of(sim)
 coordinates = np.linspace(-0.1, 0.1, basis.n_coordinates) * basis.scale
 poses = sim.place_rotations(basis.rotations(coordinates))
 print(basis.digest, hashlib.sha256(poses.tobytes()).hexdigest())

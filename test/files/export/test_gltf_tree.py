@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.leaves.foliage import leaf_clusters
+from tree_sway.core.run.simulator_basis import basis_of
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import look_of, species_keys, species_named
 from tree_sway.errors import FormatError
@@ -178,7 +179,7 @@ def test_morph_targets_are_named_and_within_what_is_reported(simulator, morphing
 def test_a_weight_is_a_coordinate_over_its_unit(simulator, morphing):
     document, arrays = morphing
     extras = document['meshes'][0]['extras']
-    basis = simulator.basis
+    basis = basis_of(simulator)
     assert extras['basis'] == basis.digest
     coordinates = np.zeros(basis.n_coordinates)
     coordinates[2] = 0.01 * extras['unit'][2]

@@ -70,14 +70,14 @@ def test_an_opened_file_is_not_set_up_again(file, monkeypatch):
     monkeypatch.setattr(prepare_module, '_coupled_tree', lambda *_: pytest.fail('set up'))
     simulator = opened.simulator(in_leaf=True, root_stiffness=math.inf)
     simulator.step((6.0, 0.0, 0.0), 1 / 60)
-    assert simulator.species.key == 'oak'
+    assert simulator.models[0].species.key == 'oak'
 
 
 def test_another_species_is_set_up_anew(file):
     spruce = open_tree(file, species='spruce')
     simulator = make_simulator(spruce, model=4)
-    assert simulator.species.key == 'spruce'
-    assert simulator.prepared.n_coordinates == 4
+    assert simulator.models[0].species.key == 'spruce'
+    assert simulator.models[0].n_coordinates == 4
 
 
 @pytest.mark.parametrize(

@@ -101,7 +101,7 @@ def main() -> None:
     rng = np.random.default_rng(7)
     kinds = []
     for simulator in simulators():
-        size = int(simulator.joints['n_coordinates'].sum()), N_COORDINATES
+        size = int(simulator.banks[0].branches['n_coordinates'].sum()), N_COORDINATES
         basis = SimpleNamespace(
             matrix=rng.normal(0.0, 0.1, size).astype(np.float32),
             scale=rng.uniform(0.5, 3.0, N_COORDINATES).astype(np.float32),

@@ -56,8 +56,8 @@ def test_the_publisher_leaves_a_scene_that_is_tuned_as_it_is() -> None:
     swayed(scene, 600)
     swayed(undisturbed, 600)
     for name in ('whole', 'half'):
-        own, expected = (each._time_steps[name] for each in (scene, undisturbed))
+        own, expected = (each._shared._time_steps[name] for each in (scene, undisturbed))
         np.testing.assert_allclose(own, expected, rtol=1e-9, atol=1e-12)
     own, expected = (each.place() for each in (scene, undisturbed))
     np.testing.assert_allclose(own, expected, atol=1e-6)
-    assert [model.counts.steps for model, _, _ in scene.shared] == [0]
+    assert [group.simulator.counts.steps for group in scene.groups] == [0]

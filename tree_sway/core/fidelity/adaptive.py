@@ -98,7 +98,7 @@ class AdaptiveSimulator(SwaySimulator):
     ) -> None:
         """Make the tree on all coordinates, and choose for the expected wind."""
         super().__init__(prepared, plain=plain)
-        self._estimator = ErrorEstimator(self.tree, self.bank, self.drag_law)
+        self._estimator = ErrorEstimator(self.tree, self._bank, self._drag_law)
         self.tolerance, self.budget = tolerance, budget
         self.cost_scale = 1.0
         """Measured cost over estimated cost; set once it is measured."""
@@ -107,7 +107,7 @@ class AdaptiveSimulator(SwaySimulator):
             8.0, rate=20.0, duration=60.0, rng=np.random.default_rng(0), intensity=0.2
         )
         self._expected_wind = WindClimate.of_samples(breeze, 20.0)
-        self._shares, self._begun = np.zeros((2, self.bank.oscillators.shapes.shape[1]))
+        self._shares, self._begun = np.zeros((2, self._bank.oscillators.shapes.shape[1]))
         self._left = np.zeros(1)
         self._expect()
 
@@ -125,9 +125,9 @@ class AdaptiveSimulator(SwaySimulator):
         """Estimate every number of coordinates of the tuned tree in a wind."""
         return self._estimator.estimates(climate)
 
-    def memory(self) -> tuple[Floats, ...]:
+    def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, and of how each coordinate is shown."""
-        return *super().memory(), self._shares, self._begun, self._left
+        return *super()._memory(), self._shares, self._begun, self._left
 
     def set_state(self, state: TreeState) -> None:
         """Continue from a state and its shown shares; see `SwaySimulator.set_state`."""
@@ -183,9 +183,9 @@ class AdaptiveSimulator(SwaySimulator):
         self._expect()
         self._show()
 
-    def show_at_most(self, count: int) -> None:
+    def _show_at_most(self, count: int) -> None:
         """Choose among the numbers up to a count from now on, until `reset`."""
-        dialled(self.bank).keep_only(count)
+        dialled(self._bank).keep_only(count)
         self.review()
         self._shares[count:], self._begun[:] = 0.0, 0.0
         self._show()
@@ -218,11 +218,11 @@ class AdaptiveSimulator(SwaySimulator):
     @property
     def _hidden(self) -> Floats:
         """Return the part of each coordinate that is not shown, (m,)."""
-        now = dialled(self.bank).swing[0]
+        now = dialled(self._bank).swing[0]
         return np.asarray(now - _smooth(self._shares) * (now - self._begun))
 
     def _show(self) -> None:
-        dialled(self.bank).show(self._hidden, int((self._shares > 0.0).sum()))
+        dialled(self._bank).show(self._hidden, int((self._shares > 0.0).sum()))
 
     def _check_load(self, wind_mean: ArrayLike, dt: float) -> None:
         """Detect a load beyond that of the choice before its step."""
@@ -236,7 +236,7 @@ class AdaptiveSimulator(SwaySimulator):
 
     def _affordable(self, estimates: list[Estimate]) -> list[Estimate]:
         """Find the numbers within the budget, or the cheapest one."""
-        solved = [e for e in estimates if e.n_coordinates <= dialled(self.bank).n_solved]
+        solved = [e for e in estimates if e.n_coordinates <= dialled(self._bank).n_solved]
         within = [e for e in solved if self.cost_scale * e.cost <= self.budget]
         return (within or solved[:1]) if self.budget > 0.0 else solved
 

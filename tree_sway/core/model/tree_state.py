@@ -9,21 +9,23 @@ digest of its tree, settings and model, and others refuse it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 import hashlib
 from numbers import Real
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats
+from tree_sway.errors import StateError
 
 
 @dataclass(frozen=True)
 class TreeState:
     """
-    State of a tree: that of its model, after the last wind [m/s].
+    State of a tree, or of all trees of a scene: that of its model, after the last wind [m/s].
 
     The digest is that of tree, species and settings.
     """
@@ -36,6 +38,37 @@ class TreeState:
     def __repr__(self) -> str:
         """Return tree, model and digest on one line."""
         return f'TreeState of {self.tree}, model {self.model}, digest {self.digest}'
+
+
+def values_of(memory: Sequence[NDArray[Any]]) -> Floats:
+    """Copy the arrays of a state to one array, (n,)."""
+    return np.concatenate([np.ravel(array) for array in memory], dtype=np.float64)
+
+
+def fill_memory(memory: Sequence[NDArray[Any]], values: Floats) -> None:
+    """Copy the values of a state to its arrays, as `values_of` returned them."""
+    first = 0
+    for array in memory:
+        array[...] = values[first : first + array.size].reshape(array.shape)
+        first += array.size
+
+
+def refuse_other_state(state: TreeState, own: TreeState) -> None:
+    """Refuse a state that is not finite, or of another tree or model, by a `StateError`."""
+    for what, theirs, mine in (
+        ('tree', state.tree, own.tree),
+        ('model', state.model, own.model),
+        ('settings', state.digest, own.digest),
+        ('number of values', len(state.values), len(own.values)),
+    ):
+        if theirs != mine:
+            raise StateError(
+                f"a state of {what} '{theirs}', and this is '{mine}'",
+                where=own.tree,
+                cure='set a state of the same tree with the same species, settings and model',
+            )
+    if not np.isfinite(state.values).all():
+        raise StateError('a state that is not finite', where=own.tree)
 
 
 def digest_of(*header: Any) -> str:

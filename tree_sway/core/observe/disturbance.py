@@ -68,7 +68,7 @@ class Disturbance:
 
 def disturbance(simulator: SwaySimulator, speed: float, count: int) -> Disturbance:
     """Find the unknown forces on a number of coordinates in a mean wind [m/s]."""
-    branches = simulator.joints
+    branches = simulator.banks[0].branches
     slope, moved = _branch_slopes(simulator, speed, count)
     air_damping = np.einsum('bim,bim->m', slope, moved)
 
@@ -106,13 +106,13 @@ def crown_slope(simulator: SwaySimulator, speed: float, count: int) -> Floats:
 
 def _branch_slopes(simulator: SwaySimulator, speed: float, count: int) -> tuple[Floats, Floats]:
     """Slopes of modal forces by the wind of each branch, and the motion it damps, (b, 3, m)."""
-    branches = simulator.joints
-    shapes = np.ascontiguousarray(simulator.bank.oscillators.shapes[:, :count])
+    branches = simulator.banks[0].branches
+    shapes = np.ascontiguousarray(simulator.banks[0].oscillators.shapes[:, :count])
     bases = base_motion(branches, shapes)
     at = bases[:, :3] + branches['coupling'].swapaxes(1, 2) @ bases[:, 3:]
     pushed = at + own_motion(branches, 'load_mode', shapes)
     projector = branches['projector'][:, _PROJECTOR].reshape(-1, 3, 3)
-    per_speed = pressure(speed, *simulator.drag_law) * speed
+    per_speed = pressure(speed, *simulator.models[0].drag_law) * speed
     area = _SLOPE * per_speed * branches['speed'] * branches['area']
     moved = at + own_motion(branches, 'damping_mode', shapes)
     return area[:, None, None] * (projector @ pushed), moved
@@ -138,7 +138,7 @@ def _add_wood(
     The variance of a coordinate under a force of variance q that decays at a rate a is ``q (a + c)
     / (c k (a^2 + a c + k))``, c and k its damping and stiffness per mass.
     """
-    tunable = simulator.bank.oscillators.tunable
+    tunable = simulator.banks[0].oscillators.tunable
     count = len(covariance)
     stiffness = tunable.stiffness[:count] / tunable.inertia
     damping = tunable.damping[:count] / tunable.inertia + air_damping

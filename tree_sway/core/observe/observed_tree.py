@@ -116,7 +116,7 @@ class ObservedTree(SwaySimulator):
         whole = replace(chosen, crown_coherence=1.0)
         reductions = TreeReductions(bare, wood, whole, plain=plain)
         super().__init__(prepared(reductions, cache=cache), plain=plain)
-        if not hasattr(self.bank.oscillators, 'swing') or self.settings.model == 0:
+        if not hasattr(self._bank.oscillators, 'swing') or self.settings.model == 0:
             raise ParameterError(
                 f"motion sensors on model '{self.model}'",
                 where='model',
@@ -134,7 +134,7 @@ class ObservedTree(SwaySimulator):
         delays = delays_of(self.tree, reductions.leaf_load_area)
         self._share = delays.share
         self._crown = CrownWind(delays.spread, coherence)
-        oscillators: Any = self.bank.oscillators
+        oscillators: Any = self._bank.oscillators
         self._swing: tuple[Floats, ...] = tuple(oscillators.swing)
         n = self.observer.count
         self._corrected = self._swing[0][:n], self._swing[1][:n]
@@ -177,7 +177,7 @@ class ObservedTree(SwaySimulator):
     def _storm_energy(self) -> float:
         """Energy that no correction exceeds, per unit mass of the coordinates."""
         n = self.observer.count
-        tunable = self.bank.oscillators.tunable
+        tunable = self._bank.oscillators.tunable
         stiffness = np.array(tunable.stiffness[:n]) / tunable.inertia
         load = _STORM * crown_slope(self, _STORM, n)
         return _DYNAMIC * float((np.square(load).sum(axis=0) / stiffness).sum())
@@ -276,7 +276,7 @@ class ObservedTree(SwaySimulator):
                 stiffness=min(fit.stiffness_error, known.stiffness),
                 damping=min(fit.damping_error, known.damping),
             )
-        ratio = min(fit.damping * self.prepared.damping_ratio, 1.0)
+        ratio = min(fit.damping * self.models[0].damping_ratio, 1.0)
         with suppress(ParameterError):  # a tree that would buckle stays as it is
             self.tune(stiffness_factor=fit.stiffness, damping_ratio=ratio)
 
@@ -289,9 +289,9 @@ class ObservedTree(SwaySimulator):
         # The wind alone may move it so far; sensors do not add to that.
         correction *= math.sqrt(self._limit / energy) if own < self._limit else 0.0
 
-    def memory(self) -> tuple[Floats, ...]:
+    def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, with the correction in it."""
-        return (*super().memory(), *self._crown.memory(), self._added)
+        return (*super()._memory(), *self._crown.memory(), self._added)
 
     def reset(self) -> None:
         """Return to rest, with no wind; what is known about the sensors stays."""
@@ -306,9 +306,9 @@ class ObservedTree(SwaySimulator):
         for record in self._records.values():
             record.next = 0
 
-    def glide(self, dt: float) -> bool:
+    def _glide(self, dt: float) -> bool:
         """Continue a transition of `tune`, and observe the changed tree."""
-        is_changed = super().glide(dt)
+        is_changed = super()._glide(dt)
         if is_changed:
             self.observer.refresh()
         return is_changed
@@ -316,7 +316,7 @@ class ObservedTree(SwaySimulator):
     @property
     def smoothed(self) -> Floats:
         """Key rotations in [rad] of `LATE_STEPS` ago by what was measured since, (N,)."""
-        return np.asarray(self.bank.oscillators.shapes @ self.observer.smoothed)
+        return np.asarray(self._bank.oscillators.shapes @ self.observer.smoothed)
 
     def band(self, branches: Sequence[int] | None = None) -> Floats:
         """
@@ -360,7 +360,7 @@ class ObservedTree(SwaySimulator):
 
         """
         members = self._members_with_band()
-        shapes = self.bank.oscillators.shapes[: len(per_rotation), : self.observer.count]
+        shapes = self._bank.oscillators.shapes[: len(per_rotation), : self.observer.count]
         readout = np.tensordot(per_rotation, shapes, axes=(0, 0))
         # Stiffer wood bears more at the same bend.
         bent = readout @ (self._corrected[0][:, None] + members.errors)

@@ -128,7 +128,7 @@ class Observer:
         is_smoothed: bool = False,
     ) -> None:
         self.tracks, self._simulator, self._dt = list(tracks), simulator, dt
-        shapes = simulator.bank.oscillators.shapes
+        shapes = simulator.banks[0].oscillators.shapes
         self.count = min(MOST_COORDINATES, shapes.shape[1])
         """Number of coordinates that are corrected."""
         self._is_smoothed = is_smoothed
@@ -171,7 +171,7 @@ class Observer:
 
     def refresh(self) -> None:
         """Read stiffness and damping of the model again, after a change."""
-        tunable = self._simulator.bank.oscillators.tunable
+        tunable = self._simulator.banks[0].oscillators.tunable
         self._stiffness = np.array(tunable.stiffness) / tunable.inertia
         self.damping = np.array(tunable.damping) / tunable.inertia
         """Damping of each by the wood [1/s], (m,)."""

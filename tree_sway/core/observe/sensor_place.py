@@ -110,7 +110,7 @@ def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
 
     The rotation is a rotation vector in the frame of the tree, and so is the displacement.
     """
-    shapes = simulator.bank.oscillators.shapes
+    shapes = simulator.banks[0].oscillators.shapes
     poses = np.zeros((simulator.tree.n_segments, 7))
     away = place.along * float(simulator.tree.length[place.segment])
     displacement, rotation = np.zeros((2, 3, shapes.shape[1]))
@@ -129,7 +129,7 @@ def place_motion(simulator: SwaySimulator, place: SensorPlace) -> PlaceMotion:
 
 def tip_slopes(simulator: SwaySimulator) -> Floats:
     """Differentiate the tips of branches by each coordinate, at rest, (b, 3, m)."""
-    shapes = simulator.bank.oscillators.shapes
+    shapes = simulator.banks[0].oscillators.shapes
     tree = simulator.tree
     poses = np.zeros((tree.n_segments, 7))
     slopes = np.zeros((tree.n_branches, 3, shapes.shape[1]))

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Protocol, TYPE_CHECKING
+from typing import Any, Protocol, TYPE_CHECKING
 
 import numpy as np
 
@@ -87,6 +87,17 @@ class Bank:
     blocks: Records
     mass: float
     plain: bool = bool(WHY_PLAIN)
+
+    @property
+    def n_shown(self) -> int:
+        """Number of coordinates that move; on a model without a table all."""
+        oscillators: Any = self.oscillators
+        return int(getattr(oscillators, 'n_shown', oscillators.shapes.shape[1]))
+
+    def base_moment(self) -> Floats:
+        """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
+        coupling, force = self.branches['coupling'], self.oscillators.forces()
+        return np.asarray(np.einsum('bij,bj->i', coupling, force))
 
     @cached_property
     def bases(self) -> Floats:

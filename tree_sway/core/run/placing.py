@@ -56,20 +56,20 @@ NONE = np.zeros(0)
 
 
 @fused
-def expand(instances: Instances, shapes: Singles, x: Floats) -> None:
+def expand(instances: Instances, shapes: Singles, rotations: Floats) -> None:
     """Write key rotations (N,) of the first instance, by the shapes of `shapes_together`."""
-    _expand(instances, shapes, x)
+    _expand(instances, shapes, rotations)
 
 
 @part
-def _expand(instances: Instances, shapes: Singles, x: Floats) -> None:
+def _expand(instances: Instances, shapes: Singles, rotations: Floats) -> None:
     instance = instances[0]
-    eta, hidden, shown = instance.eta, instance.hidden, instance.shown
-    for k in range(len(eta)):
-        shown[k] = eta[k] - hidden[k]
-    shown = shown[: shapes.shape[1] - instance.left_out]
+    shown = instance.shown
+    for mode in range(len(instance.eta)):
+        shown[mode] = instance.eta[mode] - instance.hidden[mode]
+    n_shown = shapes.shape[1] - instance.left_out
     for block in range(len(shapes)):
-        add_shapes(shapes, block, shown, x)
+        add_shapes(shapes, block, shown[:n_shown], rotations)
 
 
 def room_for(n_coordinates: int) -> Floats:
@@ -79,10 +79,19 @@ def room_for(n_coordinates: int) -> Floats:
 
 @fused
 def place(
-    instances: Instances, shapes: Singles, segments: Segments, blocks: Blocks, bases: Floats,
-    cosine: float, sine: float, scale: float, x: Floats, given: Floats, origin: Floats,
+    instances: Instances,
+    shapes: Singles,
+    segments: Segments,
+    blocks: Blocks,
+    bases: Floats,
+    cosine: float,
+    sine: float,
+    scale: float,
+    rotations: Floats,
+    given: Floats,
+    origin: Floats,
     out: Floats,
-) -> None:  # fmt: skip
+) -> None:
     """
     Place every segment of a tree.
 
@@ -99,7 +108,7 @@ def place(
         Cosine and sine of half the rotation of the tree about the vertical.
     scale
         Size of the tree over that of its records.
-    x
+    rotations
         Key rotations in the order of the coordinates, (N,), in an array of `room_for`, written.
     given
         Key rotations, (N,), or `NONE` where they are computed.
@@ -110,148 +119,204 @@ def place(
 
     """
     if len(shapes) > 0:
-        _expand(instances, shapes, x)
+        _expand(instances, shapes, rotations)
     else:
         for i in range(len(given)):
-            x[i] = given[i]
+            rotations[i] = given[i]
     last = len(blocks) - 1
     scratch = blocks[last]
     for number in range(last):
         block = blocks[number]
         # With a known largest number of slots the compiler makes short loops.
-        n = 8 * min(block.n_eights, WIDTH // 8)
-        _read_parents(block, scratch, bases, x, origin, cosine, sine, out, n)
-        is_near = _rotate_on_parents(block, scratch, n)
-        largest = _rotate_bases(block, scratch, scale, x, n)
+        count = 8 * min(block.n_eights, WIDTH // 8)
+        _read_keys(block, scratch, rotations, count)
+        if block.parent[0] < 0:
+            _stand_on_ground(scratch, origin, cosine, sine, count)
+        else:
+            _read_parents(block, scratch, bases, rotations, out)
+        is_near = _rotate_on_parents(block, scratch, count)
+        largest = _rotate_bases(block, scratch, scale, rotations, count)
         _write_bases(block, scratch, bases)
-        is_short = is_near and largest <= NEAR_LIMIT and block.n_rows == 2 and block.is_joined == 1
+        is_near = is_near and largest <= NEAR_LIMIT
+        is_short = is_near and block.n_rows == 2 and block.is_joined == 1
         for rank in range(block.n_records):
             segment = segments[block.first_record + rank]
             if is_short:
-                _bend_and_join(segment, scratch, scale, n)
+                _bend_and_join(segment, scratch, scale, count)
             else:
-                _bend(segment, scratch, scale, block, largest, n)
+                _bend(segment, scratch, scale, block, largest, count)
             _write_poses(block, scratch, rank, segment.n_slots, out)
 
 
 @part
+def _read_keys(block: Block, scratch: Block, rotations: Floats, count: int) -> None:
+    """Read the key rotations of sixteen branches; empty slots have those of the stem."""
+    key = scratch.key
+    for slot in range(count):
+        first = np.uintp(block.coordinate[slot])
+        key[0, slot] = rotations[first]
+        key[1, slot] = rotations[first + np.uintp(1)]
+
+
+@part
+def _stand_on_ground(
+    scratch: Block, origin: Floats, cosine: float, sine: float, count: int
+) -> None:
+    """Put the ground, at the root node and rotated about the vertical, in place of a parent."""
+    base, support = scratch.parent_base, scratch.support
+    for slot in range(count):
+        for row in range(7):
+            base[row, slot] = 0.0
+        base[0, slot] = cosine
+        base[3, slot] = sine
+        support[0, slot] = origin[0]
+        support[1, slot] = origin[1]
+        support[2, slot] = origin[2]
+        support[3, slot] = 0.0
+        support[4, slot] = 0.0
+        support[5, slot] = sine
+        support[6, slot] = cosine
+
+
+@part
 def _read_parents(
-    block: Block, scratch: Block, bases: Floats, x: Floats, origin: Floats,
-    cosine: float, sine: float, out: Floats, n: int,
-) -> None:  # fmt: skip
-    """Read the keys of sixteen branches, and the bases and base segments of their parents."""
-    key, parent_key, support = scratch.key, scratch.parent_key, scratch.support
-    base, parents, on = scratch.parent_base, block.parent, block.base_segment
-    coordinate = block.coordinate
-    for j in range(n):  # empty slots have the keys of the stem
-        i = np.uintp(coordinate[j])
-        key[0, j], key[1, j] = x[i], x[i + np.uintp(1)]
-    if parents[0] < 0:  # the stem
-        for j in range(n):
-            for row in range(7):
-                base[row, j] = support[row, j] = 0.0
-            base[0, j], base[3, j], support[5, j], support[6, j] = cosine, sine, sine, cosine
-            support[0, j], support[1, j], support[2, j] = origin[0], origin[1], origin[2]
-        return
-    for j in range(0, block.n_slots, 4):  # values of empty slots are unused
-        a, b, c, d = on[j], on[j + 1], on[j + 2], on[j + 3]
-        take_four(out, a, b, c, d, 0, support, 0, j)
-        take_four(out, a, b, c, d, 3, support, 3, j)
-        a, b, c, d = parents[j], parents[j + 1], parents[j + 2], parents[j + 3]
-        take_four(bases, a, b, c, d, 0, base, 0, j)
-        take_four(bases, a, b, c, d, 4, base, 4, j)
+    block: Block, scratch: Block, bases: Floats, rotations: Floats, out: Floats
+) -> None:
+    """Read the bases and base segments of the parents of sixteen branches."""
+    base, support = scratch.parent_base, scratch.support
+    for slot in range(0, block.n_slots, 4):  # values of empty slots are unused
+        _take(out, block.base_segment, 0, support, 0, slot)
+        _take(out, block.base_segment, 3, support, 3, slot)
+        _take(bases, block.parent, 0, base, 0, slot)
+        _take(bases, block.parent, 4, base, 4, slot)
         if block.n_parent_rows > 2:
-            _read_further(x, block.parent_coordinate, parent_key, j)
+            _read_further(rotations, block.parent_coordinate, scratch.parent_key, slot)
 
 
 @part
-def _read_further(x: Floats, first: Ints, keys: Floats, j: int) -> None:
+def _take(array: Floats, rows: Ints, first: int, slots: Floats, row: int, slot: int) -> None:
+    """Read four numbers from an element on, of the rows of an array for four slots."""
+    take_four(
+        array, rows[slot], rows[slot + 1], rows[slot + 2], rows[slot + 3], first, slots, row, slot
+    )
+
+
+@part
+def _put(
+    slots: Floats, row: int, slot: int, array: Floats, rows: Ints, ahead: int, first: int
+) -> None:
+    """Write four numbers of four slots to rows of an array, from an element on."""
+    put_four(
+        slots, row, slot, array, rows[slot] + ahead, rows[slot + 1] + ahead,
+        rows[slot + 2] + ahead, rows[slot + 3] + ahead, first,
+    )  # fmt: skip
+
+
+@part
+def _read_further(rotations: Floats, first: Ints, keys: Floats, slot: int) -> None:
     """Read further coordinates of four slots, or values after the last one of a branch."""
-    for c in range(2, keys.shape[0], 4):
-        row = min(c, keys.shape[0] - 4)
-        take_four(x, first[j], first[j + 1], first[j + 2], first[j + 3], row, keys, row, j)
+    n_rows = keys.shape[0]
+    for from_row in range(2, n_rows, 4):
+        row = min(from_row, n_rows - 4)
+        _take(rotations, first, row, keys, row, slot)
 
 
 @part
-def _rotate_on_parents(block: Block, scratch: Block, n: int) -> bool:
+def _rotate_on_parents(block: Block, scratch: Block, count: int) -> bool:
     """
     Find half the rotation vectors of sixteen bases from the bases of their parents.
 
     Returns whether all these, and the key rotations, are within the range of the short series.
     """
-    parent_key, mode, half = scratch.parent_key, block.base_rotation, scratch.base_half
-    base, key, square, n_beyond = scratch.parent_base, scratch.key, scratch.square, 0
-    is_further = block.n_parent_rows > 2
-    for j in range(n):
-        u, v = base[4, j], base[5, j]
-        hx = u * mode[0, 0, j] + v * mode[1, 0, j]
-        hy = u * mode[0, 1, j] + v * mode[1, 1, j]
-        hz = u * mode[0, 2, j] + v * mode[1, 2, j]
-        if is_further:
-            for c in range(2, mode.shape[0]):
-                u = 0.5 * parent_key[c, j]
-                hx, hy, hz = hx + u * mode[c, 0, j], hy + u * mode[c, 1, j], hz + u * mode[c, 2, j]
-        u, v, t = key[0, j], key[1, j], hx * hx + hy * hy + hz * hz
-        half[0, j], half[1, j], half[2, j], square[j] = hx, hy, hz, t
-        scratch.cosine[j], scratch.sinc[j] = half_angle_near(t)
-        n_beyond += 1 if t > NEAR_LIMIT or u * u + v * v > _BLEND_FROM else 0
+    mode, parent_key, key = block.base_rotation, scratch.parent_key, scratch.key
+    base, half = scratch.parent_base, scratch.base_half
+    has_further = block.n_parent_rows > 2
+    n_beyond = 0
+    for slot in range(count):
+        half_x, half_y = base[4, slot], base[5, slot]
+        x = half_x * mode[0, 0, slot] + half_y * mode[1, 0, slot]
+        y = half_x * mode[0, 1, slot] + half_y * mode[1, 1, slot]
+        z = half_x * mode[0, 2, slot] + half_y * mode[1, 2, slot]
+        if has_further:
+            for row in range(2, mode.shape[0]):
+                amount = 0.5 * parent_key[row, slot]
+                x += amount * mode[row, 0, slot]
+                y += amount * mode[row, 1, slot]
+                z += amount * mode[row, 2, slot]
+        square = x * x + y * y + z * z
+        half[0, slot], half[1, slot], half[2, slot] = x, y, z
+        scratch.square[slot] = square
+        scratch.cosine[slot], scratch.sinc[slot] = half_angle_near(square)
+        key_square = key[0, slot] * key[0, slot] + key[1, slot] * key[1, slot]
+        n_beyond += 1 if square > NEAR_LIMIT or key_square > _BLEND_FROM else 0
     if n_beyond > 0:
-        _half_angles(scratch, np.inf, n)
+        _half_angles(scratch, np.inf, count)
     return n_beyond == 0
 
 
 @part
-def _half_angles(scratch: Block, largest: float, n: int) -> None:
+def _half_angles(scratch: Block, largest: float, count: int) -> None:
     """Find cosine and sinc of sixteen half angles from squares up to the largest."""
     square, cosine, sinc = scratch.square, scratch.cosine, scratch.sinc
     if largest <= NEAR_LIMIT:
-        for j in range(n):
-            cosine[j], sinc[j] = half_angle_near(square[j])
+        for slot in range(count):
+            cosine[slot], sinc[slot] = half_angle_near(square[slot])
     elif largest <= SERIES_LIMIT:
-        for j in range(n):
-            cosine[j], sinc[j] = half_angle_series(square[j])
+        for slot in range(count):
+            cosine[slot], sinc[slot] = half_angle_series(square[slot])
     else:
-        for j in range(n):
-            cosine[j], sinc[j] = half_angle(square[j])
+        for slot in range(count):
+            cosine[slot], sinc[slot] = half_angle(square[slot])
 
 
 @part
-def _rotate_bases(block: Block, scratch: Block, scale: float, x: Floats, n: int) -> float:
+def _rotate_bases(
+    block: Block, scratch: Block, scale: float, rotations: Floats, count: int
+) -> float:
     """
     Rotate and place the bases of sixteen branches, and set their amounts of bending.
 
     Returns a bound on the squared half angle of any segment.
     """
-    key, frame, parent, half_key = scratch.key, block.frame, scratch.parent_base, scratch.half_key
-    on_parent, base, sine = scratch.base_half, scratch.base, scratch.sine_part
-    half_rotation, bound, steepest = scratch.half_rotation, scratch.bound, block.steepest
-    support, start, offset = scratch.support, scratch.next, block.offset
-    for j in range(n):
-        key_x, key_y = key[0, j], key[1, j]
+    key, half_key, frame = scratch.key, scratch.half_key, block.frame
+    parent, on_parent = scratch.parent_base, scratch.base_half
+    base, half_rotation, times_half = scratch.base, scratch.half_rotation, scratch.sine_part
+    start, offset = scratch.next, block.offset
+    for slot in range(count):
+        key_x, key_y = key[0, slot], key[1, slot]
         square = key_x * key_x + key_y * key_y
-        carrying, half, blend = _halves(square, block.skew[j], block.tip_skew[j])
-        base[4, j], base[5, j] = carrying * key_x, carrying * key_y
-        half_key[0, j], half_key[1, j] = half * key_x, half * key_y
-        scratch.blend[j], scratch.rotation_square[j] = blend, half * half * square
-        bound[j] = half * half * square * steepest[0, j]
+        carrying, half, blend = _halves(square, block.skew[slot], block.tip_skew[slot])
+        base[4, slot] = carrying * key_x
+        base[5, slot] = carrying * key_y
+        half_key[0, slot] = half * key_x
+        half_key[1, slot] = half * key_y
+        scratch.blend[slot] = blend
+        scratch.rotation_square[slot] = half * half * square
+        scratch.bound[slot] = half * half * square * block.steepest[0, slot]
         # x rotates the chord about the axis e2 of the branch, y about -e1.
-        rx = half * (key_x * frame[2, 0, j] - key_y * frame[1, 0, j])
-        ry = half * (key_x * frame[2, 1, j] - key_y * frame[1, 1, j])
-        rz = half * (key_x * frame[2, 2, j] - key_y * frame[1, 2, j])
-        half_rotation[0, j], half_rotation[1, j], half_rotation[2, j] = rx, ry, rz
-        cosine, sinc = scratch.cosine[j], scratch.sinc[j]
-        qw, qx, qy, qz = product(
-            parent[0, j], parent[1, j], parent[2, j], parent[3, j],
-            cosine, sinc * on_parent[0, j], sinc * on_parent[1, j], sinc * on_parent[2, j],
+        half_x = half * (key_x * frame[2, 0, slot] - key_y * frame[1, 0, slot])
+        half_y = half * (key_x * frame[2, 1, slot] - key_y * frame[1, 1, slot])
+        half_z = half * (key_x * frame[2, 2, slot] - key_y * frame[1, 2, slot])
+        half_rotation[0, slot] = half_x
+        half_rotation[1, slot] = half_y
+        half_rotation[2, slot] = half_z
+        sinc = scratch.sinc[slot]
+        w, x, y, z = product(
+            parent[0, slot], parent[1, slot], parent[2, slot], parent[3, slot],
+            scratch.cosine[slot],
+            sinc * on_parent[0, slot], sinc * on_parent[1, slot], sinc * on_parent[2, slot],
         )  # fmt: skip
-        base[0, j], base[1, j], base[2, j], base[3, j] = qw, qx, qy, qz
-        sine[0, j], sine[1, j], sine[2, j], sine[3, j] = _times_vector(qw, qx, qy, qz, rx, ry, rz)
-        start[0, j], start[1, j], start[2, j] = _along(support, j, scale * offset[0, j])
+        base[0, slot], base[1, slot], base[2, slot], base[3, slot] = w, x, y, z
+        w, x, y, z = _times_vector(w, x, y, z, half_x, half_y, half_z)
+        times_half[0, slot], times_half[1, slot] = w, x
+        times_half[2, slot], times_half[3, slot] = y, z
+        x, y, z = _along(scratch.support, slot, scale * offset[0, slot])
+        start[0, slot], start[1, slot], start[2, slot] = x, y, z
     if not block.is_at_axes:
-        _go_aside(support, start, scale, offset, n)
+        _go_aside(scratch.support, start, scale, offset, count)
     if block.n_rows > 2:
-        _take_further(block, scratch, x, n)
-    return _largest(bound, n)
+        _take_further(block, scratch, rotations, count)
+    return _largest(scratch.bound, count)
 
 
 @part
@@ -276,169 +341,186 @@ def _halves(square: float, skew: float, tip_skew: float) -> tuple[float, float, 
 
 @part
 def _times_vector(
-    w: float, x: float, y: float, z: float, vx: float, vy: float, vz: float
+    w: float, x: float, y: float, z: float, along_x: float, along_y: float, along_z: float
 ) -> tuple[float, float, float, float]:
     """Multiply a quaternion by a vector, a quaternion without real part."""
     return (
-        -x * vx - y * vy - z * vz,
-        w * vx + y * vz - z * vy,
-        w * vy - x * vz + z * vx,
-        w * vz + x * vy - y * vx,
+        -x * along_x - y * along_y - z * along_z,
+        w * along_x + y * along_z - z * along_y,
+        w * along_y - x * along_z + z * along_x,
+        w * along_z + x * along_y - y * along_x,
     )
 
 
 @part
-def _take_further(block: Block, scratch: Block, x: Floats, n: int) -> None:
+def _take_further(block: Block, scratch: Block, rotations: Floats, count: int) -> None:
     """Halve the coordinates after the key rotations, and raise the bounds on angles by them."""
     half_key, bound, steepest = scratch.half_key, scratch.bound, block.steepest
-    for j in range(0, n, 4):
-        _read_further(x, block.coordinate, half_key, j)
-    for j in range(n):
-        total = bound[j]
-        for c in range(2, half_key.shape[0]):
-            half = 0.5 * half_key[c, j]
-            half_key[c, j] = half
-            total += half * half * steepest[c, j]
+    for slot in range(0, count, 4):
+        _read_further(rotations, block.coordinate, half_key, slot)
+    for slot in range(count):
+        total = bound[slot]
+        for row in range(2, half_key.shape[0]):
+            half = 0.5 * half_key[row, slot]
+            half_key[row, slot] = half
+            total += half * half * steepest[row, slot]
         # The square of a sum of n is at most n times the sum of the squares.
-        bound[j] = total * block.bound_factor[j]
+        bound[slot] = total * block.bound_factor[slot]
 
 
 @part
-def _largest(bound: Floats, n: int) -> float:
+def _largest(bound: Floats, count: int) -> float:
     """Return the largest bound, or the sum of all where that is near enough to zero."""
     total, largest = 0.0, 0.0
-    for j in range(n):
-        total += bound[j]
+    for slot in range(count):
+        total += bound[slot]
     if total <= NEAR_LIMIT:
         return total
-    for j in range(n):
-        largest = max(largest, bound[j])
+    for slot in range(count):
+        largest = max(largest, bound[slot])
     return largest
 
 
 @part
 def _write_bases(block: Block, scratch: Block, bases: Floats) -> None:
     """Write the rotated bases for the children."""
-    branch, base, whole = block.branch, scratch.base, block.n_parents - block.n_parents % 4
-    for j in range(0, whole, 4):
-        a, b, c, d = branch[j], branch[j + 1], branch[j + 2], branch[j + 3]
-        put_four(base, 0, j, bases, a, b, c, d, 0)
-        put_four(base, 4, j, bases, a, b, c, d, 4)
-    for j in range(whole, block.n_parents):
+    branch, base = block.branch, scratch.base
+    in_fours = block.n_parents - block.n_parents % 4
+    for slot in range(0, in_fours, 4):
+        _put(base, 0, slot, bases, branch, 0, 0)
+        _put(base, 4, slot, bases, branch, 0, 4)
+    for slot in range(in_fours, block.n_parents):
         for row in range(6):
-            bases[branch[j], row] = base[row, j]
+            bases[branch[slot], row] = base[row, slot]
 
 
 @part
 def _write_poses(block: Block, scratch: Block, rank: int, n_slots: int, out: Floats) -> None:
     """Write the poses of sixteen segments, each after the one before it on its branch."""
     pose, first = scratch.pose, block.first
-    whole = n_slots - n_slots % 4
-    for j in range(0, whole, 4):
-        a, b, c, d = first[j] + rank, first[j + 1] + rank, first[j + 2] + rank, first[j + 3] + rank
-        put_four(pose, 0, j, out, a, b, c, d, 0)
-        put_four(pose, 3, j, out, a, b, c, d, 3)
-    for j in range(whole, n_slots):
+    in_fours = n_slots - n_slots % 4
+    for slot in range(0, in_fours, 4):
+        _put(pose, 0, slot, out, first, rank, 0)
+        _put(pose, 3, slot, out, first, rank, 3)
+    for slot in range(in_fours, n_slots):
         for row in range(7):
-            out[first[j] + rank, row] = pose[row, j]
+            out[first[slot] + rank, row] = pose[row, slot]
 
 
 @part
-def _along(pose: Floats, j: int, length: float) -> tuple[float, float, float]:
+def _along(pose: Floats, slot: int, length: float) -> tuple[float, float, float]:
     """Return the point at a length along the x axis of a pose."""
-    x, y, z, w, twice = pose[3, j], pose[4, j], pose[5, j], pose[6, j], length + length
+    x, y, z, w = pose[3, slot], pose[4, slot], pose[5, slot], pose[6, slot]
+    twice = length + length
     return (
-        pose[0, j] + length - twice * (y * y + z * z),
-        pose[1, j] + twice * (x * y + w * z),
-        pose[2, j] + twice * (x * z - w * y),
+        pose[0, slot] + length - twice * (y * y + z * z),
+        pose[1, slot] + twice * (x * y + w * z),
+        pose[2, slot] + twice * (x * z - w * y),
     )
 
 
 @part
-def _go_aside(pose: Floats, point: Floats, scale: float, local: Floats, n: int) -> None:
+def _go_aside(pose: Floats, point: Floats, scale: float, local: Floats, count: int) -> None:
     """Add the parts across the x axes of points in frames of segments."""
-    for j in range(n):
+    for slot in range(count):
         x, y, z = rotated(
-            pose[6, j], pose[3, j], pose[4, j], pose[5, j], 0.0, local[1, j], local[2, j]
-        )
-        point[0, j] += scale * x
-        point[1, j] += scale * y
-        point[2, j] += scale * z
+            pose[6, slot], pose[3, slot], pose[4, slot], pose[5, slot],
+            0.0, local[1, slot], local[2, slot],
+        )  # fmt: skip
+        point[0, slot] += scale * x
+        point[1, slot] += scale * y
+        point[2, slot] += scale * z
 
 
 @part
-def _bend_and_join(segment: Segment, scratch: Block, scale: float, n: int) -> None:
+def _bend_and_join(segment: Segment, scratch: Block, scale: float, count: int) -> None:
     """Rotate and join sixteen straight segments of branches that bend a little about one axis."""
-    base, sine, rest, chord = scratch.base, scratch.sine_part, segment.rest, segment.own_chord
-    pose, start = scratch.pose, scratch.next
-    for j in range(n):
-        slope = segment.slope[j]
-        c, s = half_angle_near(slope * slope * scratch.rotation_square[j])
-        s *= slope
-        w, x, y, z = product(
-            c * base[0, j] + s * sine[0, j], c * base[1, j] + s * sine[1, j],
-            c * base[2, j] + s * sine[2, j], c * base[3, j] + s * sine[3, j],
-            rest[0, j], rest[1, j], rest[2, j], rest[3, j],
-        )  # fmt: skip
-        pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
-        pose[3, j], pose[4, j], pose[5, j], pose[6, j] = x, y, z, w
-        start[0, j], start[1, j], start[2, j] = _along(pose, j, scale * chord[0, j])
+    base, times_half = scratch.base, scratch.sine_part
+    for slot in range(count):
+        slope = segment.slope[slot]
+        cosine, sinc = half_angle_near(slope * slope * scratch.rotation_square[slot])
+        sine = slope * sinc
+        w = cosine * base[0, slot] + sine * times_half[0, slot]
+        x = cosine * base[1, slot] + sine * times_half[1, slot]
+        y = cosine * base[2, slot] + sine * times_half[2, slot]
+        z = cosine * base[3, slot] + sine * times_half[3, slot]
+        _join(segment, scratch, scale, slot, w, x, y, z)
 
 
 @part
 def _bend(
-    segment: Segment, scratch: Block, scale: float, block: Block, largest: float, n: int
+    segment: Segment, scratch: Block, scale: float, block: Block, largest: float, count: int
 ) -> None:
     """Rotate sixteen segments from rest by all coordinates of their branches, and join them."""
     if block.n_rows == 2:
-        _rotate_plain(segment, scratch, n)
+        _rotate_plain(segment, scratch, count)
     else:
-        _rotate_by_all(segment, scratch, n)
-    _half_angles(scratch, largest, n)
-    base, half, rest, pose = scratch.base, scratch.half, segment.rest, scratch.pose
-    start, chord = scratch.next, segment.own_chord
-    for j in range(n):
-        cosine, sinc = scratch.cosine[j], scratch.sinc[j]
+        _rotate_by_all(segment, scratch, count)
+    _half_angles(scratch, largest, count)
+    base, half = scratch.base, scratch.half
+    for slot in range(count):
+        sinc = scratch.sinc[slot]
         w, x, y, z = product(
-            base[0, j], base[1, j], base[2, j], base[3, j],
-            cosine, sinc * half[0, j], sinc * half[1, j], sinc * half[2, j],
+            base[0, slot], base[1, slot], base[2, slot], base[3, slot],
+            scratch.cosine[slot], sinc * half[0, slot], sinc * half[1, slot], sinc * half[2, slot],
         )  # fmt: skip
-        w, x, y, z = product(w, x, y, z, rest[0, j], rest[1, j], rest[2, j], rest[3, j])
-        pose[0, j], pose[1, j], pose[2, j] = start[0, j], start[1, j], start[2, j]
-        pose[3, j], pose[4, j], pose[5, j], pose[6, j] = x, y, z, w
-        start[0, j], start[1, j], start[2, j] = _along(pose, j, scale * chord[0, j])
+        _join(segment, scratch, scale, slot, w, x, y, z)
     if not block.is_joined:
-        _go_aside(pose, start, scale, chord, n)
+        _go_aside(scratch.pose, scratch.next, scale, segment.own_chord, count)
 
 
 @part
-def _rotate_plain(segment: Segment, scratch: Block, n: int) -> None:
+def _join(
+    segment: Segment, scratch: Block, scale: float, slot: int,
+    w: float, x: float, y: float, z: float,
+) -> None:  # fmt: skip
+    """Rotate a segment from rest, begin it where the one before ended, and find its end."""
+    rest, pose, start = segment.rest, scratch.pose, scratch.next
+    w, x, y, z = product(w, x, y, z, rest[0, slot], rest[1, slot], rest[2, slot], rest[3, slot])
+    pose[0, slot], pose[1, slot], pose[2, slot] = start[0, slot], start[1, slot], start[2, slot]
+    pose[3, slot], pose[4, slot], pose[5, slot], pose[6, slot] = x, y, z, w
+    x, y, z = _along(pose, slot, scale * segment.own_chord[0, slot])
+    start[0, slot], start[1, slot], start[2, slot] = x, y, z
+
+
+@part
+def _rotate_plain(segment: Segment, scratch: Block, count: int) -> None:
     """Find half the rotation vectors of sixteen segments of branches with key rotations alone."""
-    rotation, half, blend = scratch.half_rotation, scratch.half, scratch.blend
-    for j in range(n):
-        slope = segment.slope[j]
-        slope += blend[j] * (segment.tip_slope[j] - slope)
-        hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]
-        half[0, j], half[1, j], half[2, j] = hx, hy, hz
-        scratch.square[j] = hx * hx + hy * hy + hz * hz
+    rotation, blend = scratch.half_rotation, scratch.blend
+    for slot in range(count):
+        slope = segment.slope[slot]
+        slope += blend[slot] * (segment.tip_slope[slot] - slope)
+        x = slope * rotation[0, slot]
+        y = slope * rotation[1, slot]
+        z = slope * rotation[2, slot]
+        _rotate_by(scratch, slot, x, y, z)
 
 
 @part
-def _rotate_by_all(segment: Segment, scratch: Block, n: int) -> None:
+def _rotate_by_all(segment: Segment, scratch: Block, count: int) -> None:
     """
     Find half the rotation vectors of sixteen segments, by all coordinates of their branches.
 
     All rows of the record are summed: with a count known at compile time the slots are a vector.
     """
-    rotation, half, blend = scratch.half_rotation, scratch.half, scratch.blend
+    rotation, blend = scratch.half_rotation, scratch.blend
     mode, half_key = segment.rotation_mode, scratch.half_key
-    for j in range(n):
-        slope = blend[j] * (segment.tip_slope[j] - segment.slope[j])
-        hx, hy, hz = slope * rotation[0, j], slope * rotation[1, j], slope * rotation[2, j]
-        for c in range(mode.shape[0]):
-            amount = half_key[c, j]
-            hx += amount * mode[c, 0, j]
-            hy += amount * mode[c, 1, j]
-            hz += amount * mode[c, 2, j]
-        half[0, j], half[1, j], half[2, j] = hx, hy, hz
-        scratch.square[j] = hx * hx + hy * hy + hz * hz
+    for slot in range(count):
+        slope = blend[slot] * (segment.tip_slope[slot] - segment.slope[slot])
+        x = slope * rotation[0, slot]
+        y = slope * rotation[1, slot]
+        z = slope * rotation[2, slot]
+        for row in range(mode.shape[0]):
+            amount = half_key[row, slot]
+            x += amount * mode[row, 0, slot]
+            y += amount * mode[row, 1, slot]
+            z += amount * mode[row, 2, slot]
+        _rotate_by(scratch, slot, x, y, z)
+
+
+@part
+def _rotate_by(scratch: Block, slot: int, x: float, y: float, z: float) -> None:
+    """Write half the rotation vector of a segment, and its square."""
+    half = scratch.half
+    half[0, slot], half[1, slot], half[2, slot] = x, y, z
+    scratch.square[slot] = x * x + y * y + z * z

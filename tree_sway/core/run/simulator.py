@@ -4,16 +4,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 import math
-from typing import Any, TYPE_CHECKING
+from typing import NamedTuple, TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tree_sway.core.arrays import Floats, Records
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.checks import (
     array_to_fill,
     array_to_read,
@@ -24,12 +23,18 @@ from tree_sway.core.checks import (
 from tree_sway.core.model.drag_law import pressure
 from tree_sway.core.model.state_basis import StateBasis
 from tree_sway.core.model.sway_model import SwayModel
-from tree_sway.core.model.tree_state import digest_of, TreeState
+from tree_sway.core.model.tree_state import (
+    digest_of,
+    fill_memory,
+    refuse_other_state,
+    TreeState,
+    values_of,
+)
 from tree_sway.core.run.assembly import bank_of
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.tree.segment_frame import ends_of_poses
 from tree_sway.core.wind.limits import is_wind
-from tree_sway.errors import ParameterError, StateError
+from tree_sway.errors import nearest, ParameterError
 
 if TYPE_CHECKING:
     from tree_sway.core.run.clamp_watch import ClampWatch
@@ -39,6 +44,9 @@ if TYPE_CHECKING:
     from tree_sway.core.wind.gust_travel import GustHistory
 
 _MOST_FREQUENCIES = 1e6
+
+Motion: TypeAlias = Callable[[], Floats]
+"""Function that returns the present coordinates of trees in a basis, (t, m)."""
 
 OK, WIND_REFUSED, LOAD_CLAMPED, RESTARTED = 0, 1, 2, 4
 """Bits of the result of `SwaySimulator.step`."""
@@ -84,22 +92,18 @@ class SwaySimulator:
 
     """
 
-    gusts: GustHistory | None = None
-    """No gusts travel within a tree."""
-
     def __init__(self, prepared: SwayModel, *, plain: bool = False) -> None:
         """Lay the model out; the first step only compiles."""
-        self.prepared = prepared
+        self.models = (prepared,)
+        """Prepared model of the tree."""
         self.tree = tree = prepared.tree
-        self.species, self.settings = prepared.species, prepared.settings
+        self.settings = prepared.settings
+        self.gusts: GustHistory | None = None
+        """No gusts travel within a tree."""
         self.counts = Counts()
-        self.bank: Bank = bank_of(prepared, plain=plain)
-        self.mass = prepared.mass
-        """Mass of wood and leaves in [kg]."""
-        self.joints: Records = self.bank.branches
-        """Records of `Branch`, whose coordinates are the key rotations, (b,)."""
-        self.drag_law = prepared.drag_law
-        self._advance = self.bank.oscillators.advance
+        self._bank: Bank = bank_of(prepared, plain=plain)
+        self._drag_law = prepared.drag_law
+        self._advance = self._bank.oscillators.advance
         self._in_one_call: Callable[[float, float, float], int] | None = None
         self._max_wind = self.settings.max_wind
         self._gusts: CrownGusts | None = None
@@ -107,15 +111,14 @@ class SwaySimulator:
             from tree_sway.core.run import crown_gusts
 
             self._gusts = crown_gusts.CrownGusts(
-                prepared, self.bank.oscillators, plain=self.bank.plain
+                prepared, self._bank.oscillators, plain=self._bank.plain
             )
         self._tuning: LiveTuning | None = None
-        self.touch: Touch | None = None
-        """Pushes, until their effect is gone."""
+        self._touch: Touch | None = None
         self._dt = math.nan
         self._watch: ClampWatch | None = None
         self._wind = np.zeros(3)
-        self._expected = (int(self.bank.branches['n_coordinates'].sum()),)
+        self._expected = (int(self._bank.branches['n_coordinates'].sum()),)
         self._poses = np.zeros((tree.n_segments, 7))
         self._filled = self._poses
         self._origin = tree.start[0].copy()
@@ -131,19 +134,54 @@ class SwaySimulator:
         """Model in use: its name, or its number of coordinates."""
         return str(self.settings.model)
 
-    @cached_property
-    def basis(self) -> StateBasis:
-        """Return the basis in which the motion is streamed; no state is read or changed."""
-        if not self.prepared.is_isolated:
-            return self.prepared.basis
-        from tree_sway.core.setup.uncoupled_responses import basis_of_isolated
+    @property
+    def name(self) -> str:
+        """Name of the tree."""
+        return self.tree.name
 
-        return basis_of_isolated(self.prepared, self.joints)
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the trees: of this one."""
+        return (self.tree.name,)
+
+    @property
+    def mass(self) -> float:
+        """Mass of wood and leaves in [kg]."""
+        return self.models[0].mass
+
+    @property
+    def banks(self) -> tuple[Bank, ...]:
+        """Records and oscillators of the tree, as `models`."""
+        return (self._bank,)
 
     @property
     def simulators(self) -> tuple[SwaySimulator, ...]:
-        """Return the simulator of each tree: this one."""
+        """Simulators of the trees that share no table: this one."""
         return (self,)
+
+    @property
+    def groups(self) -> list[TreeGroup]:
+        """Trees that share a table, or a tree alone: this one."""
+        return [TreeGroup(self, np.zeros(1, dtype=np.int64), self._in_basis)]
+
+    def _in_basis(self, basis: StateBasis) -> Motion:
+        """Return a function that finds the motion in a basis, (1, m)."""
+        oscillators = self._bank.oscillators
+        return lambda: np.asarray(basis.projection @ oscillators.rotations())[None]
+
+    @property
+    def places(self) -> Floats:
+        """Place of each tree: x y z of its root node [m], its turn [rad], its scale, (1, 5)."""
+        return np.array([[*self._origin, 0.0, 1.0]])
+
+    @property
+    def speeds(self) -> Floats:
+        """Wind of each tree over that of its kind, (1,)."""
+        return np.ones(1)
+
+    def segments_of(self, name: str) -> slice:
+        """Return the rows of a tree in the pose block; a `ParameterError` for another name."""
+        return rows_of_tree(name, self.names, [0, self.tree.n_segments], self.name)
 
     @property
     def wind(self) -> Floats:
@@ -159,25 +197,24 @@ class SwaySimulator:
         """
         count = whole('count', count, 1, 10**9)
         if self.settings.model == 'branch':
-            tunable = self.bank.oscillators.tunable
+            tunable = self._bank.oscillators.tunable
             circular = np.sort(np.sqrt(tunable.stiffness / tunable.inertia))[:count]
             return np.asarray(circular / (2.0 * np.pi))
-        return self.prepared.natural_frequencies[:count]
+        return self.models[0].natural_frequencies[:count]
 
     def digest(self) -> str:
         """Digest of tree, species, settings and tuning."""
         tuned = () if self._tuning is None else self._tuning.changes
-        return digest_of(self.tree, self.species, self.settings, *tuned)
+        return digest_of(self.tree, self.models[0].species, self.settings, *tuned)
 
-    def memory(self) -> tuple[Floats, ...]:
+    def _memory(self) -> tuple[Floats, ...]:
         """Return views of the state, the wind of the last step first."""
         crown = () if self._gusts is None else self._gusts.wind.memory()
-        return self._wind, *self.bank.oscillators.memory(), *crown
+        return self._wind, *self._bank.oscillators.memory(), *crown
 
     def state(self) -> TreeState:
         """Return a copy of the state."""
-        values = np.concatenate([np.ravel(array) for array in self.memory()])
-        return TreeState(self.tree.name, self.digest(), self.model, values)
+        return TreeState(self.tree.name, self.digest(), self.model, values_of(self._memory()))
 
     def set_state(self, state: TreeState) -> None:
         """
@@ -186,38 +223,20 @@ class SwaySimulator:
         Raises a `StateError` for a different tree or model, or a state that is not finite, and
         keeps the present state.
         """
-        arrays = self.memory()
-        n_values = sum(array.size for array in arrays)
-        for what, theirs, own in (
-            ('tree', state.tree, self.tree.name),
-            ('model', state.model, self.model),
-            ('settings', state.digest, self.digest()),
-            ('number of values', len(state.values), n_values),
-        ):
-            if theirs != own:
-                raise StateError(
-                    f"a state of {what} '{theirs}', and this is '{own}'",
-                    where=self.tree.name,
-                    cure='set a state of the same tree with the same species, settings and model',
-                )
-        if not np.isfinite(state.values).all():
-            raise StateError('a state that is not finite', where=self.tree.name)
-        first = 0
-        for array in arrays:
-            array[...] = state.values[first : first + array.size].reshape(array.shape)
-            first += array.size
+        refuse_other_state(state, self.state())
+        fill_memory(self._memory(), state.values)
         self._dt = math.nan  # the state determines which coordinates the step solves
 
     def rotations(self) -> Floats:
-        """Key rotations in [rad], (N,), in the order of `joints`; valid until the next step."""
-        shown = self.bank.oscillators.rotations()
-        return shown if self.touch is None else shown + self.touch.residual
+        """Key rotations in [rad], (N,), branch after branch; valid until the next step."""
+        shown = self._bank.oscillators.rotations()
+        return shown if self._touch is None else shown + self._touch.residual
 
     def place_rotations(self, rotations: Floats, out: Floats | None = None) -> Floats:
         """Place every segment by key rotations (N,), (n, 7); a new array if out is None."""
         out = self._to_fill(out)
         read = array_to_read('rotations', rotations, self._expected)
-        self.bank.place(read, self._origin, out)
+        self._bank.place(read, self._origin, out)
         return out
 
     def step(self, wind_mean: ArrayLike, dt: float) -> int:
@@ -251,7 +270,7 @@ class SwaySimulator:
         if is_changed:
             refuse_time_step(dt)
         # A transition advances with every step, also where the length of the step varies.
-        if self._tuning is not None and self.glide(dt):
+        if self._tuning is not None and self._glide(dt):
             is_changed = True
         if is_changed:
             self._set_step(dt)
@@ -259,13 +278,17 @@ class SwaySimulator:
         call = self._in_one_call
         if call is not None:
             outcome = call(x, y, z)
-            if outcome == 0 and self.touch is None:
+            if outcome == 0 and self._touch is None:
                 return OK
             counts.refused += outcome & 1
-            clamped = self.bank.oscillators.step_outside() if outcome & 2 else 0
+            clamped = self._bank.oscillators.step_outside() if outcome & 2 else 0
             if clamped > 0:
                 self._watch_clamped(dt)
-            return (WIND_REFUSED if outcome & 1 else OK) | self._count(clamped) | self.touched(dt)
+            return (
+                (WIND_REFUSED if outcome & 1 else OK)
+                | self._count(clamped)
+                | self._step_pushes(dt)
+            )
         status = OK
         if is_wind(x, y, z, self._max_wind):
             self._wind[:] = x, y, z
@@ -273,14 +296,14 @@ class SwaySimulator:
             status = WIND_REFUSED
             counts.refused += 1
         wx, wy, wz = self._wind.tolist()
-        load = pressure(math.hypot(wx, wy, wz), *self.drag_law)
+        load = pressure(math.hypot(wx, wy, wz), *self._drag_law)
         if self._gusts is None:
             outcome = self._advance(wx, wy, wz, load)
         else:
             outcome = self._gusts.advance(wx, wy, wz, load, dt)
         if outcome > 0:
             self._watch_clamped(dt)
-        return status | self._count(outcome) | self.touched(dt)
+        return status | self._count(outcome) | self._step_pushes(dt)
 
     def push(
         self, segment: int, force: ArrayLike | Spring, seconds: float, *, along: float = 0.5
@@ -313,29 +336,29 @@ class SwaySimulator:
         from tree_sway.core.run.pushes import Touch
 
         try:
-            touch = self.touch or Touch(self.tree, self.bank)
+            touch = self._touch or Touch(self.tree, self._bank)
             touch.add(segment, force, seconds, along)
         except ParameterError:
             self.counts.refused_pushes += 1
             raise
-        self.touch = touch
+        self._touch = touch
 
     @property
     def push_load(self) -> Floats:
         """Force [N] and moment about the root node [N m] of the last step's pushes, (6,)."""
-        return np.zeros(6) if self.touch is None else self.touch.load.copy()
+        return np.zeros(6) if self._touch is None else self._touch.load.copy()
 
     @property
-    def pushed(self) -> dict[int, SwaySimulator]:
-        """This tree under the number 0 while a push has an effect."""
-        return {} if self.touch is None else {0: self}
+    def pushed(self) -> dict[int, Touch]:
+        """Pushes on the tree under the number 0, until their effect is gone."""
+        return {} if self._touch is None else {0: self._touch}
 
-    def touched(self, dt: float) -> int:
+    def _step_pushes(self, dt: float) -> int:
         """Add the effect of pushes over the last step [s]; returns bits as `step`."""
-        if self.touch is None or self.touch.is_gone:
-            self.touch = None
+        if self._touch is None or self._touch.is_gone:
+            self._touch = None
             return OK
-        return self._count(self.touch.step(lambda: self.place(self._poses), self._origin, dt))
+        return self._count(self._touch.step(lambda: self.place(self._poses), self._origin, dt))
 
     def _count(self, clamped: int) -> int:
         """Count the result of `advance`; returns bits as `step`."""
@@ -343,36 +366,30 @@ class SwaySimulator:
             self.counts.clamped += clamped
             return LOAD_CLAMPED
         if clamped < 0:
-            self.bank.oscillators.reset()
+            self._bank.oscillators.reset()
             self.counts.restarted += 1
             return RESTARTED
         return OK
 
     def _watch_clamped(self, dt: float) -> None:
         """Show fewer coordinates if the steps of the tree stay clamped, and no push bends it."""
-        oscillators = self.bank.oscillators
-        if self.touch is not None or not getattr(oscillators, 'is_bent_too_far', False):
+        oscillators = self._bank.oscillators
+        if self._touch is not None or not getattr(oscillators, 'is_bent_too_far', False):
             return
         from tree_sway.core.run.clamp_watch import ClampWatch, fewer
 
         if self._watch is None:
             self._watch = ClampWatch()
         if self._watch.is_stuck(self.counts.steps, dt):
-            count = fewer(self.n_shown)
-            if count < self.n_shown:
-                self.show_at_most(count)
+            count = fewer(self._bank.n_shown)
+            if count < self._bank.n_shown:
+                self._show_at_most(count)
                 self.counts.reduced += 1
 
-    @property
-    def n_shown(self) -> int:
-        """Number of coordinates that move; on the models ``branch`` and ``full`` all."""
-        oscillators: Any = self.bank.oscillators
-        return int(getattr(oscillators, 'n_shown', oscillators.shapes.shape[1]))
-
-    def show_at_most(self, count: int) -> None:
+    def _show_at_most(self, count: int) -> None:
         """Go on from rest without the coordinates of a table beyond a count, until `reset`."""
-        keep_only = getattr(self.bank.oscillators, 'keep_only', None)
-        if keep_only is not None and count < self.n_shown:
+        keep_only = getattr(self._bank.oscillators, 'keep_only', None)
+        if keep_only is not None and count < self._bank.n_shown:
             keep_only(count)
 
     def place(self, out: Floats | None = None) -> Floats:
@@ -397,8 +414,8 @@ class SwaySimulator:
 
         """
         out = self._to_fill(out)
-        if self.touch is None:
-            self.bank.place_now(self._origin, out)
+        if self._touch is None:
+            self._bank.place_now(self._origin, out)
             return out
         return self.place_rotations(self.rotations(), out)
 
@@ -419,23 +436,14 @@ class SwaySimulator:
     @property
     def base_moment(self) -> Floats:
         """Moment of the last step's wind on the tree at rest about its root node, [N m], (3,)."""
-        coupling, force = self.bank.branches['coupling'], self.bank.oscillators.forces()
-        return np.asarray(np.einsum('bij,bj->i', coupling, force))
-
-    def motion(self) -> tuple[Floats, Floats]:
-        """Key rotations in [rad] and their rates in [rad/s] in the model in use, both (N,)."""
-        return self.bank.oscillators.motion()
-
-    def take_over(self, x: Floats, v: Floats) -> None:
-        """Continue from key rotations and rates, (N,), instead of from rest."""
-        self.bank.oscillators.take_over(x, v)
+        return self._bank.base_moment()
 
     def check_tuning(self, **changes: float) -> Tuning:
         """Check changes as `tune`; returns all values after the changes."""
         from tree_sway.core.run.tuning import LiveTuning
 
         if self._tuning is None:
-            tunable, ratio = self.bank.oscillators.tunable, self.prepared.damping_ratio
+            tunable, ratio = self._bank.oscillators.tunable, self.models[0].damping_ratio
             self._tuning = LiveTuning(tunable, self.settings, ratio)
         return self._tuning.changed(**changes)
 
@@ -459,22 +467,51 @@ class SwaySimulator:
         if self._tuning is not None:
             self._tuning.go_to(goal)
 
-    def glide(self, dt: float) -> bool:
+    def _glide(self, dt: float) -> bool:
         """Continue a transition of `tune`; returns whether the coefficients have changed."""
         return self._tuning is not None and self._tuning.step(dt)
 
     def reset(self) -> None:
         """Return to rest, with no wind; the counts stay."""
-        self.bank.oscillators.reset()
+        self._bank.oscillators.reset()
         if self._gusts is not None:
             self._gusts.wind.reset()
-        self.touch = self._watch = None
+        self._touch = self._watch = None
         self._dt = math.nan
         self._wind[:] = 0.0
 
     def _set_step(self, dt: float) -> None:
-        self.bank.oscillators.set_step(dt)
+        self._bank.oscillators.set_step(dt)
         self._dt = dt
         if self._in_one_call is None and self._gusts is None:
-            stepping = self.bank.oscillators.stepping
-            self._in_one_call = stepping(self._wind, self._max_wind, self.drag_law)
+            stepping = self._bank.oscillators.stepping
+            self._in_one_call = stepping(self._wind, self._max_wind, self._drag_law)
+
+
+class TreeGroup(NamedTuple):
+    """
+    Trees that share a table, or a tree alone.
+
+    Parameters
+    ----------
+    simulator
+        Simulator of the kind in its own frame, or of the tree.
+    numbers
+        Numbers of the trees, (t,).
+    in_basis
+        Function that takes a basis, and returns one that finds the present motion in it, (t, m).
+
+    """
+
+    simulator: SwaySimulator
+    numbers: Ints
+    in_basis: Callable[[StateBasis], Motion]
+
+
+def rows_of_tree(name: str, names: Sequence[str], ends: Sequence[int], where: str) -> slice:
+    """Return the rows of a tree in a pose block whose trees end at rows, (t + 1,)."""
+    if name not in names:
+        cure = f'{nearest(name, names)} use one of: {", ".join(names[:20])}'
+        raise ParameterError(f"no tree is called '{name}'", where=where, cure=cure)
+    number = names.index(name)
+    return slice(int(ends[number]), int(ends[number + 1]))

@@ -18,9 +18,9 @@ from typing import Annotated
 import numpy as np
 
 from tree_sway.core.arrays import fields_of, Floats, Ints, RecordsOf, Singles
-from tree_sway.core.kernel import fused
+from tree_sway.core.kernel import fused, part
 from tree_sway.core.model.drag_law import pressure
-from tree_sway.core.model.records import Blocks, Instances, Segments, Tables, TimeSteps
+from tree_sway.core.model.records import Blocks, Instance, Instances, Segments, Tables, TimeSteps
 from tree_sway.core.run.placing import NONE, place
 from tree_sway.core.run.simd import settle, write_past_caches
 from tree_sway.core.run.table_model import step_instance
@@ -69,45 +69,73 @@ def step_stand(
         was not finite and that continue from rest.
 
     """
-    clamped, restarted = 0, 0
-    for t in range(len(placements)):
-        here = placements[t]
+    n_clamped, n_restarted = 0, 0
+    for number in range(len(placements)):
+        here = placements[number]
         if here.is_still:
             continue
-        table, instance = tables[here.kind], instances[t]
-        c = here.cosine * here.cosine - here.sine * here.sine
-        s = 2.0 * here.cosine * here.sine
-        x = here.speed * (c * winds[t, 0] + s * winds[t, 1])
-        y = here.speed * (c * winds[t, 1] - s * winds[t, 0])
-        z = here.speed * winds[t, 2]
+        table, instance = tables[here.kind], instances[number]
+        x, y, z = _wind_in_frame(here, winds[number])
         speed = math.sqrt(x * x + y * y + z * z)
-        is_clamped = False
         law = drag_laws[here.kind]
         load = pressure(speed, law[0], law[1], law[2])
-        if load * speed * speed > table.most_pressure:
-            is_clamped = True
-            share = math.sqrt(table.most_pressure / load) / speed
-            x, y, z = share * x, share * y, share * z
-        here.is_clamped = is_clamped
-        outside = step_instance(table, time_steps[here.time_step], instance, True, x, y, z, load)
-        clamped += 1 if is_clamped else outside
-        total = 0.0
-        for i in range(len(instance.eta)):
-            total += 0.0 * instance.eta[i] + 0.0 * instance.rate[i]
-        if total != 0.0:
-            restarted += 1
-            for i in range(len(instance.eta)):
-                instance.eta[i] = instance.rate[i] = instance.force[i] = 0.0
-                instance.middle[i] = instance.middle_rate[i] = 0.0
-    return clamped, restarted
+        here.is_clamped = load * speed * speed > table.most_pressure
+        if here.is_clamped:
+            fraction = math.sqrt(table.most_pressure / load) / speed
+            x, y, z = fraction * x, fraction * y, fraction * z
+        time_step = time_steps[here.time_step]
+        is_outside = step_instance(table, time_step, instance, True, x, y, z, load)
+        n_clamped += 1 if here.is_clamped else is_outside
+        if not _is_finite(instance):
+            _come_to_rest(instance)
+            n_restarted += 1
+    return n_clamped, n_restarted
+
+
+@part
+def _wind_in_frame(here: Placement, wind: Floats) -> tuple[float, float, float]:
+    """Return the wind at the height of a tree, in the frame of its kind."""
+    cosine = here.cosine * here.cosine - here.sine * here.sine
+    sine = 2.0 * here.cosine * here.sine
+    return (
+        here.speed * (cosine * wind[0] + sine * wind[1]),
+        here.speed * (cosine * wind[1] - sine * wind[0]),
+        here.speed * wind[2],
+    )
+
+
+@part
+def _is_finite(instance: Instance) -> bool:
+    """Whether all coordinates and rates are finite."""
+    n_finite = 0
+    for i in range(len(instance.eta)):  # without an exit, so that the loop is a vector
+        n_finite += math.isfinite(instance.eta[i]) and math.isfinite(instance.rate[i])
+    return n_finite == len(instance.eta)
+
+
+@part
+def _come_to_rest(instance: Instance) -> None:
+    for i in range(len(instance.eta)):
+        instance.eta[i] = 0.0
+        instance.rate[i] = 0.0
+        instance.force[i] = 0.0
+        instance.middle[i] = 0.0
+        instance.middle_rate[i] = 0.0
 
 
 @fused
 def place_stand(
-    placements: Placements, instances: Instances, which: Ints, shapes: Singles,
-    segments: Segments, blocks: Blocks, bases: Floats, x: Floats, poses: Floats,
+    placements: Placements,
+    instances: Instances,
+    trees: Ints,
+    shapes: Singles,
+    segments: Segments,
+    blocks: Blocks,
+    bases: Floats,
+    rotations: Floats,
+    poses: Floats,
     out: Floats,
-) -> None:  # fmt: skip
+) -> None:
     """
     Place trees of one kind.
 
@@ -118,30 +146,30 @@ def place_stand(
     ----------
     placements, instances
         Records, as in `step_stand`.
-    which
-        Trees and their first rows in the pose block, (w, 2).
+    trees
+        Their numbers and first rows in the pose block, (w, 2).
     shapes
         Shapes of the kind, as in `placing.expand`.
     segments, blocks, bases
         Records and bases of the kind, as in `placing.place`.
-    x, poses
-        Scratch memory, (N,) and (m, 7).
+    rotations, poses
+        Scratch memory of one tree, (N,) and (m, 7).
     out
         Pose block of the stand, (n, 7), rows of these trees written.
 
     """
-    block, whole = poses.reshape(-1), out.reshape(-1)
-    for row in range(len(which)):
-        t, first = which[row, 0], which[row, 1]
-        here = placements[t]
+    own, whole = poses.reshape(-1), out.reshape(-1)
+    for row in range(len(trees)):
+        number, first = trees[row, 0], trees[row, 1]
+        here = placements[number]
         place(
-            instances[t : t + 1], shapes, segments, blocks, bases,
-            here.cosine, here.sine, here.scale, x, NONE, here.at[:], poses,
+            instances[number : number + 1], shapes, segments, blocks, bases,
+            here.cosine, here.sine, here.scale, rotations, NONE, here.at[:], poses,
         )  # fmt: skip
-        into = whole[7 * first : 7 * first + len(block)]
+        rows = whole[7 * first : 7 * first + len(own)]
         if len(whole) > _CACHED:
-            write_past_caches(block, into)
+            write_past_caches(own, rows)
         else:
-            for i in range(len(block)):
-                into[i] = block[i]
+            for i in range(len(own)):
+                rows[i] = own[i]
     settle()

@@ -13,6 +13,7 @@ clamped to its limit, and counted as ``outside``.
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from functools import cached_property, partial
 import math
 from typing import NamedTuple, TYPE_CHECKING
@@ -46,6 +47,9 @@ if TYPE_CHECKING:
 STATE_FIELDS = ('eta', 'rate', 'force', 'wind', 'pressure', 'outside', 'left_out')
 """Fields of an instance that are its state."""
 
+_BOUND = '_step', '_expand'
+"""Compiled calls that are bound to the memory of a bank."""
+
 
 class WindBasisBank:
     """
@@ -73,9 +77,17 @@ class WindBasisBank:
         self.n_outside = 0
         """Steps whose wind was clamped to the limit of the table."""
 
+    def with_state(self, instance: Records) -> WindBasisBank:
+        """Return the oscillators of another tree of this kind, whose state is given, (1,)."""
+        other = copy(self)
+        for compiled in _BOUND:
+            other.__dict__.pop(compiled, None)
+        other.instance = instance
+        return other
+
     def lay_out(self, n_modes: int) -> None:
         """Lay the table out for a number of coordinates, that of the largest tree of a stand."""
-        for compiled in ('_step', '_expand'):
+        for compiled in _BOUND:
             self.__dict__.pop(compiled, None)
         table_record = self.table
         self.record = zeros_in_lines(1, table_layout(n_modes))

@@ -10,9 +10,35 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.run.stand import PLACEMENT
+from tree_sway.core.scene.placed_trees import PlacedTrees
+from tree_sway.core.wind.height_profile import WindProfile
+
+_CROWN = 0.7
+"""Height over that of the tree at which its wind is taken."""
 
 _FINEST_SCALE = 0.01
 """Largest relative difference of scales of trees with the same time step."""
+
+
+def placements_of(scene: PlacedTrees, tables: Ints, profile: WindProfile) -> Records:
+    """Make the records of a scene's trees by their tables, (t,)."""
+    places = np.array([(each.x, each.y, each.z, each.yaw, each.scale) for each in scene.trees])
+    return placement_records(tables, places, _wind_ratios(scene, profile))
+
+
+def kind_heights(scene: PlacedTrees) -> Floats:
+    """Heights of the trees' kinds in [m], (t,)."""
+    return np.array([each.tree.height for each in scene.kinds])[scene.kind_numbers]
+
+
+def _wind_ratios(scene: PlacedTrees, profile: WindProfile) -> Floats:
+    """Wind at the crown of each tree over that at the crown of its kind, (t,)."""
+    scales = np.array([each.scale for each in scene.trees])
+    relative = np.stack([np.ones(len(scales)), scales])
+    crowns = profile.ground + _CROWN * kind_heights(scene) * relative
+    of_kind, of_tree = profile.over_anemometer(crowns)
+    has_wind = of_kind > 0.0
+    return np.where(has_wind, of_tree / np.where(has_wind, of_kind, 1.0), 1.0)
 
 
 def placement_records(kinds: Ints, places: Floats, speeds: Floats) -> Records:

@@ -35,6 +35,8 @@ from tree_sway.core.wind.limits import FASTEST_WIND
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 from tree_sway.errors import ParameterError
 
+MAX_STEPS = 6_000_000
+"""Largest number of steps, all of which are in the memory: more than a day at 60 Hz."""
 _CHUNK = 4096
 """Number of samples of a record that are plain numbers at a time."""
 
@@ -190,6 +192,7 @@ class Rig:
         if seconds is not None:
             within('seconds', seconds, 0.0, 1e9, 's', above=True)
             count = min(count, max(round(seconds * rate), 1))
+        refuse_too_many_steps(count, rate)
         for _ in itertools.islice(steps, count):
             pass
         means, tips, moment, strain = (np.array(column) for column in zip(*rows, strict=True))
@@ -273,12 +276,12 @@ def _said_by_sensors(simulator: SwaySimulator) -> tuple[str, ...]:
 def _doubts(simulator: SwaySimulator, before: Counts) -> tuple[str, ...]:
     """Report what makes the motion since some counts doubtful, one sentence each."""
     now, found = simulator.counts, list[str]()
-    if simulator.n_shown == 0:
+    if simulator.banks[0].n_shown == 0:
         found.append(f"model '{simulator.model}' has no coordinates: the tree stands still")
     if now.reduced > before.reduced:
         found.append(
             'steps stayed clamped to the limit of the model, and coordinates were left out: '
-            f"{simulator.n_shown} moved at the end; compare with model 'full'"
+            f"{simulator.banks[0].n_shown} moved at the end; compare with model 'full'"
         )
     elif now.clamped > before.clamped:
         n_steps = now.steps - before.steps
@@ -308,14 +311,24 @@ def moment_per_rotation(reductions: TreeReductions) -> Floats:
     return np.array(found)
 
 
+def refuse_too_many_steps(count: float, rate: float) -> None:
+    """Raise a `ParameterError` for more than `MAX_STEPS` steps at a rate in [Hz]."""
+    if count > MAX_STEPS:
+        raise ParameterError(
+            f'{count / rate:g} s at {rate:g} Hz are {count:.3g} steps',
+            cure=f'give at most {MAX_STEPS} steps, such as a day at 60 Hz',
+        )
+
+
 def _steps(
     simulator: SwaySimulator, wind: WindSamples | ArrayLike, rate: float,
     measure: Callable[[int, Floats], None],
 ) -> tuple[int, Iterator[None]]:  # fmt: skip
     """Return the number of steps in a wind, and an iterator over them."""
     if isinstance(wind, WindSamples):
-        duration = float(wind.time[-1] - wind.time[0]) if len(wind.time) else 0.0
-        count, what = int(duration * rate + 1e-6), f'a wind record of {duration:g} s'
+        duration = float(wind.time[-1]) - float(wind.time[0]) if len(wind.time) else 0.0
+        count = int(min(duration * rate + 1e-6, 1e15))
+        what = f'a wind record of {duration:g} s'
         steps = _through_record(simulator, wind, rate, measure)
     else:
         try:

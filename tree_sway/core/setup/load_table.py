@@ -196,11 +196,11 @@ class WindBasisTable:
         pose that is interpolated between two azimuths is not exactly at rest.
         """
         load = stiffness * equilibrium / np.maximum(pressures, 1e-300)[:, None]
-        winds = direction(_AZIMUTHS, 0.0)
-        for poses, wind, loads in zip(equilibrium, winds, load, strict=True):
-            rotations = poses[:n_calm] @ self._shapes.T
-            moments = [self._moments(x, self._still, wind) for x in rotations]
-            loads[:n_calm] = moments @ self._shapes
+        winds = np.repeat(direction(_AZIMUTHS, 0.0), n_calm, axis=0)
+        rotations = [poses[:n_calm] @ self._shapes.T for poses in equilibrium]
+        moments = self._moments.at_poses(np.concatenate(rotations), winds)
+        for moment, loads in zip(moments.reshape(len(load), n_calm, -1), load, strict=True):
+            loads[:n_calm] = moment @ self._shapes
         return np.asarray(load)
 
     def _turn_inertia(self, at: Floats, s: float, turning: Floats, damping: Floats) -> None:

@@ -106,7 +106,7 @@ class NumpyPasses:
         """
         Find the force of the wind on each branch, in its turned frame, in [N], (b, 3).
 
-        The impulse (b, 3) is written.
+        The wind in [m/s] is (3,), or (b, 3) at each branch; the impulse (b, 3) is written.
         """
         branch = self._branch
         back = bases.orientation * [1.0, -1.0, -1.0, -1.0]
@@ -166,6 +166,15 @@ class NumpyPasses:
         self.wrench = wrench
         moment[self._column[self.is_there]] = own[self.is_there]
         return world
+
+
+def copies_of(branches: Records, count: int) -> Records:
+    """Return the records of a number of equal trees, one after another, for `NumpyPasses`."""
+    copies = np.tile(branches, count)
+    tree = np.repeat(np.arange(count), len(branches))
+    copies['parent'] += np.where(copies['parent'] < 0, 0, tree * len(branches))
+    copies['coordinate'] += tree * int(branches['n_coordinates'].sum())
+    return copies
 
 
 def of_slots(field: Floats, count: int) -> Floats:

@@ -23,7 +23,8 @@ from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.drag_law import crown_drag, DragLaw, pressure
 from tree_sway.core.model.fill_records import Places
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.branch_records import branch_records, places_of
+from tree_sway.core.setup.branch_places import places_of
+from tree_sway.core.setup.branch_records import branch_records
 from tree_sway.core.setup.matrices import reduce_tree, Reduction
 from tree_sway.core.setup.modes import leading_modes, Modes, natural_modes, solvable
 from tree_sway.core.setup.one_thread import one_thread

@@ -22,12 +22,15 @@ from tree_sway.core.model.fill_records import load_records
 from tree_sway.core.model.records import WORK
 from tree_sway.core.setup.branch_loads import wind_moments
 from tree_sway.core.setup.load_derivatives import LoadSlopes
-from tree_sway.core.setup.numpy_branch_loads import into_slots, NumpyPasses
+from tree_sway.core.setup.numpy_branch_loads import copies_of, into_slots, NumpyPasses
 from tree_sway.core.setup.tree_motion import base_motion, own_motion
 
 _SPEEDS = (10.0, 20.0, 40.0)
 _AZIMUTHS = np.arange(8) * np.pi / 4.0
 _TURNS, _FARTHEST = 6, 1.0
+
+_TOGETHER = 2000
+"""Branches of copies of a tree whose loads are found at once in numpy, for speed."""
 
 
 class WindMoments:
@@ -37,6 +40,7 @@ class WindMoments:
         """Make scratch memory."""
         self.branches, self._plain = branches, plain or bool(WHY_PLAIN)
         self.n = int(branches['n_coordinates'].sum())
+        self._of_copies: dict[int, NumpyPasses] = {}
 
     @cached_property
     def _passes(self) -> NumpyPasses:
@@ -60,6 +64,34 @@ class WindMoments:
             return moments
         self._in_numpy(x, v, wind, moments)
         return moments
+
+    def at_poses(self, poses: Floats, winds: Floats) -> Floats:
+        """Moments (k, N) by winds (k, 3) as in a call, each on the tree held in a pose (k, N)."""
+        if not self._plain:
+            rest = np.zeros(self.n)
+            pairs = zip(poses, winds, strict=True)
+            return np.array([self(pose, rest, wind) for pose, wind in pairs])
+        together = max(1, _TOGETHER // len(self.branches))
+        parts = [slice(i, i + together) for i in range(0, len(poses), together)]
+        return np.vstack([self._in_copies(poses[part], winds[part]) for part in parts])
+
+    def _in_copies(self, poses: Floats, winds: Floats) -> Floats:
+        """Find the moments of `at_poses` in numpy, on as many copies of the tree, side by side."""
+        passes = self._passes_of(len(poses))
+        angles = passes.per_branch(poses.ravel())
+        bases = passes.outward(angles, np.zeros_like(angles))
+        wind = np.repeat(winds, len(self.branches), axis=0)
+        still, at_once = np.zeros_like(angles), np.zeros(len(angles))
+        force = passes.wind_forces(bases, angles, still, wind, 1.0, at_once, np.zeros_like(wind))
+        moments = np.empty(poses.size)
+        passes.bent_loads(bases, angles, force, moments)
+        return moments.reshape(poses.shape)
+
+    def _passes_of(self, count: int) -> NumpyPasses:
+        """Return the passes over a number of copies of the tree; made once."""
+        if count not in self._of_copies:
+            self._of_copies[count] = NumpyPasses(copies_of(self.branches, count))
+        return self._of_copies[count]
 
     def forces(self, x: Floats, v: Floats, wind: Floats) -> Floats:
         """Find the forces on the branches, (b, 3), by a wind as in a call, in the tree's frame."""
@@ -116,13 +148,13 @@ def static_responses(
     """
     rest = np.zeros(moments.n)
     directions = np.array([[np.cos(each), np.sin(each), 0.0] for each in _AZIMUTHS])
-    found = list(solve(np.array([moments(rest, rest, each) for each in directions]).T).T)
+    winds = np.repeat(directions, len(_SPEEDS), axis=0)
+    calm = np.zeros((len(directions), moments.n))
+    found = list(solve(moments.at_poses(calm, directions).T).T)
     scale = np.array([pressure(speed) for speed in _SPEEDS])
     x = np.zeros((len(directions), len(scale), moments.n))
     for turn in range(_TURNS):
-        loads = [
-            moments(row, rest, d) for rows, d in zip(x, directions, strict=True) for row in rows
-        ]
+        loads = moments.at_poses(x.reshape(-1, moments.n), winds)
         scaled = np.tile(scale, len(directions))[:, None] * loads
         x += (solve(scaled.T).T.reshape(x.shape) - x) / (turn + 2.0) ** 0.5
         x *= np.minimum(1.0, _FARTHEST / np.maximum(np.abs(x).max(axis=2), 1e-12))[..., None]

@@ -34,7 +34,17 @@ class Spray:
     rolls: tuple[float, ...]
 
 
-FORMS = ('ovate', 'pointed', 'lobed', 'palmate', 'compound', 'needles', 'fronds', 'tufts')
+FORMS = (
+    'ovate',
+    'pointed',
+    'lobed',
+    'palmate',
+    'compound',
+    'digitate',
+    'needles',
+    'fronds',
+    'tufts',
+)
 """Outlines of leaves, and the ways that needles stand."""
 
 _LEVEL, _CROSSED = (0.0, 1.35, -0.75), (0.2, -0.9, 1.3)
@@ -68,7 +78,7 @@ class Look:
     bark, twig
         Colours of the stem and of thin twigs.
     bark_pattern
-        Pattern of the bark: furrows, plates, smooth, dashes or flakes.
+        Pattern of the bark: furrows, plates, scales, smooth, dashes or flakes.
 
     """
 

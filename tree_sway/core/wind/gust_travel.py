@@ -16,6 +16,7 @@ slowly that time increases for every tree.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,10 +85,14 @@ class GustHistory:
         points = np.array(places, dtype=np.float64).reshape(-1, 3)
         if not np.isfinite(points).all():
             raise ParameterError('a place that is not finite', where='places', cure='give metres')
-        self._from_first = anemometer is None
-        origin = np.zeros(3) if anemometer is None else three_numbers('anemometer', anemometer)
-        self._along = points[:, :2] - np.array(origin)[:2]
-        self._ratio = within('convection_ratio', convection_ratio, 0.1, math.inf)
+        self.anemometer: Floats | None = None
+        """Place of the anemometer in [m], (3,); None for the first place that the wind reaches."""
+        if anemometer is not None:
+            self.anemometer = np.array(three_numbers('anemometer', anemometer))
+        self._origin = np.zeros(2) if self.anemometer is None else self.anemometer[:2]
+        self._along = points[:, :2] - self._origin
+        self.convection_ratio = within('convection_ratio', convection_ratio, 0.1, math.inf)
+        """Speed of gusts over the mean wind speed."""
         self._averaging = within('averaging_time', averaging_time, 0.0, 3600.0, 's', above=True)
         self._memory = within('memory', memory, 0.0, 600.0, 's')
         self._run = np.zeros((int(within('capacity', capacity, 8, 1e6)), 4))
@@ -99,9 +104,8 @@ class GustHistory:
         """Odd while the history is written."""
         self._mean = np.zeros(3)
         self._wanted = np.zeros(len(points))
-        self._first = 0.0
+        self._first = np.zeros(1)
         """Delay from the origin to the place that the mean wind reaches first, at most 0 [s]."""
-        self._origin = np.array(origin)[:2]
         self.delay = np.zeros(len(points))
         """Delay of the wind at each place in [s], (t,)."""
         self._winds = np.zeros((len(points), 3))
@@ -127,10 +131,10 @@ class GustHistory:
         remember(self._run, self._at, self._finest, x, y, z, dt)
         follow_mean(self._mean, x, y, dt, self._averaging)
         east, north, _ = self._mean.tolist()
-        self._wanted = _delays(self._along, east, north, self._ratio)
-        if self._from_first:
-            self._first = float(self._wanted.min())
-            self._wanted -= self._first
+        self._wanted = _delays(self._along, east, north, self.convection_ratio)
+        if self.anemometer is None:
+            self._first[0] = self._wanted.min()
+            self._wanted -= self._first[0]
         past_winds(
             self._run, self._at, self._wanted, self.delay, self._memory, x, y, z, dt, self._winds
         )
@@ -152,7 +156,7 @@ class GustHistory:
             return np.zeros(3)
         east, north, _ = mean.tolist()
         along = np.array([[x, y]]) - self._origin
-        delay = float(_delays(along, east, north, self._ratio)[0]) - first
+        delay = float(_delays(along, east, north, self.convection_ratio)[0]) - first
         oldest = float(run[(at[0] - at[1] + 1) % len(run), 0])
         now = float(run[at[0], 0]) - min(max(delay, 0.0), self._memory)
         span = min(SPACING, float(run[at[0], 0]) - oldest)
@@ -180,7 +184,7 @@ class GustHistory:
         while True:
             before = self._n_changes
             at, run = self._at.copy(), self._run.copy()
-            mean, delay, first = self._mean.copy(), self.delay.copy(), self._first
+            mean, delay, first = self._mean.copy(), self.delay.copy(), float(self._first[0])
             if self._n_changes == before and before % 2 == 0:
                 return at, run, mean, delay, first
 
@@ -197,6 +201,10 @@ class GustHistory:
             remember(self._run, self._at, self._finest, x, y, z, SPACING)
         self._mean[:], self.delay[:] = means, delays
         self._n_changes += 1
+
+    def memory(self) -> tuple[NDArray[Any], ...]:
+        """Return views of the state."""
+        return self._run, self._at, self._mean, self._wanted, self.delay, self._first
 
     def reset(self) -> None:
         """Forget the wind."""

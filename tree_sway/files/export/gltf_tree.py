@@ -22,6 +22,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.leaves.foliage import LeafClusters
 from tree_sway.core.model.state_basis import MARGIN, StateBasis
 from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.run.simulator_basis import basis_of
 from tree_sway.core.tree.species import look_of
 from tree_sway.core.tree.tree import Tree
 from tree_sway.errors import FormatError
@@ -98,7 +99,7 @@ def morphing_tree(simulator: SwaySimulator, leaves: LeafClusters | None = None) 
     vertex by half the size of the tree, and the vertices of a ring of wood move together. An
     animation shows a breeze.
     """
-    tree, basis = simulator.tree, simulator.basis
+    tree, basis = simulator.tree, basis_of(simulator)
     storm = basis.scale / MARGIN
     document, rest = GltfDocument(_GENERATOR), tree.rest_poses
     meshes = _meshes(tree, leaves)

@@ -97,9 +97,9 @@ def hinged_tree(simulator: SwaySimulator) -> HingedTree:
     """Divide the tree of a simulator into bodies on hinges."""
     tree, settings = simulator.tree, simulator.settings
     leaf_line = _spread(tree, settings.leaf_mass)
-    mass, centre, inertia = _bodies(tree, simulator.species.density, leaf_line)
-    compliance = _compliance(tree, simulator.species.modulus)
-    compliance[0] += 1.0 / (settings.root_stiffness or simulator.species.root_stiffness)
+    mass, centre, inertia = _bodies(tree, simulator.models[0].species.density, leaf_line)
+    compliance = _compliance(tree, simulator.models[0].species.modulus)
+    compliance[0] += 1.0 / (settings.root_stiffness or simulator.models[0].species.root_stiffness)
     springs = sparse.diags(np.repeat(1.0 / compliance, 2)).tocsc()
     masses = _mass_matrix(tree, mass, centre, inertia)
     # Ordered by their pattern, the factors of the mass matrix of a tree stay sparse.
@@ -131,9 +131,9 @@ def _spread(tree: Tree, leaves: Floats | None) -> Floats:
 def _drag_area(simulator: SwaySimulator) -> Floats:
     tree = simulator.tree
     diameter = 0.5 * (tree.base_diameter + tree.tip_diameter)
-    reductions = TreeReductions(tree, simulator.species, simulator.settings)
+    reductions = TreeReductions(tree, simulator.models[0].species, simulator.settings)
     area = (diameter + _spread(tree, reductions.leaf_load_area)) * tree.length
-    return 2.0 / AIR_DENSITY * pressure(SHARED_AT, *simulator.drag_law) * area
+    return 2.0 / AIR_DENSITY * pressure(SHARED_AT, *simulator.models[0].drag_law) * area
 
 
 def _eigenvalue(matrix: sparse.csc_matrix, **options: Any) -> float:

@@ -215,8 +215,11 @@ function room() {
   }
   const isWall = form.height > 0.3 * height || (form.height > 0 && height < 560);
   const top = !isWall && form.height > 0.12 * height ? form.bottom / height : 0;
-  const most = [isWall ? form.left / width : 1, tools.height ? tools.top / height : 1];
-  return [Math.max(head.right, lines.right) / width, top, ...most];
+  const right = isWall ? form.left : width;
+  const left = Math.max(head.right, lines.right);
+  // On a tablet there is more room between the two cards on the left than beside them.
+  if (right - left < 0.35 * width) return [0, head.bottom / height, right / width, (lines.height ? lines.top : height) / height];
+  return [left / width, top, right / width, tools.height ? tools.top / height : 1];
 }
 
 /** See all of the scene between the cards, unless somebody looks at something of it. */

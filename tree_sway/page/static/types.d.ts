@@ -270,8 +270,8 @@ interface Look {
   autumn: number[] | null;
   bark: number[];
   twig: number[];
-  bark_pattern: "furrows" | "plates" | "smooth" | "dashes" | "flakes";
-  form: "ovate" | "pointed" | "lobed" | "palmate" | "compound" | "needles" | "tufts" | "fronds";
+  bark_pattern: "furrows" | "plates" | "smooth" | "dashes" | "flakes" | "scales";
+  form: "ovate" | "pointed" | "lobed" | "palmate" | "compound" | "digitate" | "needles" | "tufts" | "fronds";
   /** Width of a leaf over its length. */
   slenderness: number;
   /** Of a leaf or a leaflet, or of a shoot with its needles [m]. */
@@ -307,11 +307,18 @@ interface Meadow {
   time: number;
 }
 
-/** Of cards smaller than those of a spray: their area over that of theirs, whether they lie flat. */
-interface Spread {
+/** Where leaves grow: a cluster, or what is drawn as one. */
+interface Shoot {
+  segment: number;
+  /** Middle and frame (x y z w) at rest, in the frame of the tree; [m]. */
+  at: number[];
+  frame: number[];
+  size: number;
+  /** Of the flutter [rad], [Hz]. */
+  phase: number;
+  frequency: number;
+  /** Of the cards of a cluster. */
   share: number;
-  isFlat: boolean;
-  random: () => number;
 }
 
 /** Shapes turned about the vertical. */

@@ -176,12 +176,12 @@ def attack_trees(model: str, n: int, seed: int = 0) -> tuple[int, float]:
         simulator.reset()
         direction = rng.normal(size=3)
         direction *= rng.uniform(1, 150) / np.linalg.norm(direction)
-        x, rates = simulator.motion()
+        x, rates = simulator.banks[0].oscillators.motion()
         follows = int(rng.integers(len(x)))
         before = simulator.counts.restarted
         for _ in range(STEPS):
             simulator.step(direction if rates[follows] >= 0 else -direction, 1 / 60)
-            x, rates = simulator.motion()
+            x, rates = simulator.banks[0].oscillators.motion()
         largest = float(np.abs(x).max())
         peak = max(peak, largest)
         blown += not (largest < BLOWN_UP and simulator.counts.restarted == before)

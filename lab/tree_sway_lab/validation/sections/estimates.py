@@ -105,7 +105,8 @@ def judged(case: tuple[str, Path | None]) -> list[Judged]:
         }
     auto = AdaptiveSimulator(prepare(tree, WOOD, SETTINGS))
     shown = make_simulator(tree, WOOD, SETTINGS)
-    oscillators, hidden = dialled(shown.bank), np.zeros(shown.bank.oscillators.shapes.shape[1])
+    oscillators = dialled(shown.banks[0])
+    hidden = np.zeros(shown.banks[0].oscillators.shapes.shape[1])
     found = []
     for name, wind in winds.items():
         truth = true_tips(tree, wind, QUICK)

@@ -48,9 +48,9 @@ def growth_of(model: str) -> float:
     sim = make_simulator(
         tree, wood, model=model, gravity=0.0, damping_ratio=0.0, in_leaf=False, enrich='none'
     )
-    x, v = sim.motion()
+    x, v = sim.banks[0].oscillators.motion()
     x[0] = _ANGLE
-    sim.take_over(x, v)
+    sim.banks[0].oscillators.take_over(x, v)
     tip = []
     for _ in range(round((_CYCLES + 0.2) * _RATE / sim.frequencies(1)[0])):
         sim.step((0.0, 0.0, 0.0), 1.0 / _RATE)

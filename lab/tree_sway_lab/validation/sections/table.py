@@ -113,9 +113,9 @@ def departure(source: str) -> Departure:
     full = _reference(tree, species)
     errors, over, outside = [], [], []
     for speed in SPEEDS:
-        wind, before = gusts_and_turns(speed), tabled.bank.oscillators.n_outside
+        wind, before = gusts_and_turns(speed), tabled.banks[0].oscillators.n_outside
         errors.append(against(tabled, full, wind))
-        outside.append((tabled.bank.oscillators.n_outside - before) / len(wind))
+        outside.append((tabled.banks[0].oscillators.n_outside - before) / len(wind))
         tabled.reset()
         full.reset()
         gap = record_tips(tabled, tree, wind, FRAME) - record_tips(full, tree, wind, FRAME)

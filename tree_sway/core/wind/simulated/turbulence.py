@@ -184,7 +184,7 @@ def simulate_turbulence(
     Returns
     -------
     Floats
-        Wind velocity, blowing to, ENU in [m/s], (round(rate * duration), 3).
+        Wind velocity, blowing to, ENU in [m/s], (round(rate * duration), 3), one sample at least.
 
     Raises
     ------
@@ -196,7 +196,7 @@ def simulate_turbulence(
     within('rate', rate, 0.0, 1000.0, 'Hz', above=True)
     within('duration', duration, 0.0, 1e6, 's', above=True)
     within('bearing_to', bearing_to, -1e3, 1e3, 'rad')
-    n_samples = round(rate * duration)
+    n_samples = max(round(rate * duration), 1)
     n_period = max(n_samples, int(np.ceil(rate * SHORTEST_PERIOD)), 4)
     wind = turbulence.record(n_period, rate, rng)[:n_samples]
     wind[:, 0] += mean_speed

@@ -4,8 +4,10 @@
 
 import { LOOKS } from "../checks.js";
 
-/** @type {{average: Look, outlines: Record<string, number[][]>}} */
-export const { average, outlines } = LOOKS;
+/** The look of an average broadleaf, outlines of leaves, and stems with another bark at their foot: its
+ * colour, and up to which share of the height, by the pattern of the bark.
+ * @type {{average: Look, outlines: Record<string, number[][]>, feet: Record<string, {color: number[], height: number}>}} */
+export const { average, outlines, feet } = LOOKS;
 
 /** The outline of a leaf from its stalk to its tip, an oval one if its form is none. @param {Look} look */
 export const outlineOf = ({ form }) => outlines[form] ?? outlines.ovate;

@@ -16,17 +16,20 @@ import { Impostor } from "./impostors.js";
 import { barkMesh, boxOf, leafMesh, shapeOf } from "./mesh.js";
 import { arrow, arrowLength, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
-import { lookOf } from "./looks.js";
+import { feet, lookOf } from "./looks.js";
 import { barkPicture, leafPicture } from "./textures.js";
 
 /** Without a graphics unit a shadow is drawn again after so many frames, by a share of the leaves. */
 const [SHADOW_EVERY, SHADOW_LEAVES] = [8, 0.4];
 const CROWD = 50;
-/** Segments of all trees and cards of leaves of one, at most, and height of far trees [px]. */
-const MOST = { segments: 40000, cards: 12000, far: 90 };
+/** Segments of a tree and cards of its leaves, and both of all trees, at most; and the heights of a tree that
+ * has all of its cards and of one that is a picture [px]. */
+const MOST = { segments: 40000, cards: 36000, all: 160000, near: 700, far: 90 };
+/** Of a crowd, whose kinds take memory. */
+const MOST_MANY = { ...MOST, cards: 16000 };
 /** Without a graphics unit: of a few trees, and of a crowd. */
-const MOST_SLOW = { segments: 12000, cards: 3000, far: 150 };
-const MOST_CROWD = { ...MOST_SLOW, segments: 5000, far: 220 };
+const MOST_SLOW = { segments: 12000, cards: 3000, all: 15000, near: 400, far: 150 };
+const MOST_CROWD = { ...MOST_SLOW, segments: 5000, cards: 1800, all: 8000, far: 220 };
 /** What of each tree is drawn is chosen again after this number of frames while the camera moves. */
 const CHOOSE_EVERY = 6;
 /** A branch is near that is within this angle of where one points [rad]. */
@@ -37,6 +40,8 @@ const [POT_HEIGHT, WITH_PERSON] = [0.17, 2.5];
 const CALM = 4;
 /** Height that the picture of a far tree is painted for [px]. */
 const PAINTED = 260;
+/** Light that leathery leaves of evergreens throw back like a mirror. */
+const GLOSS = 0.2;
 /** Rows that no branch has. */
 const NONE = [-2, -2];
 /** Of a tree in its own colours. */
@@ -56,6 +61,8 @@ export class Scene {
     this.isAutumn = false;
     this.leavesShown = true;
     this.hasPerson = true;
+    /** Whether an arrow shows the wind. */
+    this.hasArrow = true;
     /** Whether leaves flutter; not where people ask for less motion. */
     this.flutters = true;
     /** Colour of each tree and its share, by its number. @type {number[][]} */
@@ -127,7 +134,8 @@ export class Scene {
   describe(description) {
     const { kinds, trees } = description;
     const isSame = this.description?.name === description.name;
-    const most = !this.isSlow ? MOST : trees.length > CROWD ? MOST_CROWD : MOST_SLOW;
+    const [many, few] = this.isSlow ? [MOST_CROWD, MOST_SLOW] : [MOST_MANY, MOST];
+    const most = trees.length > CROWD ? many : few;
     for (const { impostor, bark, leaf } of this._levels) {
       impostor?.free();
       for (const part of [bark, leaf]) discard(this.gl, part);
@@ -142,7 +150,7 @@ export class Scene {
     const radii = this._kinds.map(({ low, high }) => 0.6 * Math.hypot(...low.map((l, c) => high[c] - l)));
     const tops = trees.map(({ kind, place }) => place[2] + place[4] * this._kinds[kind].high[2]);
     this.detail = new Detail(trees, levels, radii, tops.indexOf(tops.reduce((a, b) => Math.max(a, b))));
-    this._budget = most.segments + most.cards;
+    this._budget = most.all;
     const corners = trees.flatMap(({ kind, place }) => Array.from({ length: 8 }, (_, corner) => {
       const { low, high } = this._kinds[kind];
       return placed(place, low.map((each, c) => (corner & (1 << c) ? high[c] : each)));
@@ -287,10 +295,12 @@ export class Scene {
       pictures.set(name, pictureTexture(gl, leafPicture(look, along, this.isAutumn), this.isSlow));
     }
     const relief = look.bark_pattern;
+    const foot = feet[relief] ?? { color: barkColor, height: 0 };
     if (!pictures.has(relief)) pictures.set(relief, pictureTexture(gl, barkPicture(relief), this.isSlow, true));
     return {
       starts: [], numbers: [], bark: drawable(gl, programs.bark, bark), leaf: drawable(gl, programs.leaf, mesh),
-      skin: { barkColor, twigColor, relief: [1, pictures.get(relief)] }, foliage: { leaves: [2, pictures.get(name)] },
+      skin: { barkColor, twigColor, relief: [1, pictures.get(relief)], footColor: foot.color, footHeight: foot.height },
+      foliage: { leaves: [2, pictures.get(name)], gloss: look.autumn || look.has_needles ? 0 : GLOSS },
     };
   }
 
@@ -492,7 +502,7 @@ export class Scene {
       draw(parts.person, [...at, ground, 1], [Math.cos(-0.9), Math.sin(-0.9)]);
     }
     const speed = Math.hypot(...this._calmWind);
-    if (speed > 0.2 && !isShadow) {
+    if (this.hasArrow && speed > 0.2 && !isShadow) {
       const long = arrowLength(height, speed);
       const to = this._calmWind.map((each) => each / speed);
       const at = to.map((way, c) => 0.5 * (low[c] + high[c]) - way * (0.42 * this._extent + long));

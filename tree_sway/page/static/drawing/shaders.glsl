@@ -83,6 +83,7 @@ out vec2 at;
 out vec3 tone; // thickness, openness, clearness
 out float mark;
 out float sunny;
+out float high; // over the ground, 1 at the top of the scene
 void main() {
   uint row = rowOf();
   vec4 root = texel(row);
@@ -108,6 +109,7 @@ void main() {
   float own = 0.5 * float(row);
   mark = own > picked.x - 0.5 && own < picked.y + 0.5 ? 1.0 : 0.0;
   sunny = sunlight(p);
+  high = (p.z - ground) * shadowTop;
   gl_Position = seen(p);
 }
 
@@ -117,17 +119,31 @@ in vec2 at;
 in vec3 tone;
 in float mark;
 in float sunny;
+in float high;
 uniform vec3 light;
 uniform vec3 sun;
 uniform vec3 sky;
 uniform vec3 barkColor;
+uniform vec3 footColor; // of the bark of the stem's foot
+uniform float footHeight; // that it reaches, 1 at the top of the scene
 uniform vec3 twigColor;
 uniform vec4 paint; // colour of the whole tree, and its share
 uniform sampler2D relief; // shares of the colour of the bark, twice as high as wide
 void main() {
   if (isShadow > 0.5) { color = vec4(1.0); return; }
   vec3 n = normalize(normal);
-  vec3 base = mix(twigColor, barkColor * texture(relief, at * vec2(1.0, 0.5)).rgb, tone.x);
+  vec3 rough = texture(relief, at * vec2(1.0, 0.5)).rgb;
+  if (tone.x > 0.4) {
+    // Ridges of thick wood have a bright and a dark side.
+    float slope = rough.r - texture(relief, (at + vec2(0.03, 0.01)) * vec2(1.0, 0.5)).r;
+    n = normalize(n + tone.x * slope * normalize(vec3(-n.y, n.x, 1e-3)));
+  }
+  vec3 own = barkColor;
+  if (footHeight > 0.0) {
+    float up = high / footHeight + 0.7 * (noise(at * vec2(5.0, 1.5)) - 0.5);
+    own = mix(footColor, barkColor, smoothstep(0.75, 1.1, up));
+  }
+  vec3 base = mix(twigColor, own * (0.2 + 0.9 * rough), tone.x);
   base = mix(base, paint.rgb, paint.a);
   float open = 0.5 + 0.5 * tone.y;
   vec3 lit = open * sky * (0.72 + 0.28 * n.z) + sun * sunny * max(dot(n, light), 0.0);
@@ -146,12 +162,17 @@ uniform float time;
 uniform float speed;
 uniform vec2 law; // gain, largest angle
 uniform float isBaked;
+uniform float gloss; // light thrown back like a mirror, 0 of a dull leaf
 out vec2 at;
 out vec4 lit; // light, and clearness
+out float shine;
+out float edge; // cosine between the card and the view; 0 where one looks along it
 void main() {
   uint row = rowOf();
   vec4 root = texel(row);
   vec4 q = texel(row + 1u);
+  edge = 1.0;
+  shine = 0.0;
   // Nearly the hyperbolic tangent of the law, for less.
   float wild = law.x * speed * speed / (flutter.x * law.y);
   float a = law.y * wild * inversesqrt(1.0 + wild * wild) * sin(6.2831853 * flutter.x * time + flutter.y);
@@ -160,8 +181,10 @@ void main() {
   gl_Position = seen(p);
   if (shadowArea.w > 0.5) return;
   vec3 outward = turned(q, towards);
-  vec3 n = normalize(turned(q, facing) + 0.5 * outward);
+  vec3 flat_ = turned(q, facing);
+  vec3 n = normalize(flat_ + 0.8 * outward * sign(dot(flat_, outward) + 1e-6));
   vec3 back = normalize(eye - p);
+  edge = dot(flat_, back);
   float side = dot(n, back) < 0.0 ? -1.0 : 1.0;
   float across = side * dot(n, light);
   float open = flutter.z;
@@ -170,22 +193,30 @@ void main() {
   // A leaf with the sun behind it shines yellow.
   vec3 through = vec3(1.15, 1.3, 0.4) * (0.75 * max(-across, 0.0));
   vec3 direct = sun * sunny * (0.22 + 0.85 * max(across, 0.0) + through);
-  lit.rgb = flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : up + direct);
+  // No two leaves have the same green.
+  vec3 hue = 1.0 + vec3(0.09, 0.0, -0.09) * sin(5.0 * flutter.y);
+  if (gloss > 0.0) shine = gloss * sunny * pow(max(side * dot(flat_, normalize(light + back)), 0.0), 12.0);
+  lit.rgb = hue * flutter.w * (isBaked > 0.5 ? vec3(0.3 + 0.7 * open) : up + direct);
   lit.a = clearness(p);
 }
 
 #part leaf.fragment lit
 in vec2 at;
 in vec4 lit;
+in float shine;
+in float edge;
 uniform sampler2D leaves;
 uniform vec4 paint;
 void main() {
   vec4 leaf = texture(leaves, at);
+  float own = leaf.a;
+  // Seen along itself a card would be a blade.
+  leaf.a *= min(1.0, 0.3 + 3.0 * abs(edge));
   // Further away leaves are mixed with what is between them: less of one will do, so that no crown thins out.
   float mixed = max(0.0, log2(length(fwidth(at)) * 180.0));
   if (leaf.a * (1.0 + 0.07 * mixed) < 0.5) discard;
-  vec3 base = mix(leaf.rgb / leaf.a, paint.rgb, paint.a);
-  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, base * lit.rgb, lit.a), 1.0);
+  vec3 base = mix(leaf.rgb / max(own, 0.01), paint.rgb, paint.a);
+  color = isShadow > 0.5 ? vec4(1.0) : vec4(mix(horizon, base * lit.rgb + shine, lit.a), 1.0);
 }
 
 #part impostor.vertex seen

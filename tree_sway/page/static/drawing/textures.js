@@ -6,25 +6,36 @@ import { outlineOf, seeded } from "./looks.js";
 
 /** Leaves along a picture: a leaf alone, sprays of more and more. */
 const ALONG = [1, 3, 5, 8, 12, 18, 24];
-/** Length of a compound leaf in leaflets. */
-const RACHIS = 3.4;
+/** Length of a whole leaf in leaflets. @type {Record<string, number>} */
+const IN_LEAFLETS = { compound: 3.4, digitate: 1.6 };
+/** Width over length of a leaf with leaflets. @type {Record<string, number>} */
+const WITH_LEAFLETS = { compound: 0.7, digitate: 1 };
 /** Layers that leaves are painted in, the lowest in the shade of the others. */
 const LAYERS = 3;
+
+/** Length of a leaf with all its leaflets [m]. @param {Look} look */
+export const wholeLeaf = ({ form, leaf_size: size }) => size * (IN_LEAFLETS[form] ?? 1);
+
+/** Width of a picture over its length: that of a spray or of a leaf alone. @param {Look} look
+ * @param {number} along as in `leafPicture` */
+export const pictureWidth = ({ form, slenderness, spray }, along) =>
+  along > 1 ? spray.width : WITH_LEAFLETS[form] ?? Math.min(1, slenderness);
 
 /** Leaves along the picture for cards of a length, so that none is drawn much larger than its own.
  * @param {Look} look @param {number} long length of a card [m] */
 export function leavesAlong(look, long) {
-  const least = look.form === "compound" ? 5 : look.has_needles ? 3 : 1;
+  const least = look.form in IN_LEAFLETS ? 5 : look.has_needles ? 3 : 1;
   const wanted = long / (1.4 * look.leaf_size);
   return ALONG.find((along) => along >= wanted && along >= least) ?? ALONG[ALONG.length - 1];
 }
 
 /** Paint the leaves of a shoot. @param {Look} look @param {number} along how many are as long as the picture
  * @param {boolean} isAutumn @param {number} [size] of the picture [px] */
-export function leafPicture(look, along, isAutumn, size = along === 1 ? 128 : 512) {
-  const brush = new Brush(look, isAutumn, size, seeded(97 + along));
-  if (along === 1) brush.leaf(0.99, 0.8);
-  else if (look.form === "tufts") brush.tuft();
+export function leafPicture(look, along, isAutumn, size = along > 1 || look.form in IN_LEAFLETS ? 512 : 128) {
+  const brush = new Brush(look, isAutumn, size, pictureWidth(look, along), seeded(97 + along));
+  if (along === 1) brush.leaf(0.99, 0.95);
+  else if (look.form === "tufts" && along < 5) brush.tuft(0.6, 0, 0, 0.46, 26);
+  else if (look.form === "tufts") brush.tufts();
   else if (look.has_needles) brush.needles(1 / along);
   else brush.spray(1 / along);
   return brush.context.canvas;
@@ -58,7 +69,7 @@ export function barkPicture(pattern) {
       on.fill();
     });
   };
-  const ground = { furrows: 0.5, plates: 0.4, smooth: 0.94, dashes: 0.98, flakes: 0.85 }[pattern] ?? 0.8;
+  const ground = { furrows: 0.5, plates: 0.4, scales: 0.4, smooth: 0.94, dashes: 0.98, flakes: 0.85 }[pattern] ?? 0.8;
   context.fillStyle = grey(ground);
   context.fillRect(0, 0, wide, high);
   if (pattern === "furrows") {
@@ -72,7 +83,7 @@ export function barkPicture(pattern) {
         on.stroke();
       });
     }
-  } else if (pattern === "plates") {
+  } else if (pattern === "plates" || pattern === "scales") {
     for (let i = 0; i < 130; i++) {
       const [across, tall, light] = [5 + 6 * random(), 9 + 12 * random(), 0.75 + 0.4 * random()];
       const corners = Array.from({ length: 9 }, (_, k) => [0.7, 0.45].map(() => 0.75 + 0.35 * random()).concat(0.7 * k));
@@ -110,23 +121,23 @@ const css = (color, light) => `rgb(${color.map((c) => Math.round(255 * Math.min(
 /** Paints a shoot from the middle of the left side of the picture on, which is one long and as wide as the
  * spray. */
 class Brush {
-  /** @param {Look} look @param {boolean} isAutumn @param {number} size [px] @param {() => number} random */
-  constructor(look, isAutumn, size, random) {
+  /** @param {Look} look @param {boolean} isAutumn @param {number} size [px] @param {number} width over length
+   * @param {() => number} random */
+  constructor(look, isAutumn, size, width, random) {
     const turned = isAutumn && look.autumn;
     this.base = turned ? turned : look.green;
     this.fresh = turned ? turned.map((c) => 1.2 * c) : look.fresh;
     this.look = look;
     this.random = random;
-    this.half = 0.5;
-    this.unit = look.form === "compound" ? RACHIS : 1;
+    this.half = 0.5 * width;
+    this.unit = IN_LEAFLETS[look.form] ?? 1;
     const half = outlineOf(look).map(([x, y]) => [x, 0.5 * look.slenderness * y]);
     const other = half.map(([x, y]) => [x, -y]).reverse();
     this.blade = new Path2D(`M${[...half, ...other].join("L")}Z`);
     const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     // The picture fills the texture, however wide the card is.
-    this.half = 0.5 * look.spray.width;
-    this.context.setTransform(size, 0, 0, size / look.spray.width, 0, size / 2);
+    this.context.setTransform(size, 0, 0, size / width, 0, size / 2);
     this.context.lineCap = "round";
   }
 
@@ -171,17 +182,18 @@ class Brush {
     for (let x = 0.06; x < 0.9 * reach; x += Math.max(0.05, 0.62 * unit), side = -side) {
       const lean = side * (0.7 + 0.35 * random());
       const room = Math.min(this.outline(x / reach), this.half - 0.1 * unit) / Math.abs(Math.sin(lean));
-      const long = (0.8 + 0.2 * random()) * Math.min(room, 0.7) - 0.75 * unit;
+      const long = (0.45 + 0.55 * random()) * Math.min(room, 0.7) - 0.75 * unit;
       if (long > 0.25 * unit) twigs.push([x, 0, lean, long]);
     }
     for (const [x, y, turn, long] of twigs) this.at(x, y, turn, 1, () => this.line(long, 0.05 * leaf + 0.002, css(look.twig, 0.8)));
-    const step = (look.form === "compound" ? 0.26 : 0.42) * unit;
+    // Large leaves begin at the foot of the shoot, else the picture has few.
+    const [step, begin] = (look.form in IN_LEAFLETS ? [0.2, 0.08] : [0.5, 0.5]).map((each) => each * unit);
     for (let layer = 0; layer < LAYERS; layer++) {
       const light = 0.55 + (0.5 * layer) / (LAYERS - 1);
       for (const [x, y, turn, long] of twigs) {
-        for (let far = (turn ? 0.2 : 0.5) * unit + step * (layer / LAYERS); far < long; far += step) {
+        for (let far = (turn ? 0.2 * unit : begin) + step * (layer / LAYERS); far < long; far += step) {
           side = -side;
-          const lean = turn + side * (0.45 + 0.7 * random());
+          const lean = turn + side * (look.slenderness < 0.3 ? 0.25 + 0.3 * random() : 0.45 + 0.7 * random());
           const [cx, cy] = [x + far * Math.cos(turn), y + far * Math.sin(turn)];
           // A leaf that would be cut off at the edge of the picture is a smaller one.
           const room = (this.half - Math.abs(cy)) / Math.max(0.05, Math.abs(Math.sin(lean)) + 0.3 * look.slenderness);
@@ -201,8 +213,8 @@ class Brush {
     const { look: { form, twig }, random, half } = this;
     const isFrond = form === "fronds";
     const apart = Math.max(0.09, 0.7 * shoot);
-    const long = (isFrond ? 0.4 : 0.62) * apart;
-    const wide = Math.max(0.16 * long, 0.005);
+    const long = (isFrond ? 0.4 : 0.42) * apart;
+    const wide = Math.max(0.1 * long, 0.0045);
     /** @type {number[][]} */
     const shoots = [[0, 0, 0, 1 - 0.9 * long]];
     let side = 1;
@@ -218,7 +230,7 @@ class Brush {
       for (const [x, y, lean, reach] of shoots) {
         this.at(x, y, lean, 1, () => {
           if (!isUpper) this.line(reach, 0.02 * apart + 0.003, css(twig, 0.7));
-          const count = Math.max(5, Math.round((isUpper ? 1.0 : 1.5) * reach / wide));
+          const count = Math.max(5, Math.round((isUpper ? 0.8 : 1.3) * reach / wide));
           for (let i = 0; i < count; i++) {
             const far = (i + random()) / count;
             const out = Math.min(1, 0.5 * Math.hypot(x, y) + 0.55 * far);
@@ -231,29 +243,32 @@ class Brush {
     }
   }
 
-  /** Tufts of long needles at the end of a shoot and of its side shoots. */
-  tuft() {
+  /** A shoot with long needles on every side, few enough that one sees between them from afar: dark ones
+   * below, lighter ones above. @param {number} x end of the shoot @param {number} y
+   * @param {number} heading of the shoot [rad] @param {number} long longest needle
+   * @param {number} count how many are on each side of the picture */
+  tuft(x, y, heading, long, count) {
     const { look: { twig }, random, half } = this;
-    /** @type {number[][]} */
-    const middles = [[0.62, 0, 0.36]];
-    for (const [x, y] of [[0.5, 0.5], [0.47, -0.48], [0.3, 0.34], [0.27, -0.3]]) {
-      middles.push([x + 0.08 * random(), half * y, 0.27]);
-    }
-    middles.sort((a, b) => a[0] - b[0]);
-    for (const [x, y] of middles) {
-      this.at(0, 0, Math.atan2(y, x), 1, () => this.line(Math.hypot(x, y), 0.016, css(twig, 0.8)));
-    }
+    this.at(0, 0, Math.atan2(y, x), 1, () => this.line(Math.hypot(x, y), 0.016, css(twig, 0.8)));
     for (const isUpper of [false, true]) {
-      for (const [x, y, size] of middles) {
-        const heading = Math.atan2(0.6 * y, 0.4);
-        for (let i = 0; i < 70; i++) {
-          const turn = heading + (isUpper ? 1.7 : 2.6) * (random() + random() - 1);
-          const long = size * (0.65 + 0.35 * random()) * (isUpper ? 0.85 : 1);
-          const reach = Math.min(long, 0.98 - x, (half - Math.abs(y)) / Math.max(0.01, Math.abs(Math.sin(turn))) * (Math.sin(turn) * y > 0 ? 1 : 9));
-          const color = this.color((isUpper ? 0.85 : 0.5) + 0.25 * random(), isUpper ? 0.35 * random() : 0);
-          this.at(x, y, turn, 1, () => this.line(reach, 0.012, color));
-        }
+      for (let i = 0; i < count; i++) {
+        const before = 0.9 * long * random();
+        const [fromX, fromY] = [x - before * Math.cos(heading), y - before * Math.sin(heading)];
+        const turn = heading + 2.9 * ((i + random()) / count - 0.5);
+        const isOutward = Math.sin(turn) * fromY > 0 || Math.abs(fromY) < 0.1;
+        const room = isOutward ? (half - Math.abs(fromY)) / Math.max(0.01, Math.abs(Math.sin(turn))) : 9;
+        const reach = Math.min(long * (0.55 + 0.45 * random()), 0.99 - fromX, room);
+        const color = this.color((isUpper ? 0.9 : 0.5) + 0.25 * random(), isUpper ? 0.4 * random() : 0);
+        this.at(fromX, fromY, turn, 1, () => this.line(reach, 0.018, color));
       }
+    }
+  }
+
+  /** Tufts at the end of a shoot and of its side shoots. */
+  tufts() {
+    for (const [x, y] of [[0.27, -0.3], [0.3, 0.34], [0.47, -0.48], [0.5, 0.5], [0.62, 0]]) {
+      const [far, beside] = [x + 0.08 * this.random(), this.half * y];
+      this.tuft(far, beside, Math.atan2(0.6 * beside, 0.4), y ? 0.27 : 0.36, 20);
     }
   }
 
@@ -261,21 +276,42 @@ class Brush {
   leaf(long, light) {
     const { context, look, random } = this;
     const color = this.color(light, light > 0.9 ? 0.12 : 0);
-    const pairs = look.slenderness < 0.35 ? 5 : 4;
     context.fillStyle = color;
+    const blade = () => {
+      context.fill(this.blade);
+      // One half lies in the shade of the other; the midrib is light.
+      context.save();
+      context.clip(this.blade);
+      context.fillStyle = "rgb(0 0 0 / 14%)";
+      context.fillRect(0, 0, 1, 1);
+      context.restore();
+      this.line(0.9, 0.03, "rgb(255 255 220 / 22%)");
+    };
     this.at(0, 0, 0, long, () => {
-      if (look.form !== "compound") {
-        context.fill(this.blade);
-        this.line(0.9, 0.03, "rgb(255 255 220 / 22%)");
-        return;
-      }
-      this.line(0.75, 0.02, color);
-      for (let i = 0; i <= 2 * pairs; i++) {
-        const pair = Math.floor(i / 2);
-        const lean = pair === pairs ? 0 : (i % 2 ? 1 : -1) * (0.95 - 0.06 * pair) + 0.15 * (random() - 0.5);
-        const along = 0.14 + 0.58 * Math.min(1, pair / (pairs - 1));
-        this.at(along, 0, lean, 1 / RACHIS, () => context.fill(this.blade));
-      }
+      if (look.form in IN_LEAFLETS) this.leaflets(blade, color);
+      else blade();
     });
+  }
+
+  /** Leaflets in pairs along a stalk, or like fingers at its end. @param {() => void} blade paints one
+   * @param {string} color of the stalk */
+  leaflets(blade, color) {
+    const { look: { form, slenderness }, random } = this;
+    const size = (form === "digitate" ? 1 : 1.25) / IN_LEAFLETS[form];
+    if (form === "digitate") {
+      this.line(0.36, 0.016, color);
+      for (const [lean, share] of [[2, 0.55], [-2, 0.55], [1.3, 0.8], [-1.3, 0.8], [0.6, 0.95], [-0.6, 0.95], [0, 1]]) {
+        this.at(0.36, 0, lean + 0.1 * (random() - 0.5), share * size, blade);
+      }
+      return;
+    }
+    const pairs = slenderness < 0.35 ? 5 : slenderness < 0.4 ? 4 : 3;
+    this.line(0.75, 0.02, color);
+    for (let i = 0; i <= 2 * pairs; i++) {
+      const pair = Math.floor(i / 2);
+      const lean = pair === pairs ? 0 : (i % 2 ? 1 : -1) * (0.95 - 0.06 * pair) + 0.15 * (random() - 0.5);
+      const along = 0.14 + 0.58 * Math.min(1, pair / (pairs - 1));
+      this.at(along, 0, lean, pair === pairs ? Math.min(0.25, size) : size * (0.7 + (0.3 * pair) / pairs), blade);
+    }
   }
 }

@@ -1,0 +1,95 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments of the wind: a record or the speed of a simulated one."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+import sys
+from typing import Any
+
+from tree_sway.commands.arguments import (
+    add_leaves_argument,
+    add_model_argument,
+    add_tree_arguments,
+    refuse_unused,
+)
+from tree_sway.errors import ParameterError
+from tree_sway.files.reader_options import reader_options
+from tree_sway.files.wind.record import WindRecord
+from tree_sway.files.wind.wind_file import read_wind
+from tree_sway.page.wind_source import RecordedWind, SimulatedWind
+from tree_sway.parameters.sway_parameters import SWAY
+
+USUAL_SPEED = 6.0
+"""Mean speed of the simulated wind where none is given [m/s]."""
+
+
+def add_wind_arguments(
+    parser: argparse.ArgumentParser, record: str = '', speed_of: str = f'{USUAL_SPEED:g}'
+) -> None:
+    """
+    Add a wind record, and the speed of a simulated one.
+
+    ``record`` is help for the first, ``speed_of`` says which speed it is where none is given.
+    """
+    add = parser.add_argument_group('wind').add_argument
+    add('--wind', metavar='FILE', help=record or 'wind recording; without it wind is simulated')
+    options = (
+        'option of its reader, such as speed_unit=km/h, direction=270, topic=/mast/wind, '
+        'yaw=1.57, direction_convention=from or rate=20; repeatable'
+    )
+    add('--wind-option', action='append', default=[], metavar='NAME=VALUE', help=options)
+    speed = f'mean speed of the simulated wind [m/s] ({speed_of})'
+    add('--speed', type=float, metavar='U', help=speed)
+
+
+def simulated_speed(arguments: argparse.Namespace, usual: float = USUAL_SPEED) -> float:
+    """Return the mean speed of the simulated wind in [m/s]."""
+    return usual if arguments.speed is None else float(arguments.speed)
+
+
+def refuse_unused_wind(arguments: argparse.Namespace) -> None:
+    """Refuse two winds of which one would be used, and options of a record without one."""
+    given = {
+        '--sensor': getattr(arguments, 'sensor', None),
+        '--wind': arguments.wind,
+        '--speed': arguments.speed,
+    }
+    winds = [name for name, value in given.items() if value is not None]
+    if len(winds) > 1:
+        raise ParameterError(f'both {winds[0]} and {winds[1]}', cure='give one of the two')
+    if arguments.wind_option and arguments.wind is None:
+        refuse_unused('--wind-option', '--wind FILE')
+
+
+def opened_record(arguments: argparse.Namespace) -> WindRecord:
+    """Read the record of the arguments; print assumptions and refused rows."""
+    options: dict[str, Any] = {**reader_options(arguments.wind_option)}
+    record = read_wind(arguments.wind, **options)
+    refused = f'{record.refused} rows refused; {record.first_refused}' if record.refused else ''
+    for note in filter(None, (*record.notes, refused)):
+        print(f'note: {note}', file=sys.stderr)
+    return record
+
+
+def opened_wind(arguments: argparse.Namespace) -> RecordedWind | SimulatedWind:
+    """Open the record of the arguments, repeated, or simulated wind of their speed."""
+    if arguments.wind is not None:
+        record = opened_record(arguments)
+        return RecordedWind(record.time, record.velocity, Path(arguments.wind).stem)
+    return SimulatedWind(SWAY['mean_speed'].checked(simulated_speed(arguments)))
+
+
+def add_sway_arguments(
+    parser: argparse.ArgumentParser,
+    record: str = '',
+    leaves: str | None = 'on',
+    speed_of: str = f'{USUAL_SPEED:g}',
+) -> None:
+    """Add a scene, a wind, a model and leaves, which are drawn by default."""
+    add_tree_arguments(parser, forests=True, default='benjamina')
+    add_wind_arguments(parser, record, speed_of)
+    add_model_argument(parser)
+    add_leaves_argument(parser, leaves)
