@@ -38,6 +38,8 @@ from tree_sway_ros.wire.wind_messages import (  # noqa: E402
 
 PERIOD = 16_666_667
 DT, SECONDS = PERIOD * 1e-9, 40
+DELAY = 0.5
+"""Delay of the wind in [s]: samples are there before, also on a busy machine."""
 START = 102_000_000_000 * PERIOD
 """End of a step of the solver in [ns]."""
 TREE = builtin_tree('goldcrest')
@@ -110,11 +112,11 @@ def test_player_and_solver_give_what_simulate_gives(
     nodes = compose(
         player={
             'file': bag, 'reader_options': 'topic=/wind', 'imu': 'tree/imu', 'loop': False,
-            'publish_clock': True, 'rate': 4.0,
+            'publish_clock': True, 'rate': 2.0,
         },
         wind={'use_sim_time': True},
         solver={
-            'tree': 'goldcrest', 'imu': f'tree/imu@{AT}', 'use_sim_time': True, 'wind_delay': 0.2,
+            'tree': 'goldcrest', 'imu': f'tree/imu@{AT}', 'use_sim_time': True, 'wind_delay': DELAY,
         },
     )  # fmt: skip
     end = epoch + (SECONDS - 1) * 10**9
@@ -128,11 +130,11 @@ def test_player_and_solver_give_what_simulate_gives(
     poses = [poses_of(by_stamp[stamp]) for stamp in scored]
     found = np.array([tips_of_poses(TREE, each)[TIP] - rest for each in poses])
     at = 1e-9 * (np.array(scored) - epoch)
-    lags = np.arange(0.1, 0.5, 0.25 * DT)
+    lags = np.arange(DELAY - 0.1, DELAY + 0.3, 0.25 * DT)
     errors = [error_at(lag, at, found, followed) for lag in lags]
     lag = float(lags[int(np.argmin(errors))])
     print(f'error {min(errors):.4f} at {lag:.3f} s; {error_at(lag, at, found, alone):.2f} alone')
     # The wind acts after its delay and a period of its own.
-    assert lag == pytest.approx(0.2 + 0.05, abs=2.5 * DT)
+    assert lag == pytest.approx(DELAY + 0.05, abs=2.5 * DT)
     assert min(errors) < most
     assert error_at(lag, at, found, alone) > 0.2
