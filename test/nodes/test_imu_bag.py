@@ -116,7 +116,8 @@ def test_player_and_solver_give_what_simulate_gives(
         },
         wind={'use_sim_time': True},
         solver={
-            'tree': 'goldcrest', 'imu': f'tree/imu@{AT}', 'use_sim_time': True, 'wind_delay': DELAY,
+            'tree': 'goldcrest', 'imu': f'tree/imu@{AT}', 'use_sim_time': True,
+            'wind_delay': DELAY,
         },
     )  # fmt: skip
     end = epoch + (SECONDS - 1) * 10**9
