@@ -82,9 +82,7 @@ def _isolated(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
     return kind(branches, *(array.copy() for array in given))
 
 
-def _on_table(
-    model: SwayModel, branches: Records, plain: bool, *, is_limp: bool
-) -> Oscillators:
+def _on_table(model: SwayModel, branches: Records, plain: bool, *, is_limp: bool) -> Oscillators:
     """Make the coordinates that a table loads."""
     from tree_sway.core.model.table_record import table_record
     from tree_sway.core.run.modal_coordinates import ModalCoordinates
