@@ -96,7 +96,7 @@ def test_without_wind_and_damping_the_energy_never_grows_over_a_minute():
     for _ in range(3600):
         step.advance(0.0, 0.0, 0.0, 0.0)  # no air either
         eta, rate = instance['eta'][:m], instance['rate'][:m]
-        energies.append(0.5 * step.pose.kinetic_energy(rate) + potential(sim, eta))
+        energies.append(0.5 * step.pose.twice_kinetic_energy(rate) + potential(sim, eta))
     assert step._pause == 0.0
     assert max(energies) <= (1.0 + 2.0 * SLACK) * energies[0]
     assert energies[60] > 0.3 * energies[0]  # and does not stop
@@ -183,15 +183,15 @@ def test_the_kinetic_energy_is_that_of_the_placed_segments(swaying):
     h = 1e-4
     velocity = (middles(step, eta + h * rate) - middles(step, eta - h * rate)) / (2.0 * h)
     # The points have the inertia of the model at rest to some percent.
-    assert step.pose.kinetic_energy(rate) == pytest.approx(velocity @ velocity, rel=0.03)
+    assert step.pose.twice_kinetic_energy(rate) == pytest.approx(velocity @ velocity, rel=0.03)
 
 
 def test_a_renewal_keeps_the_kinetic_energy(swaying):
     step, eta, rate, here = swaying
-    before = step.pose.kinetic_energy(rate)
+    before = step.pose.twice_kinetic_energy(rate)
     for _ in range(30):
         step.pose.renew(eta, step._by_key @ eta, here, rate, 0.0)
-        assert step.pose.kinetic_energy(rate) == pytest.approx(before, rel=1e-12)
+        assert step.pose.twice_kinetic_energy(rate) == pytest.approx(before, rel=1e-12)
     assert np.linalg.norm(step.pose.change) > 0.1
 
 

@@ -206,7 +206,7 @@ class LimpStep(WindBasisBank):
         energy = moving + self.pose.potential(eta, here)
         allowed = self._allowed + work
         if energy > allowed:
-            kinetic = 0.5 * self.pose.kinetic_energy(rate)
+            kinetic = 0.5 * self.pose.twice_kinetic_energy(rate)
             left = max(kinetic - (energy - allowed), 0.0)
             rate *= math.sqrt(left / kinetic) if kinetic > 0.0 else 0.0
             energy += left - kinetic
@@ -214,7 +214,7 @@ class LimpStep(WindBasisBank):
 
     def _energy(self, eta: Floats, rate: Floats) -> float:
         """Twice the strain and kinetic energy [J]."""
-        return float(self.modal.stiffness @ (eta * eta)) + self.pose.kinetic_energy(rate)
+        return float(self.modal.stiffness @ (eta * eta)) + self.pose.twice_kinetic_energy(rate)
 
 
 class LimpBank(LimpStep, WindBasisBank):

@@ -118,7 +118,7 @@ class PoseInertia:
             count = min(count, max(RENEWED, math.ceil(count * turned / OLDEST)))
         rows = (self._next + np.arange(count)) % len(self.change)
         self._next = int(rows[-1] + 1) % len(self.change)
-        before = self.kinetic_energy(rate)
+        before = self.twice_kinetic_energy(rate)
         for row in rows.tolist():
             step = self._step[row]
             column = self.columns[row]
@@ -131,7 +131,7 @@ class PoseInertia:
         self.change[rows], self.change[:, rows] = inertia, inertia.T
         weight = renewed @ self._gravity - self._weight_at_rest[rows]
         self.weight[rows] = weight - self._weight_slopes[rows] @ eta
-        after = self.kinetic_energy(rate)
+        after = self.twice_kinetic_energy(rate)
         if after > 0.0:
             rate *= np.sqrt(before / after)
 
@@ -140,7 +140,7 @@ class PoseInertia:
         linear = float(self._force_at_rest @ eta) + 0.5 * float(eta @ (self._slopes @ eta))
         return linear - float(self._gravity @ (here - self._place_at_rest))
 
-    def kinetic_energy(self, rate: Floats) -> float:
+    def twice_kinetic_energy(self, rate: Floats) -> float:
         """Twice the kinetic energy of a motion of rates (m,), [J]."""
         leading = rate[: len(self.change)]
         return float(rate @ rate + leading @ (self.change @ leading))
@@ -165,7 +165,7 @@ class PoseInertia:
 
         """
         fastest = float(np.abs(rotation_rates).max(initial=0.0))
-        energy = self.kinetic_energy(rate)
+        energy = self.twice_kinetic_energy(rate)
         if not (fastest > 0.0 and energy > 0.0):
             still = np.zeros(len(self.change))
             return still, still
