@@ -50,6 +50,14 @@ _STORM = 36.0
 _KNOWN_AHEAD = 0.5
 """Time in [s] by which samples of records are known ahead of a step."""
 
+_FOLLOWED_EVERY = 5.0
+_PACE, _DAMPING_PACE = 0.001, 0.01
+"""
+Pace in [1/s] at which the logarithms of stiffness and damping follow those of the real tree.
+
+A softer tree leans more; at this pace its lean changes by a fifth in three minutes.
+"""
+
 _DYNAMIC = 4.0
 """Energy of the motion in a storm over that of the static deflection."""
 
@@ -144,7 +152,8 @@ class ObservedTree(SwaySimulator):
         """Time of the end of the last step in [s], on the clock of the sensors."""
         self._given: float | None = None
         self._last_wind = (0.0, 0.0, 0.0)
-        self._known: TreeFit | None = None
+        self._learned = np.zeros(2)
+        self._followed = 0.0
         self._tips: Floats | None = None
         self.learns = learns
         """Whether stiffness and damping follow the sensors."""
@@ -261,24 +270,32 @@ class ObservedTree(SwaySimulator):
         rate += added[1]
         if self.observer.is_active:
             self._explained.note(dt, self.observer.stiffness, eta, added[0])
-        if self.observer.fit is not self._known:
-            self._take_on(self.observer.fit)
+        self._followed += dt
+        if self._followed >= _FOLLOWED_EVERY:
+            self._followed = 0.0
+            if self.learns and self.observer.fit is not None:
+                self._follow(self.observer.fit)
         return status
 
-    def _take_on(self, fit: TreeFit | None) -> None:
-        """Let the model glide to the stiffness and damping of the real tree."""
-        self._known = fit
-        if fit is None or not self.learns:
+    def _follow(self, fit: TreeFit) -> None:
+        """Let the model come nearer to the stiffness and damping of the real tree."""
+        wanted = np.log([fit.stiffness, fit.damping])
+        most = _FOLLOWED_EVERY * np.array([_PACE, _DAMPING_PACE])
+        change = np.clip(wanted - self._learned, -most, most)
+        if not change.any():
             return
+        self._learned += change
         if self.members is not None:
+            left = np.hypot(wanted - self._learned, [fit.stiffness_error, fit.damping_error])
             known = self.members.spreads
             self.members.spreads = known._replace(
-                stiffness=min(fit.stiffness_error, known.stiffness),
-                damping=min(fit.damping_error, known.damping),
+                stiffness=min(float(left[0]), known.stiffness),
+                damping=min(float(left[1]), known.damping),
             )
-        ratio = min(fit.damping * self.models[0].damping_ratio, 1.0)
+        stiffness, damping = np.exp(self._learned).tolist()
+        ratio = min(damping * self.models[0].damping_ratio, 1.0)
         with suppress(ParameterError):  # a tree that would buckle stays as it is
-            self.tune(stiffness_factor=fit.stiffness, damping_ratio=ratio)
+            self.tune(stiffness_factor=stiffness, damping_ratio=ratio)
 
     def _bound(self, correction: Floats) -> None:
         """Scale a correction so that the tree does not move beyond its own storms, in place."""

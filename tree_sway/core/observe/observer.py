@@ -36,7 +36,7 @@ from tree_sway.core.observe.steady_filter import (
     sway_law,
     SwayLaw,
 )
-from tree_sway.core.observe.tree_fit import fits, Spectrum, TreeFit
+from tree_sway.core.observe.tree_fit import fits, SensorSpectrum, Spectrum, TreeFit
 from tree_sway.core.setup.one_thread import one_thread
 
 if TYPE_CHECKING:
@@ -54,6 +54,9 @@ _LATEST = 30
 _RECENT = 30.0
 _REDESIGN = 1.6
 _SLOWEST_WIND = 2.0
+_STIFFER, _MORE_DAMPED = 0.03, 0.2
+"""Changes of the logarithms of stiffness and damping from which other gains are found."""
+
 _FIRST_FIT, _FIT_LATER = 40.0, 1.4
 
 SMOOTHED_LAG, _WINDOW = 6, np.hanning(9)[1:-1] / np.hanning(9)[1:-1].sum()
@@ -137,6 +140,9 @@ class Observer:
         self._computed = np.zeros((_HISTORY, len(self.tracks), ROWS))
         self._eta = np.zeros((_HISTORY, shapes.shape[1]))
         self._states = np.zeros((_HISTORY, self.count))
+        self._forces = np.zeros((_HISTORY, self.count))
+        frequency = float(simulator.frequencies(1)[0])
+        self._spectra = [SensorSpectrum(frequency, dt, self.count) for _ in self.tracks]
         self._smoothed = np.zeros((len(_WINDOW), shapes.shape[1]))
         self._steps = 0
         self._done = -1
@@ -148,11 +154,12 @@ class Observer:
         self._designing: Iterator[_Design | None] | None = None
         self._designed: tuple[int, ...] = ()
         self._unknown: Disturbance | None = None
+        self._air_damping = np.zeros(self.count)
         self._fitting: Iterator[TreeFit | None] | None = None
         self._fit_after = _FIRST_FIT
         self.fit: TreeFit | None = None
         """Stiffness and damping by the sensors, over those of the model as it was made."""
-        self._made = (0.0 * shapes[0], 0.0 * shapes[0])
+        self._made = self._designed_with = (0.0 * shapes[0], 0.0 * shapes[0])
         self._open: Floats | None = None
         self.damped = np.zeros(self.count)
         """Damping of the coordinates that are corrected, by wood and air, [1/s], (count,)."""
@@ -180,7 +187,17 @@ class Observer:
             np.ascontiguousarray(sensed_rows(each, self._stiffness, self.damping))
             for each in self._places
         ]
-        self._designed_for = 0.0
+        if self._has_changed():
+            self._designed_for = 0.0
+
+    def _has_changed(self) -> bool:
+        """Whether the gains were found for another tree."""
+        stiffness, damping = self._designed_with
+        if not stiffness.all() or not damping.all():
+            return True
+        stiffer = np.abs(np.log(self._stiffness / stiffness)).max()
+        more_damped = np.abs(np.log(self.damping / damping)).max()
+        return bool(stiffer > _STIFFER or more_damped > _MORE_DAMPED)
 
     @property
     def late(self) -> int:
@@ -228,12 +245,17 @@ class Observer:
         for k, rows in enumerate(self._rows):
             np.dot(rows, state, out=self._computed[slot, k])
         self._eta[slot] = swing[0]
+        # The force of the wind on a tree that stands still.
+        n = self.count
+        self._forces[slot] = swing[2][:n] + self._air_damping * swing[1][:n]
         beyond = self._beyond(time)
         self._redesign()
         if self._causal is None:
             self._moved[:] = 0.0
+            self._smooth(None)
         elif not self._used:
             self._fade(self._causal, n_periods)
+            self._smooth(None)
         else:
             self._watch_refused(beyond)
             self._learn()
@@ -264,9 +286,14 @@ class Observer:
         at = self._steps - 1 - self.late
         if at <= self._done:  # more steps late than before: nothing new
             return [None] * len(self.tracks)
-        computed = self._computed[at % _HISTORY]
+        computed, forces = self._computed[at % _HISTORY], self._forces[at % _HISTORY]
         when = time - self.late * self._dt
         found = [track.read(when, rows) for track, rows in zip(self.tracks, computed, strict=True)]
+        for row, track, spectrum in zip(found, self.tracks, self._spectra, strict=True):
+            if row is not None:
+                spectrum.add(track.fitted_motion, forces)
+            elif track.is_silent:
+                spectrum.skip()
         return found
 
     @property
@@ -315,7 +342,9 @@ class Observer:
         speed = max(self._mean_speed, _SLOWEST_WIND)
         self._designed_for, n = speed, self.count
         unknown = self._unknown = disturbance(self._simulator, speed, n)
-        self.damped = self.damping[:n] + unknown.air_damping
+        self._designed_with = (self._stiffness, self.damping)
+        self._air_damping = unknown.air_damping
+        self.damped = self.damping[:n] + self._air_damping
         law = sway_law(
             self._stiffness[:n], self.damped, unknown.covariance, TIME_CONSTANT, self._dt
         )
@@ -346,14 +375,14 @@ class Observer:
         return felt[uses].reshape(3 * len(uses), -1), np.repeat(track.noise[uses], 3)
 
     def _learn(self) -> None:
-        """Fit stiffness and damping, one candidate a step, each time with more motion."""
+        """Fit stiffness and damping, a candidate at each step, each time with more motion."""
         if self._fitting is not None:
             found = next(self._fitting, None)
             if found is not None:
                 self.fit, self._fitting = found, None
             return
-        tracks = [(k, self.tracks[k]) for k in self._used if self.tracks[k].spectrum.count]
-        seconds = max((track.spectrum.seconds for _, track in tracks), default=0.0)
+        measured = [(k, self._spectra[k]) for k in self._used if self._spectra[k].count]
+        seconds = max((each.seconds for _, each in measured), default=0.0)
         if seconds < self._fit_after or self._unknown is None:
             return
         self._fit_after = _FIT_LATER * seconds
@@ -361,11 +390,14 @@ class Observer:
         stiffness, damping = (each[:n] for each in self._made)
         spectra = [
             Spectrum(
-                self._fitted_rows(k, stiffness, damping), track.spectrum.power[:2],
-                track.spectrum.circular, track.spectrum.count, track.spectrum.seconds,
+                self._fitted_rows(k, stiffness, damping),
+                each.products,
+                each.circular,
+                each.count,
+                each.seconds,
             )
-            for k, track in tracks
-        ]  # fmt: skip
+            for k, each in measured
+        ]
         unknown = self._unknown
         self._fitting = fits(spectra, stiffness, damping, unknown.air_damping, unknown.covariance)
 
@@ -394,7 +426,7 @@ class Observer:
                 for each in skipped:
                     self._states[each % _HISTORY] = late.state[0]
                 late.correct(self._values, unknown)
-                self._smooth(late, at % _HISTORY)
+                self._smooth(late)
         if not self.late:
             self._moved[:] = causal.state
             return
@@ -442,16 +474,24 @@ class Observer:
             squares = np.square(missed) / (expected + np.square(_CAUSAL * noise))
             self.tracks[k].judge(float(squares.reshape(-1, 3).mean(axis=1).max()))
 
-    def _smooth(self, late: Estimate, newest: int) -> None:
-        """Estimate the displacements of the lag ago, and keep them for the window."""
-        n, lag = self.count, SMOOTHED_LAG
-        self._states[newest] = late.state[0]
-        then = (newest - lag) % _HISTORY
+    def _smooth(self, late: Estimate | None) -> None:
+        """
+        Estimate the displacements of the lag ago, and keep them for the window.
+
+        Without a measurement (None) they are those that were estimated then.
+        """
+        if not self._is_smoothed:
+            return
+        n, newest = self.count, (self._steps - 1 - self.late) % _HISTORY
+        present = self._late_one
+        self._states[newest] = 0.0 if present is None else present.state[0]
+        then = (newest - SMOOTHED_LAG) % _HISTORY
         self._smoothed[:-1] = self._smoothed[1:]
         self._smoothed[-1] = self._eta[then]
         last = self._smoothed[-1, :n]
         last += self._states[then]
-        last += late.past_change()
+        if late is not None:
+            last += late.past_change()
 
     @property
     def smoothed(self) -> Floats:

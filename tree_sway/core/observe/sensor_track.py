@@ -21,7 +21,6 @@ from tree_sway.core.kernel import entry_of, kernel
 from tree_sway.core.observe.alignment import align, Alignment, GRAVITY
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.sensor_place import PlaceMotion
-from tree_sway.core.observe.tree_fit import SensorSpectrum
 
 LEARNING = 20.0
 """Motion in [s] from which the mounting of a sensor is found first."""
@@ -131,7 +130,6 @@ class SensorTrack:
         """Quantities that correct the tree: 0 acceleration, 1 rate, 2 rotation."""
         self.picked = slice(0, 0)
         """Rows of a sample, (9,), of these."""
-        self.spectrum = SensorSpectrum(frequency, dt)
         self._sensed = np.zeros((round(_MEMORY / dt), 9))
         self._computed = np.zeros((len(self._sensed), ROWS))
         self._count = 0
@@ -192,6 +190,16 @@ class SensorTrack:
             return f'{name}: it disagrees with the tree: check that it is still fixed'
         return f'{name}: silent: check its battery and connection'
 
+    @property
+    def fitted_motion(self) -> Floats:
+        """The last sample of this quantity in the frame of the tree, (3,)."""
+        return self._moved[self._fitted_rows]
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether there was no sample for longer than networks delay one."""
+        return self._absent > _ABSENT_AFTER
+
     def read(self, time: float, computed: Floats) -> Floats | None:
         """
         Read the sensor at the time of a step, and learn from it.
@@ -219,16 +227,14 @@ class SensorTrack:
         if self.alignment is None or self.alignment.problem:
             return None
         self._find_beyond(self._mounting, values, computed, self._moved, self._beyond)
-        self.spectrum.add(self._moved[self._fitted_rows])
         return self._beyond
 
     def _miss(self) -> None:
         self._absent += self._dt
-        if self._absent > _ABSENT_AFTER:
+        if self.is_silent:
             if self.in_use:
                 self.sensor.counts.silent += 1
             self.in_use = False
-            self.spectrum.skip()
 
     def _learn(self, values: Floats, computed: Floats) -> None:
         row = self._count % len(self._sensed)
