@@ -15,7 +15,7 @@ import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from tree_sway.core.arrays import Floats, Ints
-from tree_sway.core.kernel import LOOP_OPTIONS, WHY_PLAIN
+from tree_sway.core.kernel import LOOP_OPTIONS, part, WHY_PLAIN
 
 (_solve_by_lapack,) = get_lapack_funcs(('posv',), dtype=np.float64)
 
@@ -68,6 +68,28 @@ def solve_positive(matrix: Floats, rights: Floats) -> bool:
     return not failed
 
 
+@part
+def _four_by_two(rows: Floats, i: int, others: Floats, j: int, out: Floats) -> None:
+    """Write the products of four rows and two others; each number that is read serves several."""
+    one_one, two_one, three_one, four_one = 0.0, 0.0, 0.0, 0.0
+    one_two, two_two, three_two, four_two = 0.0, 0.0, 0.0, 0.0
+    for k in range(rows.shape[1]):
+        other, next_other = others[j, k], others[j + 1, k]
+        one, two, three, four = rows[i, k], rows[i + 1, k], rows[i + 2, k], rows[i + 3, k]
+        one_one += one * other
+        two_one += two * other
+        three_one += three * other
+        four_one += four * other
+        one_two += one * next_other
+        two_two += two * next_other
+        three_two += three * next_other
+        four_two += four * next_other
+    out[i, j], out[i, j + 1] = one_one, one_two
+    out[i + 1, j], out[i + 1, j + 1] = two_one, two_two
+    out[i + 2, j], out[i + 2, j + 1] = three_one, three_two
+    out[i + 3, j], out[i + 3, j + 1] = four_one, four_two
+
+
 if not WHY_PLAIN:
     from numba.extending import overload
 
@@ -116,20 +138,13 @@ if not WHY_PLAIN:
     @_loop_of(multiply_rows)
     def _multiply_rows(rows, others, out):  # type: ignore[no-untyped-def]
         def loop(rows, others, out):  # type: ignore[no-untyped-def]
-            in_fours = len(rows) - len(rows) % 4
-            for j in range(len(others)):
-                # Four at once: each number of the other row is read once for all.
+            in_fours, in_twos = len(rows) - len(rows) % 4, len(others) - len(others) % 2
+            for j in range(0, in_twos, 2):
                 for i in range(0, in_fours, 4):
-                    first, second, third, fourth = 0.0, 0.0, 0.0, 0.0
-                    for k in range(rows.shape[1]):
-                        other = others[j, k]
-                        first += rows[i, k] * other
-                        second += rows[i + 1, k] * other
-                        third += rows[i + 2, k] * other
-                        fourth += rows[i + 3, k] * other
-                    out[i, j], out[i + 1, j] = first, second
-                    out[i + 2, j], out[i + 3, j] = third, fourth
-                for i in range(in_fours, len(rows)):
+                    _four_by_two(rows, i, others, j, out)
+            for j in range(len(others)):
+                first = in_fours if j < in_twos else 0
+                for i in range(first, len(rows)):
                     total = 0.0
                     for k in range(rows.shape[1]):
                         total += rows[i, k] * others[j, k]

@@ -28,12 +28,11 @@ from tree_sway.core.model.drag_law import DragLaw, pressure
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.bank import Bank
 from tree_sway.core.run.coupled_step import coupled_step, CoupledStep, find_force, move
-from tree_sway.core.run.dense import copy, largest, multiply
+from tree_sway.core.run.dense import copy, largest, multiply, multiply_rows
 from tree_sway.core.run.middles import Middles
 from tree_sway.core.run.modal_coordinates import FARTHEST
 from tree_sway.core.run.numpy_table import NumpyTableBank
 from tree_sway.core.run.pose_inertia import (
-    AHEAD,
     centrifugal_force,
     COLUMNS,
     columns_due,
@@ -47,7 +46,7 @@ from tree_sway.core.run.pose_inertia import (
     twice_kinetic_energy,
     weight_potential,
 )
-from tree_sway.core.run.table_model import STATE_FIELDS, WindBasisBank
+from tree_sway.core.run.table_model import WindBasisBank
 from tree_sway.core.setup.tree_motion import centre_motion
 from tree_sway.core.vector import Vector
 
@@ -94,11 +93,9 @@ class LimpMotion(NamedTuple):
     last_rate: Floats
     """Rates as the last step left them."""
     middle: Floats
-    """Coordinates at the middle of the step."""
-    middle_rate: Floats
-    """Rates at the middle of the step."""
-    rotation_rates: Floats
-    """Rates of the key rotations at the middle of the step, (N,)."""
+    """Coordinates and rates at the middle of the step, (2, m)."""
+    rotations: Floats
+    """Key rotations there and their rates, then those at the end of the step, (2, N)."""
     moments: Floats
     """Moments of the wind there on the key rotations, at 1 kg/m^3, (N,)."""
     by_wind: Floats
@@ -109,10 +106,8 @@ class LimpMotion(NamedTuple):
     """Centrifugal force on the leading coordinates, (q,)."""
     momentum: Floats
     """Momentum of the leading coordinates over twice the kinetic energy, (q,)."""
-    new_eta: Floats
-    """Coordinates after the step."""
-    new_rate: Floats
-    """Rates after the step."""
+    new: Floats
+    """Coordinates and rates after the step, (2, m)."""
     new_force: Floats
     """Force of the step."""
 
@@ -121,7 +116,8 @@ def motion_of(model: SwayModel, leading: int) -> LimpMotion:
     """Make room for the motion of a limp tree with a number of leading coordinates."""
     n_rotations, m = model.shapes.shape
     room = {name: np.zeros(m) for name in LimpMotion._fields}
-    room |= {name: np.zeros(n_rotations) for name in ('rotation_rates', 'moments')}
+    room |= {name: np.zeros((2, m)) for name in ('middle', 'new')}
+    room['rotations'], room['moments'] = np.zeros((2, n_rotations)), np.zeros(n_rotations)
     room |= {name: np.zeros(leading) for name in ('across', 'momentum')}
     room['by_key'] = np.ascontiguousarray(model.shapes)
     room['by_coordinate'] = np.ascontiguousarray(model.shapes.T)
@@ -220,8 +216,8 @@ class LimpStep(WindBasisBank):
     def _take(self, share: float) -> None:
         """Take the step at the pose, but for the share of a step by the table."""
         motion = self.limp_motion
-        new = motion.new_eta, motion.new_rate, motion.new_force
-        for now, own in zip((motion.eta, motion.rate, motion.force), new, strict=True):
+        state, new = (motion.eta, motion.rate, motion.force), (*motion.new, motion.new_force)
+        for now, own in zip(state, new, strict=True):
             now[:] = own if share == 0.0 else own + share * (now - own)
         motion.last_eta[:], motion.last_rate[:] = motion.eta, motion.rate
 
@@ -248,8 +244,8 @@ class LimpStep(WindBasisBank):
             self._forget()
         self._next_column = (first + count) % len(pose.change)
         self.middles.fill(pose.turned, pose.placed, COLUMNS + count)
-        rotations = pose.turned[HERE]
-        self._wind_moments.fill(rotations, motion.rotation_rates, wind, motion.moments)
+        rotations, rates = motion.rotations
+        self._wind_moments.fill(rotations, rates, wind, motion.moments)
         most = float(self.record[0]['most_energy'])
         load = per_speed_squared, per_speed_squared * speed
         is_possible: bool = self._run(
@@ -278,13 +274,6 @@ class NumpyLimpBank(LimpStep, NumpyTableBank):
 
 
 @part
-def _turned_most(motion: LimpMotion, amounts: Floats, turned: Floats) -> float:
-    """Write key rotations (N,) by amounts of the coordinates; return the largest."""
-    multiply(motion.by_key, amounts, turned)
-    return largest(turned)
-
-
-@part
 def _strain_energy(motion: LimpMotion, eta: Floats) -> float:
     """Return twice the energy of strain [J] at coordinates (m,)."""
     energy = 0.0
@@ -307,19 +296,20 @@ def _turn_to_middle(
         whether something else has changed the state since the last step.
 
     """
-    apart, is_disturbed = motion.new_eta, False
+    apart, rotations, is_disturbed, turned = motion.new[0], motion.rotations, False, 0.0
     for i in range(len(apart)):
         apart[i] = motion.eta[i] - motion.last_eta[i]
         if apart[i] != 0.0 or motion.rate[i] != motion.last_rate[i]:
             is_disturbed = True
-    turned = 0.0
     if is_disturbed:
-        turned = _turned_most(motion, apart, pose.turned[AHEAD])
-    move(law.half, motion.eta, motion.rate, motion.force, motion.middle, motion.middle_rate)
-    multiply(motion.by_key, motion.middle, pose.turned[HERE])
-    fastest = _turned_most(motion, motion.middle_rate, motion.rotation_rates)
+        multiply(motion.by_key, apart, rotations[0])
+        turned = largest(rotations[0])
+    move(law.half, motion.eta, motion.rate, motion.force, motion.middle[0], motion.middle[1])
+    multiply_rows(motion.middle, motion.by_key, rotations)
+    copy(rotations[0], pose.turned[HERE])
+    fastest = largest(rotations[1])
     count = columns_due(pose, turned + law.length * fastest)
-    ahead = turn_along(pose, motion.rotation_rates, fastest)
+    ahead = turn_along(pose, rotations[1], fastest)
     turn_for_columns(pose, first, count)
     return count, ahead, is_disturbed
 
@@ -334,14 +324,10 @@ def _step_from_middle(
 
     Returns whether the step gives no more energy than any wind [J], and turns no branch too far.
     """
-    eta, rate = motion.eta, motion.rate
+    eta, rate, new_eta, new_rate = motion.eta, motion.rate, motion.new[0], motion.new[1]
     strain = _strain_energy(motion, eta)
-    before = twice_kinetic_energy(pose, rate, pose.momentum)
-    renew_columns(pose, first, count, motion.middle)
-    after = twice_kinetic_energy(pose, rate, pose.momentum)
-    scale = math.sqrt(before / after) if after > 0.0 else 1.0
-    start_rate = motion.new_rate
-    np.multiply(rate, scale, start_rate)
+    copy(rate, new_rate)
+    kinetic = renew_columns(pose, first, count, motion.middle[0], new_rate)
 
     wanted, by_wind = motion.wanted, motion.by_wind
     multiply(motion.by_coordinate, motion.moments, by_wind)
@@ -349,19 +335,19 @@ def _step_from_middle(
     copy(by_wind, wanted)
     leading = wanted[: len(pose.weight)]
     leading += pose.weight
-    centrifugal_force(pose, motion.middle_rate, ahead, motion.across, motion.momentum)
+    centrifugal_force(pose, motion.middle[1], ahead, motion.across, motion.momentum)
     find_force(
-        law, wanted, eta, start_rate, motion.force, pose.change, drag, motion.across,
+        law, wanted, eta, new_rate, motion.force, pose.change, drag, motion.across,
         motion.momentum, motion.new_force,
     )  # fmt: skip
-    move(law.whole, eta, start_rate, motion.new_force, motion.new_eta, motion.new_rate)
+    move(law.whole, eta, new_rate, motion.new_force, new_eta, new_rate)
 
-    kinetic = twice_kinetic_energy(pose, motion.new_rate, pose.momentum)
-    if not _strain_energy(motion, motion.new_eta) + kinetic <= max(strain + before, most_energy):
-        return False
-    if not law.length * _turned_most(motion, motion.new_rate, pose.turned[AHEAD]) <= MOST_TURN:
-        return False
-    return bool(_turned_most(motion, motion.new_eta, pose.turned[HERE]) <= FARTHEST)
+    energy = _strain_energy(motion, new_eta) + twice_kinetic_energy(pose, new_rate, pose.momentum)
+    multiply_rows(motion.new, motion.by_key, motion.rotations)
+    copy(motion.rotations[0], pose.turned[HERE])
+    has_turned = law.length * largest(motion.rotations[1])
+    is_bounded = energy <= max(strain + kinetic, most_energy)
+    return is_bounded and has_turned <= MOST_TURN and largest(motion.rotations[0]) <= FARTHEST
 
 
 @fused
@@ -372,7 +358,7 @@ def _bound_energy(pose: PoseInertia, motion: LimpMotion, allowed: float) -> floa
     The tree is placed where the step ends. Returns how much energy it may have before the work of
     the next step: what it has, or has lost before, up to `SLACK`.
     """
-    eta, rate = motion.new_eta, motion.new_rate
+    eta, rate = motion.new[0], motion.new[1]
     kinetic = 0.5 * twice_kinetic_energy(pose, rate, pose.momentum)
     moving = kinetic + 0.5 * _strain_energy(motion, eta)
     energy = moving + weight_potential(pose, eta)

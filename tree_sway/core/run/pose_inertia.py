@@ -10,15 +10,16 @@ tree are (Shabana 2020, *Dynamics of Multibody Systems*, chapter 3)
 
 All three are found by placing the tree: a column of J is the difference of two places of the
 segments, and the centrifugal force the second difference along the motion. **Columns are renewed
-in turn**, `RENEWED` a step, so that one is at most some tenth of a second old: M is a product of
-a matrix with itself, and so is positive definite however old its columns are.
+in turn**, `RENEWED` a step or more, so that one is at most some tenths of a second old: M is a
+product of a matrix with itself, and so is positive definite however old its columns are.
 
 **No energy comes of it.** In truth the change of M and the centrifugal force do no work together.
 So the rates are scaled to the kinetic energy that they had before a renewal, and what the
 centrifugal force has along the motion is left out.
 
 A step places the tree at some poses together: `HERE`, `AHEAD` and `BEHIND` along the motion, and
-from `COLUMNS` on turned a little from here, each along one leading coordinate.
+from `COLUMNS` on turned a little from here, each along one leading coordinate. From those behind
+on, the places are then overwritten by the differences of which the products with J are taken.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ class PoseInertia(NamedTuple):
     placed: Floats
     """Middles at these, (q + 3, 3 n)."""
     products: Floats
-    """Of the columns with the new ones, (q, q)."""
+    """Of the columns with the bend of the motion, then with each new column, (q + 1, q)."""
     momentum: Floats
     """Scratch memory, (q,)."""
     sloped: Floats
@@ -132,7 +133,7 @@ def inertia_at_rest(
         all_slopes=np.ascontiguousarray(weight_slopes),
         turned=np.zeros((q + COLUMNS, n_rotations)),
         placed=np.zeros((q + COLUMNS, len(gravity))),
-        products=np.zeros((q, q)),
+        products=np.zeros((q + 1, q)),
         momentum=np.zeros(q),
         sloped=np.zeros(m),
     )
@@ -157,7 +158,7 @@ def return_to_rest(pose: PoseInertia) -> None:
 
 @part
 def columns_due(pose: PoseInertia, turned: float) -> int:
-    """Number of columns to renew after a branch has rotated by an angle [rad]."""
+    """Return how many columns to renew after a branch has rotated by an angle [rad]."""
     q = len(pose.change)
     if turned >= OLDEST:
         return q
@@ -200,9 +201,43 @@ def twice_kinetic_energy(pose: PoseInertia, rate: Floats, momentum: Floats) -> f
 
 
 @part
-def renew_columns(pose: PoseInertia, first: int, count: int, eta: Floats) -> None:
-    """Take the next columns, inertia and weight of the pose at coordinates (m,), placed."""
+def renew_columns(pose: PoseInertia, first: int, count: int, eta: Floats, rate: Floats) -> float:
+    """
+    Take the next columns, inertia and weight of a pose, where the tree is placed.
+
+    Parameters
+    ----------
+    pose
+        The inertia.
+    first, count
+        First column to renew, and how many.
+    eta
+        Coordinates of the pose, (m,).
+    rate
+        Rates of the coordinates, (m,), scaled to the kinetic energy that they had before.
+
+    Returns
+    -------
+    float
+        Twice this energy in [J].
+
+    """
+    before = twice_kinetic_energy(pose, rate, pose.momentum)
+    _take_columns(pose, first, count, eta)
+    after = twice_kinetic_energy(pose, rate, pose.momentum)
+    if after > 0.0:
+        rate *= math.sqrt(before / after)
+    return before
+
+
+@part
+def _take_columns(pose: PoseInertia, first: int, count: int, eta: Floats) -> None:
+    """Take columns, inertia and weight of `renew_columns`, and the bend along the motion."""
     q, here = len(pose.change), pose.placed[HERE]
+    bend = pose.placed[BEHIND]
+    bend += pose.placed[AHEAD]
+    bend -= here
+    bend -= here
     new = pose.placed[COLUMNS : COLUMNS + count]
     for k in range(count):
         row = (first + k) % q
@@ -210,11 +245,11 @@ def renew_columns(pose: PoseInertia, first: int, count: int, eta: Floats) -> Non
         column -= here
         column /= pose.steps[row]
         copy(column, pose.columns[row])
-    multiply_rows(new, pose.columns, pose.products)
+    multiply_rows(pose.placed[BEHIND : COLUMNS + count], pose.columns, pose.products[: 1 + count])
     for k in range(count):
         row = (first + k) % q
         for j in range(q):
-            pose.change[row, j] = pose.change[j, row] = pose.products[k, j]
+            pose.change[row, j] = pose.change[j, row] = pose.products[1 + k, j]
     for k in range(count):
         row = (first + k) % q
         pose.change[row, row] -= 1.0
@@ -232,7 +267,7 @@ def centrifugal_force(
     Parameters
     ----------
     pose
-        The inertia, with the tree placed ahead and behind along the motion.
+        The inertia, after `renew_columns` with the tree placed ahead and behind.
     rate
         Rates of the coordinates, (m,).
     step
@@ -246,12 +281,7 @@ def centrifugal_force(
         force[:] = 0.0
         along[:] = 0.0
         return
-    bend = pose.placed[AHEAD]
-    bend += pose.placed[BEHIND]
-    bend -= pose.placed[HERE]
-    bend -= pose.placed[HERE]
-    multiply(pose.columns, bend, force)
-    force /= -(step * step)
+    np.multiply(pose.products[0], -1.0 / (step * step), force)
     along /= energy
     working = dot(force, rate[: len(force)])
     for i in range(len(force)):
