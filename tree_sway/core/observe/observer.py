@@ -11,6 +11,10 @@ difference is moved on to the present. Without a usable sensor the difference fa
 Two sets of gains are kept. The causal one expects more noise than the sensors have, since noise
 would otherwise shake branches that no sensor sees. The one of the smoother trusts them, and is
 late by a fixed lag.
+
+A correction is worth what it foretells: of the motion that a sensor measures beyond the model, the
+share that was expected from the measurements before. Where the model and the tree differ too much
+for any, the correction is taken back, and the tree sways in the wind alone.
 """
 
 from __future__ import annotations
@@ -26,6 +30,7 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import entry_of, kernel
 from tree_sway.core.observe.disturbance import Disturbance, disturbance, TIME_CONSTANT
 from tree_sway.core.observe.estimate import Estimate
+from tree_sway.core.observe.explained_motion import ExplainedMotion
 from tree_sway.core.observe.lateness import Lateness
 from tree_sway.core.observe.sensor_place import place_motion, PlaceMotion
 from tree_sway.core.observe.sensor_track import as_felt, ROWS, sensed_rows, SensorTrack
@@ -58,6 +63,12 @@ _STIFFER, _MORE_DAMPED = 0.03, 0.2
 """Changes of the logarithms of stiffness and damping from which other gains are found."""
 
 _FIRST_FIT, _FIT_LATER = 40.0, 1.4
+
+_TELLS_NOTHING, _TELLS_ENOUGH = 0.01, 0.05
+"""Shares foretold by the best sensor below and above which the correction is none or whole."""
+
+_TRUSTED_WITHIN = 2.0
+"""Time constant in [s] of the trust in the correction."""
 
 SMOOTHED_LAG, _WINDOW = 6, np.hanning(9)[1:-1] / np.hanning(9)[1:-1].sum()
 """Steps between the smoother's estimate and its newest measurement, and the window over it."""
@@ -153,6 +164,9 @@ class Observer:
         self._late_one: Estimate | None = None
         self._designing: Iterator[_Design | None] | None = None
         self._designed: tuple[int, ...] = ()
+        self.trust = 0.0
+        """Share of the correction that is applied, by what it foretells [-]."""
+        self._foretold: dict[int, ExplainedMotion] = {}
         self._unknown: Disturbance | None = None
         self._air_damping = np.zeros(self.count)
         self._fitting: Iterator[TreeFit | None] | None = None
@@ -260,6 +274,7 @@ class Observer:
             self._watch_refused(beyond)
             self._learn()
             self._correct(self._causal, beyond, n_periods)
+        self._moved *= self.trust
         self._find_energies(self._first_stiffness, swing[0], swing[1], self._moved, self.energies)
         return self._moved[:2]
 
@@ -316,7 +331,10 @@ class Observer:
         found = next(self._designing)
         if found is None:
             return
-        self._designing, self._used, self.noise = None, found.used, found.noise
+        self._designing, self.noise = None, found.noise
+        if found.used != self._used:
+            self._used = found.used
+            self._foretold = {k: ExplainedMotion() for k in found.used}
         self._causal = Estimate(found.causal, self._causal)
         if found.late is not None:
             self._late_one = Estimate(found.late, self._late_one)
@@ -421,10 +439,11 @@ class Observer:
             causal.move(n_periods)
             causal.correct(self._values, unknown)
             self._judge(causal.sizes(), beyond)
+            self._weigh(causal, beyond, n_periods * self._dt)
             if late is not None:
                 late.move(n_periods)
                 for each in skipped:
-                    self._states[each % _HISTORY] = late.state[0]
+                    self._states[each % _HISTORY] = self.trust * late.state[0]
                 late.correct(self._values, unknown)
                 self._smooth(late)
         if not self.late:
@@ -459,6 +478,31 @@ class Observer:
                 track.judge(max(sizes[first:last]))
             first = last
 
+    def _weigh(self, causal: Estimate, beyond: list[Floats | None], dt: float) -> None:
+        """Weigh the correction by how much of its own sensors' motion it foretells."""
+        first = 0
+        for k in self._used:
+            track = self.tracks[k]
+            rows = slice(first, first + 3 * len(track.uses))
+            first = rows.stop
+            if beyond[k] is not None and track.in_use:
+                weights = 1.0 / np.square(causal.gains.deviation[rows])
+                told = self._foretold[k]
+                told.note(dt, weights, self._values[rows], causal.innovation[rows])
+        best = max(each.share for each in self._foretold.values())
+        worth = (best - _TELLS_NOTHING) / (_TELLS_ENOUGH - _TELLS_NOTHING)
+        worth = min(max(worth, 0.0), 1.0)
+        self.trust += min(dt / _TRUSTED_WITHIN, 1.0) * (worth - self.trust)
+
+    @property
+    def useless(self) -> list[str]:
+        """Sensors in use of whose motion the correction foretells nothing."""
+        return [
+            self.tracks[k].sensor.name
+            for k, told in self._foretold.items()
+            if k in self._used and told.share < _TELLS_NOTHING
+        ]
+
     def _watch_refused(self, beyond: list[Floats | None]) -> None:
         """Judge refused sensors by the motion expected without any sensor."""
         assert self._causal is not None
@@ -484,14 +528,14 @@ class Observer:
             return
         n, newest = self.count, (self._steps - 1 - self.late) % _HISTORY
         present = self._late_one
-        self._states[newest] = 0.0 if present is None else present.state[0]
+        self._states[newest] = 0.0 if present is None else self.trust * present.state[0]
         then = (newest - SMOOTHED_LAG) % _HISTORY
         self._smoothed[:-1] = self._smoothed[1:]
         self._smoothed[-1] = self._eta[then]
         last = self._smoothed[-1, :n]
         last += self._states[then]
         if late is not None:
-            last += late.past_change()
+            last += self.trust * late.past_change()
 
     @property
     def smoothed(self) -> Floats:
@@ -509,7 +553,7 @@ class Observer:
     def reset(self) -> None:
         """Forget the correction; what is known about the sensors stays."""
         self._causal = self._late_one = self._designing = None
-        self._used = ()
+        self._used, self._foretold, self.trust = (), {}, 0.0
         self._states[:] = 0.0
         self._eta[:] = 0.0
 
