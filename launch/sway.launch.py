@@ -11,6 +11,7 @@ from start to start, and override it. Every name is relative: two launches with 
 among this number of solvers, on one host or on several.
 """
 
+from difflib import get_close_matches
 import os
 
 from ament_index_python.packages import get_package_share_directory
@@ -126,6 +127,7 @@ def arguments_given(configurations):
         if former in configurations:
             given[name] = configurations[former]
             warnings.append(f"launch argument '{former}' is now called '{name}'")
+    warnings += misspelled(configurations)
     source = given['wind_source']
     if source in FORMER_SOURCES:
         given['wind_source'] = FORMER_SOURCES[source]
@@ -135,6 +137,17 @@ def arguments_given(configurations):
             f"launch argument 'wind_source': '{source}' is none of {', '.join(SOURCES)}"
         )
     return given, warnings
+
+
+def misspelled(configurations):
+    """Return warnings for unknown arguments near a known one: launch itself ignores them."""
+    known = [name for name, _, _ in ARGUMENTS]
+    warnings = []
+    for name in configurations:
+        if name not in known and name not in FORMER_ARGUMENTS:
+            for near in get_close_matches(name, known, 1, 0.85):
+                warnings.append(f"no launch argument '{name}'; did you mean '{near}'?")
+    return warnings
 
 
 def is_true(name, text):
@@ -179,10 +192,19 @@ def overrides_of(name, given):
     return overrides
 
 
+def whole(name, text):
+    """Return the whole number of an argument; refuse what is none."""
+    try:
+        return int(text)
+    except ValueError:
+        raise ValueError(f"launch argument '{name}': '{text}' is no whole number") from None
+
+
 def shards_here(given):
     """Return the numbers of the shards that run on this host."""
-    count, local = int(given['shard_count']), given['local_shards']
-    here = [int(each) for each in local.split(',')] if local else range(count)
+    local = given['local_shards']
+    count = whole('shard_count', given['shard_count'])
+    here = [whole('local_shards', each) for each in local.split(',')] if local else range(count)
     if count < 1 or not all(0 <= each < count for each in here):
         raise ValueError(f"launch argument 'local_shards': '{local}' of {count} shards")
     return list(here)

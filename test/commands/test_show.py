@@ -125,7 +125,11 @@ def test_a_tree_that_is_grown_has_the_leaves_of_a_month() -> None:
     assert 0.0 < areas[1] < 0.9 * areas[0]
     assert not winter.settings.in_leaf
     assert winter.settings.leaf_area is None
-    assert autumn.species.look.green == autumn.species.look.autumn != summer.species.look.green
+    assert (
+        autumn.models[0].species.look.green
+        == autumn.models[0].species.look.autumn
+        != summer.models[0].species.look.green
+    )
 
 
 @pytest.mark.parametrize(

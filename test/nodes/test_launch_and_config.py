@@ -145,6 +145,22 @@ def test_what_is_shipped_in_config_overrides_no_default():
         assert content == {f'/**/{name}': {'ros__parameters': {}}}
 
 
+def test_a_misspelled_argument_is_told(launch_file):
+    typed = {'wind_sorce': 'player', 'ros_namespace': '/elm', 'other_package': 'x'}
+    _, warnings = launch_file.arguments_given(typed)
+    assert warnings == ["no launch argument 'wind_sorce'; did you mean 'wind_source'?"]
+
+
+@pytest.mark.parametrize(
+    'given', [{'shard_count': 'two'}, {'shard_count': '2', 'local_shards': 'a'}]
+)
+def test_a_number_of_shards_that_is_none_is_named(launch_file, given):
+    with pytest.raises(
+        ValueError, match=r"launch argument '(shard_count|local_shards)': '(two|a)'"
+    ):
+        launch_file.shards_here({'local_shards': ''} | given)
+
+
 def test_former_names_of_arguments_work_and_name_their_successors(launch_file):
     typed = {'source': 'elsewhere', 'shards': '3', 'here': '1', 'tree': 'oak'}
     given, warnings = launch_file.arguments_given(typed)

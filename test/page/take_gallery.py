@@ -45,7 +45,7 @@ AVENUE = 'x,y,species,height\n' + ''.join(
 _EVENING = "document.getElementById('theme').click();"
 _OPEN, _CLOSED = (f"document.getElementById('panel').open = {so}" for so in ('true', 'false'))
 _CLOSE, _ASIDE = (
-    f'treeSway.scene.camera.{so};' for so in ('zoom(0.84)', 'azimuth += 2.2')
+    f'treeSway.scene.camera.{so};' for so in ('zoom(0.94)', 'azimuth += 2.2')
 )  # fmt: skip
 _AUTUMN = "document.getElementById('season').click();"
 

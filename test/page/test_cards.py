@@ -28,7 +28,8 @@ def test_cards_are_those_of_the_page(javascript: Callable[..., Any]) -> None:
     ours = leaf_mesh(leaves, spray, 3)
     program = f"""
       import {{ readFileSync }} from "node:fs";
-      import {{ leafMesh, shapeOf }} from "{STATIC}/drawing/mesh.js";
+      import {{ leafMesh }} from "{STATIC}/drawing/foliage.js";
+      import {{ shapeOf }} from "{STATIC}/drawing/mesh.js";
       import {{ decodeDescription }} from "{STATIC}/protocol.js";
       const bytes = Buffer.from(readFileSync(0, "utf8"), "base64");
       const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);

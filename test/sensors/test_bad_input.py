@@ -230,7 +230,7 @@ def test_silence_is_told(hear, port) -> None:
 def test_refused_winds_are_told_with_their_reasons(hear, send, port) -> None:
     heard = hear(f'udp://127.0.0.1:{port}')
     heard.until(
-        lambda: told(heard, 'all of the wind were refused: status is'),
+        lambda: told(heard, 'all were refused: status is'),
         lambda: send(port, b'$WIMWV,270.0,R,10.0,N,V'),
     )
 

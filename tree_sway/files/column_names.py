@@ -5,7 +5,8 @@ Names of columns and their units, compared however they are written.
 
 ``Baumhöhe [m]``, ``BAUMHOEHE (M)`` and ``baumhoehe_m`` are one name with one unit: letters are
 folded to lower case without accents, and all but letters and digits is left out. A unit is in
-brackets, behind ``-`` or a comma, or the last word.
+brackets, behind ``-`` or a comma, or the last word, as in ``height_m`` and ``Height in metres``. A
+name of ten letters may be the beginning of a known one, as shapefiles cut it: ``TREE_HEIGH``.
 """
 
 from __future__ import annotations
@@ -31,6 +32,12 @@ _NAME_ENDS = re.compile(r'(?<=.)(?:\s*[\[(,]|\s-\s|\s@\s).*', re.DOTALL)
 _ZONE = re.compile(r'[A-Z][a-z]+/[\w/]+|(?:UTC|GMT) ?[+-]\d\d?(?::?\d\d)?')
 _SHORTEST_GLUED = 4
 """Letters of the shortest name that a unit follows without a sign, as in windspeedmph."""
+_SHAPEFILE_NAME = 10
+"""Length at which the names of columns of shapefiles are cut off."""
+_SHORTEST_CUT = 8
+"""Letters that the beginning of a known name has at least."""
+_IN = re.compile(r'^(in|en)_?(?=\w)')
+"""Word between a name and its unit."""
 
 
 def folded(text: str) -> str:
@@ -56,6 +63,8 @@ _NAMES = {
     quantity: tuple(dict.fromkeys(folded(name) for name in known['names']))
     for quantity, known in COLUMNS.items()
 }
+
+_ALL_NAMES = frozenset(name for names in _NAMES.values() for name in names)
 
 
 def unit_factor(kind: str, unit: str) -> float | None:
@@ -94,9 +103,16 @@ def rank_of(column: str, quantity: str) -> int | None:
     name, _ = name_and_unit(column, kind)
     found = (folded(name), folded(column))
     for rank, known in enumerate(_NAMES[quantity]):
-        if known in found or trailing_unit(name, known, kind):
+        if known in found or trailing_unit(name, known, kind) or _is_cut(column, known):
             return rank
     return None
+
+
+def _is_cut(column: str, known: str) -> bool:
+    """Whether a column's name is the beginning of a known one, cut off by a shapefile."""
+    name = folded(column)
+    may_be_cut = len(column.strip()) == _SHAPEFILE_NAME and len(name) >= _SHORTEST_CUT
+    return may_be_cut and known.startswith(name) and name not in _ALL_NAMES
 
 
 def unit_known(kind: str, unit: str) -> bool:
@@ -119,8 +135,10 @@ def trailing_unit(name: str, known: str, kind: str) -> str:
     for count in range(1, len(words)):
         if folded(''.join(words[:count])) == known:
             unit = '_'.join(words[count:])
-            for each in (unit.replace('_', '/'), unit.replace('_', '')):
+            for each in (unit.replace('_', '/'), unit.replace('_', ''), _IN.sub('', unit)):
                 if unit_known(kind, each):
                     return each
+    if len(known) < _SHORTEST_GLUED:
+        return ''
     end = whole[len(known) :]
-    return end if len(known) >= _SHORTEST_GLUED and unit_known(kind, end) else ''
+    return next((each for each in (end, _IN.sub('', end)) if unit_known(kind, each)), '')

@@ -21,18 +21,15 @@ import numpy as np
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.core.wind.simulated.about_means import LEAST_INTERVAL
 from tree_sway.core.wind.simulated.gusts_about_mean import GustsAboutMean, RATE
-from tree_sway.errors import shown
 from tree_sway.files.wind.units import Velocity
+from tree_sway.sensors.live_source import LiveSource
 from tree_sway.sensors.reading import Reading, Refusal, WindReading
 from tree_sway.sensors.registry import OpenedSource
-from tree_sway.sensors.transports.link import Link
 from tree_sway.sensors.transports.transport import Message
 
 Sample = tuple[float, Velocity]
 """Time [s] and wind east, north, up [m/s], the way the air goes."""
 
-_LOOK = 0.5
-"""Interval at which it is looked whether wind comes [s]."""
 _PATIENCE = {'waiting': 4.0, 'unknown': 3.0}
 """Time [s] after which silence, or messages that are not understood, are told."""
 _USUAL_INTERVAL = 60.0
@@ -42,13 +39,12 @@ _LASTS = 3.0
 _QUEUE = 4096
 _OLDEST = 1.0
 """Age of the oldest sample that a run is given [s]."""
-_MOST_CAUSES = 20
 _LIVE_FOR = 10.0
 """Age [s] up to which the wind of an instant counts as live."""
 _POINTS = 'N NE E SE S SW W NW'.split()
 
 
-class LiveWind:
+class LiveWind(LiveSource):
     """
     Samples of a source, from `start` to `stop`.
 
@@ -77,40 +73,30 @@ class LiveWind:
         heard: Callable[[WindReading], None] | None = None,
         silence: float | None = None,
     ) -> None:
+        source = opened.source
+        super().__init__(
+            source.transport,
+            log,
+            messages=source.messages,
+            expects=source.expects,
+            patience=_PATIENCE,
+            silence=silence,
+        )
         self.bearing = opened.bearing
         """Direction that a wind without one comes from, clockwise from north [rad]."""
-        self.accepted = self.other = 0
-        """Numbers of readings, and of messages that are not about the wind."""
-        self.refused: dict[str, int] = {}
-        """Numbers of readings that were refused, by cause."""
         self.newest: WindReading | None = None
         """Newest reading."""
         self.interval = 0.0
         """Length of the mean that the newest reading is [s]; 0 for the wind of an instant."""
         self.lacks_direction = opened.is_without_vane
         """Whether the newest reading has no direction of its own."""
-        self._opened, self._log = opened, log
-        self._taken, self._heard = taken, heard
+        self._opened, self._taken, self._heard = opened, taken, heard
         self._lock = threading.Lock()
         self._gusts = GustsAboutMean()
         self._samples: deque[Sample] = deque(maxlen=_QUEUE)
         self._arrival = self._gap = -math.inf
         self._expires = -math.inf
         self._blown = -math.inf
-        self._last = ''
-        self._ended = threading.Event()
-        self._link = Link(opened.source.transport, self._take, log, silence)
-
-    def start(self) -> None:
-        """Start to listen."""
-        self._ended.clear()
-        self._link.start()
-        threading.Thread(target=self._watch, name='wind', daemon=True).start()
-
-    def stop(self) -> None:
-        """Stop; the thread ends by itself if it is busy."""
-        self._ended.set()
-        self._link.stop()
 
     @property
     def bearing_to(self) -> float:
@@ -127,24 +113,13 @@ class LiveWind:
         return self.interval >= LEAST_INTERVAL
 
     @property
-    def link(self) -> Link:
-        """The connection, with its state and counts."""
-        return self._link
-
-    @property
     def name(self) -> str:
         """Name of the source for viewers."""
         place = self.newest.place if self.newest is not None else ''
         return f'{place}, {self._opened.name}' if place else self._opened.name
 
-    @property
-    def state(self) -> str:
-        """State: ``connecting``, ``waiting``, ``unknown`` messages, ``live`` or ``stale``."""
-        if self.newest is not None:
-            return 'live' if time.monotonic() < self._expires else 'stale'
-        if self._link.messages:
-            return 'unknown'
-        return 'waiting' if self._link.is_up else 'connecting'
+    def _is_live(self) -> bool:
+        return time.monotonic() < self._expires
 
     @property
     def age(self) -> float:
@@ -207,33 +182,10 @@ class LiveWind:
     @property
     def problem(self) -> str:
         """Why there is no wind, empty if there is one."""
-        source, link = self._opened.source, self._link
-        if self.accepted:
-            return ''
-        if not link.is_up:
-            return f'no connection: {link.failure or "not yet"}'
-        if not link.messages:
-            return f'listening to {source.transport}: nothing has come yet'
-        came = f'{link.messages} {source.messages} came'
-        if self.refused:
-            causes = ', '.join(list(self.refused)[:3])
-            return f'{came}, all of the wind were refused: {causes}; the last: {self._last}'
-        return f'{came}, none was understood, the last: {self._last}; expected {source.expects}'
-
-    def _watch(self) -> None:
-        """Tell once why there is no wind, as soon as it is known, until there is."""
-        state, since, told = '', 0.0, ''
-        while not self._ended.wait(_LOOK) and not self.accepted:
-            if self.state != state:
-                state, since = self.state, time.monotonic()
-            waited = time.monotonic() - since
-            if state != told and waited >= _PATIENCE.get(state, math.inf):
-                told = state
-                self._log(self.problem)
+        return '' if self.accepted else self._why_nothing()
 
     def _take(self, message: Message) -> None:
         """Read a message; called by the link's thread."""
-        self._last = shown(message.data[:300].decode('utf-8', 'replace'), 120)
         readings = self._opened.source.read(message)
         self.other += not readings
         for reading in readings:
@@ -250,8 +202,7 @@ class LiveWind:
         if not cause:
             self.accepted += 1
             return True
-        if cause in self.refused or len(self.refused) < _MOST_CAUSES:
-            self.refused[cause] = self.refused.get(cause, 0) + 1
+        self._refuse(cause)
         return False
 
     def _use(self, reading: WindReading) -> None:

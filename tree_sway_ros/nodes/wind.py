@@ -91,7 +91,7 @@ class WindNode(TreeSwayNode):
         )
         if good is None:
             return
-        self._report.add()
+        self._report.add(self._intake.left_out)
         time, vector = good
         self._filtered.publish(
             wind_to_message(Vector3Stamped, WindSample(time, frame_id, *vector))

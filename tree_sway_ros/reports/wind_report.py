@@ -32,6 +32,10 @@ _STAMPS = {
 """Counts of refused stamps; a driver that gives none at all is no fault."""
 _SHOWN = 5
 """Largest number of nodes that are named."""
+_NEWEST = 0.02
+"""Weight of the newest sample in the mean square of what the projection leaves out."""
+_LEAST_LEFT_OUT = 0.05
+"""Component across the force plane that is worth a word [m/s]."""
 STALE_AFTER = 5.0
 """Number of time-outs after which a lost wind is stale, and the trees are at rest."""
 
@@ -42,11 +46,13 @@ class WindReport:
     def __init__(self) -> None:
         self._timing, self._newest = SensorTiming(0.0), -math.inf
         self._counts = RecentCounts()
+        self._square_left_out = 0.0
         self.gaps = SequenceGaps()
         """Samples that were lost on their way to the node."""
 
-    def add(self) -> None:
-        """Count a good sample."""
+    def add(self, left_out: float = 0.0) -> None:
+        """Count a good sample, of which a component in [m/s] across the plane was left out."""
+        self._square_left_out += _NEWEST * (left_out**2 - self._square_left_out)
         now = time.monotonic()
         self._timing.note_interval(now - self._newest)
         self._newest = now
@@ -55,6 +61,11 @@ class WindReport:
     def age(self) -> float:
         """Time since the last good sample in [s]; infinite if there was none."""
         return time.monotonic() - self._newest
+
+    @property
+    def left_out(self) -> float:
+        """Component of late across the force plane, which the trees do not feel, rms [m/s]."""
+        return math.sqrt(self._square_left_out)
 
     @property
     def rate(self) -> float:
@@ -99,12 +110,15 @@ class WindReport:
             'age [s]': 'never' if math.isinf(age) else age,
             'publishers': len(publishers),
             'lost': self.gaps.lost,
+            'across the force plane, left out [m/s]': round(self.left_out, 3),
             'refused': gate.counts.refused,
             **vars(gate.counts),
         }
         if replay is not None:
             values['replay rate'] = replay
         level, text = OK, f'{self.rate:.1f} Hz'
+        if self.left_out >= _LEAST_LEFT_OUT:
+            text += f', {self.left_out:.2g} m/s across the force plane are left out'
         if replay is not None:
             text = f'replay at {replay:.2g}x, {text}'
         if math.isinf(age):

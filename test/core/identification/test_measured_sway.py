@@ -206,7 +206,7 @@ def test_a_pull_too_short_for_its_tree_says_why(noise, seed):
     """Of a sway with too few cycles no other mode, and no noise, is taken in its place."""
     time, motion = release(0.2, 0.1, duration=20.0, pulled=5.0, noise=noise, seed=seed)
     with pytest.raises(
-        FormatError, match=r'cycles of 0\.[12]\d+ Hz after .*; record 3 cycles after'
+        FormatError, match=r'cycles of 0\.[12]\d+ Hz after .*; record 5 cycles after'
     ):
         estimate_sway(time, motion)
 

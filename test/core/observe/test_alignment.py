@@ -69,6 +69,15 @@ def test_noise_is_measured() -> None:
     assert found.noise[1] == pytest.approx(0.005, rel=0.1)
 
 
+def test_knocks_and_gaps_are_no_noise() -> None:
+    values = sensed(MOUNTS[2], noise=0.05)
+    values[N // 2, :3] += 5.0  # a knock
+    values[N // 4 :] = np.roll(values[N // 4 :], 40, axis=0)  # the motion of another time
+    found = align(values, *motions(1))
+    assert found.noise[0] == pytest.approx(0.05, rel=0.1)
+    assert found.noise[1] == pytest.approx(0.005, rel=0.1)
+
+
 def test_units_of_g_and_degrees_are_recognised() -> None:
     values = sensed(MOUNTS[2])
     values[:, :3] /= GRAVITY

@@ -16,7 +16,7 @@ from tree_sway.core.tree.wood import Species
 from tree_sway.core.wind.simulated.turbulence import simulate_turbulence
 
 DT = 1.0 / 60.0
-WOOD = Species('sapling', 'sapling', modulus=9.0e9, density=900.0)
+WOOD = Species('sapling', 'sapling', modulus=9.0e9, density=900.0, damping_in_leaf=0.10)
 N_LEAVES, LEAF_MASS, LEAF_AREA = 12, 0.0009, 0.0060
 
 

@@ -25,6 +25,7 @@ def test_a_sample_is_read_judged_and_projected():
     assert good is not None
     assert good.time == 5 * SECOND
     assert good.velocity == pytest.approx([-10.0 * KNOTS, 0.0, -2.0 * KNOTS])
+    assert intake.left_out == pytest.approx(-4.0 * KNOTS)
 
 
 def test_it_is_judged_in_metres_per_second_before_it_is_projected():

@@ -109,6 +109,38 @@ READ = {
         '1;Gran;320;240;600000;6600000\n2;Tall;280;205;600004;6600005\n',
         [('spruce', 24.0, 0.32), ('pine', 20.5, 0.28)],
     ),
+    'Perth, a shapefile': (
+        'TREE_ID,BOTANICAL_,COMMON_NAM,TREE_HEIGH,LONGITUDE,LATITUDE\n'
+        '1,Eucalyptus marginata,Jarrah,14,115.8612,-31.9512\n'
+        '2,Jacaranda mimosifolia,Jacaranda,9,115.8614,-31.9513\n',
+        [('eucalyptus', 14.0, None), ('broadleaf', 9.0, None)],
+    ),
+    'Providencia': (
+        'X;Y;NOMB_CIENT;SP;H_MTS;DAP\n'
+        '350100,5;6298700,1;Platanus orientalis;PLO;14,5;42\n'
+        '350112,5;6298703,2;Robinia pseudoacacia;ROP;9,0;25\n',
+        [('plane', 14.5, 0.42), ('robinia', 9.0, 0.25)],
+    ),
+    'Belfast': (
+        'TYPEOFTREE,SPECIESTYPE,SPECIES,DIAMETERinCENTIMETRES,TREEHEIGHTinMETRES,LONGITUDE,'
+        'LATITUDE\n'
+        'Tree,Lime,Tilia x europaea,46,14,-5.93015,54.59715\n'
+        'Tree,Cherry,Prunus avium,20,7,-5.93035,54.59725\n',
+        [('lime', 14.0, 0.46), ('cherry', 7.0, 0.2)],
+    ),
+    'Ulm': (
+        'Koordinaten_X_Y;Koordinate_Y;Baumart;Baumart_botanisch;Baumhöhe_(aktuell);'
+        'Stammdurchm_(aktuell)\n'
+        '573800,1;5361700,2;Spitzahorn;Acer platanoides;12;35\n'
+        '573810,1;5361704,2;Schwarzkiefer;Pinus nigra;16;40\n',
+        [('maple', 12.0, 0.35), ('pine', 16.0, 0.4)],
+    ),
+    'Grand Junction': (
+        'X,Y,TRG_GENUS,TRG_SPECIES,TRG_COMMON,TRG_DIA,TRG_HEIGHT\n'
+        '-108.550612,39.063912,Fraxinus,pennsylvanica,"Ash, Green",14,45\n'
+        '-108.550731,39.064012,Gleditsia,triacanthos,"Honeylocust",9,30\n',
+        [('ash', 13.716, 0.356), ('honey_locust', 9.144, 0.229)],
+    ),
     'a plot in metres with few digits stays one': (
         'x,y,species,height,dbh\n12.25,3.5,oak,18,45\n30.5,8.75,oak,20,50\n',
         [('oak', 18.0, 0.45), ('oak', 20.0, 0.5)],
@@ -130,7 +162,8 @@ def test_it_is_read_as_it_is(name: str, tmp_path: Path) -> None:
     for row, (_, height, diameter) in enumerate(expected):
         assert found.is_height_found[row] == (height is None)
         assert height is None or found.height[row] == pytest.approx(height, rel=1e-3)
-        assert found.diameter[row] == pytest.approx(diameter, rel=5e-3)
+        assert np.isnan(found.diameter[row]) == (diameter is None)
+        assert diameter is None or found.diameter[row] == pytest.approx(diameter, rel=5e-3)
     # Neighbours in a street, on a map or in degrees.
     step = np.hypot(np.diff(found.x), np.diff(found.y))
     assert step.min() > 3.0

@@ -126,6 +126,35 @@ CSV = {
     + rows(lambda t, u: f'{t:%Y-%m-%d %H:%M:%S};{u:.3f};270;{2 * u:.2f}', 10),
     'WeeWX': 'dateTime,usUnits,interval,windSpeed,windDir,windGust\n'
     + rows(lambda t, u: f'{seconds(t)},1,5,{u / MILE:.4f},270.0,{2 * u / MILE:.4f}', 5),
+    'Synoptic, a row of units': '# STATION: BNDC1\n# ELEVATION [ft]: 2598\n'
+    'Station_ID,Date_Time,air_temp_set_1,wind_speed_set_1,wind_direction_set_1,wind_gust_set_1\n'
+    ',,Fahrenheit,Miles/hour,Degrees,Miles/hour\n'
+    + rows(lambda t, u: f'BNDC1,{t:%m/%d/%Y %H:%M} UTC,60,{u / MILE:.4f},270.0,{2 * u:.2f}'),
+    'NASA POWER': '-BEGIN HEADER-\nLocation: latitude  52.5   longitude 13.4\n'
+    'WD10M     MERRA-2 Wind Direction at 10 Meters (Degrees)\n-END HEADER-\n'
+    'YEAR,MO,DY,HR,WS10M,WD10M\n'
+    + rows(lambda t, u: f'{t.year},{t.month},{t.day},{t.hour},{u:.3f},270', 60),
+    'SMHI': 'Stationsnamn;Klimatnummer;Mäthöjd (meter över marken)\nStockholm;98230;10.0\n\n'
+    'Datum;Tid (UTC);Vindriktning;Kvalitet;Vindhastighet;Kvalitet;;Tidsutsnitt:\n'
+    + rows(lambda t, u: f'{t:%Y-%m-%d};{t:%H:%M:%S};270;G;{u:.3f};G;;', 60),
+    'Met Éireann': 'Station Name: DUBLIN AIRPORT\n\nwdsp:   -  Mean Hourly Wind Speed (kt)\n\n'
+    'date,ind,rain,ind,temp,ind,wdsp,ind,wddir,ww\n'
+    + rows(lambda t, u: f'{t:%d-%b-%Y %H:%M},0,0,0,7,2,{u / KNOT:.4f},2,270,6'.lower(), 60),
+    'Met Office, MIDAS': 'Conventions,G,BADC-CSV,1\ntitle,G,uk-hourly-weather-obs\n'
+    'long_name,wind_speed,wind speed,knots\ntype,wind_speed,float\ndata\n'
+    'ob_time,id,wind_speed_unit_id,wind_direction,wind_speed,temp\n'
+    + rows(lambda t, u: f'{t:%Y-%m-%d %H:%M:%S},708,4,270,{u / KNOT:.4f},NA', 60)
+    + '\nend data\n',
+    'Campbell Scientific': '"TOA5","CR1000","CR1000","1","x","y","1","Table10"\n'
+    '"TIMESTAMP","RECORD","WS_ms_S_WVT","WindDir_D1_WVT","WindDir_SD1_WVT","WS_ms_Max"\n'
+    '"TS","RN","meters/second","Deg","Deg","meters/second"\n"","","WVc","WVc","WVc","Max"\n'
+    + rows(lambda t, u: f'"{t:%Y-%m-%d %H:%M:%S}",1,{u:.3f},270,12,{2 * u:.2f}', 10),
+    'CIMIS, California': 'Stn Id,Date,Hour (PST),Jul,Wind Speed (mph),qc,Wind Dir (0-360),qc\n'
+    + rows(lambda t, u: f'2,{t:%m/%d/%Y},{t:%H%M},61,{u / MILE:.4f}, ,270, ', 60),
+    'ISD as R reads it': 'USAFID,WBAN,year,month,day,hour,min,wind.dir,wind.dir.qc,wind.sp\n'
+    + rows(lambda t, u: f'1,2,{t.year},{t.month},{t.day},{t.hour},0,270,5,{u:.3f}', 60),
+    'a hash before the header': '# Time, Temp (C), Wind Speed (m/s), Wind Dir (deg)\n'
+    + rows(lambda t, u: f'{t:%Y-%m-%d %H:%M:%S}, 20.1, {u:.3f}, 270', 5),
 }  # fmt: skip
 
 JSON = {
@@ -216,9 +245,13 @@ REFUSED = {
         CSV['Home Assistant with its unit'],
         'Home Assistant does not say the unit of the speed; give it: --wind-option speed_unit',
     ),
+    'NOAA, local data': (
+        'STATION,DATE,HourlyWindDirection,HourlyWindSpeed\n1,2024-03-01T00:00,270,9\n',
+        'Local Climatological Data does not say the unit of the speed; give it: --wind-option',
+    ),
     'NOAA, days': (
         'STATION,DATE,WDSP,MXSPD,GUST\n10384099999,2024-03-01,8.1,14.0,22.9\n',
-        'no column for the speed and none for the direction among STATION',
+        'no column for the direction among STATION',
     ),
     'a cup anemometer': (
         'time,wind speed (m/s)\n2024-03-01T00:00,4\n2024-03-01T00:01,5\n',

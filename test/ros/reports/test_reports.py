@@ -77,6 +77,19 @@ def test_wind_goes_from_none_to_live_to_lost_to_stale(clock):
     assert report.status(TIMEOUT, gate).level == OK
 
 
+def test_wind_across_the_force_plane_is_said(clock):
+    report, gate = WindReport(), WindGate()
+    for k in range(400):
+        clock.now += 0.05
+        report.add(0.6 if k % 2 else -0.6)
+    assert report.left_out == pytest.approx(0.6, rel=0.01)
+    assert '0.6 m/s across the force plane are left out' in report.status(TIMEOUT, gate).message
+    for _ in range(400):
+        clock.now += 0.05
+        report.add(0.0)
+    assert 'left out' not in report.status(TIMEOUT, gate).message
+
+
 def test_a_slow_sensor_is_late_by_its_own_periods(clock):
     report, gate, timeout = WindReport(), WindGate(), 0.5
     for _ in range(30):

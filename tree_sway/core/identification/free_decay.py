@@ -89,7 +89,7 @@ def free_decay(motion: Floats, dt: float, rough: float) -> FreeDecay:
     available = (len(motion) - first) / cycle
     if available < _MIN_CYCLES:
         what = f'{max(available, 0.0):.1f} cycles of {rough:.3g} Hz after the largest swing'
-        cure = 'record 3 cycles after the release, better 10, or name the band of the sway'
+        cure = 'record 5 cycles after the release, better 10, or name the band of the sway'
         raise FormatError(what, cure=cure)
     # A window that ends where 5 % are left; its length follows from a first fit.
     cycles = min(8.0, available)

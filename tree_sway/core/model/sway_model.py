@@ -34,9 +34,9 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.tree.wood import Species
 from tree_sway.errors import FormatError
 
-PLACING, LOADS, COORDINATES, STREAM, TABLE, ISOLATED, LIMBS, LIMB_LOADS = (
+PLACING, LOADS, COORDINATES, STREAM, TABLE, ISOLATED, LIMBS, LIMB_LOADS, LIMP = (
     'placing', 'loads of branches', 'coordinates', 'stream', 'table', 'isolated branches', 'limbs',
-    'loads of limbs',
+    'loads of limbs', 'limp trees',
 )  # fmt: skip
 """Groups of arrays."""
 
@@ -298,6 +298,14 @@ class SwayModel:
         LIMB_LOADS, ('delays', N_HARMONICS, 'm'), 'm^2', 'their load at rest, by harmonics',
     )] = field(default_factory=_absent)  # fmt: skip
 
+    segment_mass: Annotated[Floats, Meaning(
+        LIMP, ('n',), 'kg', 'mass of each segment, with leaves',
+    )] = field(default_factory=_absent)  # fmt: skip
+    weight_slopes: Annotated[Floats, Meaning(
+        LIMP, ('m', 'm'), '1/s^2', 'derivative of the force of the weight by the coordinates, at '
+        'rest',
+    )] = field(default_factory=_absent)  # fmt: skip
+
     def __repr__(self) -> str:
         """Return tree, model and sizes on one line."""
         return (
@@ -330,6 +338,11 @@ class SwayModel:
     def has_limbs(self) -> bool:
         """Whether gusts reach its limbs one after another."""
         return self.limb_delay.size > 0
+
+    @property
+    def is_limp(self) -> bool:
+        """Whether its twigs turn so far that loads and inertia are those of its pose."""
+        return self.segment_mass.size > 0
 
     @cached_property
     def basis(self) -> StateBasis:
@@ -388,6 +401,7 @@ class SwayModel:
             ISOLATED: self.is_isolated,
             LIMBS: self.has_limbs,
             LIMB_LOADS: self.has_limbs and self.has_table,
+            LIMP: self.is_limp,
         }[group]
 
     def _sizes(self) -> dict[int | str, int]:

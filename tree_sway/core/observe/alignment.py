@@ -30,6 +30,8 @@ _MOST_RATIO = 5.0
 _GRAVITY_RANGE = (0.85, 1.15)
 _NO_GRAVITY = 0.4
 _PER_DEGREE = math.pi / 180.0
+_MEDIAN_OF_SQUARE = 0.4549
+"""Median of the square of a normal variable over its variance (chi-squared, one degree)."""
 
 
 @dataclass(frozen=True)
@@ -238,13 +240,16 @@ def noise_of(moved: Floats) -> Floats:
     """
     Estimate the deviation of the noise of each quantity, (3,), from motion at equal steps, (n, 9).
 
-    The third difference of white noise has 20 times its variance, and hardly any sway.
+    The third difference of white noise has 20 times its variance, and hardly any sway. Its median
+    counts: a knock, or a gap between two samples, would be most of its mean.
     """
     found = np.zeros(3)
     for quantity in range(3):
         rows = moved[:, 3 * quantity : 3 * quantity + 3]
         if np.isfinite(rows).all() and len(rows) > 3:
-            found[quantity] = math.sqrt(float(np.square(np.diff(rows, 3, axis=0)).mean()) / 20.0)
+            squares = np.square(np.diff(rows, 3, axis=0))
+            variance = np.median(squares, axis=0) / _MEDIAN_OF_SQUARE
+            found[quantity] = math.sqrt(float(variance.mean()) / 20.0)
     return found
 
 

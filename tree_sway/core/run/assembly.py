@@ -10,6 +10,8 @@ are imported where a tree needs them.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from tree_sway.core.arrays import Records
@@ -38,7 +40,16 @@ def bank_of(model: SwayModel, *, plain: bool = False) -> Bank:
     branches, segments = _branches(model, places), segment_records(places)
     oscillators = _oscillators(model, branches, plain)
     blocks = block_records(branches, segments)
-    return Bank(oscillators, branches, segments, blocks, model.mass, plain)
+    bank = Bank(oscillators, branches, segments, blocks, model.mass, plain)
+    if model.is_limp:
+        from tree_sway.core.run.limp_tree import LimpStep
+
+        assert isinstance(oscillators, LimpStep)
+        try:
+            oscillators.begin(model, bank)
+        except np.linalg.LinAlgError:  # of absurd sizes: its points have no inertia to solve with
+            return replace(bank, oscillators=_on_table(model, branches, plain, is_limp=False))
+    return bank
 
 
 def _oscillators(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
@@ -55,7 +66,7 @@ def _oscillators(model: SwayModel, branches: Records, plain: bool) -> Oscillator
         from tree_sway.core.run.rigid import RigidBank
 
         return RigidBank(branches, model)
-    return _on_table(model, branches, plain)
+    return _on_table(model, branches, plain, is_limp=model.is_limp)
 
 
 def _isolated(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
@@ -71,12 +82,16 @@ def _isolated(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
     return kind(branches, *(array.copy() for array in given))
 
 
-def _on_table(model: SwayModel, branches: Records, plain: bool) -> Oscillators:
+def _on_table(model: SwayModel, branches: Records, plain: bool, *, is_limp: bool) -> Oscillators:
     """Make the coordinates that a table loads."""
     from tree_sway.core.model.table_record import table_record
     from tree_sway.core.run.modal_coordinates import ModalCoordinates
 
     coordinates = ModalCoordinates(branches, model)
+    if is_limp:
+        from tree_sway.core.run.limp_tree import LimpBank, NumpyLimpBank
+
+        return (NumpyLimpBank if plain else LimpBank)(coordinates, table_record(model))
     if plain:
         from tree_sway.core.run.numpy_table import NumpyTableBank
 

@@ -12,10 +12,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints
+from tree_sway.core.arrays import Floats
 from tree_sway.core.beams.beam import cross
 from tree_sway.core.model.fill_records import Places
 from tree_sway.core.setup.tree_motion import levels_of, sum_outward
+from tree_sway.core.setup.turning import turning_of
 from tree_sway.core.tree.tree import Tree
 
 LEADING = 12
@@ -51,11 +52,9 @@ def inertia_slopes(tree: Tree, places: Places, shapes: Floats, mass: Floats) -> 
     lead, first, on = shapes[:, :LEADING], places.first[:-1], places.base_segment
     parent, levels = np.maximum(places.parent, 0), levels_of(places.parent)
     q, branch = lead.shape[1], tree.branch_of_segment
-    own = _rotations(places.rotation_mode, branch, places, lead)
-    joint = _rotations(places.base_rotation, parent, places, lead)
+    joint, base, own = turning_of(tree, places, lead)
     arm = tree.start[first] - tree.start[on]
-    joint[0], arm[0] = 0.0, 0.0
-    base = sum_outward(parent, levels, joint)
+    arm[0] = 0.0
     below, here = base[parent], base[branch]
     whole = here + own
 
@@ -93,11 +92,3 @@ def _twice(turn: Floats, k: int, order: Floats, arm: Floats) -> Floats:
     one, arm = turn[:, k, None], arm[:, None]
     both = cross(turn, cross(one, arm)) + cross(one, cross(turn, arm)) + cross(order, arm)
     return np.asarray(0.5 * both)
-
-
-def _rotations(modes: Floats, branch: Ints, places: Places, lead: Floats) -> Floats:
-    """Rotation by each leading coordinate of what branches (r,) turn by modes (r, k, 3)."""
-    each = np.arange(modes.shape[1])
-    rows = np.minimum(places.coordinate[branch, None] + each, len(lead) - 1)
-    amounts = np.where((each < places.n_coordinates[branch, None])[..., None], lead[rows], 0.0)
-    return np.asarray(amounts.swapaxes(1, 2) @ modes)

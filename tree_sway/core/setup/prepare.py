@@ -163,7 +163,18 @@ def _coupled_tree(reductions: TreeReductions, settings: Settings) -> SwayModel:
         **_stream(reductions, coordinates, arrays['momentum'].T, table),
         **table,
         **_limbs(reductions, reduced, order, shapes if table else None),
+        **(_limp(reduced, shapes, settings.gravity) if table and reductions.is_limp else {}),
     )
+
+
+def _limp(reduced: ReducedTree, shapes: Floats, gravity: float) -> dict[str, Any]:
+    """Find what the step of a limp tree needs: `run.limp_tree`."""
+    from tree_sway.core.setup.weight_slopes import weight_slopes
+
+    mass = np.empty(len(reduced.mass))
+    mass[reduced.row] = reduced.mass
+    slopes = weight_slopes(reduced.tree, reduced.places, shapes, reduced.mass, gravity)
+    return {'segment_mass': mass, 'weight_slopes': slopes}
 
 
 def _stream(

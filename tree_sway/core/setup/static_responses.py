@@ -42,6 +42,10 @@ class WindMoments:
         self.n = int(branches['n_coordinates'].sum())
         self._of_copies: dict[int, NumpyPasses] = {}
 
+    def reset(self) -> None:
+        """Forget the drag of the last call, which may be of a motion that was not finite."""
+        self._records[2]['drag_impulse'] = 0.0
+
     @cached_property
     def _passes(self) -> NumpyPasses:
         return NumpyPasses(self.branches)

@@ -60,7 +60,7 @@ class Species:
     modulus: float
     density: float
     damping_bare: float = 0.04
-    damping_in_leaf: float = 0.10
+    damping_in_leaf: float = 0.08
     drag_coefficient: float = 1.2
     drag_exponent: float = 0.0
     bare_drag_coefficient: float = 1.2

@@ -34,8 +34,15 @@ from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.height_profile import WindProfile
 from tree_sway.core.wind.simulated.turbulence import SCALE_RATIOS, turbulence_scale
 
-EDDY_LENGTH = float(SCALE_RATIOS[0])
+_INTEGRAL_SCALE = float(SCALE_RATIOS[0])
 """Integral scale of the wind along itself over the turbulence scale [-]."""
+
+_OPEN_PEAK, _STAND_PEAK = 0.25, 0.15
+"""
+Frequency n at which n S(n) of the wind along itself is largest: n L / U of Kaimal's spectrum
+(1 + 6 n L / U)^(-5/3), L its integral scale, and n h / U_h at the top of a stand of height h
+(0.15 +- 0.05: Kaimal & Finnigan 1994, chapter 3).
+"""
 
 HART_BECKING = 0.18
 """Spacing of a stand over its height [-]."""
@@ -134,13 +141,15 @@ class Exposure:
     @property
     def turbulence_height(self) -> float:
         """
-        Height in [m] at which the open country's turbulence has the integral scale of this one.
+        Height in [m] at which the open country's spectrum peaks at the frequency of this one's.
 
-        Eddies at the top of a stand are as long as it is high (Raupach, Finnigan & Brunet 1996).
+        At the top of a stand eddies follow its height: the peak is that of Kaimal's spectrum with
+        an integral scale of 1.67 times the height.
         """
         if self.kind == 'open':
             return self.reference_height
-        return self.height / (EDDY_LENGTH * turbulence_scale(1.0))
+        integral_scale = _OPEN_PEAK / _STAND_PEAK * self.height
+        return integral_scale / (_INTEGRAL_SCALE * turbulence_scale(1.0))
 
     @property
     def edge_factor(self) -> float:

@@ -37,6 +37,8 @@ class WindIntake:
 
     convention: WindConvention | None = None
     gate: WindGate = field(default_factory=WindGate)
+    left_out: float = 0.0
+    """Component of the last good sample across the force plane [m/s], which is left out."""
 
     @staticmethod
     def of_velocities() -> WindIntake:
@@ -72,4 +74,7 @@ class WindIntake:
         if not verdict.accepted:
             return None
         good = np.array(verdict.wind)
-        return GoodWind(verdict.time, good if reads is None else reads.project(good))
+        if reads is None:
+            return GoodWind(verdict.time, good)
+        self.left_out = float(good @ reads.normal)
+        return GoodWind(verdict.time, reads.project(good))

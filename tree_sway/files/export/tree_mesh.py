@@ -93,8 +93,8 @@ def leaf_mesh(leaves: LeafClusters, spray: Spray, cards: int = 2) -> TreeMesh:
     """
     Return cards for each cluster of leaves, to be shown with a picture of its spray.
 
-    They are those of the page (``static/drawing/mesh.js``), up to as many of each cluster as are
-    given. Texture coordinates run along the shoot, and across from one side to the other.
+    They are those of the page (``static/drawing/foliage.js``), up to as many of each cluster as
+    are given. Texture coordinates run along the shoot, and across from one side to the other.
     """
     turns = Rotation.from_quat(leaves.orientation[:, [1, 2, 3, 0]])
     parts = [_cards(leaves, spray, turns, card) for card in range(min(cards, len(spray.rolls)))]

@@ -43,6 +43,7 @@ PARTS: tuple[tuple[tuple[str, ...], Join], ...] = (
     (('date', 'time'), _date_and_time),
     (('datum', 'zeit'), _date_and_time),
     (('datum', 'uhrzeit'), _date_and_time),
+    (('datum', 'tid'), _date_and_time),
     (('fecha', 'hora'), _date_and_time),
     (('date', 'heure'), _date_and_time),
     (('date', 'timeutc'), _date_and_time),

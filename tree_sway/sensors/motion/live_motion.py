@@ -13,16 +13,14 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 import math
-import threading
 import time
 from typing import NamedTuple
 
-from tree_sway.errors import shown
+from tree_sway.sensors.live_source import LiveSource
 from tree_sway.sensors.motion.motion_reading import MotionReading, Numbers
 from tree_sway.sensors.motion.motion_registry import OpenedMotion
 from tree_sway.sensors.motion.sender_clock import SenderClock
 from tree_sway.sensors.reading import Refusal
-from tree_sway.sensors.transports.link import Link
 from tree_sway.sensors.transports.transport import Message
 
 SLOWEST = 5.0
@@ -30,10 +28,8 @@ SLOWEST = 5.0
 _QUEUE = 8192
 _SILENT = 5.0
 """Time [s] without a sample after which a sensor is stale, and another may take its place."""
-_LOOK = 0.5
 _PATIENCE = {'waiting': 4.0, 'unknown': 3.0, 'connecting': 4.0}
 """Time [s] after which silence, or messages that are not understood, are told."""
-_MOST_CAUSES = 20
 _COUNTED = 40
 """Samples over which the rate is counted."""
 _LONGEST_PAUSE = 2.0
@@ -48,7 +44,7 @@ class MotionSample(NamedTuple):
     orientation: Numbers | None
 
 
-class LiveMotion:
+class LiveMotion(LiveSource):
     """
     Samples of a source, from `start` to `stop`.
 
@@ -70,47 +66,27 @@ class LiveMotion:
         *,
         heard: Callable[[MotionSample], None] | None = None,
     ) -> None:
+        source = opened.source
+        super().__init__(
+            source.transport,
+            log,
+            messages='messages',
+            expects=source.expects,
+            patience=_PATIENCE,
+            longest_pause=_LONGEST_PAUSE,
+        )
         self.name = opened.name
         """Name of the sensor for viewers."""
-        self.accepted = self.other = 0
-        """Numbers of samples, and of messages that are not about motion."""
-        self.refused: dict[str, int] = {}
-        """Numbers of samples that were refused, by cause."""
         self.quantities: tuple[str, ...] = ()
         """What its first sample has."""
-        self._source, self._log, self._heard = opened.source, log, heard
-        self._clock = SenderClock(opened.source.ticks)
+        self._source, self._heard = source, heard
+        self._clock = SenderClock(source.ticks)
         self._samples: deque[MotionSample] = deque(maxlen=_QUEUE)
         self._arrivals: deque[float] = deque(maxlen=_COUNTED)
         self._sender, self._sent = '', -math.inf
-        self._last = ''
-        self._ended = threading.Event()
-        self._link = Link(opened.source.transport, self._take, log, longest_pause=_LONGEST_PAUSE)
 
-    def start(self) -> None:
-        """Start to listen."""
-        self._ended.clear()
-        self._link.start()
-        threading.Thread(target=self._watch, name='motion', daemon=True).start()
-
-    def stop(self) -> None:
-        """Stop; the thread ends by itself if it is busy."""
-        self._ended.set()
-        self._link.stop()
-
-    @property
-    def link(self) -> Link:
-        """The connection, with its state and counts."""
-        return self._link
-
-    @property
-    def state(self) -> str:
-        """State: ``connecting``, ``waiting``, ``unknown`` messages, ``live`` or ``stale``."""
-        if self.accepted:
-            return 'live' if time.monotonic() - self._sent < _SILENT else 'stale'
-        if self._link.messages:
-            return 'unknown'
-        return 'waiting' if self._link.is_up else 'connecting'
+    def _is_live(self) -> bool:
+        return time.monotonic() - self._sent < _SILENT
 
     @property
     def rate(self) -> float:
@@ -122,29 +98,20 @@ class LiveMotion:
     @property
     def problem(self) -> str:
         """Why it does not move the tree as far as its line is concerned; empty if it may."""
-        link, source = self._link, self._source
         if self._clock.problem:
             return self._clock.problem
-        if self.state == 'live':
-            slow = 0.0 < self.rate < SLOWEST and len(self._arrivals) == _COUNTED
-            return (
-                f'{self.rate:.1f} samples per second are too few: set 20 or more' if slow else ''
-            )
-        if not link.is_up:
-            return f'no connection: {link.failure or "not yet"}'
-        if self.state == 'stale':
-            return f'silent for {time.monotonic() - self._sent:.0f} s: check battery and network'
-        if not link.messages:
-            return f'listening to {source.transport}: nothing has come yet'
-        if self.refused:
-            causes = ', '.join(list(self.refused)[:3])
-            return f'all of {link.messages} messages were refused: {causes}; last: {self._last}'
-        if not self.other:
-            return 'its clock is being compared'
-        return (
-            f'{link.messages} messages came, none was understood, the last: {self._last}; '
-            f'expected {source.expects}'
-        )
+        state = self.state
+        if state == 'live':
+            is_slow = 0.0 < self.rate < SLOWEST and len(self._arrivals) == _COUNTED
+            slow = f'{self.rate:.1f} samples per second are too few: set 20 or more'
+            return slow if is_slow else ''
+        if self._link.is_up:
+            if state == 'stale':
+                silence = time.monotonic() - self._sent
+                return f'silent for {silence:.0f} s: check battery and network'
+            if state == 'unknown' and not self.refused and not self.other:
+                return 'its clock is being compared'
+        return self._why_nothing()
 
     def drain(self) -> list[MotionSample]:
         """Return the samples since the last call."""
@@ -153,20 +120,12 @@ class LiveMotion:
             found.append(self._samples.popleft())
         return found
 
-    def _watch(self) -> None:
-        """Tell once why nothing comes, as soon as it is known, until it does."""
-        state, since, told = '', 0.0, ''
-        while not self._ended.wait(_LOOK) and not self.accepted:
-            if self.state != state:
-                state, since = self.state, time.monotonic()
-            if state != told and time.monotonic() - since >= _PATIENCE.get(state, math.inf):
-                told = state
-                self._log(f'{self.name}: {self.problem}')
+    def _news(self) -> str:
+        return f'{self.name}: {self.problem}'
 
     def _take(self, message: Message) -> None:
         """Read a message; called by the link's thread."""
         now = time.monotonic()
-        self._last = shown(message.data[:300].decode('utf-8', 'replace'), 120)
         readings = self._source.read(message)
         self.other += not readings
         good = [each for each in readings if isinstance(each, MotionReading)]
@@ -205,10 +164,6 @@ class LiveMotion:
             self._samples.append(sample)
             if self._heard is not None:
                 self._heard(sample)
-
-    def _refuse(self, cause: str, count: int = 1) -> None:
-        if cause in self.refused or len(self.refused) < _MOST_CAUSES:
-            self.refused[cause] = self.refused.get(cause, 0) + count
 
 
 _WORDS = {

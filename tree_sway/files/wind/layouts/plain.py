@@ -1,13 +1,18 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A table with a header, maybe below lines that a service puts before it, such as a place."""
+"""
+A table with a header, maybe below lines that a service puts before it, such as a place.
+
+The header may begin with a hash, and a row of units may be below it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 import re
 
-from tree_sway.files.column_names import rank_of
+from tree_sway.files.column_names import rank_of, unit_known
 from tree_sway.files.table_file import parse_table, TextTable
 from tree_sway.files.wind.layouts.layout import Layout
 
@@ -19,10 +24,17 @@ _WIND = ('wind_speed', 'wind_direction', 'wind_x', 'gust')
 
 
 def header_line(lines: Sequence[str]) -> int | None:
-    """Line of the header: the first with names of a time and, if there is one, of a wind."""
-    timed = [number for number, line in enumerate(lines[:_HEAD]) if _has_time(line)]
+    """
+    Line of the header: the first with names of a time and, if there is one, of a wind.
+
+    A comment is one only where no other line is, and with names of both.
+    """
+    head = list(enumerate(lines[:_HEAD]))
+    timed = [number for number, line in head if not line.startswith('#') and _has_time(line)]
     windy = [number for number in timed if _has_wind(lines[number])]
-    return next(iter(windy or timed), None)
+    comments = [(number, line.lstrip('# ')) for number, line in head if line.startswith('#')]
+    hashed = [number for number, line in comments if _has_time(line) and _has_wind(line)]
+    return next(iter(windy or timed or hashed), None)
 
 
 def _cells(line: str) -> list[str]:
@@ -31,7 +43,7 @@ def _cells(line: str) -> list[str]:
 
 def _has_time(line: str) -> bool:
     cells = _cells(line)
-    if line.startswith('#') or len(cells) < 2:
+    if len(cells) < 2:
         return False
     return any(
         rank_of(cell, 'time') is not None or cell.strip().lower() in _PARTS
@@ -51,7 +63,24 @@ def _is_table(lines: Sequence[str]) -> bool:
 def _read(lines: list[str], source: str) -> TextTable:
     first = header_line(lines) or 0
     lines[:first] = [''] * first
-    return parse_table(lines, source)
+    lines[first] = lines[first].removeprefix('#')
+    return _with_units_below(parse_table(lines, source))
+
+
+def _with_units_below(table: TextTable) -> TextTable:
+    """Return a table without its row of units, as Synoptic has one; itself without such a row."""
+    cells = table.split(table.texts[0])
+    pairs = zip(table.columns, cells, strict=False)
+    speeds = [cell for name, cell in pairs if rank_of(name, 'wind_speed') is not None]
+    if not any(unit_known('speed', cell) for cell in speeds):
+        return table
+    return replace(
+        table,
+        numbers=table.numbers[1:],
+        texts=table.texts[1:],
+        units=tuple(cells),
+        unit_line=table.numbers[0],
+    )
 
 
 PLAIN = Layout('table', _is_table, _read)

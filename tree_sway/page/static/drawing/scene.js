@@ -13,7 +13,8 @@ import {
 } from "./gl.js";
 import { Grass } from "./grass.js";
 import { Impostor } from "./impostors.js";
-import { barkMesh, boxOf, leafMesh, shapeOf } from "./mesh.js";
+import { leafMesh } from "./foliage.js";
+import { barkMesh, boxOf, shapeOf } from "./mesh.js";
 import { arrow, arrowLength, propMesh } from "./props.js";
 import { COARSEST, Quality } from "./quality.js";
 import { feet, lookOf } from "./looks.js";

@@ -1,0 +1,231 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Limp trees: nearer to the truth, no energy from nothing, stable, the same without a compiler."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from tree_sway_lab.kinds.kinds import kind_called
+from tree_sway_lab.kinds.shoots import Drawing, towards
+from tree_sway_lab.tip_error import record_tips, tip_error
+from tree_sway_lab.validation.trial import judged_simulator
+from tree_sway_lab.validation.truth import QUICK, SETTINGS, true_model, WOOD
+from tree_sway_lab.validation.winds import FRAME, turbulent
+
+from tree_sway.core.growth.builtin import builtin_tree
+from tree_sway.core.model.sway_model import SwayModel
+from tree_sway.core.run.limp_tree import LimpStep, LONGEST_STEP, SLACK
+from tree_sway.core.run.simulator import SwaySimulator
+from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.setup.prepare import prepare
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def weeping(seed=11):
+    """Draw a stem with six twigs of 1.4 m and 4 mm that hang from it."""
+    to = Drawing(np.random.default_rng(seed))
+    stem = to.shoot(UP, 3.0, (0.05, 0.03), 5, wander=2.0)
+    for k in range(6):
+        to.shoot(
+            towards(60.0 * k, 20.0), to.rng.uniform(1.2, 1.6), (0.004, 0.002), 6, on=stem,
+            node=3 + k % 3, rise=-25.0, wander=3.0,
+        )  # fmt: skip
+    return to.tree('weeping')
+
+
+@cache
+def limp_model() -> SwayModel:
+    return prepare(weeping(), WOOD, SETTINGS, model=40, cache=None)
+
+
+def limp_tree(**changes):
+    return SwaySimulator(limp_model(), **changes)
+
+
+def step_of(sim) -> LimpStep:
+    oscillators = sim.banks[0].oscillators
+    assert isinstance(oscillators, LimpStep)
+    return oscillators
+
+
+def by_table(sim):
+    """Make a tree take the step of the table, as it does in a storm."""
+    step = step_of(sim)
+    step._share_of_table = lambda speed: 1.0
+    return sim
+
+
+def test_only_trees_whose_twigs_hang_or_whip_are_limp():
+    for kind in ('willow', 'birch', 'whips', 'willow 7'):
+        assert judged_simulator('24', kind_called(kind)).models[0].is_limp, kind
+    for kind in ('palm', 'limbs4', 'leaning', 'candelabra', 'crooked 8'):
+        model = judged_simulator('24', kind_called(kind)).models[0]
+        assert not model.is_limp, kind
+        assert not {'segment_mass', 'weight_slopes'} & model.arrays().keys()
+    assert not make_simulator(builtin_tree('goldcrest'), model=24).models[0].is_limp
+
+
+@pytest.mark.parametrize('speed', [5.0, 9.0])
+def test_it_is_nearer_to_the_truth_than_the_table(speed):
+    wind = turbulent(speed, 3.0, 4)
+    tree = weeping()
+    truth = record_tips(true_model(tree, QUICK), tree, wind, FRAME, substeps=QUICK.substeps)
+    error = tip_error(tree, record_tips(limp_tree(), tree, wind, FRAME), truth)
+    table = tip_error(tree, record_tips(by_table(limp_tree()), tree, wind, FRAME), truth)
+    print(f'{speed:g} m/s: error {error:.3f}, by the table {table:.3f}')
+    assert error < 0.75 * table
+
+
+def potential(sim, eta):
+    """Energy of strain and weight [J] at coordinates, by the places of the segments."""
+    model = sim.models[0]
+    pose, linear = step_of(sim).pose, 0.5 * model.stiffness @ (eta * eta)
+    here = step_of(sim)._middles.fill(model.shapes @ eta, np.zeros(3 * sim.tree.n_segments))
+    return linear + pose.potential(eta, here)
+
+
+def test_without_wind_and_damping_the_energy_never_grows_over_a_minute():
+    sim = limp_tree()
+    sim.tune(damping_ratio=0.0)
+    for blowing in turbulent(6.0, 2.0, 3):
+        sim.step(blowing, FRAME)
+    step, instance = step_of(sim), step_of(sim).instance[0]
+    m, energies = len(sim.models[0].stiffness), []
+    for _ in range(3600):
+        step.advance(0.0, 0.0, 0.0, 0.0)  # no air either
+        eta, rate = instance['eta'][:m], instance['rate'][:m]
+        energies.append(0.5 * step.pose.twice_kinetic_energy(rate) + potential(sim, eta))
+    assert step._pause == 0.0
+    assert max(energies) <= (1.0 + 2.0 * SLACK) * energies[0]
+    assert energies[60] > 0.3 * energies[0]  # and does not stop
+
+
+@pytest.mark.parametrize('case', ['storm', 'gusts', 'uneven steps', 'long steps', 'tuned', 'push'])
+def test_nothing_makes_it_run_away(case):
+    sim, rng = limp_tree(), np.random.default_rng(6)
+    wind = turbulent(15.0, 8.0, 5)
+    steps = np.full(len(wind), FRAME)
+    if case == 'storm':
+        wind = 5.0 * wind
+    elif case == 'gusts':
+        wind = rng.normal(0.0, 20.0, wind.shape)
+    elif case == 'uneven steps':
+        steps = rng.uniform(1e-3, 2.0 * LONGEST_STEP, len(wind))
+    elif case == 'long steps':
+        steps[:] = LONGEST_STEP
+    for frame, (blowing, dt) in enumerate(zip(wind, steps, strict=True)):
+        if case == 'tuned' and frame % 60 == 0:
+            sim.tune(stiffness_factor=rng.uniform(0.8, 3.0), gravity=rng.uniform(5.0, 12.0))
+        if case == 'push' and frame % 30 == 0:
+            sim.push(int(rng.integers(sim.tree.n_segments)), rng.normal(0.0, 5.0, 3), 0.3)
+        sim.step(np.clip(blowing, -80.0, 80.0), dt)
+        assert np.isfinite(sim.place()).all()
+    assert sim.counts.restarted == 0
+    assert sim.counts.reduced == 0
+
+
+def test_numpy_gives_the_poses_of_the_kernels():
+    tips = [
+        record_tips(limp_tree(plain=plain), weeping(), turbulent(9.0, 2.0, 8), FRAME)
+        for plain in (False, True)
+    ]
+    height = weeping().end[:, 2].max()
+    assert np.abs(tips[0] - tips[1]).max() < 1e-5 * height
+
+
+def test_it_stands_still_in_still_air():
+    sim = limp_tree()
+    rest = sim.place()
+    for _ in range(120):
+        sim.step((0.0, 0.0, 0.0), FRAME)
+    np.testing.assert_allclose(sim.place(), rest, atol=1e-5)
+
+
+def test_it_begins_anew_after_a_reset():
+    sim, wind = limp_tree(), turbulent(9.0, 1.0, 2)
+    first = record_tips(sim, weeping(), wind, FRAME)
+    sim.reset()
+    np.testing.assert_array_equal(record_tips(sim, weeping(), wind, FRAME), first)
+
+
+def test_it_goes_on_from_a_state_nearly_as_it_would_have():
+    sim, other, wind = limp_tree(), limp_tree(), turbulent(9.0, 4.0, 2)
+    for blowing in wind[:180]:
+        sim.step(blowing, FRAME)
+    other.set_state(sim.state())
+    tips = [record_tips(each, weeping(), wind[180:], FRAME) for each in (sim, other)]
+    rest = weeping().end[weeping().branch_first[1:] - 1]
+    assert np.abs(tips[0] - tips[1]).max() < 0.02 * np.abs(tips[0] - rest).max()
+
+
+@pytest.fixture
+def swaying():
+    """Return the law of a limp tree, and a pose and a motion of it."""
+    step, rng = step_of(limp_tree()), np.random.default_rng(3)
+    shapes = step._by_key
+    eta, rate = rng.normal(size=(2, shapes.shape[1]))
+    eta *= 0.4 / np.abs(shapes @ eta).max()
+    rate *= 2.0 / np.abs(shapes @ rate).max()
+    here = step._middles.fill(shapes @ eta, np.zeros(len(step._here)))
+    return step, eta, rate, here
+
+
+def middles(step, eta):
+    return step._middles.fill(step._by_key @ eta, np.zeros(len(step._here)))
+
+
+def test_the_kinetic_energy_is_that_of_the_placed_segments(swaying):
+    step, eta, rate, here = swaying
+    rate[10:] = 0.0
+    step.pose.renew(eta, step._by_key @ eta, here, rate.copy(), np.inf)
+    h = 1e-4
+    velocity = (middles(step, eta + h * rate) - middles(step, eta - h * rate)) / (2.0 * h)
+    # The points have the inertia of the model at rest to some percent.
+    assert step.pose.twice_kinetic_energy(rate) == pytest.approx(velocity @ velocity, rel=0.03)
+
+
+def test_a_renewal_keeps_the_kinetic_energy(swaying):
+    step, eta, rate, here = swaying
+    before = step.pose.twice_kinetic_energy(rate)
+    for _ in range(30):
+        step.pose.renew(eta, step._by_key @ eta, here, rate, 0.0)
+        assert step.pose.twice_kinetic_energy(rate) == pytest.approx(before, rel=1e-12)
+    assert np.linalg.norm(step.pose.change) > 0.1
+
+
+def test_inertia_is_positive_however_old_its_columns_are(swaying):
+    step, eta, rate, _ = swaying
+    for turn in np.linspace(-2.0, 2.0, 25):
+        pose = turn * eta
+        rotations = step._by_key @ pose
+        step.pose.renew(pose, rotations, middles(step, pose), rate.copy(), 0.0)
+        inertia = step.pose.change + np.eye(len(step.pose.change))
+        assert np.linalg.eigvalsh(inertia).min() > -1e-12
+
+
+def test_the_centrifugal_force_does_no_work(swaying):
+    step, eta, rate, here = swaying
+    shapes = step._by_key
+    step.pose.renew(eta, shapes @ eta, here, rate, np.inf)
+    force, momentum = step.pose.centrifugal(shapes @ eta, here, rate, shapes @ rate)
+    assert np.linalg.norm(force) > 0.0
+    assert momentum @ rate == pytest.approx(1.0)
+    assert abs(force @ rate) < 1e-9 * np.linalg.norm(force) * np.linalg.norm(rate)
+
+
+def test_slopes_of_the_weight_are_the_second_derivative_of_its_potential():
+    sim = limp_tree()
+    step, model = step_of(sim), sim.models[0]
+    gravity, rest = step.pose._gravity, middles(step, 0.0 * model.stiffness)
+    steps = 2e-3 / np.abs(model.shapes).max(axis=0)
+    rng = np.random.default_rng(1)
+    for i, j in rng.integers(len(steps), size=(20, 2)):
+        a, b = np.eye(len(steps))[i] * steps[i], np.eye(len(steps))[j] * steps[j]
+        four = [
+            (middles(step, s * a + t * b) - rest) @ gravity * s * t
+            for s in (-1.0, 1.0) for t in (-1.0, 1.0)
+        ]  # fmt: skip
+        slope = sum(four) / (4.0 * steps[i] * steps[j])
+        assert slope == pytest.approx(model.weight_slopes[i, j], rel=1e-3, abs=1e-3)

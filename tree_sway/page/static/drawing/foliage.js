@@ -1,0 +1,230 @@
+// Copyright 2026 Tree Sway maintainers
+// SPDX-License-Identifier: Apache-2.0
+/** The leaves of a kind at rest: cards with pictures of leaves. Each vertex hangs on a segment, whose row is
+ * its first number, and moves with it. */
+
+import { STRIDE } from "../placing.js";
+import { multiply, turned } from "../quaternions.js";
+import { lookOf, seeded } from "./looks.js";
+import { leafPlace } from "./mesh.js";
+import { leavesAlong, pictureWidth, wholeLeaf } from "./textures.js";
+
+/** How much larger cards of leaves are, at most, where few are drawn, which show more leaves then. */
+const LARGEST_CARDS = 4;
+/** Tufts over the cards that others have, which are smaller. */
+const TUFTS = 0.6;
+/** Length of a small card over that of one of full size, by how many there are, and the least of it. */
+const [SMALLER, LEAST_CARD] = [0.57, 0.08];
+/** Area of leaves that are drawn one by one over that of the cluster; and how much of its card a leaf fills. */
+const [FULLNESS, FILLED] = [3.2, 0.55];
+/** Different small cards. */
+const VARIETY = 200;
+/** Wood that bears leaves wherever it is seen, over the thickest that clusters are on; and the size of what is
+ * drawn there over that of a cluster, and at most [m]. */
+const [THIN, BARE_SIZE, LARGEST_BARE] = [1.6, 0.6, 0.3];
+/** Height up to which no small card is drawn [m]. */
+const BROWSED = 1.6;
+/** Numbers of a corner of a card. */
+const PER_CORNER = 19;
+const ORIGIN = [0, 0, 0];
+/** How low a card ends over its length. */
+const BOW = 0.1;
+
+/** Leaves: each cluster is up to three cards that cross each other about its shoot, and show leaves in a
+ * picture; or many small ones that fan out from its twig. They come in a mixed order, so that any first part
+ * of them is a thinner crown. Per vertex: place (3), how it moves with the flutter (3), normal (3), where
+ * light comes from (3), flutter frequency and phase (2), openness, tint, place in the picture (2).
+ * @param {Shape} shape @param {Int32Array} branches that are drawn @param {number} cards @param {number} most
+ * cards of the whole crown, whose area fewer have as well
+ * @returns {{mesh: Mesh, along: number}} and how many leaves the picture is long */
+export function leafMesh({ kind, placer, rest, high, shade }, branches, cards, most) {
+  const { leaf_segment: carrier, leaf_size: sizes } = kind.arrays;
+  if (!carrier?.length) return { mesh: { values: [], indices: [] }, along: 1 };
+  const random = seeded();
+  const mean = Array.from(sizes).reduce((sum, size) => sum + size, 0) / sizes.length;
+  const look = lookOf(kind);
+  const { each, along, spray, isSpread } = cardsOf(look, mean, carrier.length, cards, most);
+  const shoots = mixed(Array.from(carrier, (_, i) => leafyShoot(kind, rest, i)), random).slice(0, cards);
+  if (isSpread) shoots.push(...bareShoots(kind, rest, branches, mean));
+  const small = isSpread ? Array.from({ length: VARIETY }, () => spreadCorners(look, spray, random)) : [];
+  const hung = hungOn(kind, branches);
+  // No leaf is in the ground, nor where animals browse; those of what is potted may hang lower.
+  const lowest = look.is_potted ? -Infinity : rest[2] + Math.min(BROWSED, 0.1 * (high[2] - rest[2]));
+  const values = [];
+  for (const shoot of shoots) {
+    const p = STRIDE * hung[shoot.segment];
+    const slot = placer.slots[hung[shoot.segment]];
+    const back = [-rest[p + 4], -rest[p + 5], -rest[p + 6], rest[p + 7]];
+    const axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(shoot.frame, axis));
+    const own = axes.map((axis) => turned(back, axis));
+    const centre = turned(back, shoot.at.map((a, c) => a - rest[p + c]));
+    for (let card = 0; card < shoot.share * each; card++) {
+      const corners = isSpread ? small[Math.floor(VARIETY * random())] : cardCorners(spray, shoot.phase, card);
+      const end = inFrame(axes, corners[2].place, shoot.size, shoot.at);
+      if (isSpread && end[2] < lowest) continue;
+      const { open, towards } = shade(end);
+      const light = turned(back, towards);
+      const tint = 1 + 0.16 * Math.sin(7 * shoot.phase + 2 * card);
+      for (const { place, swing, normal, u, v } of corners) {
+        values.push(slot);
+        values.push(...inFrame(own, place, shoot.size, centre));
+        values.push(...inFrame(own, swing, shoot.size));
+        values.push(...inFrame(own, normal, 1));
+        values.push(...light, shoot.frequency, shoot.phase + 2.4 * card, open, tint, u, v);
+      }
+    }
+  }
+  const firsts = mixed(Array.from({ length: values.length / (4 * PER_CORNER) }, (_, card) => 4 * card), random);
+  return { mesh: { values, indices: firsts.flatMap((v) => [v, v + 1, v + 2, v, v + 2, v + 3]) }, along };
+}
+
+/** A vector of a frame with given axes, scaled, from a place on. @param {number[][]} axes
+ * @param {number[]} vector @param {number} scale @param {number[]} [from] */
+function inFrame([a, b, c], vector, scale, from = ORIGIN) {
+  const x = scale * vector[0];
+  const y = scale * vector[1];
+  const z = scale * vector[2];
+  return [from[0] + x * a[0] + y * b[0] + z * c[0], from[1] + x * a[1] + y * b[1] + z * c[1],
+    from[2] + x * a[2] + y * b[2] + z * c[2]];
+}
+
+/** A cluster of the description: its segment, its middle and frame at rest, its size [m], its flutter, and
+ * the share of the cards of a cluster that it has. @param {Kind} kind @param {Float32Array} rest
+ * @param {number} i number of the cluster @returns {Shoot} */
+function leafyShoot(kind, rest, i) {
+  const { leaf_segment: carrier, leaf_orientation: orientation, leaf_size: sizes, leaf_phase: phases,
+    leaf_frequency: frequencies } = kind.arrays;
+  const [w, x, y, z] = orientation.subarray(4 * i, 4 * i + 4);
+  const frame = [0, 0, 0, 1];
+  multiply(rest, STRIDE * carrier[i] + 4, [x, y, z, w], 0, frame);
+  const at = leafPlace(kind, rest, i);
+  return { segment: carrier[i], at, frame, size: sizes[i], phase: phases[i], frequency: frequencies[i], share: 1 };
+}
+
+/** Shoots at the end of each branch, and along thin wood that has no cluster: none of it is bare.
+ * @param {Kind} kind @param {Float32Array} rest @param {Int32Array} branches that are drawn
+ * @param {number} mean size of clusters [m] @returns {Shoot[]} */
+function bareShoots({ arrays }, rest, branches, mean) {
+  const { branch_first: first, segment_length: length, segment_radius: radius, leaf_segment: carrier } = arrays;
+  const leafy = new Set(carrier);
+  const thickest = Math.max(...Array.from(leafy, (segment) => radius[2 * segment]));
+  const frequency = arrays.leaf_frequency[0];
+  /** @type {Shoot[]} */
+  const shoots = [];
+  const size = Math.min(BARE_SIZE * mean, LARGEST_BARE);
+  const share = (size / mean) ** 2;
+  /** @param {number} segment @param {number} along [m] */
+  const add = (segment, along) => {
+    const o = STRIDE * segment;
+    const frame = Array.from(rest.subarray(o + 4, o + 8));
+    const at = turned(frame, [along, 0, 0]).map((each, c) => each + rest[o + c]);
+    shoots.push({ segment, at, frame, size, phase: 2.4 * shoots.length, frequency, share });
+  };
+  for (const branch of branches) {
+    const end = first[branch + 1] - 1;
+    // A dead stub stays bare.
+    if (length[end] > size || leafy.has(end)) add(end, length[end] - 0.5 * size);
+    for (let segment = first[branch]; segment < end; segment++) {
+      if (leafy.has(segment) || radius[2 * segment] > THIN * thickest) continue;
+      const count = Math.ceil(length[segment] / (1.5 * size));
+      for (let k = 0; k < count; k++) add(segment, ((k + 0.5) * length[segment]) / count);
+    }
+  }
+  return shoots;
+}
+
+/** The cards of each cluster of a level: how many, of what size, the leaves along their picture, and whether
+ * they are spread over the cluster. @param {Look} look @param {number} mean size of clusters [m]
+ * @param {number} clusters how many there are @param {number} cards of the level @param {number} most */
+function cardsOf(look, mean, clusters, cards, most) {
+  const { rolls, length, width } = look.spray;
+  const perCluster = (/** @type {number} */ all) => Math.max(1, Math.floor(all / clusters));
+  const each = perCluster(look.form === "tufts" && cards > rolls.length * clusters ? TUFTS * cards : cards);
+  const leaf = wholeLeaf(look);
+  const alone = { rolls, width: pictureWidth(look, 1), length: Math.min(length, (1.4 * leaf) / mean) };
+  if (each <= rolls.length) {
+    // Their area is that of as many of full size.
+    const whole = clusters * Math.min(rolls.length, perCluster(most));
+    const larger = Math.min(LARGEST_CARDS, Math.sqrt(whole / (Math.min(clusters, cards) * each)));
+    const along = leavesAlong(look, larger * length * mean);
+    return { each, along, spray: along > 1 ? { rolls, width, length: larger * length } : alone, isSpread: false };
+  }
+  // Small cards hide each other less.
+  const small = length * Math.max(LEAST_CARD, (rolls.length / each) ** SMALLER);
+  if (look.has_needles || small * mean > 1.6 * leaf) {
+    return { each, along: leavesAlong(look, small * mean), spray: { rolls, width, length: small }, isSpread: true };
+  }
+  const leaves = (FULLNESS * Math.PI * mean * mean) / (4 * FILLED * alone.width * leaf * leaf);
+  const spray = { ...alone, length: leaf / mean };
+  return { each: Math.max(1, Math.min(each, Math.round(leaves))), along: 1, spray, isSpread: true };
+}
+
+/** Corners of a card of a cluster of size 1: place, motion, normal, in the frame of the cluster; in the picture.
+ * `tree_mesh.py` has those of files. @param {Spray} spray @param {number} phase of the flutter of the cluster,
+ * which makes each of its own @param {number} card its number */
+function cardCorners({ length, width, rolls }, phase, card) {
+  const roll = rolls[card % rolls.length] + 0.3 * Math.sin(phase);
+  const yaw = 0.35 * Math.sin(phase + 2.1 * card);
+  const around = [0, 0, Math.sin(yaw / 2), Math.cos(yaw / 2)];
+  multiply(around, 0, [Math.sin(roll / 2), 0, 0, Math.cos(roll / 2)], 0, around);
+  return cornersOf((u, v) => {
+    const place = hanging(turned(around, [u * length, v * width * length, 0]), BOW * length * u);
+    return { place, swing: [0, -place[2], place[1]], normal: turned(around, [0.3 * u, 1.2 * v, 1]) };
+  });
+}
+
+/** The same of a small card, anywhere in the cluster: it points away from where the shoot leaves its twig, and
+ * flutters about its own stalk.
+ * @param {Look} look @param {Spray} spray the card's own @param {() => number} random */
+function spreadCorners(look, { length, width }, random) {
+  const whole = look.spray.length;
+  const wide = look.spray.width * whole;
+  const isFlat = look.has_needles && look.form !== "tufts";
+  const some = () => random() + random() - 1;
+  const middle = [whole * (0.5 + 0.5 * some()), wide * some(), (isFlat ? 0.55 : 0.8) * wide * some()];
+  const away = unit(middle.map((each) => each + 0.25 * whole * some()));
+  const upright = unit([0, 1, 2].map((c) => (c === 2 ? 1 : 0) - away[2] * away[c] + 1e-6 * c));
+  const beside = cross(upright, away);
+  const roll = (isFlat ? 0.9 : 1.5) * some();
+  const [normal, across] = [[Math.cos(roll), Math.sin(roll)], [-Math.sin(roll), Math.cos(roll)]]
+    .map(([a, b]) => upright.map((each, c) => a * each + b * beside[c]));
+  const at = (/** @type {number} */ u, /** @type {number} */ v) =>
+    middle.map((each, c) => each + length * ((u - 0.5) * away[c] + v * width * across[c]));
+  return cornersOf((u, v) => ({
+    place: hanging(at(u, v), BOW * length * u),
+    swing: normal.map((each) => length * (0.4 * u + v * width) * each),
+    normal: normal.map((each, c) => each + 0.3 * u * away[c] + 0.5 * v * across[c]),
+  }));
+}
+
+/** Four corners of a picture. @template T @param {(u: number, v: number) => T} at */
+function cornersOf(at) {
+  return [[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]].map(([u, v]) => ({ ...at(u, v), u, v: 0.5 + v }));
+}
+
+/** From where the shoot leaves its twig, and lower. @param {number[]} place @param {number} low */
+const hanging = ([x, y, z], low) => [x - 0.5, y, z - low];
+
+/** @param {number[]} v */
+const unit = (v) => v.map((each) => each / (Math.hypot(...v) || 1));
+
+/** @param {number[]} a @param {number[]} b */
+const cross = (a, b) => [0, 1, 2].map((c) => a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3]);
+
+/** In a random order. @template T @param {T[]} items @param {() => number} random */
+function mixed(items, random) {
+  return items.map((item) => ({ item, key: random() })).sort((a, b) => a.key - b.key).map(({ item }) => item);
+}
+
+/** The drawn segment that each segment moves with: itself, or what carries the branch left out.
+ * @param {Kind} kind @param {Int32Array} branches */
+function hungOn({ arrays, nSegments, nBranches }, branches) {
+  const hung = Int32Array.from({ length: nSegments }, (_, i) => i);
+  const drawn = new Set(branches);
+  for (let branch = 0; branch < nBranches; branch++) {
+    if (drawn.has(branch)) continue;
+    const under = hung[arrays.branch_base_segment[branch]];
+    hung.fill(under, arrays.branch_first[branch], arrays.branch_first[branch + 1]);
+  }
+  return hung;
+}

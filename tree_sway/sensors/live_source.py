@@ -1,0 +1,146 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A live source from its start to its stop: connection, counts, and the news why nothing comes.
+
+Wind and motion differ in what they do with a message; that is in `LiveWind` and `LiveMotion`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+import math
+import threading
+import time
+
+from tree_sway.errors import shown
+from tree_sway.sensors.transports.link import Link, LONGEST_PAUSE
+from tree_sway.sensors.transports.transport import Message, Transport
+
+_LOOK = 0.5
+"""Interval at which it is looked whether anything comes [s]."""
+_MOST_CAUSES = 20
+"""Number of causes of refusals that are counted apart."""
+_SHOWN_CAUSES = 3
+_SHOWN_BYTES, _SHOWN_LETTERS = 300, 120
+"""Length of a message that is shown, before and after what cannot be printed is replaced."""
+
+
+class LiveSource(ABC):
+    """
+    A source, from `start` to `stop`.
+
+    Parameters
+    ----------
+    transport
+        Way in which its messages arrive.
+    log
+        Function called with a line of news, from the source's thread.
+    messages
+        Word for its messages.
+    expects
+        What its messages should have.
+    patience
+        Time [s] in each state after which it is told why nothing comes; states without one are
+        not told.
+    silence, longest_pause
+        As in `Link`.
+
+    """
+
+    def __init__(
+        self,
+        transport: Transport,
+        log: Callable[[str], None],
+        *,
+        messages: str,
+        expects: str,
+        patience: Mapping[str, float],
+        silence: float | None = None,
+        longest_pause: float = LONGEST_PAUSE,
+    ) -> None:
+        self.accepted = self.other = 0
+        """Numbers of samples, and of messages that are about something else."""
+        self.refused: dict[str, int] = {}
+        """Numbers of samples that were refused, by cause."""
+        self._log, self._messages, self._expects = log, messages, expects
+        self._patience = patience
+        self._last = ''
+        self._ended = threading.Event()
+        self._link = Link(transport, self._receive, log, silence, longest_pause=longest_pause)
+
+    def start(self) -> None:
+        """Start to listen."""
+        self._ended.clear()
+        self._link.start()
+        threading.Thread(target=self._watch, name='live source', daemon=True).start()
+
+    def stop(self) -> None:
+        """Stop; the thread ends by itself if it is busy."""
+        self._ended.set()
+        self._link.stop()
+
+    @property
+    def link(self) -> Link:
+        """The connection, with its state and counts."""
+        return self._link
+
+    @property
+    def state(self) -> str:
+        """State: ``connecting``, ``waiting``, ``unknown`` messages, ``live`` or ``stale``."""
+        if self.accepted:
+            return 'live' if self._is_live() else 'stale'
+        if self._link.messages:
+            return 'unknown'
+        return 'waiting' if self._link.is_up else 'connecting'
+
+    @property
+    @abstractmethod
+    def problem(self) -> str:
+        """Why nothing comes of it; empty if something does."""
+
+    @abstractmethod
+    def _is_live(self) -> bool:
+        """Whether its newest sample still counts."""
+
+    @abstractmethod
+    def _take(self, message: Message) -> None:
+        """Read a message; called by the link's thread."""
+
+    def _receive(self, message: Message) -> None:
+        self._last = shown(message.data[:_SHOWN_BYTES].decode('utf-8', 'replace'), _SHOWN_LETTERS)
+        self._take(message)
+
+    def _refuse(self, cause: str, count: int = 1) -> None:
+        """Count refused samples, by the first causes that occur."""
+        if cause in self.refused or len(self.refused) < _MOST_CAUSES:
+            self.refused[cause] = self.refused.get(cause, 0) + count
+
+    def _why_nothing(self) -> str:
+        """Why no sample was accepted so far."""
+        link = self._link
+        if not link.is_up:
+            return f'no connection: {link.failure or "not yet"}'
+        if not link.messages:
+            return f'listening to {link.transport}: nothing has come yet'
+        came = f'{link.messages} {self._messages} came'
+        if self.refused:
+            causes = ', '.join(list(self.refused)[:_SHOWN_CAUSES])
+            return f'{came}, all were refused: {causes}; the last: {self._last}'
+        return f'{came}, none was understood, the last: {self._last}; expected {self._expects}'
+
+    def _watch(self) -> None:
+        """Tell once why nothing comes, as soon as it is known, until it does."""
+        state, since, told = '', 0.0, ''
+        while not self._ended.wait(_LOOK) and not self.accepted:
+            if self.state != state:
+                state, since = self.state, time.monotonic()
+            waited = time.monotonic() - since
+            if state != told and waited >= self._patience.get(state, math.inf):
+                told = state
+                self._log(self._news())
+
+    def _news(self) -> str:
+        """Return the problem as a line for the terminal."""
+        return self.problem
