@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How much of a motion is explained, over the last half minute."""
+"""How much of the motion the wind alone explains, over the last half minute."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ _EVERY = 0.1
 
 class ExplainedMotion:
     """
-    Energy of the rest over that of the whole motion, both about their means.
+    Energy of the correction over that of the whole motion, both about their means.
 
-    With stiffnesses as weights, energies are those of the springs: a coordinate counts by how much
-    it bends the tree. What the wind alone explains has the correction as its rest.
+    Energies are those of the springs, so that a coordinate counts by how much it bends the tree.
     """
 
     def __init__(self) -> None:
@@ -28,7 +27,7 @@ class ExplainedMotion:
         self._means: Floats = np.zeros((2, 0))
         self._energies: Floats = np.zeros(2)
 
-    def note(self, dt: float, weights: Floats, whole: Floats, rest: Floats) -> None:
+    def note(self, dt: float, stiffness: Floats, whole: Floats, added: Floats) -> None:
         """
         Note a step.
 
@@ -36,10 +35,10 @@ class ExplainedMotion:
         ----------
         dt
             Time since the last one in [s].
-        weights
-            Weight of the square of each, (m,).
-        whole, rest
-            The motion, and what is not explained of it, (m,).
+        stiffness
+            Stiffness of the coordinates, of unit mass, in [1/s^2], (m,).
+        whole, added
+            Displacements with the correction, and the correction itself, (m,).
 
         """
         self._since += dt
@@ -51,15 +50,15 @@ class ExplainedMotion:
         self._passed += dt
         # Means over all steps until there are more than the time constant.
         share = min(dt / min(self._passed, RECENT), 1.0)
-        for k, now in enumerate((whole, rest)):
+        for k, now in enumerate((whole, added)):
             away = now - self._means[k]
             self._means[k] += share * away
             # Both factors: the mean has moved towards the value (Welford 1962).
-            energy = float(weights @ (away * (now - self._means[k])))
+            energy = float(stiffness @ (away * (now - self._means[k])))
             self._energies[k] += share * (energy - self._energies[k])
 
     @property
     def share(self) -> float:
-        """Share that is explained, 0 to 1; 1 without motion."""
-        whole, rest = self._energies.tolist()
-        return min(max(1.0 - rest / whole, 0.0), 1.0) if whole > 0.0 else 1.0
+        """Share that the wind alone explains, 0 to 1; 1 without motion."""
+        whole, added = self._energies.tolist()
+        return min(max(1.0 - added / whole, 0.0), 1.0) if whole > 0.0 else 1.0

@@ -401,9 +401,4 @@ class ObservedTree(SwaySimulator):
     @property
     def problems(self) -> list[str]:
         """Sensors that are not in use: why, and what to do, one sentence each."""
-        found = [each.problem for each in self.observer.tracks if each.problem]
-        for name in self.observer.useless:
-            found.append(
-                f'{name}: it tells nothing of this tree there: fix it higher or on a limb'
-            )
-        return found
+        return [each.problem for each in self.observer.tracks if each.problem]

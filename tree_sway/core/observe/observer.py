@@ -12,9 +12,9 @@ Two sets of gains are kept. The causal one expects more noise than the sensors h
 would otherwise shake branches that no sensor sees. The one of the smoother trusts them, and is
 late by a fixed lag.
 
-A correction is worth what it foretells: of the motion that a sensor measures beyond the model, the
-share that was expected from the measurements before. Where the model and the tree differ too much
-for any, the correction is taken back, and the tree sways in the wind alone.
+A sensor on the stem tells about a hanging twig only what both have in common by the law of the
+gusts, and of all that the filter knows, that law is known least. A coordinate is corrected where
+the sensors take away enough of its variance; elsewhere the tree sways in the wind alone.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import entry_of, kernel
 from tree_sway.core.observe.disturbance import Disturbance, disturbance, TIME_CONSTANT
 from tree_sway.core.observe.estimate import Estimate
-from tree_sway.core.observe.explained_motion import ExplainedMotion
 from tree_sway.core.observe.lateness import Lateness
 from tree_sway.core.observe.sensor_place import place_motion, PlaceMotion
 from tree_sway.core.observe.sensor_track import as_felt, ROWS, sensed_rows, SensorTrack
@@ -40,6 +39,7 @@ from tree_sway.core.observe.steady_filter import (
     SteadyFilter,
     sway_law,
     SwayLaw,
+    told_shares,
 )
 from tree_sway.core.observe.tree_fit import fits, SensorSpectrum, Spectrum, TreeFit
 from tree_sway.core.setup.one_thread import one_thread
@@ -64,11 +64,14 @@ _STIFFER, _MORE_DAMPED = 0.03, 0.2
 
 _FIRST_FIT, _FIT_LATER = 40.0, 1.4
 
-_TELLS_NOTHING, _TELLS_ENOUGH = 0.01, 0.05
-"""Shares foretold by the best sensor below and above which the correction is none or whole."""
+_TELLS_LITTLE, _TELLS_ENOUGH = 0.25, 0.4
+"""
+Shares of the variance of a coordinate that the sensors take away below and above which its
+correction is not applied, and applied whole.
+"""
 
 _TRUSTED_WITHIN = 2.0
-"""Time constant in [s] of the trust in the correction."""
+"""Time constant in [s] with which the applied shares follow those of new gains."""
 
 SMOOTHED_LAG, _WINDOW = 6, np.hanning(9)[1:-1] / np.hanning(9)[1:-1].sum()
 """Steps between the smoother's estimate and its newest measurement, and the window over it."""
@@ -164,9 +167,9 @@ class Observer:
         self._late_one: Estimate | None = None
         self._designing: Iterator[_Design | None] | None = None
         self._designed: tuple[int, ...] = ()
-        self.trust = 0.0
-        """Share of the correction that is applied, by what it foretells [-]."""
-        self._foretold: dict[int, ExplainedMotion] = {}
+        self.trust = np.zeros(self.count)
+        """Share of the correction of each coordinate that is applied [-], (count,)."""
+        self._wanted_trust = np.zeros(self.count)
         self._unknown: Disturbance | None = None
         self._air_damping = np.zeros(self.count)
         self._fitting: Iterator[TreeFit | None] | None = None
@@ -331,13 +334,14 @@ class Observer:
         found = next(self._designing)
         if found is None:
             return
-        self._designing, self.noise = None, found.noise
-        if found.used != self._used:
-            self._used = found.used
-            self._foretold = {k: ExplainedMotion() for k in found.used}
+        self._designing, self._used, self.noise = None, found.used, found.noise
         self._causal = Estimate(found.causal, self._causal)
         if found.late is not None:
             self._late_one = Estimate(found.late, self._late_one)
+        told = (told_shares(found.causal) - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
+        self._wanted_trust = np.clip(told, 0.0, 1.0)
+        for k, track in enumerate(self.tracks):
+            track.tells_little = k in found.used and not self._wanted_trust.any()
         self._values = np.zeros(len(found.causal.sensed))
         self._ahead = {}
 
@@ -438,8 +442,9 @@ class Observer:
             unknown = self._join(beyond)
             causal.move(n_periods)
             causal.correct(self._values, unknown)
+            share = min(n_periods * self._dt / _TRUSTED_WITHIN, 1.0)
+            self.trust += share * (self._wanted_trust - self.trust)
             self._judge(causal.sizes(), beyond)
-            self._weigh(causal, beyond, n_periods * self._dt)
             if late is not None:
                 late.move(n_periods)
                 for each in skipped:
@@ -477,31 +482,6 @@ class Observer:
             if beyond[k] is not None and track.in_use:
                 track.judge(max(sizes[first:last]))
             first = last
-
-    def _weigh(self, causal: Estimate, beyond: list[Floats | None], dt: float) -> None:
-        """Weigh the correction by how much of its own sensors' motion it foretells."""
-        first = 0
-        for k in self._used:
-            track = self.tracks[k]
-            rows = slice(first, first + 3 * len(track.uses))
-            first = rows.stop
-            if beyond[k] is not None and track.in_use:
-                weights = 1.0 / np.square(causal.gains.deviation[rows])
-                told = self._foretold[k]
-                told.note(dt, weights, self._values[rows], causal.innovation[rows])
-        best = max(each.share for each in self._foretold.values())
-        worth = (best - _TELLS_NOTHING) / (_TELLS_ENOUGH - _TELLS_NOTHING)
-        worth = min(max(worth, 0.0), 1.0)
-        self.trust += min(dt / _TRUSTED_WITHIN, 1.0) * (worth - self.trust)
-
-    @property
-    def useless(self) -> list[str]:
-        """Sensors in use of whose motion the correction foretells nothing."""
-        return [
-            self.tracks[k].sensor.name
-            for k, told in self._foretold.items()
-            if k in self._used and told.share < _TELLS_NOTHING
-        ]
 
     def _watch_refused(self, beyond: list[Floats | None]) -> None:
         """Judge refused sensors by the motion expected without any sensor."""
@@ -553,7 +533,8 @@ class Observer:
     def reset(self) -> None:
         """Forget the correction; what is known about the sensors stays."""
         self._causal = self._late_one = self._designing = None
-        self._used, self._foretold, self.trust = (), {}, 0.0
+        self._used = ()
+        self.trust[:] = 0.0
         self._states[:] = 0.0
         self._eta[:] = 0.0
 
