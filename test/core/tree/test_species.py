@@ -102,6 +102,8 @@ def test_names_of_lists_are_known_whatever_their_case(name, key):
     ('name', 'key', 'guess'),
     [
         ('brich', 'broadleaf', "did you mean 'birch'?"),
+        ('okk', 'broadleaf', "did you mean 'oak'?"),
+        ('elmm', 'broadleaf', "did you mean 'elm'?"),
         ('Paulownia tomentosa', 'broadleaf', 'a broadleaf of no known species'),
         ('Sumpfzypresse', 'conifer', 'a conifer of no known species'),
         ('Winter-Linde', 'lime', 'is taken as lime'),
