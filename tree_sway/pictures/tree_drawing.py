@@ -43,22 +43,22 @@ Limits = tuple[tuple[float, float], tuple[float, float]]
 
 def seen(points: ArrayLike) -> Floats:
     """Right, up and away of points (..., 3), all in [m]."""
-    down, level = np.sin(ELEVATION), np.cos(ELEVATION)
-    rows = np.array([[1.0, 0.0, 0.0], [0.0, down, level], [0.0, level, -down]])
-    return np.asarray(np.asarray(points, dtype=np.float64) @ rows.T)
+    sine, cosine = np.sin(ELEVATION), np.cos(ELEVATION)
+    right = [1.0, 0.0, 0.0]
+    up = [0.0, sine, cosine]
+    away = [0.0, cosine, -sine]
+    return np.asarray(np.asarray(points, dtype=np.float64) @ np.array([right, up, away]).T)
 
 
 def limits_around(points: Floats) -> Limits:
     """Frame all points [m], (n, 3), with a margin round them and room for the wind above."""
-    low, high = seen(points)[:, :2].min(axis=0), seen(points)[:, :2].max(axis=0)
-    wide, tall = (high - low).tolist()
-    size = max(tall, 0.4 * wide)
-    half = max(0.5 * wide, 0.3 * size) + _MARGIN * size
-    middle = 0.5 * float(low[0] + high[0])
-    return (middle - half, middle + half), (
-        float(low[1]) - 0.1 * size,
-        float(high[1]) + 0.16 * size,
-    )
+    right, up = seen(points)[:, :2].T
+    width = float(np.ptp(right))
+    size = max(float(np.ptp(up)), 0.4 * width)
+    half_width = max(0.5 * width, 0.3 * size) + _MARGIN * size
+    middle = 0.5 * float(right.min() + right.max())
+    sides = middle - half_width, middle + half_width
+    return sides, (float(up.min()) - 0.1 * size, float(up.max()) + 0.16 * size)
 
 
 def draw_trees(
@@ -91,19 +91,12 @@ def draw_trees(
         True to draw the shape at rest behind.
 
     """
-    from matplotlib.collections import EllipseCollection, PolyCollection
+    from matplotlib.collections import PolyCollection
 
     axes.clear()
     axes.axis('off')
     axes.set(xlim=limits[0], ylim=limits[1], aspect='equal')
-    roots = seen([tree.start[0] for tree in trees])[:, :2]
-    wide = [0.5 * float(np.ptp(tree.end[:, 0])) for tree in trees]
-    axes.add_collection(
-        EllipseCollection(
-            wide, np.multiply(wide, np.sin(ELEVATION)), 0.0,
-            units='xy', offsets=roots, offset_transform=axes.transData, color=_SHADOW,
-        )
-    )  # fmt: skip
+    _draw_shadows(axes, trees)
     length = np.concatenate([tree.length for tree in trees])
     block = np.asarray(poses, dtype=np.float64)
     if has_ghost:
@@ -114,16 +107,47 @@ def draw_trees(
     colors = np.vstack([_bark(tree) for tree in trees])
     if leaves is not None:
         blades, green = _blades(trees, leaves, leaf_poses(leaves, block, flutter))
-        shapes, colors = np.concatenate([shapes, blades]), np.concatenate([colors, green])
+        shapes = np.concatenate([shapes, blades])
+        colors = np.concatenate([colors, green])
     away = shapes[..., 2].mean(axis=1)
+    colors = _hazed(colors, away, limits)
     far_first = np.argsort(-away)
-    span = max(float(np.ptp(away)), 0.3 * (limits[1][1] - limits[1][0]))
-    depth = 0.5 + (away - 0.5 * (away.min() + away.max())) / span
-    colors += _HAZE * depth[:, None] * (1.0 - colors)
-    painted = {'facecolors': colors[far_first], 'edgecolors': 'face', 'linewidths': 0.4}
     corners = shapes[far_first, :, :2]
-    axes.add_collection(PolyCollection(corners, **painted))  # type: ignore[arg-type]
+    axes.add_collection(
+        PolyCollection(
+            corners,  # type: ignore[arg-type]
+            facecolors=colors[far_first],
+            edgecolors='face',
+            linewidths=0.4,
+        )
+    )
     _draw_wind(axes, np.asarray(wind, dtype=np.float64), limits)
+
+
+def _draw_shadows(axes: Axes, trees: Sequence[Tree]) -> None:
+    """Draw a shadow on the ground under each tree, half as wide as its crown."""
+    from matplotlib.collections import EllipseCollection
+
+    widths = [0.5 * float(np.ptp(tree.end[:, 0])) for tree in trees]
+    axes.add_collection(
+        EllipseCollection(
+            widths,
+            np.multiply(widths, np.sin(ELEVATION)),
+            0.0,
+            units='xy',
+            offsets=seen([tree.start[0] for tree in trees])[:, :2],
+            offset_transform=axes.transData,
+            color=_SHADOW,
+        )
+    )
+
+
+def _hazed(colors: Floats, away: Floats, limits: Limits) -> Floats:
+    """Whiten the colours (m, 3) of shapes by how far away they are [m], (m,)."""
+    bottom, top = limits[1]
+    span = max(float(np.ptp(away)), 0.3 * (top - bottom))
+    depth = 0.5 + (away - 0.5 * (away.min() + away.max())) / span
+    return np.asarray(colors + _HAZE * depth[:, None] * (1.0 - colors))
 
 
 def _tapered(trees: Sequence[Tree], start: Floats, end: Floats) -> Floats:
@@ -131,33 +155,35 @@ def _tapered(trees: Sequence[Tree], start: Floats, end: Floats) -> Floats:
     base, tip = seen(start), seen(end)
     across = np.cross(tip - base, [0.0, 0.0, 1.0])
     across /= np.maximum(np.linalg.norm(across, axis=1), 1e-12)[:, None]
-    below = 0.5 * np.concatenate([tree.base_diameter for tree in trees])[:, None] * across
-    above = 0.5 * np.concatenate([tree.tip_diameter for tree in trees])[:, None] * across
+    base_diameter = np.concatenate([tree.base_diameter for tree in trees])[:, None]
+    tip_diameter = np.concatenate([tree.tip_diameter for tree in trees])[:, None]
+    below = 0.5 * base_diameter * across
+    above = 0.5 * tip_diameter * across
     return np.stack([base - below, base + below, tip + above, tip - above], axis=1)
 
 
 def _bark(tree: Tree) -> Floats:
     """Colour of each segment, (n, 3): twigs are brown, with any bark of old wood."""
-    old = np.clip(tree.base_diameter / (0.2 * tree.base_diameter[0]), 0.0, 1.0)[:, None]
-    return np.asarray(_SHADE * (_TWIG + old * (np.array(look_of(tree.species).bark) - _TWIG)))
+    age = np.clip(tree.base_diameter / (0.2 * tree.base_diameter[0]), 0.0, 1.0)[:, None]
+    old_bark = np.array(look_of(tree.species).bark)
+    return np.asarray(_SHADE * (_TWIG + age * (old_bark - _TWIG)))
 
 
 def _blades(trees: Sequence[Tree], leaves: LeafClusters, placed: Floats) -> tuple[Floats, Floats]:
     """Corners of each leaf: right, up and away, (m, 4, 3), and its colour, (m, 3)."""
     from scipy.spatial.transform import Rotation
 
-    traits = [leaf_traits(tree.species) for tree in trees]
-    ends = np.cumsum([tree.n_segments for tree in trees])
-    own = np.searchsorted(ends, leaves.segment, side='right')
-    width = np.where([each.are_needles for each in traits], _NEEDLES_WIDTH, 1.0)[own]
+    last = np.cumsum([tree.n_segments for tree in trees])
+    tree_of_leaf = np.searchsorted(last, leaves.segment, side='right')
+    are_needles = np.array([leaf_traits(tree.species).are_needles for tree in trees])
+    green = np.array([look_of(tree.species).green for tree in trees])
     blade = leaves.size[:, None, None] * _BLADE
-    blade[..., 1] *= width[:, None]
-    turn = Rotation.from_quat(placed[:, 3:]).as_matrix()
-    corners = placed[:, None, :3] + np.einsum('mij,mkj->mki', turn, blade)
+    blade[are_needles[tree_of_leaf], :, 1] *= _NEEDLES_WIDTH
+    rotation = Rotation.from_quat(placed[:, 3:]).as_matrix()
+    corners = placed[:, None, :3] + np.einsum('mij,mkj->mki', rotation, blade)
     # A leaf is translucent: lit from either side.
-    light = 0.6 + 0.55 * np.abs(turn[..., 2] @ _SUN)
-    green = light[:, None] * np.array([look_of(tree.species).green for tree in trees])[own]
-    return seen(corners), np.clip(green, 0.0, 1.0)
+    light = 0.6 + 0.55 * np.abs(rotation[..., 2] @ _SUN)
+    return seen(corners), np.clip(light[:, None] * green[tree_of_leaf], 0.0, 1.0)
 
 
 def _draw_wind(axes: Axes, wind: Floats, limits: Limits) -> None:
@@ -167,7 +193,8 @@ def _draw_wind(axes: Axes, wind: Floats, limits: Limits) -> None:
         return
     (left, _), (bottom, top) = limits
     size = top - bottom
-    x, y = left + 0.14 * size, top - 0.1 * size
+    x = left + 0.14 * size
+    y = top - 0.1 * size
     right, up, _ = (0.08 * size * seen(wind) / speed).tolist()
     arrow = {'arrowstyle': '-|>', 'color': _WIND, 'lw': 1.6, 'shrinkA': 0.0, 'shrinkB': 0.0}
     axes.annotate('', (x + right, y + up), (x - right, y - up), arrowprops=arrow)

@@ -75,84 +75,122 @@ def check_description(
         out of range.
 
     """
-    require('header', all(isinstance(header[name], str) for name in ('name', 'frame_id')))
+    require('header', _are_words([header['name'], header['frame_id']]))
     require('kinds', len(kinds) > 0)
-    sizes = []
+    n_segments = np.zeros(len(kinds), dtype=np.int64)
+    n_coordinates = np.zeros(len(kinds), dtype=np.int64)
     for number, (kind, arrays) in enumerate(zip(header['kinds'], kinds, strict=True)):
         with inside(f'kind {number}'):
-            sizes.append(_check_kind(kind, arrays))
-    numbers = [tree['kind'] for tree in header['trees']]
-    names = [tree['name'] for tree in header['trees']]
-    require('trees', all(isinstance(name, str) for name in names) and len(names) > 0)
-    require('kind of a tree', all(type(k) is int and 0 <= k < len(kinds) for k in numbers))
-    require('tree_place', places.dtype == '<f4' and places.shape == (len(numbers), 5))
-    require('tree_place', np.isfinite(places).all(axis=1) & (places[:, 4] > 0.0))
+            size = _check_kind(kind, arrays)
+        n_segments[number], n_coordinates[number] = size['segments'], size['coordinates']
+    kind_of_trees = _check_trees(header['trees'], len(kinds), places)
     require('flutter', all(is_finite(value) for value in header.get('flutter', {}).values()))
-    segments, coordinates = np.array(sizes).T
-    for what, count, most in (
-        ('segments of the kinds', segments.sum(), MOST_SEGMENTS),
-        ('segments of the trees', segments[numbers].sum(), MOST_POSES),
-        ('coordinates of the trees', coordinates[numbers].sum(), MOST_COORDINATES),
-    ):
-        if count > most:
-            raise FormatError(f'{count} {what}', cure=f'describe up to {most}')
+    _refuse_more('segments of the kinds', n_segments.sum(), MOST_SEGMENTS)
+    _refuse_more('segments of the trees', n_segments[kind_of_trees].sum(), MOST_POSES)
+    _refuse_more('coordinates of the trees', n_coordinates[kind_of_trees].sum(), MOST_COORDINATES)
 
 
-def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> tuple[int, int]:
-    """Refuse an inconsistent kind; return its numbers of segments and coordinates."""
+def _refuse_more(what: str, count: int, most: int) -> None:
+    if count > most:
+        raise FormatError(f'{count} {what}', cure=f'describe up to {most}')
+
+
+def _check_trees(trees: Sequence[Mapping[str, Any]], n_kinds: int, places: Array) -> list[int]:
+    """Refuse inconsistent trees; return the number of the kind of each."""
+    kinds = [tree['kind'] for tree in trees]
+    require('trees', len(trees) > 0 and _are_words([tree['name'] for tree in trees]))
+    require('kind of a tree', all(type(kind) is int and 0 <= kind < n_kinds for kind in kinds))
+    require('tree_place', places.dtype == '<f4' and places.shape == (len(trees), 5))
+    scale = places[:, 4]
+    require('tree_place', np.isfinite(places).all(axis=1) & (scale > 0.0))
+    return kinds
+
+
+def _check_kind(kind: Mapping[str, Any], arrays: Mapping[str, Array]) -> dict[str, int]:
+    """Refuse an inconsistent kind; return the sizes of its axes by name."""
     has_leaves = 'leaf_segment' in arrays
-    forms = {n: form for n, form in _FORMS.items() if has_leaves or not n.startswith('leaf')}
+    forms = {
+        name: form for name, form in _FORMS.items() if has_leaves or not name.startswith('leaf')
+    }
     size = sizes_of(arrays, forms)
-    b, n, rows = size['branches'], size['segments'], size['rows']
-    require('branch_parent', b > 0)
+    require('branch_parent', size['branches'] > 0)
     require('basis_scale', arrays['basis_scale'] > 0.0)
-    require('species', isinstance(kind['species'], str) and isinstance(kind['model'], str))
+    require('species', _are_words([kind['species'], kind['model']]))
     require('look', 'look' not in kind or _fits(kind['look'], _LOOK))
     numbers = kind['height'], kind['basis_error'], kind.get('modulus', 0.0)
     require('height', all(map(is_finite, numbers)))
     names = kind['branch_names']
-    require('branch_names', len(names) == b and all(isinstance(name, str) for name in names))
+    require('branch_names', len(names) == size['branches'] and _are_words(names))
+    _check_joints(arrays, size)
+    _check_turns(arrays, size)
+    if has_leaves:
+        require('leaf_segment', _is_within(arrays['leaf_segment'], 0, size['segments']))
+    return size
 
-    parent, under, coordinate, keys, base_turn, turn = (
-        arrays[f'branch_{name}'].astype(np.int64)
-        for name in ('parent', 'base_segment', 'coordinate', 'keys', 'base_turn', 'turn')
-    )
+
+def _check_joints(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
+    """Refuse branches whose parents, segments and base segments do not fit together."""
+    parent = arrays['branch_parent'].astype(np.int64)
     first = arrays['branch_first'].astype(np.int64)
-    row = np.arange(b)
-    require('branch_parent', (parent < row) & (parent >= np.minimum(row - 1, 0)))
-    require('branch_first', size['branches + 1'] == b + 1 and first[0] == 0 and first[-1] == n)
-    count = np.diff(first)
-    require('branch_first', count > 0)
+    base_segment = arrays['branch_base_segment'].astype(np.int64)
+    branch = np.arange(size['branches'])
+    # Parents come first; only the stem has none.
+    lowest = np.minimum(branch - 1, 0)
+    require('branch_parent', (lowest <= parent) & (parent < branch))
+    require('branch_first', size['branches + 1'] == size['branches'] + 1)
+    require('branch_first', first[0] == 0 and first[-1] == size['segments'])
+    require('branch_first', np.diff(first) > 0)
+    on_parent = _is_within(base_segment, first[parent], first[parent + 1])
+    require('branch_base_segment', np.where(branch == 0, base_segment == -1, on_parent))
+
+
+def _check_turns(arrays: Mapping[str, Array], size: Mapping[str, int]) -> None:
+    """Refuse branches whose key rotations, or rows of turns, are not in the arrays."""
     # Here, as it loads the compiler, which is not needed before a description.
     from tree_sway.core.beams.field_counts import MAX_COORDINATES
 
-    is_stem = row == 0
-    on_it = (first[parent] <= under) & (under < first[parent + 1])
-    require('branch_base_segment', np.where(is_stem, under == -1, on_it))
-    require('branch_keys', (keys >= 2) & (keys <= MAX_COORDINATES))
-    require('branch_coordinate', (coordinate >= 0) & (coordinate + keys <= size['keys']))
-    within = (base_turn >= 0) & (base_turn + keys[parent] <= rows)
-    require('branch_base_turn', np.where(is_stem, base_turn == -1, within))
-    within = (turn >= 0) & (turn + count * keys <= rows)
-    require('branch_turn', np.where(turn == -1, keys <= 2, within))
-    if 'leaf_segment' in arrays:
-        require('leaf_segment', (arrays['leaf_segment'] >= 0) & (arrays['leaf_segment'] < n))
-    return n, size['coordinates']
+    keys = arrays['branch_keys'].astype(np.int64)
+    coordinate = arrays['branch_coordinate'].astype(np.int64)
+    base_turn = arrays['branch_base_turn'].astype(np.int64)
+    turn = arrays['branch_turn'].astype(np.int64)
+    parent = arrays['branch_parent'].astype(np.int64)
+    n_segments = np.diff(arrays['branch_first'].astype(np.int64))
+    rows, is_stem = size['rows'], np.arange(size['branches']) == 0
+
+    require('branch_keys', _is_within(keys, 2, MAX_COORDINATES + 1))
+    require('branch_coordinate', _is_within(coordinate, 0, size['keys'] - keys + 1))
+    has_base_turn = _is_within(base_turn, 0, rows - keys[parent] + 1)
+    require('branch_base_turn', np.where(is_stem, base_turn == -1, has_base_turn))
+    has_turn = _is_within(turn, 0, rows - n_segments * keys + 1)
+    # A branch without rows of its own turns by its key rotations alone.
+    require('branch_turn', np.where(turn == -1, keys <= 2, has_turn))
+
+
+def _is_within(values: Array, lowest: ArrayLike, end: ArrayLike) -> Array:
+    """Whether values are from the lowest on and below the end."""
+    return np.asarray((np.asarray(lowest) <= values) & (values < np.asarray(end)))
+
+
+def _are_words(values: Sequence[object]) -> bool:
+    return all(isinstance(value, str) for value in values)
 
 
 def _fits(look: Any, like: Any) -> bool:
     """Whether a look has everything that another has, of the same type, and within reason."""
-    if isinstance(like, bool) or not isinstance(like, (int, float, list, tuple, dict)):
-        return type(look) is type(like)
+    if isinstance(like, bool):
+        return type(look) is bool
+    if isinstance(like, (int, float)):
+        return is_finite(look) and abs(look) < 100.0
     if isinstance(like, dict):
         return isinstance(look, dict) and all(
-            (name == 'autumn' and look.get(name, 0) is None) or _fits(look.get(name), value)
+            _fits(look.get(name), value) or (name == 'autumn' and look.get(name, 0) is None)
             for name, value in like.items()
         )
     if isinstance(like, (list, tuple)):
-        own = look if isinstance(look, (list, tuple)) else ()
-        return len(like) <= len(own) < 9 and all(is_finite(x) and abs(x) < 10.0 for x in own)
-    return is_finite(look) and abs(look) < 100.0
+        if not isinstance(look, (list, tuple)) or not len(like) <= len(look) < 9:
+            return False
+        return all(is_finite(value) and abs(value) < 10.0 for value in look)
+    return type(look) is type(like)
 
 
 def sizes_of(arrays: Mapping[str, Array], forms: Forms) -> dict[str, int]:
@@ -179,7 +217,9 @@ def sizes_of(arrays: Mapping[str, Array], forms: Forms) -> dict[str, int]:
 
 def is_finite(value: object) -> bool:
     """Whether a value of JSON is a number, and not beyond `_GREATEST`."""
-    return type(value) in (int, float) and -_GREATEST < value < _GREATEST  # type: ignore[operator]
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    return -_GREATEST < value < _GREATEST
 
 
 def require(name: str, holds: ArrayLike) -> None:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats
+from tree_sway.core.arrays import Floats, Ints
 from tree_sway.core.model.fill_records import (
     assign_slots,
     block_records,
@@ -30,8 +30,6 @@ from tree_sway.stream.protocol import Description
 
 MOST_MEMORY = 512 * 2**20
 """Largest memory for the records of a kind in [bytes]."""
-
-_TURNS = 'base_turn', 'turn'
 
 
 class Placer:
@@ -65,66 +63,117 @@ class Placer:
 
         They are x y z in [m] and the quaternion's x y z w.
         """
-        poses, row, first, key = np.empty((self.n_segments, 7)), 0, 0, 0
-        number, turn = coordinates[len(self.description.scale) :].reshape(-1, 2).T
-        # Between frames of different keys there is no pull.
-        number = np.where(np.abs(number - np.rint(number)) < 1e-6, np.rint(number), -1.0)
+        poses = np.empty((self.n_segments, 7))
+        pulled_key, pull = coordinates[len(self.description.scale) :].reshape(-1, 2).T
+        # Between frames with pulls on different keys the number of a key is interpolated to one
+        # that is not whole: then there is no pull.
+        nearest_key = np.rint(pulled_key)
+        pulled_key = np.where(np.abs(pulled_key - nearest_key) < 1e-6, nearest_key, -1.0)
+        coordinate = 0
+        key = 0
+        row = 0
         for (x, y, z, yaw, scale), kind in self._trees:
-            last, end = first + kind.matrix.shape[1], row + kind.n_segments
-            c, s = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
-            keys = kind.matrix @ coordinates[first:last]
-            own = (number >= key) & (number < key + len(keys))
-            keys[number[own].astype(np.int64) - key] += turn[own]
+            n_keys, n_coordinates = kind.basis.shape
+            rotations = kind.basis @ coordinates[coordinate : coordinate + n_coordinates]
+            is_own = (pulled_key >= key) & (pulled_key < key + n_keys)
+            rotations[pulled_key[is_own].astype(np.int64) - key] += pull[is_own]
             origin = np.array([x, y, z])
-            kind.placing.place(keys, origin, poses[row:end], c, s, scale)
-            row, first, key = end, last, key + len(keys)
+            out = poses[row : row + kind.n_segments]
+            cosine, sine = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
+            kind.placing.place(rotations, origin, out, cosine, sine, scale)
+            coordinate += n_coordinates
+            key += n_keys
+            row += kind.n_segments
         return poses
 
 
 class _Kind(NamedTuple):
     """A kind laid out for the placing kernel."""
 
-    matrix: Floats
+    basis: Floats
+    """Key rotations per unit of each coordinate, (keys, coordinates)."""
     n_segments: int
     placing: PlacingByKeys
 
 
 def _kind(arrays: dict[str, Array]) -> _Kind:
+    """Lay a described kind out for the placing kernel."""
     first = arrays['branch_first'].astype(np.int64)
-    parent, keys = arrays['branch_parent'].astype(np.int64), arrays['branch_keys'].astype(np.int64)
-    base_turn, own_turn = (arrays[f'branch_{name}'].astype(np.int64) for name in _TURNS)
-    matrix, turns = arrays['basis_matrix'].astype(np.float64), arrays['turn']
-    slope, tip_slope = arrays['segment_slope'], arrays['segment_tip_slope']
-    block, _, n_records = assign_slots(first, parent, keys)  # as `segment_records` does
-    sizes, room = (len(parent), n_records, len(np.unique(block)) + 1), room_for_fields(keys.max())
-    layouts = branch_layout(room), segment_layout(room), block_layout(room)
-    memory = sum(n * layout.itemsize for n, layout in zip(sizes, layouts, strict=True))
-    if memory > MOST_MEMORY:
-        what = f'a kind of {memory // 2**20} MiB when laid out'
-        cure = f'describe a tree of fewer branches: up to {MOST_MEMORY // 2**20} MiB'
-        raise FormatError(what, where='tree description', cure=cure)
-    frame = arrays['branch_frame'].astype(np.float64)
-    branch = np.repeat(np.arange(len(parent)), np.diff(first))
-    rank = np.arange(len(branch)) - first[branch]
-    # By its slope about the axes across its chord, or by its own rows.
-    turn = np.zeros((len(branch), room, 3))
-    turn[:, 0] = slope[:, None] * frame[branch, 2]
-    turn[:, 1] = -slope[:, None] * frame[branch, 1]
-    turn[own_turn[branch] >= 0] = 0.0
-    on_parent = np.zeros((len(parent), room, 3))
-    for key in range(room):
-        here = (base_turn >= 0) & (key < keys[parent])
-        on_parent[here, key] = turns[base_turn[here] + key]
-        here = (own_turn >= 0)[branch] & (key < keys[branch])
-        own = branch[here]
-        turn[here, key] = turns[own_turn[own] + rank[here] * keys[own] + key]
+    parent = arrays['branch_parent'].astype(np.int64)
+    n_keys = arrays['branch_keys'].astype(np.int64)
+    room = room_for_fields(n_keys.max())
+    _refuse_too_large(first, parent, n_keys, room)
     skew, tip_skew = arrays['branch_skew'].T
     places = Places(
-        first, parent, arrays['branch_base_segment'], arrays['branch_coordinate'], keys, frame,
-        skew, tip_skew, arrays['branch_offset'], on_parent,
-        arrays['segment_chord'], arrays['segment_rest'], slope, tip_slope, turn,
-    )  # fmt: skip
-    branches, segments = np.zeros(len(parent), layouts[0]), segment_records(places)
+        first=first,
+        parent=parent,
+        base_segment=arrays['branch_base_segment'],
+        coordinate=arrays['branch_coordinate'],
+        n_coordinates=n_keys,
+        frame=arrays['branch_frame'].astype(np.float64),
+        skew=skew,
+        tip_skew=tip_skew,
+        offset=arrays['branch_offset'],
+        base_rotation=_base_rotations(arrays, parent, n_keys, room),
+        chord=arrays['segment_chord'],
+        rest=arrays['segment_rest'],
+        slope=arrays['segment_slope'],
+        tip_slope=arrays['segment_tip_slope'],
+        rotation_mode=_rotation_modes(arrays, first, n_keys, room),
+    )
+    branches = np.zeros(len(parent), branch_layout(room))
     fill_places(places, branches)
+    segments = segment_records(places)
     placing = placing_by_keys(branches, segments, block_records(branches, segments))
-    return _Kind(matrix, int(first[-1]), placing)
+    return _Kind(arrays['basis_matrix'].astype(np.float64), int(first[-1]), placing)
+
+
+def _refuse_too_large(first: Ints, parent: Ints, n_keys: Ints, room: int) -> None:
+    """Refuse a kind whose records need more than `MOST_MEMORY`, before they are made."""
+    block, _, n_segment_records = assign_slots(first, parent, n_keys)  # as `segment_records` does
+    memory = (
+        len(parent) * branch_layout(room).itemsize
+        + n_segment_records * segment_layout(room).itemsize
+        + (len(np.unique(block)) + 1) * block_layout(room).itemsize
+    )
+    if memory > MOST_MEMORY:
+        raise FormatError(
+            f'a kind of {memory // 2**20} MiB when laid out',
+            where='tree description',
+            cure=f'describe a tree of fewer branches: up to {MOST_MEMORY // 2**20} MiB',
+        )
+
+
+def _base_rotations(arrays: dict[str, Array], parent: Ints, n_keys: Ints, room: int) -> Floats:
+    """Rotation of the base of each branch per unit of its parent's keys, (b, room, 3)."""
+    base_turn = arrays['branch_base_turn'].astype(np.int64)
+    rotation = np.zeros((len(parent), room, 3))
+    for key in range(room):
+        has_row = (base_turn >= 0) & (key < n_keys[parent])
+        rotation[has_row, key] = arrays['turn'][base_turn[has_row] + key]
+    return rotation
+
+
+def _rotation_modes(arrays: dict[str, Array], first: Ints, n_keys: Ints, room: int) -> Floats:
+    """
+    Rotation of each segment per unit of its branch's keys, (n, room, 3).
+
+    A branch has a row of its own for each segment and key, or turns about the two axes across its
+    chord by its slope.
+    """
+    own_turn = arrays['branch_turn'].astype(np.int64)
+    frame = arrays['branch_frame'].astype(np.float64)
+    branch = np.repeat(np.arange(len(own_turn)), np.diff(first))
+    rank = np.arange(len(branch)) - first[branch]
+    slope = arrays['segment_slope'][:, None]
+    has_rows = own_turn[branch] >= 0
+    rotation = np.zeros((len(branch), room, 3))
+    rotation[:, 0] = slope * frame[branch, 2]
+    rotation[:, 1] = -slope * frame[branch, 1]
+    rotation[has_rows] = 0.0
+    for key in range(room):
+        segments = has_rows & (key < n_keys[branch])
+        owner = branch[segments]
+        rows = own_turn[owner] + rank[segments] * n_keys[owner] + key
+        rotation[segments, key] = arrays['turn'][rows]
+    return rotation

@@ -49,17 +49,22 @@ class EnergyBasis:
         negligible.
         """
         vector = energy_vector(self.beam, curvature, self.shear_ratio)
-        whole = float(np.linalg.norm(vector))
+        rest = self._orthogonal(vector)
+        size = float(np.linalg.norm(rest))
+        if not size > _NEGLIGIBLE * float(np.linalg.norm(vector)):
+            return None
+        self.vectors.append(rest / size)
+        kept = curvature_of(self.beam, rest, self.shear_ratio)
+        slope, nodes, _ = self.beam.from_base(kept)
+        largest = max(np.abs(slope).max(), np.abs(nodes).max())
+        return RotationField(self.beam, kept / largest)
+
+    def _orthogonal(self, vector: Floats) -> Floats:
+        """Return the part of a vector that is orthogonal to the fields so far."""
         for _ in range(2):  # twice, as rounding spoils the first pass of Gram and Schmidt
             for other in self.vectors:
                 vector = vector - (other @ vector) * other
-        size = float(np.linalg.norm(vector))
-        if not size > _NEGLIGIBLE * whole:
-            return None
-        self.vectors.append(vector / size)
-        rest = curvature_of(self.beam, vector, self.shear_ratio)
-        slope, nodes, _ = self.beam.from_base(rest)
-        return RotationField(self.beam, rest / max(np.abs(slope).max(), np.abs(nodes).max()))
+        return vector
 
     def add_all(self, curvatures: Iterable[Floats]) -> list[RotationField]:
         """Add curvatures one by one; return the fields of those that are not negligible."""
@@ -69,16 +74,21 @@ class EnergyBasis:
 
 def energy_vector(beam: BranchBeam, curvature: Floats, shear_ratio: float) -> Floats:
     """Return curvatures (..., p, 5, 3) as vectors (..., 15 p)."""
-    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
-    vector: Floats = measure * _with_twist_scaled(beam, curvature, math.sqrt(2.0 * shear_ratio))
-    return vector.reshape(*curvature.shape[:-3], -1)
+    scaled = _with_twist_scaled(beam, curvature, math.sqrt(2.0 * shear_ratio))
+    vector = _root_of_stiffness(beam) * scaled
+    return np.reshape(vector, (*curvature.shape[:-3], -1))
 
 
 def curvature_of(beam: BranchBeam, vector: Floats, shear_ratio: float) -> Floats:
     """Return the curvature (..., p, 5, 3) of an `energy_vector`."""
-    measure = np.sqrt(beam.weight * beam.second_moment)[..., None]
-    curvature = vector.reshape(*vector.shape[:-1], *beam.weight.shape, 3) / measure
+    scaled = np.reshape(vector, (*vector.shape[:-1], *beam.weight.shape, 3))
+    curvature = scaled / _root_of_stiffness(beam)
     return _with_twist_scaled(beam, curvature, 1.0 / math.sqrt(2.0 * shear_ratio))
+
+
+def _root_of_stiffness(beam: BranchBeam) -> Floats:
+    """Return ``sqrt(w I)`` at each point, (p, 5, 1)."""
+    return np.asarray(np.sqrt(beam.weight * beam.second_moment)[..., None])
 
 
 def _with_twist_scaled(beam: BranchBeam, curvature: Floats, scale: float) -> Floats:

@@ -42,38 +42,57 @@ def missed_curvatures(basis: EnergyBasis, subtrees: SubtreeSums, most: int) -> I
     """
     beam, shear_ratio = basis.beam, basis.shear_ratio
     curvatures = beam.curvature_in_space(_opposed_moments(beam, subtrees), shear_ratio)
-    cases = np.moveaxis(curvatures, 2, 0)
-    missed = np.array([energy_vector(beam, each, shear_ratio) for each in cases])
-    whole = float(np.square(missed).sum())
-    vectors = np.array(basis.vectors)
-    for _ in range(2):
-        missed -= (missed @ vectors.T) @ vectors
-    sizes, directions = np.linalg.svd(missed, full_matrices=False)[1:]
+    vectors = energy_vector(beam, np.moveaxis(curvatures, 2, 0), shear_ratio)
+    whole_energy = float(np.square(vectors).sum())
+    missed = _beyond(np.array(basis.vectors), vectors)
+    _, amounts, directions = np.linalg.svd(missed, full_matrices=False)
+    energies = np.square(amounts)
     # Energy that is still missed if this direction and all weaker ones are left out.
-    left_out = np.cumsum(np.square(sizes[::-1]))[::-1]
-    for direction in directions[left_out > _LEFT_OUT * whole][:most]:
+    left_out = np.cumsum(energies[::-1])[::-1]
+    needed = directions[left_out > _LEFT_OUT * whole_energy]
+    for direction in needed[:most]:
         yield curvature_of(beam, direction, shear_ratio)
+
+
+def _beyond(orthonormal: Floats, vectors: Floats) -> Floats:
+    """Return the parts of vectors (k, v) that are orthogonal to others, (f, v)."""
+    rest = vectors
+    for _ in range(2):  # twice, as rounding spoils the first pass of Gram and Schmidt
+        rest = rest - (rest @ orthonormal.T) @ orthonormal
+    return rest
 
 
 def _opposed_moments(beam: BranchBeam, subtrees: SubtreeSums) -> Floats:
     """Return the internal moments as subtrees swing against each other, (p, 5, k, 3)."""
     base = beam.child_point[: len(subtrees.area)]
-    n_limbs = len(base)
+    cases = _cases_of(len(base))
+    # Each limb moves in a case by three displacements of its base, and by three rotations.
+    moved, turn = np.moveaxis(cases, 0, 2)
+    turn = turn / _radius_of_gyration(base, subtrees)[:, None, None]
+    force, moment = subtrees.inertial_wrench(base, turn, moved)
+    no_load = np.zeros((*beam.weight.shape, len(cases), 3))
+    return beam.moment_in_space(no_load, force, moment)
+
+
+def _cases_of(n_limbs: int) -> Floats:
+    """Return accelerations of limbs in k cases, (k, 2, c, 3): displacements, then rotations."""
     n_motions = 6 * n_limbs
     if n_motions <= _CASES:
         cases = np.eye(n_motions)
     else:
         cases = np.random.default_rng(0).choice((-1.0, 1.0), (_CASES, n_motions))
-    moved, turn = np.moveaxis(cases.reshape(-1, 2, n_limbs, 3), 0, 2)
-    turn = turn / _radius_of_gyration(base, subtrees)[:, None, None]
-    own_load = np.zeros((*beam.weight.shape, len(cases), 3))
-    force, moment = subtrees.inertial_wrench(base, turn, moved)
-    return beam.moment_in_space(own_load, force, moment)
+    return cases.reshape(-1, 2, n_limbs, 3)
 
 
 def _radius_of_gyration(base: Floats, subtrees: SubtreeSums) -> Floats:
-    """Return that of each subtree about its base in [m], (c,)."""
-    about_base = subtrees.mass_moment - subtrees.mass[:, None] * base
-    trace = np.trace(subtrees.mass_second, axis1=1, axis2=2)
-    second = trace - (base * (about_base + subtrees.mass_moment)).sum(axis=1)
+    """
+    Return the radius of gyration of each subtree about its base in [m], (c,).
+
+    Of the base b, masses m at r and their sums about the root, the second moment about the base is
+    ``sum m |r - b|^2 = sum m |r|^2 - b . (2 sum m r - m b)``.
+    """
+    first = subtrees.mass_moment
+    about_base = first - subtrees.mass[:, None] * base
+    about_root = np.trace(subtrees.mass_second, axis1=1, axis2=2)
+    second = about_root - (base * (about_base + first)).sum(axis=1)
     return np.sqrt(np.maximum(second, 1e-12) / np.maximum(subtrees.mass, 1e-300))

@@ -110,9 +110,14 @@ class Factors:
 
 
 def reduce_tree(
-    tree: Tree, models: list[BranchModel], modulus: float, shear_modulus: float, gravity: float,
-    *, subtrees: bool = True,
-) -> Reduction:  # fmt: skip
+    tree: Tree,
+    models: list[BranchModel],
+    modulus: float,
+    shear_modulus: float,
+    gravity: float,
+    *,
+    subtrees: bool = True,
+) -> Reduction:
     """
     Assemble the matrices of the key rotations.
 
@@ -159,51 +164,69 @@ class _Assembly:
         self.inertia = np.zeros((tree.n_branches, 6, 6))
         """Inertia of each branch with its subtrees as a rigid body about the root."""
         self.compliance = np.zeros((size, MAX_COORDINATES))
-        self.mass, self.weight, self.elastic, self.branchwise = (_Blocks() for _ in range(4))
+        self.mass = _Blocks()
+        self.weight = _Blocks()
+        self.elastic = _Blocks()
+        self.branchwise = _Blocks()
 
     def add(
-        self, branches: int | Ints, model: BranchModel, modulus: float, shear_modulus: float,
-        *, moves_subtrees: bool,
-    ) -> None:  # fmt: skip
+        self,
+        branches: int | Ints,
+        model: BranchModel,
+        modulus: float,
+        shear_modulus: float,
+        *,
+        moves_subtrees: bool,
+    ) -> None:
         """Add a branch, or several twigs that are alike."""
-        own = self.first[branches][..., None] + np.arange(len(model.fields))
+        count = len(model.fields)
+        own = self.first[branches][..., None] + np.arange(count)
         own_mass, self.momentum[own] = _own_inertia(model)
         bodies = self.inertia[model.children]
-        own_weight = self.gravity * _own_geometric(model, bodies)
         if len(model.children):
             base_twists = _base_twists(model)
-            self.twist[model.children, : len(model.fields)] = base_twists
+            self.twist[model.children, :count] = base_twists
             if moves_subtrees:
                 carried = base_twists @ bodies
                 own_mass += (carried @ base_twists.swapaxes(-1, -2)).sum(axis=0)
                 self.momentum[own] += carried.sum(axis=0)
                 self._couple(own, model.children, base_twists)
+        own_weight = self.gravity * _own_geometric(model, bodies)
+        bending = energies(model.fields, modulus, shear_modulus)
+        alone = bending + own_weight
         self.mass.add(own, own, own_mass)
         self.weight.add(own, own, own_weight)
-        bent = energies(model.fields, modulus, shear_modulus)
-        self.elastic.add(own, own, bent)
-        self.branchwise.add(own, own, bent + own_weight)
-        self.compliance[own, : len(model.fields)] = np.linalg.inv(bent + own_weight)
+        self.elastic.add(own, own, bending)
+        self.branchwise.add(own, own, alone)
+        self.compliance[own, :count] = np.linalg.inv(alone)
         if moves_subtrees:
             self.inertia[branches] = _spatial_inertia(model) + bodies.sum(axis=0)
 
     def _couple(self, own: Ints, children: Ints, base_twists: Floats) -> None:
         """Couple a branch with all coordinates of its subtrees, M_ij and Kg_ij of the module."""
+        begins = self.first[children]
         ends = self.first[self.tree.subtree_end[children]]
-        below = np.arange(self.first[children[0]], ends[-1])
-        twists = base_twists.repeat(ends - self.first[children], axis=0)
+        below = np.arange(begins[0], ends[-1])
+        twists = base_twists.repeat(ends - begins, axis=0)
         momentum = self.momentum[below]
         self.mass.add(own, below, (twists @ momentum[..., None])[..., 0].T)
         # e_z . (w x p)
-        lift = twists[:, :, 3] * momentum[:, 1:2] - twists[:, :, 4] * momentum[:, :1]
+        rotation = twists[:, :, 3:]
+        lift = rotation[:, :, 0] * momentum[:, 1:2] - rotation[:, :, 1] * momentum[:, :1]
         self.weight.add(own, below, self.gravity * lift.T)
 
     def reduction(self) -> Reduction:
         """Return the matrices."""
         size = int(self.first[-1])
-        blocks = self.mass, self.weight, self.elastic, self.branchwise
-        matrices = (each.symmetric((size, size)) for each in blocks)
-        return Reduction(self.first, self.twist, self.compliance, *matrices)
+        return Reduction(
+            first=self.first,
+            twist=self.twist,
+            compliance=self.compliance,
+            mass=self.mass.symmetric(size),
+            gravity=self.weight.symmetric(size),
+            elastic=self.elastic.symmetric(size),
+            branchwise=self.branchwise.symmetric(size),
+        )
 
 
 class _Blocks:
@@ -216,19 +239,24 @@ class _Blocks:
 
     def add(self, rows: Ints, columns: Ints, values: Floats) -> None:
         """Add blocks (..., k, c) at rows (..., k) and columns (..., c), and their transposes."""
-        both = rows[..., None], columns[..., None, :]
-        r, c = (np.broadcast_to(each, values.shape).ravel() for each in both)
-        for places in ((r, c),) if rows is columns else ((r, c), (c, r)):
-            self.rows.append(places[0])
-            self.columns.append(places[1])
-            self.values.append(values.ravel())
+        own_rows = np.broadcast_to(rows[..., None], values.shape).ravel()
+        own_columns = np.broadcast_to(columns[..., None, :], values.shape).ravel()
+        self._add(own_rows, own_columns, values)
+        if rows is not columns:
+            self._add(own_columns, own_rows, values)
 
-    def symmetric(self, shape: tuple[int, int]) -> Any:
+    def _add(self, rows: Ints, columns: Ints, values: Floats) -> None:
+        self.rows.append(rows)
+        self.columns.append(columns)
+        self.values.append(values.ravel())
+
+    def symmetric(self, size: int) -> Any:
+        """Return the matrix, (size, size)."""
         from scipy import sparse  # it takes long to load, and a stored set-up does not need it
 
         entries = np.concatenate(self.values)
         where = np.concatenate(self.rows), np.concatenate(self.columns)
-        return sparse.coo_matrix((entries, where), shape=shape).tocsc()
+        return sparse.coo_matrix((entries, where), shape=(size, size)).tocsc()
 
 
 def _together(models: list[BranchModel]) -> Iterator[tuple[int | Ints, BranchModel]]:
@@ -236,17 +264,22 @@ def _together(models: list[BranchModel]) -> Iterator[tuple[int | Ints, BranchMod
     twigs: dict[tuple[int, int], list[int]] = {}
     for branch, model in enumerate(models):
         if not len(model.children):
-            twigs.setdefault((len(model.beam.length), len(model.fields)), []).append(branch)
+            shape = len(model.beam.length), len(model.fields)
+            twigs.setdefault(shape, []).append(branch)
     for alike in twigs.values():
-        ones = [models[branch] for branch in alike]
-        beam = many_of([one.beam for one in ones])
-        fields = zip(*(one.fields for one in ones), strict=True)
-        many = tuple(many_of(each, beam=beam) for each in fields)
-        mass = np.array([one.mass for one in ones])
-        yield np.array(alike), replace(ones[0], beam=beam, mass=mass, fields=many)
-    for branch in range(len(models) - 1, -1, -1):
+        yield np.array(alike), _as_one([models[branch] for branch in alike])
+    for branch in reversed(range(len(models))):
         if len(models[branch].children):
             yield branch, models[branch]
+
+
+def _as_one(twigs: list[BranchModel]) -> BranchModel:
+    """Return twigs whose arrays have the same shapes as one model of many."""
+    beam = many_of([twig.beam for twig in twigs])
+    by_coordinate = zip(*(twig.fields for twig in twigs), strict=True)
+    fields = tuple(many_of(each, beam=beam) for each in by_coordinate)
+    mass = np.array([twig.mass for twig in twigs])
+    return replace(twigs[0], beam=beam, mass=mass, fields=fields)
 
 
 def _base_twists(model: BranchModel) -> Floats:
@@ -261,30 +294,39 @@ def _base_twists(model: BranchModel) -> Floats:
 
 def _own_inertia(model: BranchModel) -> tuple[Floats, Floats]:
     """Mass matrix (k, k) of a branch without its subtrees, and its momentum about the root."""
-    fields = np.stack([field.points for field in model.fields], axis=-4)
-    slopes = np.stack([field.slope for field in model.fields], axis=-4)
-    momentum = (model.mass * model.beam.weight)[..., None, :, :, None] * fields
-    spins = _spins(model, slopes)
-    own_mass = products(momentum, fields, 3) + products(spins, slopes, 3)
-    angular = cross(model.beam.point[..., None, :, :, :], momentum) + spins
-    return own_mass, np.concatenate([momentum, angular], axis=-1).sum(axis=(-3, -2))
+    displacement = np.stack([field.points for field in model.fields], axis=-4)
+    rotation = np.stack([field.slope for field in model.fields], axis=-4)
+    momentum = _mass_of(model)[..., None] * displacement
+    spin = _spins(model, rotation)
+    own_mass = products(momentum, displacement, 3) + products(spin, rotation, 3)
+    angular = cross(model.beam.point[..., None, :, :, :], momentum) + spin
+    of_points = np.concatenate([momentum, angular], axis=-1)
+    return own_mass, of_points.sum(axis=(-3, -2))
+
+
+def _mass_of(model: BranchModel) -> Floats:
+    """Mass of each point of quadrature in [kg], (..., 1, p, 5) for arrays of several fields."""
+    return np.asarray((model.mass * model.beam.weight)[..., None, :, :])
 
 
 def _spins(model: BranchModel, slopes: Floats) -> Floats:
     """Spin of cross-sections that rotate by slopes, (..., k, p, 5, 3) both (Rayleigh, 1877)."""
     beam = model.beam
-    about = (beam.second_moment / beam.area * model.mass * beam.weight)[..., None, :, :, None]
+    about_diameter = beam.second_moment / beam.area * model.mass * beam.weight
     tangent = beam.tangent[..., None, :, None, :]
-    return np.asarray(about * (slopes + (slopes * tangent).sum(-1, keepdims=True) * tangent))
+    twist = (slopes * tangent).sum(-1, keepdims=True) * tangent
+    # About the axis of the branch a section has twice the inertia.
+    return np.asarray(about_diameter[..., None, :, :, None] * (slopes + twist))
 
 
 def _spatial_inertia(model: BranchModel) -> Floats:
     """Inertia (6, 6) of a branch as a rigid body about the root: momentum of a twist (v, w)."""
-    turning = cross(np.eye(3)[:, None, None], model.beam.point[..., None, :, :, :])
-    moving = np.broadcast_to(np.eye(3)[:, None, None], turning.shape)
-    moves = np.concatenate([moving, turning], axis=-4)
-    inertia = products((model.mass * model.beam.weight)[..., None, :, :, None] * moves, moves, 3)
-    inertia[..., 3:, 3:] += products(_spins(model, moving), moving, 3)
+    axes = np.eye(3)[:, None, None]
+    by_rotation = cross(axes, model.beam.point[..., None, :, :, :])
+    by_translation = np.broadcast_to(axes, by_rotation.shape)
+    velocity = np.concatenate([by_translation, by_rotation], axis=-4)
+    inertia = products(_mass_of(model)[..., None] * velocity, velocity, 3)
+    inertia[..., 3:, 3:] += products(_spins(model, by_translation), by_translation, 3)
     return inertia
 
 
@@ -292,41 +334,52 @@ def _own_geometric(model: BranchModel, bodies: Floats) -> Floats:
     """
     Return the second-order lift of a branch and its subtrees per unit of gravity, (k, k).
 
-    Every piece ds rotates the mass beyond it: with m that mass, the entry is the integral of psi_i
-    psi_j m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each child's
-    subtree about its base takes the place of m t for the child.
+    Every piece ds rotates the mass beyond it: with m that mass, the entry is the integral of rho_i
+    and rho_j, m(s) e_z . (rho_i x (rho_j x t)) ds, made symmetric, and the first moment of each
+    child's subtree about its base takes the place of m t for the child.
 
     Rotations about different axes do not add up: bending followed by twist adds half of their
     cross product, and the weight, whose moment the branch bears at rest, does work on that (as in
     lateral buckling of beams: Timoshenko & Gere, 1961).
     """
     beam = model.beam
-    weight = beam.weight[..., None]
     masses, hanging = _hanging(bodies, beam.child_point)
-    beyond, hung = _mass_beyond(model, masses, hanging)
+    mass_beyond, moment_beyond = _mass_beyond(model, masses, hanging)
+    along, vertical = _lift(model, mass_beyond, hanging)
+    along += _work_of_weight(model, moment_beyond)
+    return np.asarray(0.5 * (along + along.swapaxes(-1, -2)) - vertical)
 
-    # Arms: first moment of the mass beyond each point by length, then of each child's subtree.
-    shape = (*beam.chord.shape[:-1], -1, 3)
-    lever = weight * (beyond[..., None] * beam.tangent[..., None, :])
-    arms = np.concatenate([lever.reshape(shape), hanging], axis=-2)[..., None, :, :]
+
+def _lift(model: BranchModel, mass_beyond: Floats, hanging: Floats) -> tuple[Floats, Floats]:
+    """
+    Sum e_z . (rho_i x (rho_j x a)) over all arms a, of points and of children.
+
+    It is rho_iz (rho_j . a) - a_z (rho_i . rho_j): both terms are returned, (k, k) each.
+    """
+    beam = model.beam
+    flat = (*beam.chord.shape[:-1], -1, 3)
+    of_points = mass_beyond[..., None] * beam.tangent[..., None, :] * beam.weight[..., None]
+    arms = np.concatenate([of_points.reshape(flat), hanging], axis=-2)[..., None, :, :]
     turns = np.stack(
         [
-            np.concatenate([field.slope.reshape(shape), field.child_slope], axis=-2)
+            np.concatenate([field.slope.reshape(flat), field.child_slope], axis=-2)
             for field in model.fields
         ],
         axis=-3,
     )
-    # e_z . (rho_i x (rho_j x a)) = rho_iz (rho_j . a) - a_z (rho_i . rho_j)
     along = turns[..., 2] @ (turns * arms).sum(axis=-1).swapaxes(-1, -2)
     vertical = products(turns * arms[..., 2:], turns, 2)
+    return along, vertical
 
-    # The moment that the branch bears at rest, e_z x hung, works on half of rho x d rho.
-    level = np.zeros_like(hung[..., 0])
-    borne = weight * np.stack([hung[..., 1], -hung[..., 0], level], axis=-1)
+
+def _work_of_weight(model: BranchModel, moment_beyond: Floats) -> Floats:
+    """Sum the work of the moment at rest, e_z x the moment of mass, on rho x d rho, (k, k)."""
+    east, north = moment_beyond[..., 0], moment_beyond[..., 1]
+    borne = np.stack([north, -east, np.zeros_like(east)], axis=-1)
+    borne *= model.beam.weight[..., None]
     about = np.stack([cross(borne, field.slope) for field in model.fields], axis=-4)
     curvatures = np.stack([field.curvature for field in model.fields], axis=-4)
-    along += products(about, curvatures, 3)
-    return np.asarray(0.5 * (along + along.swapaxes(-1, -2)) - vertical)
+    return np.asarray(products(about, curvatures, 3))
 
 
 def _hanging(bodies: Floats, places: Floats) -> tuple[Floats, Floats]:
@@ -339,12 +392,12 @@ def _hanging(bodies: Floats, places: Floats) -> tuple[Floats, Floats]:
 def _mass_beyond(model: BranchModel, masses: Floats, hanging: Floats) -> tuple[Floats, Floats]:
     """Mass beyond each point, (p, 5), and its first moment about that point, (p, 5, 3)."""
     beam = model.beam
-    before, nodes, _ = beam.from_base(model.mass)
-    beyond = nodes[..., -1:, None] - before
+    before, at_nodes, _ = beam.from_base(model.mass)
+    mass = at_nodes[..., -1:, None] - before
     if len(masses):
-        beyond = beyond + beam.child_lever[1] @ masses
-    arm, arm_nodes, _ = beam.from_base(beyond[..., None] * beam.tangent[..., None, :])
-    hung = arm_nodes[..., -1:, None, :] - arm
+        mass = mass + beam.child_lever[1] @ masses
+    before, at_nodes, _ = beam.from_base(mass[..., None] * beam.tangent[..., None, :])
+    moment = at_nodes[..., -1:, None, :] - before
     if len(masses):
-        hung += beam.child_lever[1] @ hanging
-    return beyond, hung
+        moment += beam.child_lever[1] @ hanging
+    return mass, moment

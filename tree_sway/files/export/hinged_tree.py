@@ -14,7 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 import math
 import re
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -27,8 +27,12 @@ from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.tree import Tree
 
-_MARGIN, _FASTEST_TO = 0.95, 1e-3
-"""Share of the time step at which the fastest motion becomes unstable; its tolerance."""
+_MARGIN = 0.95
+"""Largest step, as a share of the step at which the fastest motion becomes unstable."""
+_FASTEST_TO = 1e-3
+"""Relative tolerance of the fastest eigenvalue."""
+_N_POINTS = 4
+"""Points of integration by Gauss and Legendre on each half of a segment."""
 
 
 @dataclass(frozen=True)
@@ -87,38 +91,55 @@ def plain_names(tree: Tree) -> tuple[str, ...]:
 
 def poses_on_parents(tree: Tree, poses: Floats) -> Floats:
     """Poses (n, 7) in the frames of the parent segments; that of the root is unchanged."""
-    parent, turn = tree.segment_parent, Rotation.from_quat(poses[:, 3:])
-    back = turn[parent].inv()
-    turned, moved = (back * turn).as_quat(), back.apply(poses[:, :3] - poses[parent, :3])
-    return np.where(parent[:, None] < 0, poses, np.hstack([moved, turned]))
+    parent = tree.segment_parent
+    rotation = Rotation.from_quat(poses[:, 3:])
+    to_parent = rotation[parent].inv()
+    position = to_parent.apply(poses[:, :3] - poses[parent, :3])
+    orientation = (to_parent * rotation).as_quat()
+    return np.where(parent[:, None] < 0, poses, np.hstack([position, orientation]))
 
 
 def hinged_tree(simulator: SwaySimulator) -> HingedTree:
     """Divide the tree of a simulator into bodies on hinges."""
-    tree, settings = simulator.tree, simulator.settings
-    leaf_line = _spread(tree, settings.leaf_mass)
-    mass, centre, inertia = _bodies(tree, simulator.models[0].species.density, leaf_line)
-    compliance = _compliance(tree, simulator.models[0].species.modulus)
-    compliance[0] += 1.0 / (settings.root_stiffness or simulator.models[0].species.root_stiffness)
-    springs = sparse.diags(np.repeat(1.0 / compliance, 2)).tocsc()
-    masses = _mass_matrix(tree, mass, centre, inertia)
-    # Ordered by their pattern, the factors of the mass matrix of a tree stay sparse.
-    solve = splu(
-        masses, 'MMD_AT_PLUS_A', diag_pivot_thresh=0.0, options={'SymmetricMode': True}
-    ).solve
-    inverse = LinearOperator(masses.shape, solve, dtype=np.float64)
-    slowest = _eigenvalue(springs, M=masses, sigma=0.0)
-    fastest = _eigenvalue(springs, M=masses, Minv=inverse, tol=_FASTEST_TO)
-    circular = 2.0 * math.pi * float(simulator.frequencies(1)[0])
-    factor = circular**2 / slowest
-    damping_time = 2.0 * simulator.check_tuning().damping_ratio / circular
+    tree = simulator.tree
+    settings = simulator.settings
+    species = simulator.models[0].species
+    bodies = _bodies(tree, species.density, _spread(tree, settings.leaf_mass))
+    compliance = _compliance(tree, species.modulus)
+    compliance[0] += 1.0 / (settings.root_stiffness or species.root_stiffness)
+    slowest, fastest = _extreme_eigenvalues(1.0 / compliance, _mass_matrix(tree, bodies))
+    circular_frequency = 2.0 * math.pi * float(simulator.frequencies(1)[0])
+    factor = circular_frequency**2 / slowest
+    damping_time = 2.0 * simulator.check_tuning().damping_ratio / circular_frequency
     limit = damping_time + math.hypot(damping_time, 2.0 / math.sqrt(factor * fastest))
     return HingedTree(
-        names=plain_names(tree), poses=poses_on_parents(tree, tree.rest_poses), mass=mass,
-        centre=centre, inertia=inertia, stiffness=factor / compliance,
-        drag_area=_drag_area(simulator), damping_time=damping_time,
+        names=plain_names(tree),
+        poses=poses_on_parents(tree, tree.rest_poses),
+        mass=bodies.mass,
+        centre=bodies.centre,
+        inertia=bodies.inertia,
+        stiffness=factor / compliance,
+        drag_area=_drag_area(simulator),
+        damping_time=damping_time,
         largest_step=_MARGIN * limit,
-    )  # fmt: skip
+    )
+
+
+def _extreme_eigenvalues(stiffness: Floats, mass_matrix: sparse.csc_matrix) -> tuple[float, float]:
+    """Lowest and highest squared circular frequency [1/s^2] of hinges of a stiffness (n,)."""
+    springs = sparse.diags(np.repeat(stiffness, 2)).tocsc()
+    # Ordered by their pattern, the factors of the mass matrix of a tree stay sparse.
+    factors = splu(
+        mass_matrix, 'MMD_AT_PLUS_A', diag_pivot_thresh=0.0, options={'SymmetricMode': True}
+    )
+    inverse = LinearOperator(mass_matrix.shape, factors.solve, dtype=np.float64)
+    slowest = _eigenvalue(springs, M=mass_matrix, sigma=0.0)
+    fastest = _eigenvalue(springs, M=mass_matrix, Minv=inverse, tol=_FASTEST_TO)
+    return slowest, fastest
+
+
+def _eigenvalue(matrix: sparse.csc_matrix, **options: Any) -> float:
+    return float(eigsh(matrix, 1, return_eigenvectors=False, **options)[0])
 
 
 def _spread(tree: Tree, leaves: Floats | None) -> Floats:
@@ -129,70 +150,102 @@ def _spread(tree: Tree, leaves: Floats | None) -> Floats:
 
 
 def _drag_area(simulator: SwaySimulator) -> Floats:
+    """Drag area [m^2] of each segment, as in `HingedTree`."""
     tree = simulator.tree
-    diameter = 0.5 * (tree.base_diameter + tree.tip_diameter)
-    reductions = TreeReductions(tree, simulator.models[0].species, simulator.settings)
-    area = (diameter + _spread(tree, reductions.leaf_load_area)) * tree.length
-    return 2.0 / AIR_DENSITY * pressure(SHARED_AT, *simulator.models[0].drag_law) * area
+    model = simulator.models[0]
+    reductions = TreeReductions(tree, model.species, simulator.settings)
+    mean_diameter = 0.5 * (tree.base_diameter + tree.tip_diameter)
+    area = (mean_diameter + _spread(tree, reductions.leaf_load_area)) * tree.length
+    return 2.0 / AIR_DENSITY * pressure(SHARED_AT, *model.drag_law) * area
 
 
-def _eigenvalue(matrix: sparse.csc_matrix, **options: Any) -> float:
-    return float(eigsh(matrix, 1, return_eigenvectors=False, **options)[0])
+class _Points(NamedTuple):
+    """
+    Points of integration on both halves of the segments, (n, 2, `_N_POINTS`).
 
+    ``share``: place along the segment as a share of its length; ``part``: length that the point
+    stands for [m]; ``diameter`` [m].
+    """
 
-def _points(tree: Tree) -> tuple[Floats, Floats, Floats]:
-    """Places along both halves of the segments, (2, 4); lengths and diameters [m], (n, 2, 4)."""
-    point, weight = np.polynomial.legendre.leggauss(4)
-    along = np.stack([0.25 + 0.25 * point, 0.75 + 0.25 * point])
-    taper = tree.tip_diameter - tree.base_diameter
-    diameter = tree.base_diameter[:, None, None] + taper[:, None, None] * along
-    return along, tree.length[:, None, None] * 0.25 * weight, diameter
+    share: Floats
+    part: Floats
+    diameter: Floats
+
+    @classmethod
+    def of(cls, tree: Tree) -> _Points:
+        """Return the points of a tree."""
+        point, weight = np.polynomial.legendre.leggauss(_N_POINTS)
+        share = np.stack([0.25 + 0.25 * point, 0.75 + 0.25 * point])[None]
+        part = tree.length[:, None, None] * 0.25 * weight
+        taper = tree.tip_diameter - tree.base_diameter
+        diameter = tree.base_diameter[:, None, None] + taper[:, None, None] * share
+        return cls(share, part, diameter)
 
 
 def _compliance(tree: Tree, modulus: float) -> Floats:
     """Rotation of each hinge per moment [rad/N/m], (n,)."""
-    along, part, diameter = _points(tree)
-    soft = part / (modulus * np.pi / 64.0 * diameter**4)
-    carrier, branch = tree.segment_parent, tree.branch_of_segment
-    carries = np.isin(np.arange(tree.n_segments), carrier)[:, None, None]
+    points = _Points.of(tree)
+    second_moment = np.pi / 64.0 * points.diameter**4
+    bend = points.part / (modulus * second_moment)
+    parent = tree.segment_parent
+    branch = tree.branch_of_segment
     # The moment is constant in a segment with children, and that of a uniform load in the last.
-    own = ((1.0 - along) * np.where(carries, 1.0, (1.0 - along) ** 2) * soft).sum(axis=(1, 2))
-    onward = (along * soft).sum(axis=(1, 2))
-    ends = np.isin(carrier, tree.branch_first[1:] - 1)
-    continues = (branch == branch[carrier]) | ends
-    return own + np.where(continues & (carrier >= 0), onward[carrier], 0.0)
+    to_end = 1.0 - points.share
+    has_children = np.isin(np.arange(tree.n_segments), parent)[:, None, None]
+    moment = np.where(has_children, 1.0, to_end**2)
+    at_start = (to_end * moment * bend).sum(axis=(1, 2))
+    at_end = (points.share * bend).sum(axis=(1, 2))
+    is_last_of_branch = np.isin(parent, tree.branch_first[1:] - 1)
+    continues = (branch == branch[parent]) | is_last_of_branch
+    return at_start + np.where(continues & (parent >= 0), at_end[parent], 0.0)
 
 
-def _bodies(tree: Tree, density: float, leaf_line: Floats) -> tuple[Floats, Floats, Floats]:
-    """Mass, centre and inertia as in `HingedTree`, with leaves [kg/m], (n,)."""
-    along, part, diameter = _points(tree)
-    wood = density * np.pi / 4.0 * diameter**2 * part
-    line, away = wood + leaf_line[:, None, None] * part, tree.length[:, None, None] * along
-    mass = line.sum(axis=(1, 2))
-    centre = (line * away).sum(axis=(1, 2)) / mass
-    disc = (wood * diameter**2).sum(axis=(1, 2)) / 16.0
-    across = (line * away**2).sum(axis=(1, 2)) - mass * centre**2 + disc
-    return mass, centre, np.stack([2.0 * disc, across], axis=1)
+class _Bodies(NamedTuple):
+    """Mass, centre and inertia as in `HingedTree`."""
+
+    mass: Floats
+    centre: Floats
+    inertia: Floats
 
 
-def _mass_matrix(tree: Tree, mass: Floats, centre: Floats, inertia: Floats) -> sparse.csc_matrix:
-    """Mass matrix of the hinges at rest, (2 n, 2 n), two after two as the segments are."""
+def _bodies(tree: Tree, density: float, leaf_line: Floats) -> _Bodies:
+    """Bodies of the segments with leaves of a mass per length [kg/m], (n,)."""
+    points = _Points.of(tree)
+    along = tree.length[:, None, None] * points.share
+    wood = density * np.pi / 4.0 * points.diameter**2 * points.part
+    total = wood + leaf_line[:, None, None] * points.part
+    mass = total.sum(axis=(1, 2))
+    centre = (total * along).sum(axis=(1, 2)) / mass
+    disc = (wood * points.diameter**2).sum(axis=(1, 2)) / 16.0
+    across = (total * along**2).sum(axis=(1, 2)) - mass * centre**2 + disc
+    return _Bodies(mass, centre, np.stack([2.0 * disc, across], axis=1))
+
+
+def _mass_matrix(tree: Tree, bodies: _Bodies) -> sparse.csc_matrix:
+    """
+    Mass matrix of the hinges at rest, (2 n, 2 n), two after two as the segments are.
+
+    It is J^T M J, with the Jacobian J of the bodies' motions by the rates of the hinges from the
+    root to each body.
+    """
+    n = tree.n_segments
     axes = Rotation.from_quat(tree.rest_poses[:, 3:]).as_matrix()
     chains: list[list[int]] = []
-    for i, parent in enumerate(tree.segment_parent.tolist()):
-        chains.append([*(chains[parent] if parent >= 0 else ()), i])
-    body = np.repeat(np.arange(tree.n_segments), [len(chain) for chain in chains])
+    for segment, parent in enumerate(tree.segment_parent.tolist()):
+        chains.append([*(chains[parent] if parent >= 0 else ()), segment])
+    body = np.repeat(np.arange(n), [len(chain) for chain in chains])
     hinge = np.concatenate([np.array(chain) for chain in chains])
-    # Speeds of a body's centre, and spins about its axes, by the rates of the hinges before it.
-    turns = np.stack([axes[hinge, :, 1], axes[hinge, :, 2]], axis=1)
-    lever = (tree.start + centre[:, None] * axes[:, :, 0])[body] - tree.start[hinge]
-    speeds = np.cross(turns, lever[:, None])
-    spins = np.einsum('kij,khi->khj', axes[body], turns)
-    columns = (2 * hinge[:, None] + np.arange(2)).ravel()
-    rows, shape = np.repeat(body, 2), (tree.n_segments, 2 * tree.n_segments)
-    total = sparse.csc_matrix((shape[1], shape[1]))
-    for k in range(3):
-        for values, weight in ((speeds, mass), (spins, inertia[:, min(k, 1)])):
-            moved = sparse.csc_matrix((values[:, :, k].ravel(), (rows, columns)), shape)
-            total += moved.T @ sparse.diags(weight) @ moved
+    centre = tree.start + bodies.centre[:, None] * axes[:, :, 0]
+    hinge_axes = np.stack([axes[hinge, :, 1], axes[hinge, :, 2]], axis=1)
+    lever = centre[body] - tree.start[hinge]
+    speed = np.cross(hinge_axes, lever[:, None])
+    spin = np.einsum('kij,khi->khj', axes[body], hinge_axes)  # about the body's own axes
+    column = (2 * hinge[:, None] + np.arange(2)).ravel()
+    row = np.repeat(body, 2)
+    along, across = bodies.inertia.T
+    total = sparse.csc_matrix((2 * n, 2 * n))
+    for axis, inertia in enumerate((along, across, across)):
+        for rate, weight in ((speed, bodies.mass), (spin, inertia)):
+            jacobian = sparse.csc_matrix((rate[:, :, axis].ravel(), (row, column)), (n, 2 * n))
+            total += jacobian.T @ sparse.diags(weight) @ jacobian
     return total
