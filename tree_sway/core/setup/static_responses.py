@@ -10,7 +10,7 @@ these and of the responses to gusts (`gust_responses`, `modes.leading_modes`).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property, partial
 from typing import Any
 
@@ -62,12 +62,17 @@ class WindMoments:
 
     def __call__(self, x: Floats, v: Floats, wind: Floats) -> Floats:
         """Moments by a wind (3,) of 1 kg/m^3 on a tree at x that moves at v, both (N,)."""
-        moments, (wx, wy, wz) = np.empty(self.n), wind.tolist()
-        if not self._plain:
-            self._compiled(x, v, moments, wx, wy, wz, 1.0)
-            return moments
-        self._in_numpy(x, v, wind, moments)
+        moments = np.empty(self.n)
+        self.fill(x, v, wind.tolist(), moments)
         return moments
+
+    def fill(self, x: Floats, v: Floats, wind: Iterable[float], moments: Floats) -> None:
+        """Write the moments of a call, (N,); arrays are contiguous."""
+        wx, wy, wz = wind
+        if self._plain:
+            self._in_numpy(x, v, np.array([wx, wy, wz]), moments)
+        else:
+            self._compiled(x, v, moments, wx, wy, wz, 1.0)
 
     def at_poses(self, poses: Floats, winds: Floats) -> Floats:
         """Moments (k, N) by winds (k, 3) as in a call, each on the tree held in a pose (k, N)."""
