@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Limp trees: nearer to the truth, no energy from nothing, stable, the same without a compiler."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -28,6 +29,7 @@ from tree_sway.core.run.pose_inertia import (
 )
 from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
+from tree_sway.core.scene.simulate import Rig
 from tree_sway.core.setup.prepare import prepare
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -75,6 +77,16 @@ def test_only_trees_whose_twigs_hang_or_whip_are_limp():
         assert not model.is_limp, kind
         assert not {'segment_mass', 'weight_slopes'} & model.arrays().keys()
     assert not make_simulator(builtin_tree('goldcrest'), model=24).models[0].is_limp
+
+
+def test_a_tree_without_inertia_takes_the_table_and_says_so():
+    model = limp_model()
+    weightless = replace(model, segment_mass=0.0 * model.segment_mass)
+    rig = Rig(weeping(), model=12)
+    rig.simulator = SwaySimulator(weightless)
+    record = rig.run(turbulent(9.0, 0.5, 4))
+    assert 'no inertia to solve with' in ' '.join(record.notes)
+    assert np.isfinite(record.tips).all()
 
 
 @pytest.mark.parametrize('speed', [5.0, 9.0])
