@@ -140,8 +140,9 @@ def test_a_tree_for_another_program(tmp_path: Path, suffix: str, start: str) -> 
     ('arguments', 'message'),
     [
         ([SEEDLING, '-o', 'tree.yaml', '--sway'], "--sway: 'tree.yaml' cannot sway; write a .glb"),
-        (['FOREST', '-o', 'trees.glb', '--sway', 'morph'], 'trees.glb: a forest for'),
-        (['FOREST', '-o', 'trees.usda'], 'trees.usda: a forest for a different program'),
+        (['FOREST', '-o', 'trees.glb', '--sway', 'morph'], 'trees.glb: 2 trees, where one'),
+        (['FOREST', '-o', 'trees.usda'], 'trees.usda: 2 trees, where one is expected; convert'),
+        (['FOREST', '-o', 'trees.npz'], 'trees.npz: 2 trees, where one is expected; convert'),
     ],
 )
 def test_what_cannot_sway(

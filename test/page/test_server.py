@@ -218,6 +218,16 @@ def test_a_port_in_use_is_an_error_in_words(server: PageServer) -> None:
         PageServer(PageSettings(port=server.port)).start()
 
 
+def test_of_two_pages_without_a_port_the_second_takes_a_free_one(
+    server: PageServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both were asked for when the usual port was free: only the server itself can tell."""
+    monkeypatch.setattr(server_module, 'USUAL_PORT', server.port)
+    with PageServer(PageSettings(port=None)) as second:
+        assert second.port not in (0, server.port)
+        assert str(second.port) in second.url
+
+
 def test_a_server_that_does_not_start_in_time_is_an_error(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -158,6 +158,8 @@ def test_what_is_no_path_is_refused(text: str) -> None:
         ('anemometer', 'is no source of wind'),
         ('mqqt://host/topic', "did you mean 'mqtt'"),
         ('mqtt://host', 'no host or topic'),
+        ('udp:', 'port from 1 to 65535'),
+        ('udp:wind', 'port from 1 to 65535'),
         ('udp://:0', 'port from 1 to 65535'),
         ('udp://:70000', 'port from 1 to 65535'),
         ('tcp://:10110', 'no host'),

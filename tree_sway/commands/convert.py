@@ -154,9 +154,9 @@ def _write_swaying(scene: Scene, arguments: argparse.Namespace, suffix: str) -> 
     """Write one tree for swaying in a different program."""
     if not scene.is_one_tree:
         raise ParameterError(
-            'a forest for a different program',
+            f'{len(scene.trees)} trees, where one is expected',
             where=arguments.output,
-            cure='convert its trees one by one',
+            cure='convert the file of one of them; .html, .obj and .glb with a skin take all',
         )
     settings = Settings(model=arguments.model, in_leaf=chosen_leaves(arguments))
     if suffix == MODEL_SUFFIX:

@@ -45,17 +45,24 @@ def sensing(
     Raises
     ------
     ParameterError
-        A sensor without a place, two of one name and place, or a wrong address.
+        A sensor without a place, two at one address or of one name and place, or a wrong
+        address.
 
     """
     from tree_sway.sensors.motion.live_motion import LiveMotion
     from tree_sway.sensors.motion.motion_feed import MotionFeed, PlacedSensor
     from tree_sway.sensors.motion.motion_registry import open_motion
 
-    placed = []
+    placed, addresses = [], set[str]()
     for number, (url, at) in enumerate(sensors_and_places(arguments)):
+        opened = open_motion(url)
+        address = str(opened.source.transport)
+        if address in addresses:
+            cure = 'a sensor has one place: give each its own port, host or topic'
+            raise ParameterError(f'two sensors at {address}', where='--motion', cure=cure)
+        addresses.add(address)
         tell = heard[number] if heard else None
-        placed.append(PlacedSensor(LiveMotion(open_motion(url), _say, heard=tell), at))
+        placed.append(PlacedSensor(LiveMotion(opened, _say, heard=tell), at))
     feed = MotionFeed(placed)
     if len(feed.sensors) < len(placed):
         cure = 'give each a name: udp:5006?name=stem'
@@ -69,4 +76,5 @@ def sensing(
 
 def _say(text: str) -> None:
     """Print a line of news of a sensor."""
-    print(f'motion: {text}', file=sys.stderr, flush=True)
+    # In one piece with its end: each sensor tells its news from its own thread.
+    print(f'motion: {text}\n', end='', file=sys.stderr, flush=True)

@@ -6,22 +6,19 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-import socket
 from urllib.parse import urlencode
 
 from tree_sway.core.checks import within
 from tree_sway.page.access import make_token, read_token
-from tree_sway.page.page_settings import PageSettings
+from tree_sway.page.page_settings import PageSettings, USUAL_PORT
 from tree_sway.page.server import PageServer
-
-_PORT = 8765
 
 
 def add_page_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the page's server."""
     add = parser.add_argument_group('page').add_argument
     add('--open', action='store_true', help='open the page in a browser')
-    add('--port', type=int, help=f'TCP port of the web server ({_PORT}, or a free one)')
+    add('--port', type=int, help=f'TCP port of the web server ({USUAL_PORT}, or a free one)')
     add(
         '--address',
         default='127.0.0.1',
@@ -50,16 +47,14 @@ def page_settings(arguments: argparse.Namespace) -> PageSettings:
 
     A `ParameterError` reports a bad port, or a token that cannot be written.
     """
-    port = arguments.port
-    if port is None:
-        port = _PORT if _is_free(arguments.address, _PORT) else 0
-    within('--port', port, 0, 65535)
+    if arguments.port is not None:
+        within('--port', arguments.port, 0, 65535)
     if arguments.token_file and not Path(arguments.token_file).exists():
         make_token(arguments.token_file)
         print(f'{arguments.token_file}: a new token, which only you may read', flush=True)
     return PageSettings(
         arguments.address,
-        port,
+        arguments.port,
         token_file=arguments.token_file,
         certificate=arguments.certificate,
         private_key=arguments.private_key,
@@ -75,14 +70,3 @@ def print_address(server: PageServer, begin: str) -> None:
     token = read_token(server.settings.token_file)
     print(f'{begin} {server.url}?{urlencode({"token": token})}')
     print(f'to look only: {server.url}?{urlencode({"token": server.viewers_token})}', flush=True)
-
-
-def _is_free(address: str, port: int) -> bool:
-    family = socket.AF_INET6 if ':' in address else socket.AF_INET
-    with socket.socket(family, socket.SOCK_STREAM) as trial:
-        trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            trial.bind((address, port))
-        except OSError:
-            return False
-    return True

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tree_sway.sensors.reading import WindReading
 
 HELP = (
-    'live wind instead: udp://:port, tcp://host:port, serial:/dev/ttyUSB0:4800, modbus:DEVICE, '
+    'live wind instead: udp:PORT, tcp://host:port, serial:/dev/ttyUSB0:4800, modbus:DEVICE, '
     'mqtt://host/topic, signalk://host, http://host/path.json, tempest, weatherlink:HOST, '
     'ecowitt:PORT, open-meteo:LAT,LON, metar:ICAO (doc/live_wind.md)'
 )

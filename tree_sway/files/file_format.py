@@ -11,6 +11,7 @@ import re
 from typing import Any
 
 from tree_sway.errors import FormatError, ParameterError
+from tree_sway.files.foreign_file import foreign_file
 from tree_sway.files.text_file import read_head
 
 
@@ -88,9 +89,9 @@ def format_of(
     Raises
     ------
     UnknownFormatError
-        If no format fits.
+        If no format fits, and the suffix does not tell what the file is.
     FormatError
-        If numbers have decimal commas.
+        If the file is of another kind, such as a mesh, or numbers have decimal commas.
     ParameterError
         If no format has that name.
 
@@ -114,8 +115,16 @@ def format_of(
     of_suffix = [known for known in formats if path.suffix.lower() in known.suffixes]
     if len(of_suffix) == 1:
         return of_suffix[0]
+    raise _unknown(path, kind, names)
+
+
+def _unknown(path: Path, kind: str, names: str) -> FormatError:
+    """Return the error for a file of no format: what it is, if its suffix tells, or its kind."""
+    what, cure = foreign_file(path)
+    if what:
+        cures = filter(None, (cure, f'formats that are read: {names}'))
+        return FormatError(f'{what}, not a {kind}', where=str(path), cure='; '.join(cures))
     cure = f'give one of {names}, or give its format'
     if kind == 'tree':
         cure += '; an inventory has columns for the place, the species, and the height or dbh'
-    what = f'a file of an unknown {kind} format'
-    raise UnknownFormatError(what, where=str(path), cure=cure)
+    return UnknownFormatError(f'a file of an unknown {kind} format', where=str(path), cure=cure)

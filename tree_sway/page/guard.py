@@ -70,7 +70,7 @@ class Guard:
         self._token = settings.token or read_token(settings.token_file)
         require_token(settings.address, self._token)
         self._guesses = Guesses()
-        self.port = settings.port
+        self.port = settings.port or 0
         """Port that the server is bound to."""
 
     @property

@@ -7,6 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 import ssl
 
+USUAL_PORT = 8765
+
 
 @dataclass(frozen=True)
 class PageSettings:
@@ -16,7 +18,8 @@ class PageSettings:
     Parameters
     ----------
     address, port
-        Address to bind to; 0 is a free port.
+        Address to bind to; port 0 is a free one, None the usual one or, if it is in use, a free
+        one.
     token, token_file
         Token of clients, or a file with it; needed for any address except this machine's own.
     certificate, private_key
@@ -29,7 +32,7 @@ class PageSettings:
     """
 
     address: str = '127.0.0.1'
-    port: int = 8765
+    port: int | None = USUAL_PORT
     token: str = field(default='', repr=False)
     token_file: str = ''
     certificate: str = ''

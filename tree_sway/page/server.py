@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Mapping
+import errno
 import json
 import logging
 import socket
@@ -25,7 +26,7 @@ from tree_sway.page.access import is_own_page
 from tree_sway.page.doorkeeper import Doorkeeper
 from tree_sway.page.guard import add_headers, Guard, STATIC
 from tree_sway.page.page_client import PageClient
-from tree_sway.page.page_settings import PageSettings
+from tree_sway.page.page_settings import PageSettings, USUAL_PORT
 from tree_sway.page.published import Gusts, nothing, Published, Tables
 from tree_sway.page.refusals import Refusals
 from tree_sway.stream.controls import ControlPanel, Value
@@ -37,6 +38,7 @@ STATUS_PERIOD = 0.5
 """Interval of the status, and of the search for clients that do not read [s]."""
 
 _START_TIMEOUT = 10.0
+_BACKLOG = 256
 _MOST_WAITING = 3
 """Requests for the tree as a file that wait for the one that is written."""
 
@@ -79,7 +81,7 @@ class PageServer:
         critical_winds: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
         self.settings = settings
-        self.port = settings.port
+        self.port = USUAL_PORT if settings.port is None else settings.port
         """Port that the server is bound to."""
         self._panel = panel or ControlPanel()
         self._status, self._written = status or dict, written
@@ -116,7 +118,7 @@ class PageServer:
             raise TransportError(what, where=self.settings.address, cure=cure)
         if self._failure is not None:
             self._thread.join()
-            where = f'{self.settings.address}:{self.settings.port}'
+            where = f'{self.settings.address}:{self.port}'
             what = f'the page cannot be served ({self._failure})'
             cure = 'choose a different port, or end the program that uses this one'
             raise TransportError(what, where=where, cure=cure) from self._failure
@@ -231,9 +233,7 @@ class PageServer:
         await runner.setup()
         assert runner.server is not None
         tls = self.settings.tls()
-        family = socket.AF_INET6 if ':' in self.settings.address else socket.AF_INET
-        address = self.settings.address, self.settings.port
-        with socket.create_server(address, family=family, backlog=256) as listener:
+        with self._listener() as listener:
             listener.setblocking(False)
             self.port = self._guard.port = listener.getsockname()[1]
             tasks = [
@@ -247,6 +247,17 @@ class PageServer:
         for client in tuple(self._clients):
             await client.socket.close(code=WSCloseCode.GOING_AWAY, message=b'server ends')
         await runner.cleanup()
+
+    def _listener(self) -> socket.socket:
+        """Bind the port; where any will do and the usual one is in use, a free one."""
+        host = self.settings.address
+        family = socket.AF_INET6 if ':' in host else socket.AF_INET
+        try:
+            return socket.create_server((host, self.port), family=family, backlog=_BACKLOG)
+        except OSError as error:
+            if self.settings.port is not None or error.errno != errno.EADDRINUSE:
+                raise
+        return socket.create_server((host, 0), family=family, backlog=_BACKLOG)
 
     def _runner(self) -> web.AppRunner:
         """Return the HTTP server, with an answer to each kind of request."""

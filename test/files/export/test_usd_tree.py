@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """USD as Pixar's library and Blender read it."""
 
+import errno
+from pathlib import Path
 import zipfile
 
 import numpy as np
@@ -11,6 +13,7 @@ from tree_sway.core.growth.builtin import builtin_tree
 from tree_sway.core.leaves.foliage import leaf_clusters
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.tree.species import species_named
+from tree_sway.errors import FormatError
 from tree_sway.files.export.breeze import in_breeze
 from tree_sway.files.export.tree_mesh import wood_mesh
 from tree_sway.files.export.usd_tree import branch_groups, influences, usd_of_tree
@@ -147,3 +150,18 @@ def test_pictures_are_found_from_the_file(tmp_path, simulator, suffix):
             )
             assert (entry.header_offset + 30 + name + extra) % 64 == 0
             assert entry.compress_type == zipfile.ZIP_STORED
+
+
+def test_a_disk_that_fills_leaves_no_pictures_behind(tmp_path, simulator, monkeypatch):
+    """The text is the largest file and the last: its pictures alone are of no use."""
+    write = Path.write_bytes
+
+    def until_full(self, data):
+        if self.suffix == '.usda':
+            raise OSError(errno.ENOSPC, 'No space left on device')
+        return write(self, data)
+
+    monkeypatch.setattr(Path, 'write_bytes', until_full)
+    with pytest.raises(FormatError, match=r'gold\.usda: cannot be written: No space left'):
+        write_usd(tmp_path / 'gold.usda', simulator)
+    assert not list(tmp_path.iterdir())

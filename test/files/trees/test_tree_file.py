@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from tree_sway.errors import FormatError, ParameterError, SpeciesError, TreeError
+from tree_sway.files.trees.source import open_scene
 from tree_sway.files.trees.tree_file import read_tree, read_trees
 
 DATA = Path(__file__).parents[1] / 'data'
@@ -46,6 +47,29 @@ def test_unknown_content(tmp_path):
         read_trees(tmp_path / 'x.bin')
     with pytest.raises(FormatError, match='no such file; check the path'):
         read_trees(tmp_path / 'none.csv')
+
+
+@pytest.mark.parametrize(
+    ('name', 'content', 'words'),
+    [
+        ('tree.usdz', b'PK\x03\x04' + bytes(26) + b'tree.usdc', 'a mesh for drawing'),
+        ('tree.USDA', b'#usda 1.0', 'a mesh for drawing'),
+        ('tree.glb', b'glTF\x02', 'give the file that it was made from'),
+        ('tree.obj', b'v 0 0 0', 'a mesh for drawing'),
+        ('tree.xml', b'<mujoco/>', 'a model for a robot simulator'),
+        ('tree.sdf', b'<sdf/>', 'a model for a robot simulator'),
+        ('tree.html', b'<!doctype html>', 'a page, not a tree'),
+        ('scan.laz', b'LASF', 'a point cloud, not a tree; fit cylinders'),
+        ('trees.zip', b'PK\x03\x04' + bytes(26) + b'trees.csv', 'unpack it first'),
+    ],
+)
+def test_a_file_of_another_kind_is_named_with_the_formats_that_are_read(
+    tmp_path, name, content, words
+):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(FormatError, match=words) as refused:
+        open_scene(tmp_path / name)
+    assert 'formats that are read: archi, simpleforest' in str(refused.value)
 
 
 def test_table_of_segments():

@@ -180,7 +180,15 @@ def test_a_pause_does_not_move_the_clocks_apart(sensor: Sensor) -> None:
         (['--motion', 'udp:5006', '--at', '99'], 'the stem has no height'),
         (['--motion', 'udp:5006', '--at', '0.2', '--stand', '9'], 'stand of 9 trees'),
         (['--motion', 'motion.csv', '--at', '0.2'], 'does not begin with a kind of source'),
-        (['--motion', 'udp:5006', '--at', '0.2'] * 2, 'two sensors of one name'),
+        (['--motion', 'udp:5006', '--at', '0.2'] * 2, 'two sensors at udp://:5006'),
+        (
+            '--motion udp:5006?name=low --at 0.1 --motion udp://:5006?name=high --at 0.2'.split(),
+            'two sensors at udp://:5006; a sensor has one place',
+        ),
+        (
+            '--motion udp:5006?name=stem --at 0.2 --motion udp:5007?name=stem --at 0.2'.split(),
+            'two sensors of one name',
+        ),
         (
             ['--motion', 'udp:5006', '--at', '0.2', '--model', 'auto'],
             'give a number of coordinates',

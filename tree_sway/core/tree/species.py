@@ -79,7 +79,8 @@ def _plain(name: str) -> str:
 
 _KEYS = {key.replace('_', ' '): key for key in SPECIES}
 _KEYS |= {_plain(name): key for key, names in NAMES.items() for name in names}
-_WORDS = [name for name in _KEYS if len(name) > 3]
+_SUGGESTED = [*(name for name in _KEYS if len(name) > 3), *SPECIES]
+"""Keys and names to suggest; an abbreviation is near to too many words."""
 _ENDS = sorted((name for name in _KEYS if len(name) >= _SHORTEST_END), key=len, reverse=True)
 _FILE = re.compile(r'\.(ya?ml|json|csv)\s*$', re.IGNORECASE)
 _CONIFEROUS = re.compile(
@@ -112,9 +113,8 @@ def species_named(name: str) -> Species:
     for known in (' '.join(words), ' '.join(words[:2]), *genus):
         if known in _KEYS:
             return SPECIES[_KEYS[known]]
-    known_names = [*_WORDS, *SPECIES]
     # Of two words, one may be right: the whole name is far from each known name.
-    guesses = (nearest(each, known_names) for each in (' '.join(words), *words))
+    guesses = (nearest(each, _SUGGESTED) for each in (' '.join(words), *words))
     guess = next(filter(None, guesses), '')
     cure = f'{guess} use one of: {", ".join(sorted(SPECIES))}'.lstrip()
     raise SpeciesError(f"unknown species '{name}'", cure=cure)
@@ -147,8 +147,8 @@ def species_like(name: str) -> tuple[Species, str]:
         group = SPECIES[_KEYS[end]]
         return group, f"'{name[:40]}' is taken as {group.title}"
     group = SPECIES['conifer' if _CONIFEROUS.search(plain) else 'broadleaf']
-    note = f"'{name[:40]}' is not in the table: taken as {group.title}; {nearest(plain, _WORDS)}"
-    return group, note.rstrip('; ')
+    note = f"'{name[:40]}' is not in the table: taken as {group.title}"
+    return group, '; '.join(filter(None, (note, nearest(plain, _SUGGESTED))))
 
 
 def species_keys() -> tuple[str, ...]:

@@ -8,6 +8,7 @@ A ``.usdz`` is a zip whose files are stored as they are, each from a multiple of
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 import io
 from pathlib import Path
 import tempfile
@@ -18,7 +19,7 @@ from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.tree.species import look_of
 from tree_sway.files.export.spray_pictures import bark_picture, leaf_picture
 from tree_sway.files.export.usd_tree import usd_of_tree
-from tree_sway.files.whole_file import whole_file, write_text_whole
+from tree_sway.files.whole_file import whole_file
 
 _ALIGNED = 64
 _HEADER = 30
@@ -39,10 +40,11 @@ def write_usd(
         with whole_file(path) as partial:
             partial.write_bytes(_packed({**_layer(stem, text), **pictures}))
         return
-    for name, png in pictures.items():
-        with whole_file(path.with_name(name)) as partial:
-            partial.write_bytes(png)
-    write_text_whole(path, text)
+    # All of them or none: each is put in its place when the last has been written.
+    with ExitStack() as files:
+        for name, data in {**pictures, path.name: text.encode()}.items():
+            partial = files.enter_context(whole_file(path.with_name(name)))
+            partial.write_bytes(data)
 
 
 def _layer(stem: str, text: str) -> dict[str, bytes]:

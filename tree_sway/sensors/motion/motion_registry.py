@@ -12,10 +12,9 @@ from tree_sway.sensors.motion.motion_json import EXPECTS, read_motion_json
 from tree_sway.sensors.motion.motion_reading import MotionSource
 from tree_sway.sensors.motion.phyphox import EXPECTS as OF_PHYPHOX
 from tree_sway.sensors.motion.phyphox import PhyphoxPhone
-from tree_sway.sensors.question_options import silence_of
 from tree_sway.sensors.source_address import read_source_address, SourceAddress
 from tree_sway.sensors.sources.mqtt_topic import broker_of
-from tree_sway.sensors.transports.udp import Udp
+from tree_sway.sensors.sources.udp_line import udp_of
 
 FORMS = ('http://PHONE:8080 (phyphox)', 'udp:PORT', 'mqtt://host/topic')
 """Addresses as examples."""
@@ -76,13 +75,7 @@ def _phyphox(address: SourceAddress) -> MotionSource:
 
 
 def _udp(address: SourceAddress) -> MotionSource:
-    host, port = address.host, address.place
-    if not address.parts.netloc and port.isdecimal() and 0 < int(port) < 65_536:
-        link = Udp('', int(port), silence=silence_of(address))
-    elif address.parts.netloc:
-        link = Udp(host, address.port(), silence=silence_of(address))
-    else:
-        raise address.error('a port from 1 to 65535 is missing', 'give udp:5006')
+    link = udp_of(address)
     return MotionSource(link, read_motion_json, f'UDP {link.port}', EXPECTS)
 
 

@@ -11,10 +11,22 @@ from tree_sway.sensors.source_kind import Source, SourceKind
 from tree_sway.sensors.transports.udp import Udp
 
 
+def udp_of(address: SourceAddress) -> Udp:
+    """Return the port of ``udp:5006``, or of ``udp://host:5006`` for one address or a group."""
+    place = address.place
+    if address.parts.netloc:
+        port = address.port()
+    elif place.isdecimal() and 0 < int(place) < 65_536:
+        port = int(place)
+    else:
+        raise address.error('a port from 1 to 65535 is missing', 'give udp:5006')
+    return Udp(address.host, port, silence=silence_of(address))
+
+
 def open_udp(address: SourceAddress) -> Source:
-    """Open a port: ``udp://:port``, on one address of this machine, or a multicast group."""
+    """Open a port: ``udp:port``, on one address of this machine, or a multicast group."""
     read = lines_of(address)
-    link = Udp(address.host, address.port(), silence=silence_of(address))
+    link = udp_of(address)
     return Source(link, read, str(link), EXPECTS, messages='lines')
 
 

@@ -32,6 +32,12 @@ def read_prepared(path: Path) -> TreeFile:
     return TreeFile(model.tree, model.species, str(path), (note,))
 
 
-FORMAT = FileFormat(
-    'npz', (SUFFIX,), lambda head: head.startswith('PK\x03\x04'), read_prepared, AS_IT_IS
-)
+_FIRST_NAMES = 300
+"""Beginning of a zip [characters] with the name of its first file."""
+
+
+def _is_zip_of_arrays(head: str) -> bool:
+    return head.startswith('PK\x03\x04') and '.npy' in head[:_FIRST_NAMES]
+
+
+FORMAT = FileFormat('npz', (SUFFIX,), _is_zip_of_arrays, read_prepared, AS_IT_IS)
