@@ -9,11 +9,12 @@ Count the code: tokens, tokens per line, short names, public names, modules that
 
 Counted are Python's tokens without comments, docstrings, imports and line ends; a line counts if a
 counted token begins on it. A room is a folder with modules; its figures are those of its own
-modules, without those of the folders in it. The modules of a step are found by running a
-simulator of the built-in benjamina in another process, where opening the tree has loaded nothing,
-by the Python of the checkout's `.venv` or by the one that runs this script; without numpy that
-part is left out. A module runs in a step if
-Python calls one of its functions then, or if a kernel in use names one of its kernels.
+modules, without those of the folders in it. The modules of a step are found by running simulators
+of the built-in benjamina in other processes, where opening the tree has loaded nothing: one that
+prepares its model, and one whose model is read from a file. They are run by the Python of the
+checkout's `.venv` or by the one that runs this script; without numpy that part is left out. A
+module runs in a step if Python calls one of its functions then, or if a kernel in use names one of
+its kernels.
 
 """
 
@@ -60,10 +61,12 @@ import pickle
 import sys
 import tree_sway
 
-with open(sys.argv[1], 'wb') as file:
-    pickle.dump(tree_sway.open_tree('benjamina').tree, file)
+tree = tree_sway.open_tree('benjamina').tree
+with open(sys.argv[1] + '/tree', 'wb') as file:
+    pickle.dump(tree, file)
+tree_sway.write_model(sys.argv[1] + '/model.npz', tree_sway.prepare(tree, cache=None))
 """
-"""Program that writes a built-in tree to a file."""
+"""Program that writes a built-in tree and its model to a folder."""
 
 STEPPING = """
 import gc
@@ -72,8 +75,11 @@ import sys
 import types
 import tree_sway
 
-with open(sys.argv[1], 'rb') as file:
-    tree = pickle.load(file)
+if sys.argv[1].endswith('.npz'):
+    tree = tree_sway.read_model(sys.argv[1])
+else:
+    with open(sys.argv[1], 'rb') as file:
+        tree = pickle.load(file)
 simulator = tree_sway.make_simulator(tree, cache=None)
 simulator.step((5.0, 0.0, 0.0), 1 / 60)
 simulator.place()
@@ -133,7 +139,7 @@ for name, module in sorted(modules.items()):
     if getattr(module, '__file__', None):
         print(int(name in ran), module.__file__)
 """
-"""Program that prints the modules that a simulator of that tree loads; 1 before those that run."""
+"""Program that prints the modules that a simulator of one of them loads; 1: those that run."""
 
 
 @dataclass
@@ -255,18 +261,25 @@ def interpreter() -> str:
     return str(own) if own.is_file() else sys.executable
 
 
-def modules_of_a_step() -> dict[Path, bool] | None:
-    """Return modules that a simulator loads, and whether each runs in a step; None on failure."""
+def modules_of_a_step() -> list[dict[Path, bool]]:
+    """
+    Return modules that a simulator loads, and whether each runs in a step; none on failure.
+
+    The first are those of a simulator that prepares its model, the second those of one that is
+    given a model of a file.
+    """
+    printed = []
     with tempfile.TemporaryDirectory() as folder:
-        for program in (OPENING, STEPPING):
-            command = [interpreter(), '-c', program, str(Path(folder) / 'tree')]
+        runs = ((OPENING, folder), (STEPPING, f'{folder}/tree'), (STEPPING, f'{folder}/model.npz'))
+        for program, argument in runs:
+            command = [interpreter(), '-c', program, argument]
             done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
             if done.returncode:
                 reason = done.stderr.strip().splitlines() or ['no reason given']
                 print(reason[-1], file=sys.stderr)
-                return None
-    lines = (line.split(' ', 1) for line in done.stdout.splitlines())
-    return {Path(path).resolve(): runs == '1' for runs, path in lines}
+                return []
+            printed.append([line.split(' ', 1) for line in done.stdout.splitlines()])
+    return [{Path(path).resolve(): ran == '1' for ran, path in lines} for lines in printed[1:]]
 
 
 def offered() -> int:
@@ -326,20 +339,23 @@ def main() -> None:
             f'{total(counts, folder).short_share:.0%}',
         )
     stepping = modules_of_a_step()
-    if stepping is None:
+    if not stepping:
         row('modules of a stepping simulator', 'not counted')
     else:
-        loaded = {path for path in stepping if counts.get(path, Count()).modules}
-        ran = {path for path in loaded if stepping[path]}
+        prepared, stored = (
+            {path for path in each if counts.get(path, Count()).modules} for each in stepping
+        )
+        ran = {path for path in prepared if stepping[0][path]}
         for words, paths in (
-            ('loaded by a simulator, its set-up included', loaded),
+            ('loaded by a simulator, its set-up included', prepared),
+            ('loaded by a simulator of a model in a file', stored),
             ('that run in a step', ran),
         ):
             row(f'modules {words}', f'{len(paths)}')
             row('  their tokens', f'{sum(counts[path].tokens for path in paths):,}')
         if arguments.modules:
-            for path in sorted(loaded):
-                mark = 'runs' if path in ran else 'loaded'
+            for path in sorted(prepared | stored):
+                mark = 'runs' if path in ran else 'stored' if path in stored else 'set-up'
                 print(f'  {mark:<7} {path.relative_to(ROOT)} {counts[path].tokens}')
 
     print(f'\n{"room":<36} {"modules":>7} {"tokens":>8} {"lines":>6} {"a line":>6} {"short":>6}')

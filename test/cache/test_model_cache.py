@@ -11,7 +11,7 @@ import pytest
 from tree_sway.cache import model_cache
 from tree_sway.cache.model_cache import ModelFiles
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup import prepare
+from tree_sway.core.setup import make_model
 
 WIND = (6.0, 3.0, 0.5)
 
@@ -43,7 +43,7 @@ def none_is_made(monkeypatch):
     """Fail where a tree is reduced, or asked for its loads, after all."""
 
     def start():
-        monkeypatch.setattr(prepare, '_coupled_tree', lambda *_: pytest.fail('made again'))
+        monkeypatch.setattr(make_model, 'make_model', lambda *_: pytest.fail('made again'))
 
     return start
 

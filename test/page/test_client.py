@@ -4,11 +4,15 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Callable, Iterator
+from contextlib import suppress
+import hashlib
 import json
 import os
 from pathlib import Path
 import shutil
+import socket
 import subprocess
 import sys
 import threading
@@ -114,6 +118,48 @@ def test_poses_are_those_of_the_sender_a_delay_ago(server: PageServer) -> None:
         assert client.state == 'open'
         client.set('mean_speed', 99.0)
         until(lambda: 'out of range' in client.problem)
+
+
+def test_a_change_without_a_connection_is_refused(server: PageServer) -> None:
+    client = StreamClient(server.url)
+    with pytest.raises(TransportError, match=r"'mean_speed' is not changed: .* connecting"):
+        client.set('mean_speed', 5.0)
+    with client:
+        client.wait(DEADLINE)
+    with pytest.raises(TransportError, match=r"'mean_speed' is not changed: .* lost"):
+        client.set('mean_speed', 5.0)
+    with pytest.raises(RuntimeError, match='entered once'), client:
+        pass
+
+
+def test_a_server_that_falls_silent_is_no_unreadable_message(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr('tree_sway.stream.client._SILENCE', 0.2)
+    with socket.create_server(('127.0.0.1', 0)) as listener:
+        answering = threading.Thread(target=shake_hands, args=(listener,))
+        answering.start()
+        with StreamClient(f'http://127.0.0.1:{listener.getsockname()[1]}/') as client:
+            until(lambda: 'the line broke' in client.problem)
+            assert client.unreadable == 0
+        answering.join()
+
+
+def shake_hands(listener: socket.socket) -> None:
+    """Accept one WebSocket, read what it sends, and never say a word."""
+    line, _ = listener.accept()
+    with line:
+        asked = line.recv(4096).decode()
+        key = asked.split('Sec-WebSocket-Key: ')[1].split('\r\n')[0]
+        magic = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11'  # RFC 6455, section 4.2.2
+        accepted = base64.b64encode(hashlib.sha1((key + magic).encode()).digest()).decode()
+        line.sendall(
+            'HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\n'
+            f'Connection: Upgrade\r\nSec-WebSocket-Accept: {accepted}\r\n\r\n'.encode()
+        )
+        with suppress(ConnectionError):
+            while line.recv(4096):
+                pass
 
 
 def test_a_line_that_is_lost_is_made_again() -> None:

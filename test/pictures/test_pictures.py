@@ -99,15 +99,16 @@ def test_a_whole_tree_fits_its_picture(name: str, tmp_path: Path) -> None:
     assert (picture.max(axis=2) < 180).mean() > 0.01
 
 
-def test_a_moving_picture_has_its_frames_and_its_pace(tmp_path: Path) -> None:
+@pytest.mark.parametrize('form', ['GIF', 'WEBP'])
+def test_a_moving_picture_has_its_frames_and_its_pace(form: str, tmp_path: Path) -> None:
     tree = pole()
     frames = [leaning(tree, angle) for angle in (0.0, 0.2, 0.4)]
-    path = tmp_path / 'sway.gif'
+    path = tmp_path / f'sway.{form.lower()}'
     animate_poses(tree, frames, np.ones((3, 3)), path, rate=20.0, pixels=160)
     image = Image.open(path)
-    assert (image.format, image.n_frames) == ('GIF', 3)
-    assert image.info['duration'] == pytest.approx(50.0)
+    assert (image.format, image.n_frames) == (form, 3)
     first = np.asarray(image.convert('RGB')).astype(float)
+    assert image.info['duration'] == pytest.approx(50.0)
     image.seek(2)
     assert np.abs(np.asarray(image.convert('RGB')) - first).max() > 100
 

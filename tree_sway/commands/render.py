@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add('--rate', type=float, default=20.0, help='pictures per second [Hz] (%(default)s)')
     add('--pixels', type=int, default=480, help='height of the picture in pixels (%(default)s)')
-    add_output_arguments(parser, 'film to write: .gif or .mp4')
+    add_output_arguments(parser, 'film to write: .gif, .webp or .mp4')
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -101,18 +101,21 @@ def rank_of(column: str, quantity: str) -> int | None:
     """Place of a column's name among the names of a quantity; None if it is not one of them."""
     kind = COLUMNS[quantity]['unit']
     name, _ = name_and_unit(column, kind)
-    found = (folded(name), folded(column))
+    whole = folded(name)
+    found = (whole, folded(column))
     for rank, known in enumerate(_NAMES[quantity]):
-        if known in found or trailing_unit(name, known, kind) or _is_cut(column, known):
+        follows = whole.startswith(known) and trailing_unit(name, known, kind)
+        if known in found or follows or _is_cut(column, known):
             return rank
     return None
 
 
 def _is_cut(column: str, known: str) -> bool:
     """Whether a column's name is the beginning of a known one, cut off by a shapefile."""
+    if len(column.strip()) != _SHAPEFILE_NAME:
+        return False
     name = folded(column)
-    may_be_cut = len(column.strip()) == _SHAPEFILE_NAME and len(name) >= _SHORTEST_CUT
-    return may_be_cut and known.startswith(name) and name not in _ALL_NAMES
+    return len(name) >= _SHORTEST_CUT and known.startswith(name) and name not in _ALL_NAMES
 
 
 def unit_known(kind: str, unit: str) -> bool:

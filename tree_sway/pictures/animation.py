@@ -1,6 +1,6 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""A moving picture of a tree, as a file: a GIF, or a film by ffmpeg."""
+"""A moving picture of a tree, as a file: GIF, WebP, or a film by ffmpeg."""
 
 from __future__ import annotations
 
@@ -23,8 +23,9 @@ from tree_sway.files.whole_file import whole_file
 from tree_sway.pictures.plotting import new_figure
 from tree_sway.pictures.tree_drawing import draw_trees, limits_around
 
-_SUFFIXES = ('.gif', '.mp4')
+_SUFFIXES = ('.gif', '.webp', '.mp4')
 _GIF_COLORS = 64
+_WEBP_QUALITY = 50
 _DOTS_PER_INCH = 128.0
 """A power of two, so that no number of points is lost to rounding."""
 
@@ -59,7 +60,7 @@ def animate_poses(
     rate: float = 20.0, leaves: LeafClusters | None = None, pixels: int = 480,
 ) -> Path:  # fmt: skip
     """
-    Draw a moving picture: a GIF or a film, by the suffix.
+    Draw a moving picture: GIF, WebP or a film, by the suffix.
 
     Parameters
     ----------
@@ -70,7 +71,7 @@ def animate_poses(
     winds
         Wind of each frame in [m/s], (f, 3).
     path
-        File to write: ``.gif`` or ``.mp4``.
+        File to write: ``.gif``, ``.webp`` or ``.mp4``.
     rate
         Frames per second in [Hz].
     pixels
@@ -120,12 +121,10 @@ def animate_poses(
 
 
 def write_pictures(images: Iterator[Any], target: Path, rate: float) -> Path:
-    """Write pictures of Pillow, all of one even size, as a GIF or a film of a rate in [Hz]."""
+    """Write pictures of Pillow, all of one even size, as their suffix says, at a rate in [Hz]."""
     with whole_file(target) as partial:
-        if target.suffix.lower() == '.gif':
-            _write_gif(partial, images, rate)
-        else:
-            _write_film(partial, images, rate)
+        write = {'.gif': _write_gif, '.webp': _write_webp, '.mp4': _write_film}
+        write[target.suffix.lower()](partial, images, rate)
     return target
 
 
@@ -134,6 +133,14 @@ def _write_gif(path: Path, images: Iterator[Any], rate: float) -> None:
     # Without dither, whose dots would flicker.
     others = (image.quantize(palette=first, dither=0) for image in images)
     first.save(path, 'GIF', save_all=True, append_images=others, duration=1000.0 / rate, loop=0)
+
+
+def _write_webp(path: Path, images: Iterator[Any], rate: float) -> None:
+    duration = round(1000.0 / rate)
+    next(images).save(
+        path, 'WEBP', save_all=True, append_images=images, duration=duration, loop=0,
+        quality=_WEBP_QUALITY, method=6,
+    )  # fmt: skip
 
 
 def _write_film(path: Path, images: Iterator[Any], rate: float) -> None:

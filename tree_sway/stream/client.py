@@ -39,11 +39,16 @@ from tree_sway.stream.protocol import (
     TABLES,
 )
 
-_MOST_CREDIT, _LEAST_CREDIT, _GRANT_EVERY = 24, 8, 4
+_MOST_CREDIT = 24
+_LEAST_CREDIT = 8
+"""Most and fewest frames that may be in transit."""
+_GRANT_EVERY = 4
+"""Frames that are requested at once, at least."""
 _ON_THE_WAY = 200_000
 """Largest amount of data in transit in [bytes], so that a slow line has little old data."""
 
 _LARGEST_TEXT = 2**20
+"""Largest text message in [characters]."""
 _SCHEMES = {'http': 'ws', 'ws': 'ws', 'https': 'wss', 'wss': 'wss'}
 """Scheme of the stream by that of the page's address."""
 
@@ -54,8 +59,13 @@ _DENIED = (401, 403)
 """HTTP status of a missing or wrong token."""
 
 _ENDS = aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSING, aiohttp.WSMsgType.CLOSED
-_SHORTEST_WAIT, _LONGEST_WAIT = 0.5, 10.0
-_PING_EVERY, _SILENCE = 2.0, 4.0
+_SHORTEST_WAIT = 0.5
+_LONGEST_WAIT = 10.0
+"""Waits before the connection is made again [s]."""
+_PING_EVERY = 2.0
+"""Time between questions for the round trip [s]."""
+_SILENCE = 4.0
+"""Time between heartbeats [s]; the connection ends if the server does not answer one."""
 
 
 class StreamClient:
@@ -141,14 +151,20 @@ class StreamClient:
         self._wants_wind: bool | str = 'only' if wind_only else by_wind
         self._placer: Placer | None = None
         self._more = threading.Condition()
-        self._loop = asyncio.new_event_loop()
-        self._thread = threading.Thread(target=self._run, name='stream', daemon=True)
+        """Of placer, playout and counts; its lock may be taken again by the thread that has it."""
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._thread: threading.Thread | None = None
         self._refusal: TransportError | None = None
         self._socket: aiohttp.ClientWebSocketResponse | None = None
-        self._awaited, self._credit = 0, _MOST_CREDIT
+        self._awaited = 0
+        self._credit = _MOST_CREDIT
 
     def __enter__(self) -> StreamClient:
-        self._task = self._loop.create_task(self._connect_again_and_again())
+        if self._thread is not None:
+            raise RuntimeError('a StreamClient is entered once; make another one')
+        self._loop = asyncio.new_event_loop()
+        self._task = self._loop.create_task(self._keep_connected())
+        self._thread = threading.Thread(target=self._run, name='stream', daemon=True)
         self._thread.start()
         return self
 
@@ -157,7 +173,7 @@ class StreamClient:
 
     def close(self) -> None:
         """Close the connection and end the thread; may be called twice."""
-        if self._thread.is_alive():
+        if self._loop is not None and self._thread is not None and self._thread.is_alive():
             self._loop.call_soon_threadsafe(self._task.cancel)
             self._thread.join(timeout=5.0)
 
@@ -182,7 +198,21 @@ class StreamClient:
                 raise TransportError(what, where=self.url, cure=cure)
 
     def set(self, name: str, value: Value) -> None:  # noqa: A003
-        """Change a control of the server; a refusal is in `problem`."""
+        """
+        Change a control of the server; a refusal by the server is in `problem`.
+
+        Raises
+        ------
+        TransportError
+            No connection at present: nothing is changed.
+
+        """
+        if self._loop is None or self.state != 'open':
+            raise TransportError(
+                f"'{name}' is not changed: the connection is {self.state}",
+                where=self.url,
+                cure='wait() until frames come',
+            )
         self._loop.call_soon_threadsafe(self._say, {'set': {'name': name, 'value': value}})
 
     @property
@@ -209,10 +239,13 @@ class StreamClient:
         return placer.place(moment.coordinates)
 
     def _run(self) -> None:
+        assert self._loop is not None
         with contextlib.closing(self._loop), contextlib.suppress(asyncio.CancelledError):
             self._loop.run_until_complete(self._task)
+        self.state = 'lost'
 
-    async def _connect_again_and_again(self) -> None:
+    async def _keep_connected(self) -> None:
+        """Connect, follow, and connect again after increasing waits, until cancelled."""
         wait = _SHORTEST_WAIT
         async with aiohttp.ClientSession(headers=self._headers) as session:
             while True:
@@ -244,6 +277,8 @@ class StreamClient:
             message = await socket.receive()
             if message.type in _ENDS:
                 raise TransportError(f'the server closed the line ({socket.close_code})')
+            if message.type is aiohttp.WSMsgType.ERROR:
+                raise TransportError(f'the line broke ({message.data})')
             try:
                 self._take(message)
             except Exception as error:
@@ -279,7 +314,7 @@ class StreamClient:
             self._say({'credit': more})
 
     def _say(self, message: Mapping[str, object]) -> None:
-        if self._socket is not None and not self._socket.closed:
+        if self._loop is not None and self._socket is not None and not self._socket.closed:
             task = self._loop.create_task(self._socket.send_json(message))
             task.add_done_callback(lambda done: done.cancelled() or done.exception())
 

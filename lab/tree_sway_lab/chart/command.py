@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tree_sway.commands.progress import waiting
 
-_CHARTS = ('methods', 'fidelity', 'cost', 'portraits', 'habits')
+_CHARTS = ('methods', 'fidelity', 'cost', 'portraits', 'habits', 'twin')
 _OF_BROWSER = ('sprays',)
 
 
@@ -21,6 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=(*_CHARTS, *_OF_BROWSER, 'all'),
         help='methods: of integration; fidelity: models of a tree; cost: against its size; '
         'portraits: trees at rest and in wind, and a film; habits: grown species; '
+        'twin: a film of a true tree, the model in the wind, and the model with a sensor; '
         'sprays: leaves and bark as the page paints them, for files, by Chromium; '
         'all: every picture of the documentation',
     )

@@ -42,7 +42,7 @@ class Score:
     stem
         Correlation of the stem's tip with the true one, the smaller of both axes [-].
     held
-        Share of the time that the band of 80 % holds the tips [-].
+        Share of the time that the band of 80 % holds the tips [-]; 0 without a band.
     cost, worst
         Median and 99th percentile of the time of a step in [us], sensors and all, while scored.
     notes
@@ -108,6 +108,7 @@ def twin_score(
     in_leaf: bool,
     seed: int = 7,
     faulty: bool = False,
+    has_band: bool = True,
 ) -> Score:
     """Score a tree that sensors at some places correct."""
     twin = ObservedTree(
@@ -116,7 +117,7 @@ def twin_score(
         in_leaf=in_leaf,
         at={each: each for each in places},
         is_smoothed=True,
-        has_band=True,
+        has_band=has_band,
     )
     rng = np.random.default_rng(seed)
     for name in places:
@@ -126,7 +127,7 @@ def twin_score(
         twin.replay(name, motion.time, acceleration=motion.acceleration, rate=motion.rate)
     block = np.empty((tree.n_segments, 7))
     tips, smoothed = np.empty_like(true.tips), np.empty_like(true.tips)
-    bands = np.empty((len(tips), 2, *tips.shape[1:]))
+    bands = np.full((len(tips), 2, *tips.shape[1:]), np.nan)
     spent = np.empty(len(tips))
     for k, each in enumerate(true.wind):
         began = time.perf_counter()
@@ -134,7 +135,8 @@ def twin_score(
         spent[k] = time.perf_counter() - began
         tips[k] = tips_of_poses(tree, twin.place(block))
         smoothed[k] = tips_of_poses(tree, twin.place_rotations(twin.smoothed, block))
-        bands[k] = twin.band()
+        if has_band:
+            bands[k] = twin.band()
     error, roughness, stem = _compared(tips, true.tips, 0)
     late_error, late_roughness = error, roughness
     if places:

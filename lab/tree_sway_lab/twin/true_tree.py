@@ -17,6 +17,7 @@ import numpy as np
 from tree_sway.core.arrays import Floats
 from tree_sway.core.growth.grow import grow
 from tree_sway.core.observe.sensor_place import place_on, SensorPlace
+from tree_sway.core.run.simulator import SwaySimulator
 from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.segment_frame import ends_of_poses
@@ -91,6 +92,38 @@ def sensor_places(tree: Tree, count: int) -> list[str]:
     return [f'{names[0]}:0.6', *(f'{names[b]}:0.5' for b in order)][:count]
 
 
+def true_simulator(
+    tree: Tree,
+    species: Species,
+    around: Circumstances,
+    *,
+    in_leaf: bool,
+    model: int | str = 'full',
+) -> SwaySimulator:
+    """Return a simulator of the true tree."""
+    known = prepare(tree, species, model=0, in_leaf=in_leaf)
+    return make_simulator(
+        tree,
+        replace(species, modulus=around.wood * species.modulus),
+        model=model,
+        in_leaf=in_leaf,
+        crown_coherence=around.coherence,
+        damping_ratio=around.damping * known.damping_ratio,
+    )
+
+
+def winds(around: Circumstances) -> tuple[Floats, Floats]:
+    """Return the wind of every step at the tree and at the anemometer in [m/s], (n, 3) each."""
+    late = round(around.upwind / around.speed / DT)
+    wind = simulate_turbulence(
+        around.speed,
+        rate=1.0 / DT,
+        duration=around.seconds + late * DT,
+        rng=np.random.default_rng(around.seed),
+    )
+    return wind[: len(wind) - late], wind[late:]
+
+
 def true_motion(
     tree: Tree,
     species: Species,
@@ -101,18 +134,8 @@ def true_motion(
     model: int | str = 'full',
 ) -> TrueMotion:
     """Sway the true tree in its wind."""
-    known = prepare(tree, species, model=0, in_leaf=in_leaf)
-    wood = replace(species, modulus=around.wood * species.modulus)
-    true = make_simulator(
-        tree, wood, model=model, in_leaf=in_leaf, crown_coherence=around.coherence,
-        damping_ratio=around.damping * known.damping_ratio,
-    )  # fmt: skip
-    rng = np.random.default_rng(around.seed)
-    late = round(around.upwind / around.speed / DT)
-    wind = simulate_turbulence(
-        around.speed, rate=60.0, duration=around.seconds + late * DT, rng=rng
-    )
-    felt, measured = wind[: len(wind) - late], wind[late:]
+    true = true_simulator(tree, species, around, in_leaf=in_leaf, model=model)
+    felt, measured = winds(around)
     found = {name: place_on(tree, name) for name in places}
     poses = {name: np.empty((len(felt), 7)) for name in places}
     tips = np.empty((len(felt), tree.n_branches, 3))
@@ -122,11 +145,12 @@ def true_motion(
         true.place(block)
         tips[k] = tips_of_poses(tree, block)
         for name, place in found.items():
-            poses[name][k] = _pose_at(tree, block, place)
+            poses[name][k] = pose_at(tree, block, place)
     return TrueMotion(measured, tips, poses)
 
 
-def _pose_at(tree: Tree, block: Floats, place: SensorPlace) -> Floats:
+def pose_at(tree: Tree, block: Floats, place: SensorPlace) -> Floats:
+    """Pose of a place (7,) in a pose block (n, 7): that of its segment, moved along it."""
     pose = block[place.segment].copy()
     away = place.along * float(tree.length[place.segment])
     pose[:3] = ends_of_poses(block[place.segment : place.segment + 1], [away])[1][0]

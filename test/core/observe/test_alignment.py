@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tree_sway.core.observe.alignment import align, GRAVITY, matrix_of, turn_onto
+from tree_sway.core.observe.alignment import align, GRAVITY, matrix_of, TELLS_LITTLE, turn_onto
 
 N = 3000
 
@@ -107,6 +107,14 @@ def test_a_sensor_of_other_motion_is_refused() -> None:
     values[:, :6] = with_gravity[:, :6].std(axis=0) * rng.normal(size=(N, 6))
     values[:, 2] += GRAVITY
     assert 'resembles that of the tree' in align(values, *motions(1)).problem
+
+
+def test_a_place_that_hardly_moves_is_no_evidence_against_its_sensor() -> None:
+    values, (with_gravity, without) = sensed(MOUNTS[0]), motions(1)
+    found = align(values, 1e-3 * with_gravity, 1e-3 * without, window=20)
+    assert found.problem == TELLS_LITTLE
+    # The same sensor where the tree moves it somewhat is not on this tree.
+    assert 'times as much' in align(values, 0.1 * with_gravity, 0.1 * without, window=20).problem
 
 
 def test_an_orientation_gives_the_mount_itself() -> None:

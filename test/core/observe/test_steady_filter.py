@@ -14,6 +14,7 @@ from tree_sway.core.observe.steady_filter import (
     steady_filter,
     sway_law,
     SwayLaw,
+    told_shares,
 )
 
 M, DT = 5, 1.0 / 60.0
@@ -57,6 +58,20 @@ def test_the_covariance_is_that_of_scipy(law: SwayLaw, sensed: np.ndarray) -> No
 def test_the_covariance_without_sensors_is_that_of_scipy(law: SwayLaw) -> None:
     known = linalg.solve_discrete_lyapunov(law.matrix, driven(law))
     np.testing.assert_allclose(stationary_covariance(law), known, rtol=1e-8)
+
+
+def test_a_sensor_of_one_coordinate_tells_nothing_of_those_it_shares_no_force_with(
+    law: SwayLaw,
+) -> None:
+    apart = SwayLaw(law.step, np.diag(np.diag(law.driven)))
+    one = np.zeros((1, 3 * M))
+    one[0, 2] = 1.0
+    gains = steady_filter(apart, one, NOISE[:1])
+    told = told_shares(gains)
+    alone = np.diag(linalg.solve_discrete_lyapunov(apart.matrix, driven(apart)))
+    assert told[2] == pytest.approx(1.0 - gains.covariance[2, 2] / alone[2], rel=1e-6)
+    assert told[2] > 0.05
+    np.testing.assert_allclose(np.delete(told, 2), 0.0, atol=1e-8)
 
 
 def test_errors_are_as_large_as_the_covariance_says_and_smoothed_ones_smaller(

@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from tree_sway.core.scene.make import make_simulator
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import Species, species_named
 from tree_sway.errors import ParameterError
+from tree_sway.files.models.model_file import write_model
 
 DT = 1.0 / 60.0
 WOOD = Species('example', 'example', 8e9, 900.0, damping_bare=0.1)
@@ -87,3 +90,29 @@ def test_the_model_is_that_of_the_settings(stem):
     assert make_simulator(stem, WOOD, Settings(model='branch'), model=12).model == '12'
     (model,) = make_simulator(replace(stem, species='oak')).models
     assert model.species is species_named('oak')
+
+
+STEPS_A_MODEL_OF_A_FILE = """
+import sys
+import tree_sway
+
+simulator = tree_sway.make_simulator(tree_sway.read_model(sys.argv[1]))
+simulator.step((5.0, 0.0, 0.0), 1 / 60)
+simulator.push(0, (1.0, 0.0, 0.0), 0.1)
+simulator.place()
+print(*sorted(name for name in sys.modules if name.startswith('tree_sway.core.setup.')))
+"""
+
+
+def test_a_model_of_a_file_is_stepped_without_loading_the_set_up(stem, tmp_path):
+    path = tmp_path / 'stem.npz'
+    write_model(path, prepare(stem, WOOD, model=5, cache=None))
+    done = subprocess.run(
+        [sys.executable, '-c', STEPS_A_MODEL_OF_A_FILE, str(path)],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    # Without a compiler branches are placed level by level, as the set-up moves them.
+    assert set(done.stdout.split()) <= {
+        'tree_sway.core.setup.numpy_branch_loads',
+        'tree_sway.core.setup.tree_motion',
+    }

@@ -10,7 +10,7 @@ from tree_sway_lab.validation.crooked_trees import crooked_tree
 
 from tree_sway.core.beams.beam import cross_matrix
 from tree_sway.core.kernel import fused
-from tree_sway.core.model.fill_records import load_records
+from tree_sway.core.model.load_records import load_records
 from tree_sway.core.model.settings import Settings
 from tree_sway.core.rotation import turned
 from tree_sway.core.run.assembly import bank_of

@@ -19,7 +19,7 @@ def test_every_wood_is_green_wood(key):
     assert wood.title
     # Green wood lies between balsa and boxwood (Forest Products Laboratory, Wood Handbook, 2010).
     assert 3e9 < wood.modulus < 16e9
-    assert 500.0 < wood.density < 1300.0
+    assert 350.0 < wood.density < 1300.0
     assert 0.02 <= wood.damping_bare <= 0.10
     assert 0.05 <= wood.damping_in_leaf <= 0.24
     assert 0.0 <= wood.drag_exponent < 1.0
@@ -41,11 +41,12 @@ def test_an_unknown_species_is_refused_with_those_that_exist():
 
 
 def test_guesses_are_marked():
-    guesses = {key for key in species_keys() if species_named(key).is_estimate}
+    marked = {key for key in species_keys() if species_named(key).is_estimate}
     dry_wood = {'horse_chestnut', 'hornbeam', 'pear', 'apple', 'tree_of_heaven', 'ginkgo'}
     of_family = {'zelkova', 'rowan', 'hawthorn', 'hazel', 'pagoda_tree'}
     guessed = {'benjamina', 'goldcrest', 'broadleaf', 'conifer'}
-    assert guesses == guessed | dry_wood | of_family
+    assert marked >= guessed | dry_wood | of_family
+    assert marked.isdisjoint({'oak', 'beech', 'ash', 'birch', 'spruce', 'pine', 'douglas_fir'})
 
 
 def test_a_species_cannot_be_changed_by_accident():
@@ -104,7 +105,7 @@ def test_names_of_lists_are_known_whatever_their_case(name, key):
         ('brich', 'broadleaf', "did you mean 'birch'?"),
         ('okk', 'broadleaf', "did you mean 'oak'?"),
         ('elmm', 'broadleaf', "did you mean 'elm'?"),
-        ('Paulownia tomentosa', 'broadleaf', 'a broadleaf of no known species'),
+        ('Xyloma ignota', 'broadleaf', 'a broadleaf of no known species'),
         ('Sumpfzypresse', 'conifer', 'a conifer of no known species'),
         ('Winter-Linde', 'lime', 'is taken as lime'),
         ('Kaiserlinde', 'lime', 'is taken as lime'),

@@ -15,7 +15,7 @@ from tree_sway.commands.cli import main
 from tree_sway.core.model.model_cache import PREPARED, PreparedModels
 from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.scene.make import make_simulator
-from tree_sway.core.setup import prepare as prepare_module
+from tree_sway.core.setup import make_model
 from tree_sway.core.setup.prepare import prepare
 from tree_sway.core.tree.species import species_named
 from tree_sway.errors import FormatError
@@ -67,7 +67,7 @@ def test_an_opened_file_is_not_set_up_again(file, monkeypatch):
     monkeypatch.setattr(PREPARED, '_given', {})
     opened = open_scene(file)
     assert 'prepared on model 60, in leaf' in opened.notes[0]
-    monkeypatch.setattr(prepare_module, '_coupled_tree', lambda *_: pytest.fail('set up'))
+    monkeypatch.setattr(make_model, 'make_model', lambda *_: pytest.fail('set up'))
     simulator = opened.simulator(in_leaf=True, root_stiffness=math.inf)
     simulator.step((6.0, 0.0, 0.0), 1 / 60)
     assert simulator.models[0].species.key == 'oak'

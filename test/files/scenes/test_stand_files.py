@@ -178,11 +178,11 @@ def test_inventories_of_others_are_read_as_they_are(tmp_path, text, expected):
 
 
 def test_a_species_of_no_table_and_a_stem_that_would_not_stand_are_notes(tmp_path):
-    rows = '0,0,Paulownia tomentosa,15,30\n9,0,western redcedar,20,3\n'
+    rows = '0,0,Xyloma ignota,15,30\n9,0,western redcedar,20,3\n'
     stand = open_scene(written(tmp_path, 'x,y,species,height,dbh\n' + rows))
     assert [each.species.key for each in stand.trees] == ['broadleaf', 'conifer']
     notes = '; '.join(stand.notes)
-    assert "'Paulownia tomentosa' is not in the table" in notes
+    assert "'Xyloma ignota' is not in the table" in notes
     assert 'dbh is taken as cm' in notes
     assert 'as others would buckle' in notes
 

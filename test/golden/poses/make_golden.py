@@ -3,9 +3,8 @@
 """
 Make the golden poses: every built-in tree, bare, in 60 s of simulated wind, in each reduced model.
 
-    python test/golden/poses/make_golden.py            # write golden.npz and digests.json beside
-    this file python test/golden/poses/make_golden.py --check    # exit 1 where a digest differs
-    from the stored one
+    python test/golden/poses/make_golden.py            # writes golden.npz and digests.json here
+    python test/golden/poses/make_golden.py --check    # exits with 1 where a digest differs
 
 The digest of all frames is the same bit for bit only on one kind of processor with one version of
 numba; a restructuring is checked by it, on one machine, before and after. What the test compares

@@ -1,7 +1,7 @@
 # Copyright 2026 Tree Sway maintainers
 # SPDX-License-Identifier: Apache-2.0
 """
-From arrays to the records of the hot path: `segment_records`, `block_records`, `load_records`.
+From arrays to the records for placing: `segment_records` and `block_records`.
 
 `Places` has how a tree is joined and drawn, which suffices to place it, as for a receiver of the
 stream. Segments and branches are laid out in slots.
@@ -16,10 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.beams.beam import cross
 from tree_sway.core.model.records import (
     block_layout,
-    load_layout,
     segment_layout,
     WIDTH,
     zeros_in_lines,
@@ -185,26 +183,3 @@ def assign_slots(
                 last = rich[branch], -int(carried[child]), child
                 heappush(ready, (rich[child], -int(size[child]), *last))
     return block, slot, begin
-
-
-def load_records(branches: Records, layout: np.dtype[np.void] | None = None) -> Records:
-    """
-    Lay the wind load of `Branch` records, (b,), out in sixteens, (ceil(b / 16),).
-
-    Records are at rest, without force, and of `load_layout` with the rows of the branches, or of a
-    layout with further fields, which are zero.
-    """
-    if layout is None:
-        layout = load_layout(branches.dtype['load_mode'].shape[0])
-    records = zeros_in_lines(-(-len(branches) // WIDTH), layout)
-    block, slot = np.divmod(np.arange(len(branches)), WIDTH)
-    for name in ('speed', 'area', 'spread', 'projector'):
-        records[name][block, ..., slot] = branches[name]
-    for name in ('damping_mode', 'load_rotation', 'load_mode'):
-        rows = records.dtype[name].shape[0]
-        records[name][block, ..., slot] = branches[name][:, :rows]
-    records['chord_lever'][block, :, slot] = branches['lever'][:, None] * branches['frame'][:, 0]
-    at_base = cross(branches['base'][:, None], np.eye(3)).swapaxes(1, 2)
-    records['coupling'][block, ..., slot] = branches['coupling'] - at_base
-    np.maximum.at(records['n_rows'], block, branches['n_coordinates'])
-    return records

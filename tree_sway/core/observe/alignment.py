@@ -26,6 +26,12 @@ GRAVITY = 9.80665
 LEAST_LIKENESS = 0.25
 """Correlation of sensor and model below which a sensor is taken as not on this tree."""
 
+TELLS_LITTLE = 'it tells little at this place in this wind: fix it higher or farther out on a limb'
+"""What a sensor says where the tree hardly moves it."""
+
+LEAST_NOISE = np.array([0.03, 0.004, 0.002])
+"""Least noise of acceleration [m/s^2], rate [rad/s] and rotation [rad]."""
+
 _MOST_RATIO = 5.0
 _GRAVITY_RANGE = (0.85, 1.15)
 _NO_GRAVITY = 0.4
@@ -136,6 +142,8 @@ def align(
         scale[0] = GRAVITY
         moved = found.motion(sensed)
         likeness, ratio = _likeness(moved, model, measures)
+    if not problem and _is_below_noise(model, measures, window):
+        problem = TELLS_LITTLE
     if not problem and not 1.0 / _MOST_RATIO < ratio < _MOST_RATIO:
         problem = (
             f'it moves {ratio:.2g} times as much as the tree does there in this wind: check that '
@@ -230,6 +238,12 @@ def _likeness(moved: Floats, model: Floats, measures: NDArray[np.bool_]) -> tupl
         own += float(np.square(mine).sum()) / size
         other += 1.0
     return product / max(math.sqrt(own * other), 1e-300), math.sqrt(own / max(other, 1.0))
+
+
+def _is_below_noise(model: Floats, measures: NDArray[np.bool_], window: int) -> bool:
+    """Whether the model moves a sensor less than its noise: any sensor would differ from it."""
+    size = np.sqrt(model.var(axis=0).reshape(3, 3).sum(axis=1))
+    return bool((size < LEAST_NOISE / math.sqrt(window))[measures].all())
 
 
 def _centred(rows: Floats) -> Floats:

@@ -220,7 +220,8 @@ class Members:
         told += self._observer.noise[:, None] * self._rng.standard_normal(told.shape)
         told -= gains.sensed @ estimate.reshape(3 * n, -1)
         estimate += (gains.gain @ told).reshape(estimate.shape)
-        np.subtract(felt[0], estimate[0], out=self.errors)
+        np.multiply(estimate[0], self._observer.trust[:, None], out=self._away)
+        np.subtract(felt[0], self._away, out=self.errors)
 
     def band(self, readout: Floats, scale: Floats | None = None) -> Floats:
         """

@@ -35,12 +35,12 @@ from tree_sway.core.observe.sensor_place import place_on, tip_slopes
 from tree_sway.core.observe.sensor_track import SensorTrack
 from tree_sway.core.observe.tree_fit import TreeFit
 from tree_sway.core.run.simulator import RESTARTED, SwaySimulator
-from tree_sway.core.setup.prepare import delays_of, prepared
+from tree_sway.core.setup.prepare import prepared
 from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
-from tree_sway.core.wind.crown_wind import CrownWind, USUAL_COHERENCE
+from tree_sway.core.wind.crown_wind import CrownWind, delays_of, USUAL_COHERENCE
 from tree_sway.core.wind.limits import is_wind
 from tree_sway.errors import ParameterError
 

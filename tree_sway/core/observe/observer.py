@@ -11,6 +11,10 @@ difference is moved on to the present. Without a usable sensor the difference fa
 Two sets of gains are kept. The causal one expects more noise than the sensors have, since noise
 would otherwise shake branches that no sensor sees. The one of the smoother trusts them, and is
 late by a fixed lag.
+
+A sensor on the stem tells about a hanging twig only what both have in common by the law of the
+gusts, and of all that the filter knows, that law is known least. A coordinate is corrected where
+the sensors take away enough of its variance; elsewhere the tree sways in the wind alone.
 """
 
 from __future__ import annotations
@@ -35,6 +39,7 @@ from tree_sway.core.observe.steady_filter import (
     SteadyFilter,
     sway_law,
     SwayLaw,
+    told_shares,
 )
 from tree_sway.core.observe.tree_fit import fits, SensorSpectrum, Spectrum, TreeFit
 from tree_sway.core.setup.one_thread import one_thread
@@ -58,6 +63,15 @@ _STIFFER, _MORE_DAMPED = 0.03, 0.2
 """Changes of the logarithms of stiffness and damping from which other gains are found."""
 
 _FIRST_FIT, _FIT_LATER = 40.0, 1.4
+
+_TELLS_LITTLE, _TELLS_ENOUGH = 0.25, 0.4
+"""
+Shares of the variance of a coordinate that the sensors take away below and above which its
+correction is not applied, and applied whole.
+"""
+
+_TRUSTED_WITHIN = 2.0
+"""Time constant in [s] with which the applied shares follow those of new gains."""
 
 SMOOTHED_LAG, _WINDOW = 6, np.hanning(9)[1:-1] / np.hanning(9)[1:-1].sum()
 """Steps between the smoother's estimate and its newest measurement, and the window over it."""
@@ -153,6 +167,9 @@ class Observer:
         self._late_one: Estimate | None = None
         self._designing: Iterator[_Design | None] | None = None
         self._designed: tuple[int, ...] = ()
+        self.trust = np.zeros(self.count)
+        """Share of the correction of each coordinate that is applied [-], (count,)."""
+        self._wanted_trust = np.zeros(self.count)
         self._unknown: Disturbance | None = None
         self._air_damping = np.zeros(self.count)
         self._fitting: Iterator[TreeFit | None] | None = None
@@ -260,6 +277,7 @@ class Observer:
             self._watch_refused(beyond)
             self._learn()
             self._correct(self._causal, beyond, n_periods)
+        self._moved *= self.trust
         self._find_energies(self._first_stiffness, swing[0], swing[1], self._moved, self.energies)
         return self._moved[:2]
 
@@ -320,6 +338,10 @@ class Observer:
         self._causal = Estimate(found.causal, self._causal)
         if found.late is not None:
             self._late_one = Estimate(found.late, self._late_one)
+        told = (told_shares(found.causal) - _TELLS_LITTLE) / (_TELLS_ENOUGH - _TELLS_LITTLE)
+        self._wanted_trust = np.clip(told, 0.0, 1.0)
+        for k, track in enumerate(self.tracks):
+            track.tells_little = k in found.used and not self._wanted_trust.any()
         self._values = np.zeros(len(found.causal.sensed))
         self._ahead = {}
 
@@ -420,11 +442,13 @@ class Observer:
             unknown = self._join(beyond)
             causal.move(n_periods)
             causal.correct(self._values, unknown)
+            share = min(n_periods * self._dt / _TRUSTED_WITHIN, 1.0)
+            self.trust += share * (self._wanted_trust - self.trust)
             self._judge(causal.sizes(), beyond)
             if late is not None:
                 late.move(n_periods)
                 for each in skipped:
-                    self._states[each % _HISTORY] = late.state[0]
+                    self._states[each % _HISTORY] = self.trust * late.state[0]
                 late.correct(self._values, unknown)
                 self._smooth(late)
         if not self.late:
@@ -484,14 +508,14 @@ class Observer:
             return
         n, newest = self.count, (self._steps - 1 - self.late) % _HISTORY
         present = self._late_one
-        self._states[newest] = 0.0 if present is None else present.state[0]
+        self._states[newest] = 0.0 if present is None else self.trust * present.state[0]
         then = (newest - SMOOTHED_LAG) % _HISTORY
         self._smoothed[:-1] = self._smoothed[1:]
         self._smoothed[-1] = self._eta[then]
         last = self._smoothed[-1, :n]
         last += self._states[then]
         if late is not None:
-            last += late.past_change()
+            last += self.trust * late.past_change()
 
     @property
     def smoothed(self) -> Floats:
@@ -510,6 +534,7 @@ class Observer:
         """Forget the correction; what is known about the sensors stays."""
         self._causal = self._late_one = self._designing = None
         self._used = ()
+        self.trust[:] = 0.0
         self._states[:] = 0.0
         self._eta[:] = 0.0
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from tree_sway.core.arrays import Floats
 from tree_sway.core.kernel import entry_of, kernel
-from tree_sway.core.observe.alignment import align, Alignment, GRAVITY
+from tree_sway.core.observe.alignment import align, Alignment, GRAVITY, LEAST_NOISE, TELLS_LITTLE
 from tree_sway.core.observe.motion_sensor import MotionSensor
 from tree_sway.core.observe.sensor_place import PlaceMotion
 
@@ -32,8 +32,6 @@ _COMPARED = 1.0
 """Periods of the first sway over which motions are averaged to find a mounting."""
 
 _DISAGREES, _AGREES = 16.0, 4.0
-_FLOOR = np.array([0.03, 0.004, 0.002])
-"""Least noise of acceleration [m/s^2], rate [rad/s] and rotation [rad]."""
 _CEILING = np.array([20.0, 10.0, 3.0])
 """Largest noise that a sensor may state, in the same units: above, it tells nothing."""
 
@@ -121,6 +119,8 @@ class SensorTrack:
         self.alignment: Alignment | None = None
         self.in_use = False
         """Whether its motion corrects the tree."""
+        self.tells_little = False
+        """Whether it is in use, and tells too little of any coordinate to correct the tree."""
         self._mounting = np.zeros(21)
         self.bias = self._mounting[12:]
         """Mean difference from the model, which no sensor can tell from its mounting, (9,)."""
@@ -158,7 +158,9 @@ class SensorTrack:
     @property
     def noise(self) -> Floats:
         """Standard deviation of the noise at each step, (3,)."""
-        known = _FLOOR if self.alignment is None else np.maximum(self.alignment.noise, _FLOOR)
+        known = LEAST_NOISE
+        if self.alignment is not None:
+            known = np.maximum(self.alignment.noise, LEAST_NOISE)
         known = np.maximum(known, np.minimum(self.sensor.stated_noise, _CEILING))
         period = self.sensor.period
         # Samples that are joined by lines have the same noise in several steps.
@@ -172,10 +174,10 @@ class SensorTrack:
 
     @property
     def problem(self) -> str:
-        """Why it is not in use, and what to do; empty if it is."""
+        """Why it does not correct the tree, and what to do; empty if it does."""
         name = self.sensor.name
         if self.in_use:
-            return ''
+            return f'{name}: {TELLS_LITTLE}' if self.tells_little else ''
         counts = self.sensor.counts
         if counts.accepted == 0 and counts.refused:
             return f'{name}: all of {counts.refused} samples were refused: check what it sends'

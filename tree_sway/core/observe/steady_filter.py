@@ -219,9 +219,22 @@ def stationary_covariance(law: SwayLaw) -> Floats:
     for A couples no two of them (Horn & Johnson 1991, *Topics in Matrix Analysis*, 4.3).
     """
     m = law.step.shape[2]
-    steps = np.ascontiguousarray(np.moveaxis(law.step, 2, 0))
-    both = np.einsum('iac,jbd->ijabcd', steps, steps).reshape(m, m, 9, 9)
-    driven = np.zeros((m, m, 9, 1))
-    driven[:, :, 8, 0] = law.driven
-    pairs = np.linalg.solve(np.eye(9) - both, driven).reshape(m, m, 3, 3)
+    steps = np.moveaxis(law.step, 2, 0)
+    pairs = _pair_covariances(steps[:, None], steps, law.driven)
     return np.ascontiguousarray(pairs.transpose(2, 0, 3, 1)).reshape(3 * m, 3 * m)
+
+
+def told_shares(gains: SteadyFilter) -> Floats:
+    """Share of the variance of each displacement that the measurements take away, (m,)."""
+    steps = np.moveaxis(gains.law.step, 2, 0)
+    alone = _pair_covariances(steps, steps, np.diag(gains.law.driven))[:, 0, 0]
+    left = np.diag(gains.covariance)[: len(alone)]
+    return np.asarray(1.0 - left / np.maximum(alone, 1e-300))
+
+
+def _pair_covariances(first: Floats, second: Floats, driven: Floats) -> Floats:
+    """Stationary covariances of pairs of coordinates by their steps, (..., 3, 3)."""
+    both = np.einsum('...ac,...bd->...abcd', first, second).reshape(*driven.shape, 9, 9)
+    added = np.zeros((*driven.shape, 9, 1))
+    added[..., 8, 0] = driven
+    return np.linalg.solve(np.eye(9) - both, added).reshape(*driven.shape, 3, 3)

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from tree_sway.core.arrays import Floats, Records
-from tree_sway.core.model.fill_records import load_records
+from tree_sway.core.model.load_records import load_records
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.branchwise import Branchwise
 from tree_sway.core.run.modal_coordinates import ModalCoordinates

@@ -5,18 +5,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, TYPE_CHECKING
 
 from tree_sway.core.model.model_cache import ModelCache, PREPARED
 from tree_sway.core.model.settings import Settings, settings_with, USUAL
 from tree_sway.core.model.sway_model import SwayModel
 from tree_sway.core.run.simulator import SwaySimulator
-from tree_sway.core.setup.prepare import prepared
-from tree_sway.core.setup.reductions import TreeReductions
-from tree_sway.core.tree.grown_tree import GrownTree, tree_and_species
-from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
+from tree_sway.core.tree.wood import Species
 from tree_sway.errors import ParameterError
+
+if TYPE_CHECKING:
+    from tree_sway.core.setup.reductions import TreeReductions
+    from tree_sway.core.tree.grown_tree import GrownTree
 
 
 def make_simulator(
@@ -66,6 +67,10 @@ def make_simulator(
             what = 'a prepared model with another species or other settings'
             raise ParameterError(what, where=tree.tree.name, cure='prepare the tree again')
         return SwaySimulator(tree, plain=plain)
+    # The set-up is most of the program: a prepared model is stepped without loading it.
+    from tree_sway.core.setup.reductions import TreeReductions
+    from tree_sway.core.tree.grown_tree import tree_and_species
+
     bare, wood = tree_and_species(tree, species)
     chosen = settings_with(settings, changes)
     how = {'tolerance': tolerance, 'budget': budget} if chosen.model == 'auto' else {}
@@ -86,6 +91,8 @@ def simulator_of(
 
     With the tolerance and the budget of ``auto``, it chooses its coordinates.
     """
+    from tree_sway.core.setup.prepare import prepared
+
     model = prepared(reductions, cache=cache)
     if not auto:
         return SwaySimulator(model, plain=reductions.plain)

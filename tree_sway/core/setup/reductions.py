@@ -3,47 +3,37 @@
 """
 Reductions of a tree, shared by its models: beams, key segments, matrices, modes.
 
-Models differ in two ways of reduction: with subtrees, where a branch moves with its subtree, or
-isolated (the paper's).
+`reduced_tree` has the two ways to reduce a tree.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple, TYPE_CHECKING
 
 import numpy as np
 
-from tree_sway.core.arrays import Floats, Ints, Records
-from tree_sway.core.beams.branch_model import BranchModel, TreeBeams
-from tree_sway.core.beams.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
+from tree_sway.core.arrays import Floats
 from tree_sway.core.checks import one_of_each
 from tree_sway.core.kernel import WHY_PLAIN
 from tree_sway.core.model.drag_law import crown_drag, DragLaw, pressure
-from tree_sway.core.model.fill_records import Places
 from tree_sway.core.model.settings import Settings
-from tree_sway.core.setup.branch_places import places_of
-from tree_sway.core.setup.branch_records import branch_records
-from tree_sway.core.setup.matrices import reduce_tree, Reduction
-from tree_sway.core.setup.modes import leading_modes, Modes, natural_modes, solvable
-from tree_sway.core.setup.one_thread import one_thread
 from tree_sway.core.setup.season import in_season
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 
 if TYPE_CHECKING:
+    from tree_sway.core.setup.modes import Modes
+    from tree_sway.core.setup.reduced_tree import ReducedTree, TreeReducer
     from tree_sway.core.setup.static_responses import WindMoments
-
-CUT_FOR = 15.0
-"""Wind in [m/s] for whose rotations branches are cut."""
 
 LIMP_TURN, LIMP_SHARE, MOST_LIMP = 1.0, 0.1, 2000
 """
-Rotation [rad] in that wind, by linear beams, beyond which a branch is limp; the share of all
-branches, by length, that makes a limp tree; and its largest number of segments, for a step takes
-time in proportion. Of trees that were tried those whose twigs hang or whip have a share of 0.28 to
-0.87, a grown willow of 12 m in leaf 0.07, and all others none.
+Rotation [rad] in the wind that branches are cut for, by linear beams, beyond which a branch is
+limp; the share of all branches, by length, that makes a limp tree; and its largest number of
+segments, for a step takes time in proportion. Of trees that were tried those whose twigs hang or
+whip have a share of 0.28 to 0.87, a grown willow of 12 m in leaf 0.07, and all others none.
 """
 
 _STEADY = 2.0
@@ -70,26 +60,6 @@ class Responses(NamedTuple):
     rotations: Floats
     tips: Floats
     in_gale: float
-
-
-@dataclass(frozen=True)
-class ReducedTree:
-    """
-    A tree reduced in one of the two ways.
-
-    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,), and
-    ``row`` has the given tree's number of each segment, (n,); each segment has its ``mass`` [kg],
-    with leaves, (n,).
-    """
-
-    tree: Tree
-    branch: Ints
-    row: Ints
-    models: list[BranchModel]
-    reduction: Reduction
-    branches: Records
-    places: Places
-    mass: Floats
 
 
 class TreeReductions:
@@ -125,6 +95,8 @@ class TreeReductions:
 
     def natural_modes(self, count: int | None = None) -> Modes:
         """Return the slowest natural modes of the tree, or all, found once."""
+        from tree_sway.core.setup.modes import natural_modes, solvable
+
         wanted = self.with_subtrees.reduction.n_coordinates if count is None else count
         if self._slowest is None or len(self._slowest.circular) < wanted:
             with solvable(self.tree):
@@ -141,6 +113,8 @@ class TreeReductions:
 
     def modes(self, model: int | str) -> Modes:
         """Return all modes, or the leading ones in winds."""
+        from tree_sway.core.setup.modes import leading_modes
+
         reduction = self.with_subtrees.reduction
         n = reduction.n_coordinates
         count = n if isinstance(model, str) else min(model, n)
@@ -193,84 +167,30 @@ class TreeReductions:
         return self.isolated if model == 'branch' else self.with_subtrees
 
     @cached_property
+    def _reducer(self) -> TreeReducer:
+        # A prepared model needs no reduction, which is most of the set-up's code.
+        from tree_sway.core.setup.reduced_tree import TreeReducer
+
+        given = self.tree, self.species, self.settings
+        return TreeReducer(*given, self.drag_law, self.leaf_load_area)
+
+    @property
     def isolated(self) -> ReducedTree:
         """Reduction of isolated branches."""
-        whole = whole_tree(self.tree)
-        return self._reduced(whole, self._beams.models(subtrees=False), subtrees=False)
+        return self._reducer.isolated
 
-    @cached_property
+    @property
     def with_subtrees(self) -> ReducedTree:
-        """
-        Reduction with subtrees, enriched branches with further shapes.
-
-        Branches that rotate far are cut into key segments.
-        """
-        cut, beams = cut_tree(self.tree, pieces_by_turn(self.tree, self._turns)), self._beams
-        if cut.tree.n_branches > self.tree.n_branches:
-            beams = self._beams_of(cut)
-        enriched = beams.enriched(self.settings.enrich)
-        models = beams.models(subtrees=True, enriched=enriched)
-        return self._reduced(cut, models, subtrees=True)
-
-    @cached_property
-    def _turns(self) -> Floats:
-        """Rotation [rad] of each branch in the wind that branches are cut for, (b,)."""
-        dynamic_pressure = pressure(CUT_FOR, *self.drag_law) * CUT_FOR**2
-        return np.asarray(dynamic_pressure * self._beams.turns(self.species.modulus))
+        """Reduction with subtrees; branches that rotate far are cut into key segments."""
+        return self._reducer.with_subtrees
 
     @property
     def is_limp(self) -> bool:
         """Whether so much of the tree turns so far that a table of loads is too coarse."""
         length = self.tree.branch_length
-        turned = float(length[self._turns > LIMP_TURN].sum())
+        turned = float(length[self._reducer.turns > LIMP_TURN].sum())
         is_small = self.tree.n_segments <= MOST_LIMP
         return is_small and turned > LIMP_SHARE * float(length.sum())
-
-    @cached_property
-    def _speed(self) -> Floats:
-        """Wind at each segment's middle over that at the anemometer, (n,)."""
-        middle = 0.5 * (self.tree.start[:, 2] + self.tree.end[:, 2])
-        return self.settings.profile.over_anemometer(middle)
-
-    @cached_property
-    def _beams(self) -> TreeBeams:
-        """Return the beams of whole branches."""
-        return self._beams_of(whole_tree(self.tree))
-
-    def _beams_of(self, cut: CutTree) -> TreeBeams:
-        species, leaf_mass = self.species, np.zeros(self.tree.n_branches)
-        if self.settings.leaf_mass is not None:
-            leaf_mass = one_of_each(
-                'leaf_mass', self.settings.leaf_mass, self.tree.n_branches, 'branch'
-            )
-        return TreeBeams(
-            cut.tree,
-            species.density,
-            shear_ratio=species.shear_ratio,
-            speed_profile=self._speed[cut.row],
-            leaf_mass=cut.share * leaf_mass[cut.branch],
-            leaf_area=cut.share * self.leaf_load_area[cut.branch],
-            root_compliance=species.modulus / species.root_stiffness,
-            gravity=self.settings.gravity / species.modulus,
-        )
-
-    @one_thread()
-    def _reduced(self, cut: CutTree, models: list[BranchModel], *, subtrees: bool) -> ReducedTree:
-        tree, species = cut.tree, self.species
-        shear = species.shear_ratio * species.modulus
-        reduction = reduce_tree(
-            tree, models, species.modulus, shear, self.settings.gravity, subtrees=subtrees
-        )
-        places = places_of(tree, models, reduction)
-        records = branch_records(tree, models, reduction, places, self._speed[cut.row])
-        # Poses are those of the segments of whole branches.
-        row, on = cut.row[records['first']], records['base_segment']
-        records['end'] += row - records['first']
-        records['first'], records['base_segment'] = row, np.where(on < 0, -1, cut.row[on])
-        mass = np.concatenate([
-            model.beam.over_segments(model.mass) * model.beam.segment_length for model in models
-        ])  # fmt: skip
-        return ReducedTree(tree, cut.branch, cut.row, models, reduction, records, places, mass)
 
 
 def _crown_drag(tree: Tree, species: Species, settings: Settings) -> tuple[DragLaw, Floats]:

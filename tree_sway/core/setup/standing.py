@@ -26,7 +26,8 @@ from tree_sway.core.model.settings import Settings
 from tree_sway.core.model.tree_state import digest_of
 from tree_sway.core.setup.modes import buckling_modes, solvable
 from tree_sway.core.setup.one_thread import one_thread
-from tree_sway.core.setup.reductions import ReducedTree, TreeReductions
+from tree_sway.core.setup.reduced_tree import ReducedTree
+from tree_sway.core.setup.reductions import TreeReductions
 from tree_sway.core.tree.species import Species
 from tree_sway.core.tree.tree import Tree
 

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from tree_sway.core.arrays import Floats, Ints, Records
 from tree_sway.core.checks import within
 from tree_sway.core.kernel import entry_of, kernel
+from tree_sway.core.tree.tree import Tree
 from tree_sway.core.wind.gust_travel import follow_mean, past_winds, remember
 
 DECAY = 8.0
@@ -79,6 +80,16 @@ class CrownDelays(NamedTuple):
     of_branch: Ints
     share: Floats
     spread: float
+
+
+def delays_of(tree: Tree, leaf_area: Floats) -> CrownDelays:
+    """Assign delays to the branches of a tree, with leaves equivalent to areas (b,) of wood."""
+    first = tree.branch_first[:-1]
+    area = tree.length * 0.5 * (tree.base_diameter + tree.tip_diameter)
+    middle = 0.5 * (tree.start + tree.end) * area[:, None]
+    wood = np.add.reduceat(area, first)
+    centre = np.add.reduceat(middle, first, axis=0) / np.maximum(wood, 1e-12)[:, None]
+    return crown_delays(tree.branch_parent, centre, wood + leaf_area)
 
 
 def crown_delays(parent: Ints, centre: Floats, load: Floats) -> CrownDelays:

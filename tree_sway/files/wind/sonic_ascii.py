@@ -47,11 +47,12 @@ def parse_sonic(line: str, heading: float = 0.0) -> SensorLine | None:
     gill = _GILL.match(line, begin)
     if gill is None:
         return None
-    body, readings = gill[1], (gill[2] or '').strip().upper()[:2] or None
+    body = gill[1]
+    checksum = (gill[2] or '').strip().upper()[:2] or None
     # The examples of one manual (WindSonic) leave ETX out, those of another (WindObserver) not.
     bodies = [body, f'{body}\x03']
     read = partial(_gill, [field.strip() for field in body.split(',')], heading)
-    return line_of(KINDS[0], len(line), readings, bodies, read)
+    return line_of(KINDS[0], len(line), checksum, bodies, read)
 
 
 def read_sonic_wind(path: Path, rate: float = 10.0, heading: float = 0.0) -> WindRecord:

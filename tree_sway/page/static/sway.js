@@ -4,7 +4,8 @@
  *
  * A tree is m coordinates; a table has what every even wind does to them; each goes on by its exact
  * propagator. Outside of the table the load of its edge is used, which `Stand.outside` counts. The law is
- * that of tree_sway/core/run/table_model.py and gust_travel.py, and vectors of these hold it;
+ * that of table_model.py in tree_sway/core/run, gust_travel.py in core/wind and drag_law.py in
+ * core/model, and vectors of these hold it;
  * doc/tree_as_a_file.md is for its users. */
 
 import { checkTable, checkTablesHeader, FORMS, need, ProtocolError } from "./checks.js";

@@ -1,0 +1,169 @@
+# Copyright 2026 Tree Sway maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""
+A tree as the matrices and records that its models are made from.
+
+Branches become beams, those that rotate far are cut into key segments, and these are reduced to
+key rotations: with subtrees, where a branch moves with its subtree, or isolated (the paper's).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tree_sway.core.arrays import Floats, Ints, Records
+from tree_sway.core.beams.branch_model import BranchModel, TreeBeams
+from tree_sway.core.beams.cutting import cut_tree, CutTree, pieces_by_turn, whole_tree
+from tree_sway.core.checks import one_of_each
+from tree_sway.core.model.drag_law import DragLaw, pressure
+from tree_sway.core.model.fill_records import Places
+from tree_sway.core.model.settings import Settings
+from tree_sway.core.setup.branch_places import places_of
+from tree_sway.core.setup.branch_records import branch_records
+from tree_sway.core.setup.matrices import reduce_tree, Reduction
+from tree_sway.core.setup.one_thread import one_thread
+from tree_sway.core.tree.species import Species
+from tree_sway.core.tree.tree import Tree
+
+CUT_FOR = 15.0
+"""Wind in [m/s] for whose rotations branches are cut."""
+
+
+@dataclass(frozen=True)
+class ReducedTree:
+    """
+    A tree reduced in one of the two ways.
+
+    Its branches may be pieces of those of the given tree, whose numbers are ``branch``, (p,), and
+    ``row`` has the given tree's number of each segment, (n,); each segment has its ``mass`` [kg],
+    with leaves, (n,).
+    """
+
+    tree: Tree
+    branch: Ints
+    row: Ints
+    models: list[BranchModel]
+    reduction: Reduction
+    branches: Records
+    places: Places
+    mass: Floats
+
+
+class TreeReducer:
+    """
+    The two reductions of a tree, each made at its first use.
+
+    Parameters
+    ----------
+    tree, species, settings
+        Tree, its species with its roots, and the settings in season.
+    drag_law
+        Drag law of the whole tree.
+    leaf_load_area
+        Area of bare wood that meets as much wind as the leaves of each branch in [m^2], (b,).
+
+    """
+
+    def __init__(
+        self,
+        tree: Tree,
+        species: Species,
+        settings: Settings,
+        drag_law: DragLaw,
+        leaf_load_area: Floats,
+    ) -> None:
+        self._tree, self._species, self._settings = tree, species, settings
+        self._drag_law, self._leaf_load_area = drag_law, leaf_load_area
+        middle = 0.5 * (tree.start[:, 2] + tree.end[:, 2])
+        self._speed = settings.profile.over_anemometer(middle)
+        """Wind at each segment's middle over that at the anemometer, (n,)."""
+
+    @cached_property
+    def isolated(self) -> ReducedTree:
+        """Reduction of isolated branches."""
+        models = self._beams.models(subtrees=False)
+        return self._reduced(whole_tree(self._tree), models, subtrees=False)
+
+    @cached_property
+    def with_subtrees(self) -> ReducedTree:
+        """
+        Reduction with subtrees, enriched branches with further shapes.
+
+        Branches that rotate far are cut into key segments.
+        """
+        cut = cut_tree(self._tree, pieces_by_turn(self._tree, self.turns))
+        is_cut = cut.tree.n_branches > self._tree.n_branches
+        beams = self._beams_of(cut) if is_cut else self._beams
+        enriched = beams.enriched(self._settings.enrich)
+        models = beams.models(subtrees=True, enriched=enriched)
+        return self._reduced(cut, models, subtrees=True)
+
+    @cached_property
+    def turns(self) -> Floats:
+        """Rotation [rad] of each branch in the wind that branches are cut for, (b,)."""
+        dynamic_pressure = pressure(CUT_FOR, *self._drag_law) * CUT_FOR**2
+        return np.asarray(dynamic_pressure * self._beams.turns(self._species.modulus))
+
+    @cached_property
+    def _beams(self) -> TreeBeams:
+        """Return the beams of whole branches."""
+        return self._beams_of(whole_tree(self._tree))
+
+    def _beams_of(self, cut: CutTree) -> TreeBeams:
+        species, settings = self._species, self._settings
+        leaf_mass = np.zeros(self._tree.n_branches)
+        if settings.leaf_mass is not None:
+            leaf_mass = one_of_each(
+                'leaf_mass', settings.leaf_mass, self._tree.n_branches, 'branch'
+            )
+        return TreeBeams(
+            cut.tree,
+            species.density,
+            shear_ratio=species.shear_ratio,
+            speed_profile=self._speed[cut.row],
+            leaf_mass=cut.share * leaf_mass[cut.branch],
+            leaf_area=cut.share * self._leaf_load_area[cut.branch],
+            root_compliance=species.modulus / species.root_stiffness,
+            gravity=settings.gravity / species.modulus,
+        )
+
+    @one_thread()
+    def _reduced(self, cut: CutTree, models: list[BranchModel], *, subtrees: bool) -> ReducedTree:
+        tree, species = cut.tree, self._species
+        shear_modulus = species.shear_ratio * species.modulus
+        reduction = reduce_tree(
+            tree,
+            models,
+            species.modulus,
+            shear_modulus,
+            self._settings.gravity,
+            subtrees=subtrees,
+        )
+        places = places_of(tree, models, reduction)
+        records = branch_records(tree, models, reduction, places, self._speed[cut.row])
+        _number_as_whole(records, cut.row)
+        masses = [
+            model.beam.over_segments(model.mass) * model.beam.segment_length for model in models
+        ]
+        return ReducedTree(
+            tree=tree,
+            branch=cut.branch,
+            row=cut.row,
+            models=models,
+            reduction=reduction,
+            branches=records,
+            places=places,
+            mass=np.concatenate(masses),
+        )
+
+
+def _number_as_whole(records: Records, row: Ints) -> None:
+    """Write the numbers that segments have in the whole branches, (n,): these are placed."""
+    first = row[records['first']]
+    records['end'] += first - records['first']
+    records['first'] = first
+    base_segment = records['base_segment']
+    records['base_segment'] = np.where(base_segment < 0, -1, row[base_segment])
