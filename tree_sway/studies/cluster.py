@@ -16,6 +16,7 @@ from functools import cache
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from multiprocessing import active_children, resource_tracker
+from multiprocessing.process import BaseProcess
 import signal
 import sys
 import threading
@@ -35,6 +36,8 @@ _PATIENCE = 15.0
 """Longest wait for a scheduler and for its first worker [s]."""
 _REPEAT = 2.0
 """Time after which Ctrl-C that had no effect is repeated [s]."""
+_KILL_PERIOD = 0.05
+"""Interval at which workers that have just started are looked for, to end them [s]."""
 _SCHEMES = ('tcp://', 'tls://')
 _LIBRARIES = ('numpy', 'scipy', 'numba')
 
@@ -240,10 +243,18 @@ def _processes_here(workers: int) -> Iterator[tuple[Any, Any]]:
                 local.scale(workers)
                 yield distributed, client
             except BaseException:  # Ctrl-C: running cases are computed in the next run
-                for worker in active_children():
-                    if worker not in before:
-                        worker.kill()
+                is_closed = threading.Event()
+                delayed.callback(is_closed.set)
+                threading.Thread(target=_kill_workers, args=(before, is_closed)).start()
                 raise
+
+
+def _kill_workers(others: Sequence[BaseProcess], is_closed: threading.Event) -> None:
+    """Kill the children that are not among others, also those that start until it is closed."""
+    while not is_closed.wait(_KILL_PERIOD):
+        for worker in active_children():
+            if worker not in others:
+                worker.kill()
 
 
 def delayed_interrupt() -> ExitStack:
