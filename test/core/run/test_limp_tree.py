@@ -164,6 +164,23 @@ def test_numpy_gives_the_poses_of_the_kernels():
     assert np.abs(tips[0] - tips[1]).max() < 1e-5 * height
 
 
+def test_gusts_reach_its_limbs_one_after_another():
+    """As they reach those of the reference."""
+    wind = turbulent(7.0, 10.0, 5)
+
+    def effect(model):
+        whole, apart = (
+            record_tips(
+                make_simulator(weeping(), WOOD, SETTINGS, model=model, crown_coherence=coherence),
+                weeping(), wind, FRAME,
+            )
+            for coherence in (1.0, 0.3)
+        )  # fmt: skip
+        return tip_error(weeping(), apart, whole)
+
+    assert effect(40) == pytest.approx(effect('full'), rel=0.2)
+
+
 def test_it_stands_still_in_still_air():
     sim = limp_tree()
     rest = sim.place()

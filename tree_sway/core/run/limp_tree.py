@@ -101,7 +101,7 @@ class LimpMotion(NamedTuple):
     by_wind: Floats
     """Force of the wind."""
     wanted: Floats
-    """Force of wind and weight."""
+    """Force of wind and weight, of the instance."""
     across: Floats
     """Centrifugal force on the leading coordinates, (q,)."""
     momentum: Floats
@@ -163,7 +163,11 @@ class LimpStep(WindBasisBank):
         half = self.time_step[0]['half'][:, :m]
         self._law = coupled_step(self.modal, half, self._drag, len(self.pose.change), dt)
         eta, rate, force = self.swing
-        self.limp_motion = self.limp_motion._replace(eta=eta, rate=rate, force=force)
+        # Gusts that reach the limbs one after another are added by the force of the step.
+        wanted = self.instance['wanted'][0, :m]
+        self.limp_motion = self.limp_motion._replace(
+            eta=eta, rate=rate, force=force, wanted=wanted
+        )
 
     def advance(self, wx: float, wy: float, wz: float, per_speed_squared: float) -> int:
         """Advance one step, as `WindBasisBank.advance`."""
