@@ -145,7 +145,7 @@ function bareShoots({ arrays }, look, rest, branches, mean) {
   for (const branch of branches) {
     const end = first[branch + 1] - 1;
     // A dead stub stays bare.
-    const reach = length.subarray(first[branch], end + 1).reduce((sum, each) => sum + each, 0);
+    const reach = Array.from(length.subarray(first[branch], end + 1)).reduce((sum, each) => sum + each, 0);
     if (reach > 2 * size || leafy.has(end)) add(end, length[end] - 0.5 * size);
     for (let segment = first[branch]; segment < end; segment++) {
       if (leafy.has(segment) || radius[2 * segment] > leafiest) continue;
